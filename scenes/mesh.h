@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tandem {
+
+using Tetrahedron = std::array<std::uint32_t, 4>;
+
+/// Vertices and tetrahedra in the mesh's own frame. Tetrahedra keep the order of their source: dumps number
+/// them by it. Every index is in range and every coordinate finite once check_mesh has passed.
+struct Mesh {
+    std::string name;
+    std::vector<Eigen::Vector3d> vertices;
+    std::vector<Tetrahedron> tetrahedra;
+    /// Bit i of boundary[t]: the face of tetrahedron t opposite its corner i belongs to no other tetrahedron.
+    std::vector<std::uint8_t> boundary;
+    std::size_t inverted = 0;   ///< tetrahedra of negative volume: kept, counted
+    std::size_t degenerate = 0; ///< tetrahedra of zero volume: kept, counted
+};
+
+/// Checks indices and coordinates (throws InputError naming `source`), then fills boundary, inverted and
+/// degenerate. Volume signs come from det[b-a, c-a, d-a] in double.
+void complete_mesh(Mesh& mesh, const std::string& source);
+
+/// Reads a tetrahedral mesh; the format is told by content and suffix: Gmsh .msh 2.2 and 4.1 (ASCII and
+/// binary), Medit .mesh, TetGen .node/.ele (either file names the pair), legacy .vtk and .vtu. Returns a
+/// completed mesh; throws InputError with file:line.
+Mesh read_mesh(const std::string& path);
+
+/// Volume of the union of non-overlapping tetrahedra: the sum of |det|/6.
+double volume(const Mesh& mesh);
+
+} // namespace tandem
