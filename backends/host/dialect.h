@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// What host-compiled kernels need from outside their namespaces; included once before them.
+#pragma once
+
+#include "backends/device.h"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+using uchar = unsigned char;
+using uint = unsigned int;
+using ulong = unsigned long;
+
+namespace tandem::host {
+
+/// The work-group that runs; groups run one after the other on the calling thread.
+inline uint group_id = 0;
+inline uint group_count = 1;
+
+inline uint fetch_add(uint* pointer, uint value) { return std::exchange(*pointer, *pointer + value); }
+
+struct HostBuffer : Buffer::Impl {
+    std::vector<std::byte> storage;
+    std::byte* data = nullptr;
+};
+
+/// A define that the host reads at run time instead of compiling a variant of it.
+struct RuntimeDefine {
+    const char* name;
+    long* value;
+    long initial; ///< the kernel's default
+};
+
+/// One kernel of one variant. `defines` are the compiled ones, "AXES=0;K=18;PRECISION=32;ROUNDING=1".
+struct HostKernel {
+    const char* source;
+    const char* entry;
+    const char* defines;
+    void (*run)(std::span<const Argument>);
+    std::size_t argument_count;
+    std::span<const RuntimeDefine> runtime;
+};
+
+/// Every kernel compiled into this program (generated).
+std::span<const std::span<const HostKernel>> host_kernels();
+
+template<class T>
+T argument_as(const Argument& argument) {
+    if constexpr (std::is_pointer_v<T>) {
+        return reinterpret_cast<T>(static_cast<HostBuffer*>(std::get<Buffer::Impl*>(argument.value()))->data);
+    } else {
+        T value{};
+        std::memcpy(&value, std::get<Argument::Scalar>(argument.value()).bytes.data(), sizeof(T));
+        return value;
+    }
+}
+
+template<auto Function>
+struct Invoke;
+
+template<class... Parameters, void (*Function)(Parameters...)>
+struct Invoke<Function> {
+    static constexpr std::size_t count = sizeof...(Parameters);
+
+    static void run(std::span<const Argument> arguments) {
+        [&]<std::size_t... I>(std::index_sequence<I...>) {
+            Function(argument_as<Parameters>(arguments[I])...);
+        }
+        (std::index_sequence_for<Parameters...>{});
+    }
+};
+
+} // namespace tandem::host

@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: MIT
+#define CL_TARGET_OPENCL_VERSION 120
+#include "backends/opencl/opencl_device.h"
+
+#include <CL/cl.h>
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace tandem::opencl {
+
+namespace {
+
+std::string error_name(cl_int code) {
+    static const std::map<cl_int, const char*> names{
+        {CL_DEVICE_NOT_AVAILABLE, "device not available"},
+        {CL_MEM_OBJECT_ALLOCATION_FAILURE, "memory allocation failure"},
+        {CL_OUT_OF_RESOURCES, "out of resources"},
+        {CL_OUT_OF_HOST_MEMORY, "out of host memory"},
+        {CL_BUILD_PROGRAM_FAILURE, "build failure"},
+        {CL_INVALID_WORK_GROUP_SIZE, "invalid work-group size"},
+        {CL_INVALID_KERNEL_ARGS, "invalid kernel arguments"},
+        {CL_INVALID_ARG_SIZE, "invalid argument size"},
+        {CL_INVALID_BUFFER_SIZE, "invalid buffer size"},
+    };
+    const auto found = names.find(code);
+    return found == names.end() ? fmt::format("code {}", code)
+                                : fmt::format("code {}, {}", code, found->second);
+}
+
+template<class T>
+T device_value(cl_device_id device, cl_device_info what) {
+    T value{};
+    clGetDeviceInfo(device, what, sizeof(T), &value, nullptr);
+    return value;
+}
+
+std::string device_text(cl_device_id device, cl_device_info what) {
+    std::size_t size = 0;
+    clGetDeviceInfo(device, what, 0, nullptr, &size);
+    std::string text(size, '\0');
+    clGetDeviceInfo(device, what, size, text.data(), nullptr);
+    while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.pop_back();
+    return text;
+}
+
+/// PCI address of an NVIDIA device (cl_nv_device_attribute_query), so that one GPU seen twice is recognised.
+std::string hardware_id(cl_device_id device) {
+    constexpr cl_device_info pci_bus = 0x4008;
+    constexpr cl_device_info pci_slot = 0x4009;
+    if (device_text(device, CL_DEVICE_EXTENSIONS).find("cl_nv_device_attribute_query") == std::string::npos)
+        return {};
+    return fmt::format("pci {:02x}:{:02x}", device_value<cl_uint>(device, pci_bus),
+                       device_value<cl_uint>(device, pci_slot) >> 3);
+}
+
+DeviceInfo describe(cl_device_id device, std::size_t index) {
+    DeviceInfo info;
+    info.id = fmt::format("opencl:{}", index);
+    info.name = device_text(device, CL_DEVICE_NAME);
+    info.driver =
+        fmt::format("{}, {}", device_text(device, CL_DEVICE_VERSION), device_text(device, CL_DRIVER_VERSION));
+    info.compiler = device_text(device, CL_DEVICE_OPENCL_C_VERSION);
+    info.hardware = hardware_id(device);
+    info.is_gpu = (device_value<cl_device_type>(device, CL_DEVICE_TYPE) & CL_DEVICE_TYPE_GPU) != 0;
+    info.compute_units = device_value<cl_uint>(device, CL_DEVICE_MAX_COMPUTE_UNITS);
+    info.max_group_size =
+        static_cast<std::uint32_t>(device_value<std::size_t>(device, CL_DEVICE_MAX_WORK_GROUP_SIZE));
+    info.global_bytes = device_value<cl_ulong>(device, CL_DEVICE_GLOBAL_MEM_SIZE);
+    info.max_allocation = device_value<cl_ulong>(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
+    info.local_bytes = device_value<cl_ulong>(device, CL_DEVICE_LOCAL_MEM_SIZE);
+    info.has_double = device_value<cl_device_fp_config>(device, CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
+    return info;
+}
+
+struct OpenclBuffer : Buffer::Impl {
+    cl_mem memory = nullptr;
+    bool owned = true;
+    OpenclBuffer() = default;
+    OpenclBuffer(const OpenclBuffer&) = delete;
+    OpenclBuffer& operator=(const OpenclBuffer&) = delete;
+    ~OpenclBuffer() override {
+        if (owned && memory) clReleaseMemObject(memory);
+    }
+};
+
+struct OpenclKernel : Kernel::Impl {
+    cl_kernel kernel = nullptr;
+    OpenclKernel() = default;
+    OpenclKernel(const OpenclKernel&) = delete;
+    OpenclKernel& operator=(const OpenclKernel&) = delete;
+    ~OpenclKernel() override {
+        if (kernel) clReleaseKernel(kernel);
+    }
+};
+
+class OpenclDevice : public Device {
+public:
+    OpenclDevice(cl_device_id device, std::size_t index);
+    OpenclDevice(cl_context context, cl_device_id device, cl_command_queue queue);
+    ~OpenclDevice() override;
+
+    const DeviceInfo& info() const override { return info_; }
+
+private:
+    std::shared_ptr<Buffer::Impl> do_allocate(std::size_t bytes) override;
+    std::shared_ptr<Buffer::Impl> do_adopt(void* native) override;
+    std::uint64_t do_upload(Buffer::Impl& to, std::span<const std::byte> from, std::size_t offset,
+                            bool blocking) override;
+    std::uint64_t do_download(const Buffer::Impl& from, std::span<std::byte> to, std::size_t offset) override;
+    std::uint64_t do_clear(Buffer::Impl& buffer, std::size_t bytes, std::size_t offset) override;
+    std::shared_ptr<Kernel::Impl> do_compile(const KernelSource& source, std::string_view entry,
+                                             const Defines& defines) override;
+    std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) override;
+    void do_finish() override;
+    void do_set_clocks(Clocks clocks) override { active_ = clocks == Clocks::on ? timed_queue() : queue_; }
+    std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) override;
+
+    void check(cl_int code, std::string_view call, std::string_view what) const;
+    cl_command_queue make_queue(cl_command_queue_properties properties);
+    cl_command_queue timed_queue();
+    /// Where the API puts its event, or null when timestamps are off.
+    cl_event* event_slot();
+    std::uint64_t ticket() const { return clocks() == Clocks::on ? events_.size() : 0; }
+    /// Builds once per text and options; entries of one file share the program.
+    cl_program program(const KernelSource& source, const std::string& options);
+    void set_arguments(cl_kernel kernel, std::span<const Argument> arguments, std::string_view entry);
+
+    DeviceInfo info_;
+    cl_device_id device_ = nullptr;
+    cl_context context_ = nullptr;
+    cl_command_queue queue_ = nullptr; ///< without profiling: the headline runs
+    cl_command_queue timed_ = nullptr; ///< with profiling: the breakdown per command
+    cl_command_queue active_ = nullptr;
+    bool owned_ = true;
+    std::map<std::string, cl_program> programs_;
+    std::vector<cl_event> events_;
+    std::vector<std::vector<std::byte>> staged_; ///< copies of uploads in flight
+};
+
+OpenclDevice::OpenclDevice(cl_device_id device, std::size_t index)
+    : info_(describe(device, index)), device_(device) {
+    cl_int code = CL_SUCCESS;
+    context_ = clCreateContext(nullptr, 1, &device_, nullptr, nullptr, &code);
+    check(code, "clCreateContext", "opening the device");
+    queue_ = active_ = make_queue(0);
+}
+
+OpenclDevice::OpenclDevice(cl_context context, cl_device_id device, cl_command_queue queue)
+    : info_(describe(device, 0)),
+      device_(device),
+      context_(context),
+      queue_(queue),
+      timed_(queue),
+      active_(queue),
+      owned_(false) {
+    info_.id = "opencl:adopted";
+}
+
+OpenclDevice::~OpenclDevice() {
+    for (auto* event : events_)
+        if (event) clReleaseEvent(event);
+    for (const auto& [key, made] : programs_) clReleaseProgram(made);
+    if (!owned_) return;
+    if (timed_) clReleaseCommandQueue(timed_);
+    if (queue_) clReleaseCommandQueue(queue_);
+    if (context_) clReleaseContext(context_);
+}
+
+void OpenclDevice::check(cl_int code, std::string_view call, std::string_view what) const {
+    if (code == CL_SUCCESS) return;
+    throw DeviceError(fmt::format("{} ({}): {} failed with {} while {}", info_.id, info_.name, call,
+                                  error_name(code), what));
+}
+
+cl_command_queue OpenclDevice::make_queue(cl_command_queue_properties properties) {
+    cl_int code = CL_SUCCESS;
+    auto* queue = clCreateCommandQueue(context_, device_, properties, &code);
+    check(code, "clCreateCommandQueue", "opening the device");
+    return queue;
+}
+
+cl_command_queue OpenclDevice::timed_queue() {
+    if (!timed_) timed_ = make_queue(CL_QUEUE_PROFILING_ENABLE);
+    return timed_;
+}
+
+cl_event* OpenclDevice::event_slot() {
+    if (clocks() == Clocks::off) return nullptr;
+    events_.push_back(nullptr);
+    return &events_.back();
+}
+
+std::shared_ptr<Buffer::Impl> OpenclDevice::do_allocate(std::size_t bytes) {
+    auto buffer = std::make_shared<OpenclBuffer>();
+    cl_int code = CL_SUCCESS;
+    buffer->memory = clCreateBuffer(context_, CL_MEM_READ_WRITE, bytes, nullptr, &code);
+    check(code, "clCreateBuffer",
+          fmt::format("allocating {} bytes of {} with {} in use", bytes, info_.global_bytes,
+                      bytes_allocated()));
+    return buffer;
+}
+
+std::shared_ptr<Buffer::Impl> OpenclDevice::do_adopt(void* native) {
+    auto buffer = std::make_shared<OpenclBuffer>();
+    buffer->memory = static_cast<cl_mem>(native);
+    buffer->owned = false;
+    return buffer;
+}
+
+std::uint64_t OpenclDevice::do_upload(Buffer::Impl& to, std::span<const std::byte> from, std::size_t offset,
+                                      bool blocking) {
+    const void* source = from.data();
+    if (!blocking) source = staged_.emplace_back(from.begin(), from.end()).data();
+    check(clEnqueueWriteBuffer(active_, static_cast<OpenclBuffer&>(to).memory, blocking ? CL_TRUE : CL_FALSE,
+                               offset, from.size(), source, 0, nullptr, event_slot()),
+          "clEnqueueWriteBuffer", fmt::format("uploading '{}'", to.label));
+    if (blocking) staged_.clear();
+    return ticket();
+}
+
+std::uint64_t OpenclDevice::do_download(const Buffer::Impl& from, std::span<std::byte> to,
+                                        std::size_t offset) {
+    check(clEnqueueReadBuffer(active_, static_cast<const OpenclBuffer&>(from).memory, CL_TRUE, offset,
+                              to.size(), to.data(), 0, nullptr, event_slot()),
+          "clEnqueueReadBuffer", fmt::format("downloading '{}'", from.label));
+    staged_.clear();
+    return ticket();
+}
+
+std::uint64_t OpenclDevice::do_clear(Buffer::Impl& buffer, std::size_t bytes, std::size_t offset) {
+    const cl_uchar zero = 0;
+    check(clEnqueueFillBuffer(active_, static_cast<OpenclBuffer&>(buffer).memory, &zero, 1, offset, bytes, 0,
+                              nullptr, event_slot()),
+          "clEnqueueFillBuffer", fmt::format("clearing '{}'", buffer.label));
+    return ticket();
+}
+
+cl_program OpenclDevice::program(const KernelSource& source, const std::string& options) {
+    const auto key = fmt::format("{} {}", source.name, options);
+    if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
+    cl_int code = CL_SUCCESS;
+    const char* text = source.text.data();
+    const std::size_t length = source.text.size();
+    auto* made = clCreateProgramWithSource(context_, 1, &text, &length, &code);
+    check(code, "clCreateProgramWithSource", "compiling");
+    if (clBuildProgram(made, 1, &device_, options.c_str(), nullptr, nullptr) == CL_SUCCESS)
+        return programs_[key] = made;
+    std::size_t size = 0;
+    clGetProgramBuildInfo(made, device_, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
+    std::string log(size, '\0');
+    clGetProgramBuildInfo(made, device_, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
+    clReleaseProgram(made);
+    std::replace(log.begin(), log.end(), '\n', ' ');
+    throw DeviceError(
+        fmt::format("{}: {} does not compile with {}: {}", info_.id, source.name, options, log));
+}
+
+std::shared_ptr<Kernel::Impl> OpenclDevice::do_compile(const KernelSource& source, std::string_view entry,
+                                                       const Defines& defines) {
+    std::string options = "-cl-std=CL1.2";
+    if ((device_value<cl_device_fp_config>(device_, CL_DEVICE_SINGLE_FP_CONFIG)
+         & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT)
+        != 0)
+        options += " -cl-fp32-correctly-rounded-divide-sqrt";
+    for (const auto& [name, value] : defines) options += fmt::format(" -D{}={}", name, value);
+    auto kernel = std::make_shared<OpenclKernel>();
+    cl_int code = CL_SUCCESS;
+    kernel->kernel = clCreateKernel(program(source, options), std::string(entry).c_str(), &code);
+    check(code, "clCreateKernel", fmt::format("looking for '{}' in {}", entry, source.name));
+    cl_ulong local = 0;
+    std::size_t group = 0;
+    clGetKernelWorkGroupInfo(kernel->kernel, device_, CL_KERNEL_LOCAL_MEM_SIZE, sizeof(local), &local,
+                             nullptr);
+    clGetKernelWorkGroupInfo(kernel->kernel, device_, CL_KERNEL_WORK_GROUP_SIZE, sizeof(group), &group,
+                             nullptr);
+    kernel->facts.local_bytes = static_cast<std::int64_t>(local);
+    kernel->facts.max_group_size = static_cast<std::int64_t>(group);
+    return kernel;
+}
+
+void OpenclDevice::set_arguments(cl_kernel kernel, std::span<const Argument> arguments,
+                                 std::string_view entry) {
+    for (cl_uint i = 0; i < arguments.size(); ++i) {
+        const auto& value = arguments[i].value();
+        cl_int code = CL_SUCCESS;
+        if (const auto* const* buffer = std::get_if<Buffer::Impl*>(&value)) {
+            code =
+                clSetKernelArg(kernel, i, sizeof(cl_mem), &static_cast<const OpenclBuffer*>(*buffer)->memory);
+        } else {
+            const auto& scalar = std::get<Argument::Scalar>(value);
+            code = clSetKernelArg(kernel, i, scalar.size, scalar.bytes.data());
+        }
+        check(code, "clSetKernelArg", fmt::format("setting argument {} of '{}'", i, entry));
+    }
+}
+
+std::uint64_t OpenclDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) {
+    auto* handle = static_cast<OpenclKernel&>(kernel).kernel;
+    set_arguments(handle, arguments, kernel.facts.entry);
+    const std::size_t local = grid.group_size;
+    const std::size_t global = grid.groups * local;
+    check(clEnqueueNDRangeKernel(active_, handle, 1, nullptr, &global, &local, 0, nullptr, event_slot()),
+          "clEnqueueNDRangeKernel",
+          fmt::format("launching '{}' with {} groups of {}", kernel.facts.entry, grid.groups, local));
+    return ticket();
+}
+
+void OpenclDevice::do_finish() {
+    check(clFinish(active_), "clFinish", "waiting");
+    staged_.clear();
+}
+
+std::pair<std::int64_t, std::int64_t> OpenclDevice::do_interval(std::uint64_t ticket) {
+    auto*& event = events_.at(ticket - 1);
+    cl_ulong begin = 0;
+    cl_ulong end = 0;
+    const bool known =
+        clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof(begin), &begin, nullptr)
+            == CL_SUCCESS
+        && clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof(end), &end, nullptr) == CL_SUCCESS
+        && end >= begin;
+    clReleaseEvent(event);
+    event = nullptr;
+    if (ticket == events_.size()) events_.clear();
+    if (!known) return {-1, -1};
+    return {static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end - begin)};
+}
+
+/// The vendor files the loader would read, for the sentence that explains an empty list.
+std::string vendor_files() {
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator("/etc/OpenCL/vendors", ignored))
+        names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::vector<cl_device_id> devices_of(cl_platform_id platform) {
+    cl_uint count = 0;
+    if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count) != CL_SUCCESS) return {};
+    std::vector<cl_device_id> devices(count);
+    clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, devices.data(), nullptr);
+    return devices;
+}
+
+} // namespace
+
+Found discover() {
+    Found found;
+    cl_uint count = 0;
+    const auto code = clGetPlatformIDs(0, nullptr, &count);
+    if (code != CL_SUCCESS || count == 0) {
+        found.reason = fmt::format(
+            "opencl: no platform (the loader returned {}; /etc/OpenCL/vendors has: {}); install a "
+            "driver, for a CPU the package pocl-opencl-icd",
+            code, vendor_files());
+        return found;
+    }
+    std::vector<cl_platform_id> platforms(count);
+    clGetPlatformIDs(count, platforms.data(), nullptr);
+    for (auto* platform : platforms) {
+        for (auto* device : devices_of(platform)) {
+            try {
+                found.devices.push_back(std::make_unique<OpenclDevice>(device, found.devices.size()));
+            } catch (const DeviceError& error) {
+                found.reason = error.what();
+            }
+        }
+    }
+    if (found.devices.empty() && found.reason.empty())
+        found.reason = fmt::format("opencl: {} platform(s), but no device", count);
+    return found;
+}
+
+std::unique_ptr<Device> adopt(void* context, void* device, void* queue) {
+    return std::make_unique<OpenclDevice>(static_cast<cl_context>(context), static_cast<cl_device_id>(device),
+                                          static_cast<cl_command_queue>(queue));
+}
+
+} // namespace tandem::opencl

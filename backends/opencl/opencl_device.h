@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "backends/device.h"
+
+namespace tandem::opencl {
+
+/// Every device of every platform, in the loader's order, or the sentence why there is none.
+struct Found {
+    std::vector<std::unique_ptr<Device>> devices;
+    std::string reason;
+};
+
+Found discover();
+
+/// A device over a host application's cl_context, cl_device_id and in-order cl_command_queue, which must
+/// outlive it. Timestamps work only if that queue was made with profiling.
+std::unique_ptr<Device> adopt(void* context, void* device, void* queue);
+
+} // namespace tandem::opencl

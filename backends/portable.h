@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// The kernel dialect: one text for OpenCL C, CUDA and host C++. Rules: any group size is correct, one
+// included; barriers only in uniform control flow; only scalars and pointers cross the host boundary; shared
+// counters are read with ATOMIC_READ; no group ever waits for another. Parameters are defines with a default,
+// written as #ifndef NAME / #define NAME value / #endif, so that a file compiles alone.
+#ifndef TANDEM_PORTABLE_H
+#define TANDEM_PORTABLE_H
+
+#ifndef GROUP_SIZE
+#define GROUP_SIZE 64
+#endif
+#ifndef PRECISION
+#define PRECISION 32
+#endif
+
+#if defined(__OPENCL_C_VERSION__)
+#pragma OPENCL FP_CONTRACT OFF
+#if PRECISION == 64
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+#endif
+#define KERNEL __kernel __attribute__((reqd_work_group_size(GROUP_SIZE, 1, 1)))
+#define GLOBAL __global
+#define LOCAL __local
+#define LOCAL_ARRAY(type, name, count) __local type name[count]
+#define DEVICE static inline
+#if GROUP_SIZE == 1 // nothing to wait for, and PoCL 3.1 aborts on some barriers in loops at this size
+#define BARRIER
+#define BARRIER_GLOBAL
+#else
+#define BARRIER barrier(CLK_LOCAL_MEM_FENCE)
+#define BARRIER_GLOBAL barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
+#endif
+#define LOCAL_ID ((uint)get_local_id(0))
+#define GROUP_ID ((uint)get_group_id(0))
+#define GROUP_COUNT ((uint)get_num_groups(0))
+#define ATOMIC_ADD(pointer, value) atomic_add((pointer), (value))
+#define ATOMIC_READ(pointer) atomic_or((pointer), 0u)
+#define LOCAL_ATOMIC_ADD(pointer, value) atomic_add((pointer), (value))
+#define COUNT_LEADING_ZEROS(value) ((uint)clz((uint)(value)))
+#define SQUARE_ROOT(value) sqrt(value)
+#define ABSOLUTE(value) fabs(value)
+#define REAL_INFINITY ((real)INFINITY)
+
+#elif defined(__CUDACC__)
+#define KERNEL extern "C" __global__ __launch_bounds__(GROUP_SIZE)
+#define GLOBAL
+#define LOCAL
+#define LOCAL_ARRAY(type, name, count) __shared__ type name[count]
+#define DEVICE static __device__ __forceinline__
+#define BARRIER __syncthreads()
+#define BARRIER_GLOBAL __syncthreads()
+#define LOCAL_ID ((uint)threadIdx.x)
+#define GROUP_ID ((uint)blockIdx.x)
+#define GROUP_COUNT ((uint)gridDim.x)
+#define ATOMIC_ADD(pointer, value) atomicAdd((pointer), (value))
+#define ATOMIC_READ(pointer) atomicOr((pointer), 0u)
+#define LOCAL_ATOMIC_ADD(pointer, value) atomicAdd((pointer), (value))
+#define COUNT_LEADING_ZEROS(value) ((uint)__clz((int)(value)))
+#define SQUARE_ROOT(value) sqrt(value)
+#define ABSOLUTE(value) fabs(value)
+#define REAL_INFINITY ((real)__int_as_float(0x7f800000))
+typedef unsigned char uchar;
+typedef unsigned int uint;
+typedef unsigned long long ulong;
+
+#else // host C++: groups of one work-item, see backends/host/dialect.h
+#define KERNEL static
+#define GLOBAL
+#define LOCAL
+#define LOCAL_ARRAY(type, name, count)                                                                       \
+    static std::vector<type> name##_storage;                                                                 \
+    name##_storage.resize(count);                                                                            \
+    type* const name = name##_storage.data()
+#define DEVICE static inline
+#define BARRIER ((void)0)
+#define BARRIER_GLOBAL ((void)0)
+#define LOCAL_ID 0u
+#define GROUP_ID (tandem::host::group_id)
+#define GROUP_COUNT (tandem::host::group_count)
+#define ATOMIC_ADD(pointer, value) tandem::host::fetch_add((pointer), (value))
+#define ATOMIC_READ(pointer) (*(pointer))
+#define LOCAL_ATOMIC_ADD(pointer, value) tandem::host::fetch_add((pointer), (value))
+#define COUNT_LEADING_ZEROS(value) ((uint)__builtin_clz((uint)(value)))
+#define SQUARE_ROOT(value) std::sqrt(value)
+#define ABSOLUTE(value) std::fabs(value)
+#define REAL_INFINITY std::numeric_limits<real>::infinity()
+#endif
+
+#if PRECISION == 64
+typedef double real;
+#else
+typedef float real;
+#endif
+
+#define GLOBAL_ID (GROUP_ID * (uint)(GROUP_SIZE) + LOCAL_ID)
+#define GLOBAL_COUNT (GROUP_COUNT * (uint)(GROUP_SIZE))
+
+// A 64-bit counter as two 32-bit words {low, high}: 64-bit atomics are an extension in OpenCL 1.2. Returns
+// the low word before the addition. Past 2^32 the low word starts over; a reader that finds high != 0 knows.
+DEVICE uint counter_add(GLOBAL uint* counter, uint value) {
+    const uint before = ATOMIC_ADD(counter, value);
+    if (before + value < before) ATOMIC_ADD(counter + 1, 1u);
+    return before;
+}
+
+// Adds a 64-bit value with wrap-around; right once all additions are done.
+DEVICE void counter_add_wide(GLOBAL uint* counter, ulong value) {
+    const uint low = (uint)value;
+    const uint before = ATOMIC_ADD(counter, low);
+    const uint high = (uint)(value >> 32) + (before + low < before ? 1u : 0u);
+    if (high != 0u) ATOMIC_ADD(counter + 1, high);
+}
+
+#endif

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tandem {
+
+/// The parts of a frame that time is booked under.
+enum class Stage {
+    transform,
+    refit,
+    broad,
+    seed,
+    traverse,
+    balance,
+    contact,
+    reduce,
+    solve,
+    preprocess,
+    postprocess,
+    read,
+    write
+};
+inline constexpr std::array<std::string_view, 13> stage_names{
+    "transform", "refit", "broad",      "seed",        "traverse", "balance", "contact",
+    "reduce",    "solve", "preprocess", "postprocess", "read",     "write"};
+
+enum class Command { launch, upload, download, clear, wait, host_work };
+
+/// One command, or one stretch of host work, as it ran. Times in nanoseconds.
+struct Event {
+    Command command;
+    Stage stage;
+    std::string label;        ///< kernel entry, buffer label or name of the host work
+    std::uint64_t bytes = 0;  ///< moved by transfers and clears
+    std::uint64_t groups = 0; ///< launches: work-groups
+    std::uint32_t group_size = 0;
+    std::int64_t host_ns = 0;    ///< host time inside the call
+    std::int64_t device_ns = -1; ///< from the API's events; -1 when not measured
+    std::int64_t begin_ns = -1;  ///< device clock at the begin; -1 when not measured
+    std::uint64_t ticket = 0;    ///< the adaptor's handle for its timing event; 0 = none
+    bool blocked = false;        ///< the host waited for the device in this call
+};
+
+/// What ran since the last finish, in order of submission.
+struct Trace {
+    std::vector<Event> events;
+};
+
+} // namespace tandem

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: MIT
+"""Flattens kernel files with their headers, writes them as C++ strings, and as host C++ per geometry."""
+import argparse
+import pathlib
+import re
+
+INCLUDE = re.compile(r'^#include "([^"]+)"')
+ENTRY = re.compile(r"^KERNEL void (\w+)\(", re.M)
+DEFAULT = re.compile(r"^#ifndef (\w+)\n#define \1 (\d+)$", re.M)
+
+
+def flatten(root, name, seen):
+    """The text of `name` with each header included once, with #line marks for the compilers' messages."""
+    lines = [f'#line 1 "{name}"']
+    for number, line in enumerate((root / name).read_text().splitlines(), 1):
+        match = INCLUDE.match(line)
+        if not match:
+            lines.append(line)
+            continue
+        if match[1] not in seen:
+            seen.add(match[1])
+            lines += flatten(root, match[1], seen)
+        lines.append(f'#line {number + 1} "{name}"')
+    return lines
+
+
+def write(path, text):
+    """Writes only what changed, so that ccache and ninja have less to do."""
+    if not path.exists() or path.read_text() != text:
+        path.write_text(text)
+    else:
+        path.touch()
+
+
+def sources(kernels):
+    out = ['#include "algorithms/sources.h"', "namespace tandem {", "namespace {"]
+    for index, (name, text) in enumerate(kernels.items()):
+        out.append(f'constexpr KernelSource source_{index}{{"{name}",\nR"KERNEL({text})KERNEL"}};')
+    out += ["constexpr KernelSource all[] = {" + ", ".join(f"source_{i}" for i in range(len(kernels))) + "};",
+            "} // namespace", "std::span<const KernelSource> kernel_sources() { return all; }", "} // namespace tandem", ""]
+    return "\n".join(out)
+
+
+def host_variant(kernels, geometry, identifier):
+    fixed = dict(pair.split("=") for pair in geometry.split(","))
+    out = ['#include "backends/host/dialect.h"']
+    rows = []
+    for index, (name, text) in enumerate(kernels.items()):
+        defaults = {key: value for key, value in DEFAULT.findall(text) if key not in fixed and key != "GROUP_SIZE"}
+        names = sorted(defaults)
+        out += [f"namespace kernel_{index} {{", "#undef TANDEM_PORTABLE_H"]
+        out += [f"#define {key} {value}" for key, value in fixed.items()] + ["#define GROUP_SIZE 1"]
+        for key in names:
+            out += [f"static long runtime_{key} = {defaults[key]};", f"#define {key} runtime_{key}"]
+        out += [text, f'#line 1 "{identifier}"', "static const tandem::host::RuntimeDefine runtime[] = {"]
+        out += [f'{{"{key}", &runtime_{key}, {defaults[key]}}},' for key in names] + ["{nullptr, nullptr, 0}};", "}"]
+        macros = set(re.findall(r"^#\s*define (\w+)", text, re.M)) | set(fixed) | set(names) | {"GROUP_SIZE"}
+        out += [f"#undef {macro}" for macro in sorted(macros)]
+        for entry in ENTRY.findall(text):
+            call = f"tandem::host::Invoke<&kernel_{index}::{entry}>"
+            rows.append(f'{{"{name}", "{entry}", "{geometry.replace(",", ";")}", {call}::run, {call}::count, '
+                        f"{{kernel_{index}::runtime, {len(names)}}}}},")
+    out += [f"extern const std::span<const tandem::host::HostKernel> {identifier};",
+            "static const tandem::host::HostKernel rows[] = {", *rows, "};",
+            f"const std::span<const tandem::host::HostKernel> {identifier}(rows);", ""]
+    return "\n".join(out)
+
+
+def host_table(identifiers):
+    out = ['#include "backends/host/dialect.h"']
+    out += [f"extern const std::span<const tandem::host::HostKernel> {name};" for name in identifiers]
+    out += ["namespace tandem::host {", "std::span<const std::span<const HostKernel>> host_kernels() {",
+            "    static const std::span<const HostKernel> all[] = {" + ", ".join("::" + n for n in identifiers) + "};",
+            "    return all;", "}", "} // namespace tandem::host", ""]
+    return "\n".join(out)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--root", type=pathlib.Path)
+    parser.add_argument("--out", type=pathlib.Path)
+    parser.add_argument("--geometries", nargs="+")
+    parser.add_argument("--kernels", nargs="+")
+    arguments = parser.parse_args()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    kernels = {name: "\n".join(flatten(arguments.root, name, set())) + "\n" for name in arguments.kernels}
+    write(arguments.out / "sources.cpp", sources(kernels))
+    identifiers = []
+    for geometry in arguments.geometries:
+        identifiers.append("host_" + re.sub(r"\W", "_", geometry))
+        write(arguments.out / f"{identifiers[-1]}.cpp", host_variant(kernels, geometry, identifiers[-1]))
+    write(arguments.out / "host_table.cpp", host_table(identifiers))
+
+
+main()

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: MIT
+# tandem_kernels(TARGET): flattens each kernel file of algorithms/ with its headers, embeds the texts, and compiles
+# them for the host backend in every listed geometry. Called where the target is made: generated sources are known
+# in one directory only.
+function(tandem_kernels target)
+  set(out ${PROJECT_BINARY_DIR}/kernels)
+  set(script ${PROJECT_SOURCE_DIR}/cmake/embed_kernels.py)
+  file(GLOB_RECURSE kernels CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/algorithms/*.cl)
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/backends/portable.h
+       ${PROJECT_SOURCE_DIR}/algorithms/*.clh)
+  set(geometries)
+  foreach(k_axes 6:0 8:0 8:1 14:0 18:0 26:0)
+    string(REPLACE ":" ";" pair ${k_axes})
+    list(GET pair 0 k)
+    list(GET pair 1 axes)
+    foreach(precision 32 64)
+      foreach(rounding 0 1)
+        list(APPEND geometries "AXES=${axes},K=${k},PRECISION=${precision},ROUNDING=${rounding}")
+      endforeach()
+    endforeach()
+  endforeach()
+  set(generated ${out}/sources.cpp ${out}/host_table.cpp)
+  foreach(geometry ${geometries})
+    string(MAKE_C_IDENTIFIER ${geometry} name)
+    list(APPEND generated ${out}/host_${name}.cpp)
+  endforeach()
+  add_custom_command(OUTPUT ${generated}
+    COMMAND ${Python3_EXECUTABLE} ${script} --root ${PROJECT_SOURCE_DIR} --out ${out} --geometries ${geometries}
+            --kernels ${kernels}
+    DEPENDS ${script} ${kernels} ${headers} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+    COMMENT "Flattening kernels" VERBATIM)
+  target_sources(${target} PRIVATE ${generated})
+  set_source_files_properties(${generated} PROPERTIES COMPILE_OPTIONS
+    "-Wno-unused-function;-Wno-unused-variable;-Wno-unused-parameter;-Wno-unknown-pragmas;-Wno-type-limits")
+endfunction()
