@@ -26,20 +26,20 @@ struct Body {
 
 /// The state of all bodies at one time step.
 struct Frame {
-    std::vector<Pose> poses;                                ///< one per body
-    std::vector<std::vector<Eigen::Vector3d>> deformed;     ///< one per body; empty for rigid bodies
+    std::vector<Pose> poses;                            ///< one per body
+    std::vector<std::vector<Eigen::Vector3d>> deformed; ///< one per body; empty for rigid bodies
 };
 
 /// Meshes, bodies and their motion. Immutable once made.
 struct Scene {
-    std::string name;         ///< "plates"
-    std::string key;          ///< name and every parameter: "pile:bodies=64,density=0.2,..."
+    std::string name; ///< "plates"
+    std::string key;  ///< name and every parameter: "pile:bodies=64,density=0.2,..."
     std::string units = "m";
     std::vector<Mesh> meshes;
     std::vector<Body> bodies;
     std::size_t frame_count = 1;
-    std::function<Frame(std::size_t)> frame;  ///< frame(i) for i < frame_count; pure
-    std::uint64_t digest = 0; ///< of meshes, bodies and motion; equal on every machine
+    std::function<Frame(std::size_t)> frame; ///< frame(i) for i < frame_count; pure
+    std::uint64_t digest = 0;                ///< of meshes, bodies and motion; equal on every machine
 };
 
 /// A named parameter of a scene with its default, for listings.

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "scenes/scene.h"
+
+namespace tandem {
+
+/// 64-bit digest of a scene: key, meshes, bodies, and the states of the first and the last frame. The key
+/// holds every parameter of a motion, so that frames between need no visit.
+std::uint64_t digest_of(const Scene& scene);
+
+} // namespace tandem

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/digest.h"
+#include "scenes/error.h"
+#include "scenes/parameters.h"
+
+#include <algorithm>
+#include <charconv>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+const SceneParameter& parameter(std::span<const SceneParameter> parameters, std::string_view name) {
+    return *std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == name; });
+}
+
+template<class Number>
+Number number(const SceneParameter& p, Number least, Number most) {
+    Number value{};
+    const auto* end = p.value.data() + p.value.size();
+    const auto result = std::from_chars(p.value.data(), end, value);
+    if (result.ec != std::errc{} || result.ptr != end || !(value >= least && value <= most))
+        throw InputError(fmt::format("scene parameter {}={} is impossible; give a number from {} to {}",
+                                     p.name, p.value, least, most));
+    return value;
+}
+
+/// Writes the values of "par=value,par=value" over the defaults.
+std::vector<SceneParameter> with_values(const SceneKind& kind, std::string_view text) {
+    auto parameters = kind.parameters;
+    std::vector<std::string> names;
+    for (const auto& p : parameters) names.push_back(p.name);
+    while (!text.empty()) {
+        const auto item = text.substr(0, text.find(','));
+        text.remove_prefix(std::min(text.size(), item.size() + 1));
+        const auto equals = item.find('=');
+        const auto name = item.substr(0, equals);
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found == names.end())
+            throw InputError(unknown(fmt::format("parameter of scene {}", kind.name), name, names));
+        if (equals == std::string_view::npos)
+            throw InputError(fmt::format("scene parameter {} has no value; write {}=VALUE", name, name));
+        parameters[static_cast<std::size_t>(found - names.begin())].value = item.substr(equals + 1);
+    }
+    return parameters;
+}
+
+} // namespace
+
+std::span<const SceneKind> scene_kinds() {
+    static const std::vector<SceneKind> kinds{plates_kind(), pile_kind()};
+    return kinds;
+}
+
+Scene make_scene(std::string_view specification) {
+    if (specification.ends_with(".json")) return load_description(std::string(specification));
+    const auto name = specification.substr(0, specification.find(':'));
+    std::vector<std::string> names;
+    for (const auto& kind : scene_kinds()) {
+        names.push_back(kind.name);
+        if (kind.name != name) continue;
+        const auto rest =
+            name.size() < specification.size() ? specification.substr(name.size() + 1) : std::string_view();
+        const auto parameters = with_values(kind, rest);
+        auto scene = kind.make(parameters);
+        scene.name = kind.name;
+        scene.key = key_of(kind.name, parameters);
+        scene.digest = digest_of(scene);
+        return scene;
+    }
+    throw InputError(unknown("scene", name, names));
+}
+
+double real_parameter(std::span<const SceneParameter> parameters, std::string_view name, double least,
+                      double most) {
+    return number<double>(parameter(parameters, name), least, most);
+}
+
+std::uint64_t integer_parameter(std::span<const SceneParameter> parameters, std::string_view name,
+                                std::uint64_t least, std::uint64_t most) {
+    return number<std::uint64_t>(parameter(parameters, name), least, most);
+}
+
+const std::string& text_parameter(std::span<const SceneParameter> parameters, std::string_view name) {
+    return parameter(parameters, name).value;
+}
+
+std::string key_of(std::string_view name, std::span<const SceneParameter> parameters) {
+    std::string key(name);
+    for (const auto& p : parameters)
+        key += fmt::format("{}{}={}", key.size() == name.size() ? ':' : ',', p.name, p.value);
+    return key;
+}
+
+std::size_t vertex_count(const Scene& scene) {
+    std::size_t count = 0;
+    for (const auto& body : scene.bodies) count += scene.meshes[body.mesh].vertices.size();
+    return count;
+}
+
+std::size_t tetrahedron_count(const Scene& scene) {
+    std::size_t count = 0;
+    for (const auto& body : scene.bodies) count += scene.meshes[body.mesh].tetrahedra.size();
+    return count;
+}
+
+} // namespace tandem

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "scenes/scene.h"
+
+namespace tandem {
+
+/// Quaternion algebra in a fixed order of operations: Eigen's own may use vector instructions that add in
+/// another order, and poses must have the same bits on every machine.
+Eigen::Quaterniond product(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
+Eigen::Quaterniond unit(const Eigen::Quaterniond& q);
+/// q v q*, q a unit quaternion.
+Eigen::Vector3d rotated(const Eigen::Quaterniond& q, const Eigen::Vector3d& v);
+/// Rotation by `angle` radians about a unit axis.
+Eigen::Quaterniond turn(const Eigen::Vector3d& axis, double angle);
+
+} // namespace tandem

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/read/base64.h"
+
+#include <array>
+#include <cstdint>
+
+namespace tandem::read {
+
+namespace {
+
+constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+constexpr auto digits = [] {
+    std::array<std::int8_t, 256> table{};
+    table.fill(-1);
+    for (std::size_t i = 0; i < alphabet.size(); ++i)
+        table[static_cast<unsigned char>(alphabet[i])] = static_cast<std::int8_t>(i);
+    return table;
+}();
+
+} // namespace
+
+std::optional<std::string> decode_base64(std::string_view text, std::size_t limit) {
+    std::string bytes;
+    bytes.reserve(limit);
+    std::uint32_t group = 0;
+    int filled = 0, padding = 0;
+    for (const char c : text) {
+        if (bytes.size() >= limit || c == '<') break;
+        if (c == ' ' || (c >= '\t' && c <= '\r')) continue;
+        const int digit = digits[static_cast<unsigned char>(c)];
+        if (c != '=' && (digit < 0 || padding > 0)) return std::nullopt;
+        padding += c == '=' ? 1 : 0;
+        group = group << 6 | static_cast<std::uint32_t>(c == '=' ? 0 : digit);
+        if (++filled < 4) continue;
+        if (padding > 2) return std::nullopt;
+        for (int i = 0; i < 3 - padding; ++i)
+            bytes.push_back(static_cast<char>(group >> (16 - 8 * i) & 0xff));
+        group = 0;
+        filled = padding = 0;
+    }
+    if (bytes.size() > limit) bytes.resize(limit);
+    return bytes;
+}
+
+} // namespace tandem::read

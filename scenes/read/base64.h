@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tandem::read {
+
+/// Decodes until `limit` bytes are there, the text ends, or a '<' follows. Padding may stand between
+/// groups: VTK encodes headers on their own. Empty when the text is not base64.
+std::optional<std::string> decode_base64(std::string_view text, std::size_t limit);
+
+} // namespace tandem::read

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/read/gmsh.h"
+
+#include "scenes/read/formats.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tandem::read {
+
+namespace {
+
+/// Reads $MeshFormat up to its end; true for version 4.1, false for 2.x.
+bool read_version(GmshFile& file) {
+    auto& in = file.in;
+    const auto version = in.token("the MSH version");
+    const bool two = version == "2.2" || version == "2.1" || version == "2" || version == "2.0";
+    if (!two && version != "4.1")
+        in.fail(fmt::format("MSH version {} is not read", quoted(version)), "save as MSH 2.2 or 4.1");
+    const int encoding = in.get<int>("the file type");
+    if (encoding != 0 && encoding != 1)
+        in.fail("the file type is neither 0 (ASCII) nor 1 (binary)", "export the file again");
+    if (in.get<int>("the data size") != 8) in.fail("the data size is not 8", "save with doubles");
+    if (encoding == 0) return !two;
+    file.binary = true;
+    in.count_bytes();
+    in.line();
+    Cursor cursor(in.text(), in.source(), in.at());
+    if (cursor.get<std::int32_t>("the byte-order mark") != 1)
+        cursor.fail("the byte-order mark is not 1: the file is big endian",
+                    "save on a little-endian machine");
+    in.seek(cursor.at());
+    return !two;
+}
+
+void skip_section(Scanner& in, std::string_view name) {
+    const auto end = in.text().find(fmt::format("$End{}", name.substr(1)), in.at());
+    if (end == std::string_view::npos)
+        in.fail(fmt::format("section {} has no end", name), "the file is truncated: copy or export it again");
+    in.seek(end);
+}
+
+void end_section(Scanner& in, std::string_view name) {
+    const auto wanted = fmt::format("$End{}", name.substr(1));
+    const auto word = in.token(wanted);
+    if (word != wanted)
+        in.fail(fmt::format("expected {}, found {}", wanted, quoted(word)),
+                "correct the count of the section");
+}
+
+std::string_view section_name(Scanner& in) {
+    const auto name = in.token("a section");
+    if (name == "$NOD") in.fail("MSH version 1 is not read", "save as MSH 2.2 or 4.1");
+    if (name == "$ParametricNodes")
+        in.fail("section $ParametricNodes is not read", "save without Mesh.SaveParametric, or as MSH 4.1");
+    if (name[0] != '$' || name.size() < 2)
+        in.fail(fmt::format("expected a section such as $Nodes, found {}", quoted(name)),
+                "correct the file or export it again");
+    return name;
+}
+
+void read_nodes(GmshFile& file, bool four) {
+    if (file.tags.size() > 0) file.in.fail("a second section $Nodes", "merge the two");
+    four ? read_nodes_4(file) : read_nodes_2(file);
+    if (const auto twice = file.tags.index())
+        file.in.fail(fmt::format("node {} occurs twice", *twice), "repair the mesh");
+}
+
+} // namespace
+
+Mesh parse_gmsh(std::string_view bytes, const std::string& source) {
+    GmshFile file{Scanner(bytes, source)};
+    std::optional<bool> four;
+    while (!file.in.done()) {
+        const auto name = section_name(file.in);
+        const bool nodes = name == "$Nodes", elements = name == "$Elements";
+        if ((nodes || elements) && !four)
+            file.in.fail(fmt::format("{} comes before $MeshFormat", name), "export the file again");
+        if (name == "$MeshFormat")
+            four = read_version(file);
+        else if (nodes)
+            read_nodes(file, *four);
+        else if (elements)
+            *four ? read_elements_4(file) : read_elements_2(file);
+        else
+            skip_section(file.in, name);
+        end_section(file.in, name);
+    }
+    return std::move(file.mesh);
+}
+
+} // namespace tandem::read

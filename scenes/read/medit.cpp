@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/read/formats.h"
+#include "scenes/read/scanner.h"
+#include "scenes/read/vertex.h"
+
+#include <algorithm>
+#include <array>
+
+namespace tandem::read {
+
+namespace {
+
+/// Volume cells other than Tetrahedra; their second-order names start the same way.
+constexpr std::array<std::string_view, 6> foreign = {"Tetrahedra", "Hexahedra", "Hexaedra",
+                                                     "Prisms",     "Wedges",    "Pyramids"};
+
+bool is_foreign(std::string_view keyword) {
+    return std::any_of(foreign.begin(), foreign.end(), [&](auto name) { return keyword.starts_with(name); });
+}
+
+bool is_keyword(std::string_view token) {
+    return (token[0] >= 'A' && token[0] <= 'Z') || (token[0] >= 'a' && token[0] <= 'z');
+}
+
+/// Passes the numbers of a section that holds no tetrahedra.
+void skip_numbers(Scanner& in) {
+    while (!in.done()) {
+        const auto start = in.at();
+        if (!is_keyword(in.token("a number"))) continue;
+        in.seek(start);
+        return;
+    }
+}
+
+void read_vertices(Scanner& in, Mesh& mesh) {
+    const auto n = in.get<std::uint64_t>("the number of vertices");
+    in.room(n, 4, 0, "vertices");
+    mesh.vertices.reserve(n);
+    for (std::uint64_t i = 0; i < n; ++i) {
+        mesh.vertices.push_back(get_point(in));
+        in.get<std::int64_t>("the reference of a vertex");
+    }
+}
+
+void read_tetrahedra(Scanner& in, Mesh& mesh) {
+    if (mesh.vertices.empty())
+        in.fail("Tetrahedra come before Vertices", "write Vertices first, or export the file again");
+    const auto n = in.get<std::uint64_t>("the number of tetrahedra");
+    in.room(n, 5, 0, "tetrahedra");
+    mesh.tetrahedra.reserve(mesh.tetrahedra.size() + n);
+    for (std::uint64_t i = 0; i < n; ++i) {
+        mesh.tetrahedra.push_back(get_tetrahedron(in, 1, mesh.vertices.size()));
+        in.get<std::int64_t>("the reference of a tetrahedron");
+    }
+}
+
+void read_header(Scanner& in) {
+    if (const auto word = in.token("MeshVersionFormatted"); word != "MeshVersionFormatted")
+        in.fail(fmt::format("expected MeshVersionFormatted, found {}", quoted(word)),
+                "give an ASCII Medit file");
+    in.get<int>("the version");
+}
+
+} // namespace
+
+Mesh parse_medit(std::string_view bytes, const std::string& source) {
+    Mesh mesh;
+    Scanner in(bytes, source, '#');
+    read_header(in);
+    while (!in.done()) {
+        const auto keyword = in.token("a keyword");
+        if (!is_keyword(keyword))
+            in.fail(fmt::format("expected a keyword, found {}", quoted(keyword)),
+                    "correct the count of the section above");
+        if (keyword == "End") break;
+        if (keyword == "Dimension") {
+            if (in.get<int>("the dimension") != 3) in.fail("the dimension is not 3", "give a volume mesh");
+        } else if (keyword == "Vertices") {
+            read_vertices(in, mesh);
+        } else if (keyword == "Tetrahedra") {
+            read_tetrahedra(in, mesh);
+        } else {
+            if (is_foreign(keyword) && in.get<std::uint64_t>("a count") > 0)
+                in.fail(fmt::format("cells of type {} are not tetrahedra", keyword),
+                        "split them into linear tetrahedra");
+            skip_numbers(in);
+        }
+    }
+    return mesh;
+}
+
+} // namespace tandem::read

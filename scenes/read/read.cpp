@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/read/read.h"
+
+#include "scenes/error.h"
+#include "scenes/read/formats.h"
+#include "scenes/read/scanner.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+
+namespace tandem {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+using Parser = Mesh (*)(std::string_view, const std::string&);
+
+struct Format {
+    std::string_view suffix;
+    std::array<std::string_view, 3> openings; ///< what the first token of the file starts with
+    Parser parse;
+};
+
+constexpr std::array formats = {
+    Format{".msh", {"$"}, read::parse_gmsh},
+    Format{".mesh", {"MeshVersionFormatted"}, read::parse_medit},
+    Format{".veg", {"*VERTICES"}, read::parse_veg},
+    Format{".vtk", {"# vtk"}, read::parse_vtk},
+    Format{".vtu", {"<?xml", "<VTKFile", "<!--"}, read::parse_vtu},
+};
+
+std::string suffix_of(const std::string& source) {
+    auto suffix = fs::path(source).extension().string();
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return suffix;
+}
+
+bool opens(std::string_view text, const Format& format) {
+    return std::any_of(format.openings.begin(), format.openings.end(),
+                       [&](auto opening) { return !opening.empty() && text.starts_with(opening); });
+}
+
+const Format* by_content(std::string_view bytes) {
+    // The signature of legacy VTK looks like a comment of the other text formats.
+    if (opens(bytes, formats[3])) return &formats[3];
+    read::Scanner in(bytes, "", '#');
+    in.done();
+    const auto found = std::find_if(formats.begin(), formats.end(), [&](const Format& format) {
+        return opens(bytes.substr(in.at()), format);
+    });
+    return found == formats.end() ? nullptr : &*found;
+}
+
+const Format* by_suffix(const std::string& suffix) {
+    const auto found =
+        std::find_if(formats.begin(), formats.end(), [&](const Format& f) { return f.suffix == suffix; });
+    return found == formats.end() ? nullptr : &*found;
+}
+
+std::string load(const fs::path& path) {
+    std::error_code error;
+    if (fs::is_directory(path, error))
+        throw InputError(fmt::format("{}: is a folder; name a mesh file", path.string()));
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    if (!file) throw InputError(fmt::format("{}: {}; check the path", path.string(), std::strerror(errno)));
+    std::string bytes(static_cast<std::size_t>(std::max<std::streamoff>(file.tellg(), 0)), '\0');
+    file.seekg(0);
+    if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
+        throw InputError(fmt::format("{}: cannot be read; name a regular file", path.string()));
+    return bytes;
+}
+
+/// `path` is one half of a TetGen mesh, `is_node` tells which.
+Mesh read_pair(const fs::path& path, bool is_node) {
+    const auto partner = fs::path(path).replace_extension(is_node ? ".ele" : ".node");
+    const auto bytes = load(path);
+    if (!fs::exists(partner))
+        throw InputError(fmt::format("{}: missing, the partner of {}; put both into one folder",
+                                     partner.string(), path.string()));
+    const auto other = load(partner);
+    return is_node ? parse_tetgen(bytes, path.string(), other, partner.string())
+                   : parse_tetgen(other, partner.string(), bytes, path.string());
+}
+
+} // namespace
+
+void read::require_tetrahedra(const Mesh& mesh, const std::string& source) {
+    if (mesh.tetrahedra.empty())
+        throw InputError(fmt::format("{}: no tetrahedra; export the volume, not only the surface", source));
+}
+
+Mesh parse_mesh(std::string_view bytes, const std::string& source) {
+    if (bytes.empty()) throw InputError(fmt::format("{}: the file is empty; export it again", source));
+    const auto suffix = suffix_of(source);
+    if (suffix == ".node" || suffix == ".ele")
+        throw InputError(fmt::format("{}: one half of a TetGen mesh; give .node and .ele together", source));
+    const Format* format = by_content(bytes);
+    if (format == nullptr) format = by_suffix(suffix);
+    if (format == nullptr)
+        throw InputError(fmt::format("{}: unknown format; convert it to Gmsh .msh, Medit .mesh, TetGen "
+                                     ".node and .ele, Vega .veg, legacy .vtk or .vtu",
+                                     source));
+    Mesh mesh = format->parse(bytes, source);
+    read::require_tetrahedra(mesh, source);
+    return mesh;
+}
+
+Mesh read_mesh(const std::string& path) {
+    const auto suffix = suffix_of(path);
+    const bool pair = suffix == ".node" || suffix == ".ele";
+    Mesh mesh = pair ? read_pair(path, suffix == ".node") : parse_mesh(load(path), path);
+    mesh.name = fs::path(path).stem().string();
+    complete_mesh(mesh, path);
+    return mesh;
+}
+
+} // namespace tandem

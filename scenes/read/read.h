@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "scenes/mesh.h"
+
+#include <string>
+#include <string_view>
+
+namespace tandem {
+
+/// Parses the bytes of one mesh file; content first, then the suffix of `source`, tells the format. Does not
+/// call complete_mesh. Throws InputError `source:line: what; what to do` (binary: `source: byte N: ...`).
+Mesh parse_mesh(std::string_view bytes, const std::string& source);
+
+/// Parses a TetGen pair, numbered from 0 or 1. Does not call complete_mesh; throws InputError as parse_mesh.
+Mesh parse_tetgen(std::string_view node, const std::string& node_source, std::string_view ele,
+                  const std::string& ele_source);
+
+} // namespace tandem

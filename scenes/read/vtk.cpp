@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/read/formats.h"
+#include "scenes/read/vtk_cells.h"
+
+namespace tandem::read {
+
+namespace {
+
+struct File {
+    Scanner in;
+    bool binary = false;
+    Mesh mesh = {};
+    Cells cells = {};
+};
+
+/// Runs `body` on text or on binary data, big endian, which start on the next line.
+template<class Body>
+void in_encoding(File& file, Body body) {
+    if (!file.binary) return body(file.in);
+    file.in.line();
+    Cursor cursor(file.in.text(), file.in.source(), file.in.at(), std::endian::big);
+    body(cursor);
+    file.in.seek(cursor.at());
+}
+
+void expect(Scanner& in, std::string_view wanted) {
+    const auto word = in.token(wanted);
+    if (word != wanted)
+        in.fail(fmt::format("expected {}, found {}", wanted, quoted(word)), "give an unstructured grid");
+}
+
+Number get_type(Scanner& in) {
+    const auto name = in.token("a number type");
+    const auto type = number_type(name);
+    if (!type)
+        in.fail(fmt::format("number type {} is not read", quoted(name)), "save as float or double, and int");
+    return *type;
+}
+
+void read_header(File& file) {
+    auto& in = file.in;
+    if (!in.line().starts_with("# vtk DataFile Version"))
+        in.fail("expected '# vtk DataFile Version'", "give a legacy VTK file");
+    in.line(); // title
+    const auto encoding = in.token("ASCII or BINARY");
+    if (encoding != "ASCII" && encoding != "BINARY")
+        in.fail(fmt::format("expected ASCII or BINARY, found {}", quoted(encoding)), "export the file again");
+    file.binary = encoding == "BINARY";
+    if (file.binary) in.count_bytes();
+    expect(in, "DATASET");
+    expect(in, "UNSTRUCTURED_GRID");
+}
+
+/// Each cell is its number of vertices, then these.
+template<class In>
+void read_rows(In& in, std::uint64_t n, std::uint64_t size, File& file) {
+    in.room(size, 1, 4, "numbers of cells");
+    if (n > size) in.fail(fmt::format("{} cells in {} numbers", n, size), "correct the counts of CELLS");
+    file.cells.ends.reserve(n);
+    std::uint64_t left = size;
+    for (std::uint64_t i = 0; i < n; ++i) {
+        const auto corners = get_whole(in, Number::i32, "the number of vertices of a cell");
+        if (corners < 0 || left == 0 || static_cast<std::uint64_t>(corners) > left - 1)
+            in.fail(fmt::format("a cell of {} vertices does not fit into the announced size", corners),
+                    "correct the counts of CELLS");
+        left -= 1 + static_cast<std::uint64_t>(corners);
+        for (std::int64_t c = 0; c < corners; ++c)
+            file.cells.vertices.push_back(
+                check_index(in, get_whole(in, Number::i32, "a vertex number"), 0, file.mesh.vertices.size()));
+        file.cells.ends.push_back(file.cells.vertices.size());
+    }
+    if (left > 0) in.fail(fmt::format("{} numbers are left over", left), "correct the counts of CELLS");
+}
+
+/// Version 5: the offsets of all cells and one more, then the vertices of all.
+void read_offsets(File& file, std::uint64_t n, std::uint64_t size) {
+    auto& in = file.in;
+    expect(in, "OFFSETS");
+    const auto offsets = get_type(in);
+    in_encoding(file, [&](auto& data) {
+        if (n > 0 && get_whole(data, offsets, "an offset") != 0)
+            data.fail("the first offset is not 0", "export the file again");
+        if (n > 0) read_ends(data, offsets, n - 1, file.cells);
+    });
+    expect(in, "CONNECTIVITY");
+    const auto vertices = get_type(in);
+    in_encoding(file, [&](auto& data) {
+        read_connectivity(data, vertices, size, file.mesh.vertices.size(), file.cells);
+    });
+    if (!file.cells.ends.empty() && file.cells.ends.back() != size)
+        in.fail("the last offset is not the size of CONNECTIVITY", "export the file again");
+}
+
+void read_cells(File& file) {
+    auto& in = file.in;
+    if (!file.cells.ends.empty()) in.fail("a second section CELLS", "merge the two");
+    const auto n = in.get<std::uint64_t>("the number of cells");
+    const auto size = in.get<std::uint64_t>("the size of the cells");
+    const auto start = in.at();
+    in.line();
+    const bool offsets = in.text().substr(in.at()).starts_with("OFFSETS");
+    in.seek(start);
+    if (offsets) return read_offsets(file, n, size);
+    in_encoding(file, [&](auto& data) { read_rows(data, n, size, file); });
+}
+
+void read_cell_types(File& file) {
+    auto& in = file.in;
+    const auto n = in.get<std::uint64_t>("the number of cell types");
+    if (n != file.cells.ends.size())
+        in.fail(fmt::format("{} cell types for {} cells", n, file.cells.ends.size()),
+                "export the file again");
+    in_encoding(file, [&](auto& data) { read_types(data, Number::i32, file.cells, 0, file.mesh); });
+}
+
+void skip_value(Scanner& in, Number) { in.token("a value of a field"); }
+
+void skip_value(Cursor& in, Number type) {
+    for (std::size_t byte = 0; byte < size_of(type); ++byte) in.get<char>("a value of a field");
+}
+
+/// FIELD holds arrays of no use here: name, components, tuples, type, data.
+void skip_field(File& file) {
+    auto& in = file.in;
+    in.token("the name of a field");
+    const auto arrays = in.get<std::uint64_t>("the number of arrays");
+    for (std::uint64_t i = 0; i < arrays; ++i) {
+        in.token("the name of an array");
+        const auto width = in.get<std::uint32_t>("the number of components");
+        const auto tuples = in.get<std::uint32_t>("the number of tuples");
+        const auto type = get_type(in);
+        const auto n = std::uint64_t{width} * tuples;
+        in_encoding(file, [&](auto& data) {
+            for (std::uint64_t v = 0; v < n; ++v) skip_value(data, type);
+        });
+    }
+}
+
+/// METADATA ends with an empty line.
+void skip_metadata(Scanner& in) {
+    in.line();
+    while (!in.line().empty()) {}
+}
+
+} // namespace
+
+Mesh parse_vtk(std::string_view bytes, const std::string& source) {
+    File file{Scanner(bytes, source)};
+    auto& in = file.in;
+    read_header(file);
+    while (!in.done()) {
+        const auto keyword = in.token("a keyword");
+        if (keyword == "POINTS") {
+            const auto n = in.get<std::uint64_t>("the number of points");
+            const auto type = get_type(in);
+            in_encoding(file, [&](auto& data) { read_points(data, type, n, file.mesh); });
+        } else if (keyword == "CELLS") {
+            read_cells(file);
+        } else if (keyword == "CELL_TYPES") {
+            read_cell_types(file);
+        } else if (keyword == "FIELD") {
+            skip_field(file);
+        } else if (keyword == "METADATA") {
+            skip_metadata(in);
+        } else if (keyword == "POINT_DATA" || keyword == "CELL_DATA") {
+            break; // they follow the grid
+        } else {
+            in.fail(fmt::format("unknown keyword {}", quoted(keyword)),
+                    "correct the counts of the section above");
+        }
+    }
+    return std::move(file.mesh);
+}
+
+} // namespace tandem::read

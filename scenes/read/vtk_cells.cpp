@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/read/vtk_cells.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace tandem::read {
+
+namespace {
+
+struct Name {
+    std::string_view name;
+    Number type;
+};
+
+constexpr std::array names = {
+    Name{"Float32", Number::f32},   Name{"float", Number::f32},
+    Name{"Float64", Number::f64},   Name{"double", Number::f64},
+    Name{"Int8", Number::i8},       Name{"char", Number::i8},
+    Name{"UInt8", Number::u8},      Name{"unsigned_char", Number::u8},
+    Name{"Int16", Number::i16},     Name{"short", Number::i16},
+    Name{"UInt16", Number::u16},    Name{"unsigned_short", Number::u16},
+    Name{"Int32", Number::i32},     Name{"int", Number::i32},
+    Name{"UInt32", Number::u32},    Name{"unsigned_int", Number::u32},
+    Name{"Int64", Number::i64},     Name{"vtktypeint64", Number::i64},
+    Name{"UInt64", Number::u64},    Name{"vtktypeuint64", Number::u64},
+    Name{"vtkIdType", Number::i32}, // the legacy writer stores ids in 32 bits
+};
+
+struct Cell {
+    std::int64_t type;
+    std::string_view name;
+};
+
+/// VTK's vtkCellType.h: the cells of dimension 3 ...
+constexpr std::array volume_cells = {
+    Cell{11, "voxel"},
+    Cell{12, "hexahedron"},
+    Cell{13, "wedge"},
+    Cell{14, "pyramid"},
+    Cell{15, "pentagonal prism"},
+    Cell{16, "hexagonal prism"},
+    Cell{24, "quadratic tetrahedron"},
+    Cell{25, "quadratic hexahedron"},
+    Cell{26, "quadratic wedge"},
+    Cell{27, "quadratic pyramid"},
+    Cell{29, "triquadratic hexahedron"},
+    Cell{31, "quadratic linear wedge"},
+    Cell{32, "biquadratic quadratic wedge"},
+    Cell{33, "biquadratic quadratic hexahedron"},
+    Cell{37, "triquadratic pyramid"},
+    Cell{42, "polyhedron"},
+    Cell{71, "Lagrange tetrahedron"},
+    Cell{72, "Lagrange hexahedron"},
+    Cell{73, "Lagrange wedge"},
+    Cell{74, "Lagrange pyramid"},
+    Cell{78, "Bezier tetrahedron"},
+    Cell{79, "Bezier hexahedron"},
+    Cell{80, "Bezier wedge"},
+    Cell{81, "Bezier pyramid"},
+};
+
+/// ... and those below.
+constexpr std::array<std::int64_t, 27> flat_cells = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  21, 22, 23, 28,
+                                                     30, 34, 35, 36, 51, 68, 69, 70, 75, 76, 77, 60, 61};
+
+} // namespace
+
+std::optional<Number> number_type(std::string_view name) {
+    const auto found =
+        std::find_if(names.begin(), names.end(), [&](const Name& n) { return n.name == name; });
+    return found == names.end() ? std::nullopt : std::optional(found->type);
+}
+
+std::size_t size_of(Number type) {
+    switch (type) {
+    case Number::i8:
+    case Number::u8:
+        return 1;
+    case Number::i16:
+    case Number::u16:
+        return 2;
+    case Number::f32:
+    case Number::i32:
+    case Number::u32:
+        return 4;
+    default:
+        return 8;
+    }
+}
+
+std::string_view volume_cell(std::int64_t type) {
+    if (std::find(flat_cells.begin(), flat_cells.end(), type) != flat_cells.end()) return "";
+    const auto found = std::find_if(volume_cells.begin(), volume_cells.end(),
+                                    [&](const Cell& cell) { return cell.type == type; });
+    return found == volume_cells.end() ? "unknown" : found->name;
+}
+
+double get_real(Scanner& in, Number, std::string_view what) { return in.get<double>(what); }
+
+double get_real(Cursor& in, Number type, std::string_view what) {
+    if (type == Number::f64) return in.get<double>(what);
+    if (type == Number::f32) return static_cast<double>(in.get<float>(what));
+    return static_cast<double>(get_whole(in, type, what));
+}
+
+std::int64_t get_whole(Scanner& in, Number, std::string_view what) { return in.get<std::int64_t>(what); }
+
+std::int64_t get_whole(Cursor& in, Number type, std::string_view what) {
+    switch (type) {
+    case Number::i8:
+        return in.get<std::int8_t>(what);
+    case Number::u8:
+        return in.get<std::uint8_t>(what);
+    case Number::i16:
+        return in.get<std::int16_t>(what);
+    case Number::u16:
+        return in.get<std::uint16_t>(what);
+    case Number::i32:
+        return in.get<std::int32_t>(what);
+    case Number::u32:
+        return in.get<std::uint32_t>(what);
+    case Number::i64:
+        return in.get<std::int64_t>(what);
+    case Number::u64:
+        break;
+    default:
+        in.fail(fmt::format("{} is stored as a float", what), "store it as an integer");
+    }
+    const auto value = in.get<std::uint64_t>(what);
+    if (value > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
+        in.fail(fmt::format("{} {} is out of range", what, value), "repair the mesh");
+    return static_cast<std::int64_t>(value);
+}
+
+} // namespace tandem::read

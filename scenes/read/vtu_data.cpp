@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/read/vtu_data.h"
+
+#include "scenes/read/base64.h"
+
+#include <algorithm>
+#include <charconv>
+#include <zlib.h>
+
+namespace tandem::read {
+
+VtuData::VtuData(const Xml& xml, const Tag& file) : xml_(xml) {
+    const auto order = file.get("byte_order", "LittleEndian");
+    if (order != "LittleEndian" && order != "BigEndian")
+        xml.fail(file.at, fmt::format("unknown byte_order {}", quoted(order)), "export the file again");
+    if (order == "BigEndian") order_ = std::endian::big;
+    const auto header = file.get("header_type", "UInt32");
+    if (header != "UInt32" && header != "UInt64")
+        xml.fail(file.at, fmt::format("unknown header_type {}", quoted(header)),
+                 "save with UInt32 or UInt64");
+    header_size_ = header == "UInt32" ? 4 : 8;
+    const auto compressor = file.get("compressor");
+    if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
+        xml.fail(file.at, fmt::format("compressor {} is not read", quoted(compressor)),
+                 "save with vtkZLibDataCompressor or without compression");
+    compressed_ = !compressor.empty();
+}
+
+void VtuData::set_appended(const Tag& tag) {
+    const auto encoding = tag.get("encoding");
+    if (encoding != "raw" && encoding != "base64")
+        xml_.fail(tag.at, fmt::format("unknown encoding {} of AppendedData", quoted(encoding)),
+                  "save with base64 or raw");
+    appended_base64_ = encoding == "base64";
+    const auto start = xml_.text().find('_', tag.content);
+    if (start == std::string_view::npos)
+        xml_.fail(tag.at, "AppendedData has no '_'", "it is truncated: copy or export it again");
+    appended_ = start + 1;
+}
+
+Number VtuData::type_of(const Tag& array) const {
+    const auto type = number_type(array.get("type"));
+    if (!type)
+        xml_.fail(array.at, fmt::format("number type {} is not read", quoted(array.get("type"))),
+                  "save as Float32 or Float64, and Int32 or Int64");
+    return *type;
+}
+
+std::size_t VtuData::end_of(const Tag& array) const {
+    const auto end = array.closed ? array.content : xml_.text().find('<', array.content);
+    if (end == std::string_view::npos)
+        xml_.fail(array.at, "DataArray has no end", "the file is truncated: copy or export it again");
+    return end;
+}
+
+VtuData::Block VtuData::block_of(const Tag& array) const {
+    const auto format = array.get("format");
+    if (format == "binary")
+        return {xml_.text().substr(array.content, end_of(array) - array.content), true, array.at};
+    if (format != "appended")
+        xml_.fail(array.at, fmt::format("unknown format {} of DataArray", quoted(format)),
+                  "save as ascii, binary or appended");
+    if (appended_ == 0) xml_.fail(array.at, "no AppendedData for this DataArray", "export the file again");
+    const auto text = array.get("offset");
+    const auto bytes = xml_.text().substr(appended_);
+    std::uint64_t offset = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), offset);
+    if (text.empty() || error != std::errc() || end != text.data() + text.size() || offset > bytes.size())
+        xml_.fail(array.at, fmt::format("offset {} is not inside AppendedData", quoted(text)),
+                  "it may be truncated: copy or export the file again");
+    return {bytes.substr(offset), appended_base64_, array.at};
+}
+
+/// The first `bytes` bytes of a block.
+std::string VtuData::head(const Block& block, std::uint64_t bytes) const {
+    // Base64 needs more characters than it holds bytes, so this bounds the allocation in both encodings.
+    const bool fits = bytes <= block.stored.size();
+    if (fits && !block.base64) return std::string(block.stored.substr(0, bytes));
+    auto data = fits ? decode_base64(block.stored, bytes) : std::string();
+    if (!data) xml_.fail(block.tag, "the data are not base64", "copy or export the file again");
+    if (data->size() < bytes || !fits)
+        xml_.fail(block.tag, fmt::format("the data end before {} announced bytes", bytes),
+                  "they are truncated: copy or export the file again");
+    return std::move(*data);
+}
+
+std::uint64_t VtuData::header_value(std::string_view data, std::size_t i) const {
+    Cursor in(data, xml_.source(), i * header_size_, order_);
+    return header_size_ == 4 ? in.get<std::uint32_t>("a header") : in.get<std::uint64_t>("a header");
+}
+
+/// A block is a header with its number of bytes, and these.
+std::string VtuData::decode(const Block& block) const {
+    if (compressed_) return inflate(block);
+    const auto bytes = header_value(head(block, header_size_), 0);
+    if (bytes > block.stored.size()) head(block, bytes); // fails; the sum below could wrap
+    return head(block, header_size_ + bytes).substr(header_size_);
+}
+
+/// A compressed block has the header: number of parts, size of a part, size of the last part if that is
+/// smaller, and the compressed size of each.
+std::string VtuData::inflate(const Block& block) const {
+    const auto start = head(block, header_size_);
+    const auto parts = header_value(start, 0);
+    if (parts == 0) return "";
+    if (parts > block.stored.size()) head(block, parts);
+    const auto header = head(block, header_size_ * (3 + parts));
+    std::uint64_t stored = header.size();
+    for (std::size_t i = 0; i < parts; ++i) {
+        const auto size = header_value(header, 3 + i);
+        if (size > block.stored.size()) head(block, size);
+        stored += size;
+    }
+    const auto data = head(block, stored);
+    const auto whole = header_value(header, 1), last = header_value(header, 2);
+    constexpr std::uint64_t best_ratio = 1032; // of deflate, by zlib's technical notes
+    if (whole > best_ratio * data.size()
+        || parts > best_ratio * data.size() / std::max<std::uint64_t>(whole, 1))
+        xml_.fail(block.tag, fmt::format("{} bytes cannot hold {} parts of {}", data.size(), parts, whole),
+                  "copy or export the file again");
+    std::string result;
+    std::size_t at = header.size();
+    for (std::size_t i = 0; i < parts; ++i) {
+        const auto size = header_value(header, 3 + i);
+        const auto bytes = i + 1 == parts && last != 0 ? std::min(last, whole) : whole;
+        const auto begin = result.size();
+        result.resize(begin + bytes);
+        uLongf got = bytes;
+        const auto status = uncompress(reinterpret_cast<Bytef*>(result.data() + begin), &got,
+                                       reinterpret_cast<const Bytef*>(data.data() + at), size);
+        if (status != Z_OK || got != bytes)
+            xml_.fail(block.tag, fmt::format("part {} does not decompress", i),
+                      "copy or export the file again");
+        at += size;
+    }
+    return result;
+}
+
+} // namespace tandem::read
