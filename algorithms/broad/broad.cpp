@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/broad/broad.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace tandem {
+
+namespace {
+
+/// Roundings on the way from a body's vertex to a slab: input, rotation (4), two sums, and E of a safe corner
+/// (4), doubled for good measure.
+constexpr double rounding_steps = 24;
+
+} // namespace
+
+Broad::Bound broad_bound(const Settings& settings) {
+    return settings.at("broad") == "tight" ? Broad::Bound::tight : Broad::Bound::sphere;
+}
+
+Broad::Broad(const Scene& scene, const Geometry& geometry, Bound bound)
+    : scene_(scene),
+      bound_(bound),
+      roundoff_(std::ldexp(1.0, geometry.precision == Precision::twice ? -53 : -24)) {
+    for (const auto& d : directions(geometry)) directions_.emplace_back(d[0], d[1], d[2]);
+    for (const auto& mesh : scene.meshes) shapes_.push_back(shape_of(mesh.vertices));
+}
+
+Broad::Shape Broad::shape_of(const std::vector<Eigen::Vector3d>& vertices) const {
+    Eigen::Vector3d lower = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+    Eigen::Vector3d upper = -lower;
+    Shape shape;
+    for (const auto& v : vertices) {
+        lower = lower.cwiseMin(v);
+        upper = upper.cwiseMax(v);
+        shape.reach = std::max(shape.reach, v.norm());
+    }
+    shape.centre = 0.5 * (lower + upper);
+    shape.half = 0.5 * (upper - lower);
+    for (const auto& v : vertices) shape.radius = std::max(shape.radius, (v - shape.centre).norm());
+    return shape;
+}
+
+void Broad::bound_rigid(const Shape& shape, const Pose& pose, double* slabs) const {
+    const Eigen::Matrix3d rotation = pose.rotation.normalized().toRotationMatrix();
+    const Eigen::Vector3d centre = rotation * shape.centre + pose.translation;
+    const double slack = rounding_steps * roundoff_ * (pose.translation.lpNorm<1>() + 2 * shape.reach);
+    for (const auto& d : directions_) {
+        const double reach = bound_ == Bound::sphere ? shape.radius * d.norm()
+                                                     : (rotation.transpose() * d).cwiseAbs().dot(shape.half);
+        const double middle = d.dot(centre);
+        const double width = reach * (1 + 8 * std::numeric_limits<double>::epsilon()) + slack * d.lpNorm<1>();
+        *slabs++ = middle - width;
+        *slabs++ = middle + width;
+    }
+}
+
+void Broad::bound_deformed(const std::vector<Eigen::Vector3d>& vertices, double* slabs) const {
+    const auto shape = shape_of(vertices);
+    for (const auto& d : directions_) {
+        double lower = d.dot(shape.centre) - shape.radius * d.norm();
+        double upper = d.dot(shape.centre) + shape.radius * d.norm();
+        if (bound_ == Bound::tight) {
+            lower = std::numeric_limits<double>::infinity();
+            upper = -lower;
+            for (const auto& v : vertices) {
+                lower = std::min(lower, d.dot(v));
+                upper = std::max(upper, d.dot(v));
+            }
+        }
+        const double slack = rounding_steps * roundoff_ * 2 * shape.reach * d.lpNorm<1>();
+        *slabs++ = lower - slack;
+        *slabs++ = upper + slack;
+    }
+}
+
+std::size_t Broad::sweep_direction(const std::vector<double>& slabs) const {
+    const auto stride = 2 * directions_.size();
+    const auto bodies = scene_.bodies.size();
+    std::size_t best = 0;
+    double most = -1;
+    for (std::size_t axis = 0; axis < directions_.size(); ++axis) {
+        double sum = 0;
+        double squares = 0;
+        for (std::size_t body = 0; body < bodies; ++body) {
+            const double middle = slabs[body * stride + 2 * axis] / directions_[axis].norm();
+            sum += middle;
+            squares += middle * middle;
+        }
+        const double spread = squares - sum * sum / static_cast<double>(bodies);
+        if (spread > most) {
+            most = spread;
+            best = axis;
+        }
+    }
+    return best;
+}
+
+std::vector<BodyPair> Broad::pairs(const Frame& frame) const {
+    const auto stride = 2 * directions_.size();
+    const auto bodies = static_cast<std::uint32_t>(scene_.bodies.size());
+    std::vector<double> slabs(bodies * stride);
+    for (std::uint32_t body = 0; body < bodies; ++body) {
+        if (scene_.bodies[body].deformable)
+            bound_deformed(frame.deformed[body], &slabs[body * stride]);
+        else
+            bound_rigid(shapes_[scene_.bodies[body].mesh], frame.poses[body], &slabs[body * stride]);
+    }
+    const auto sweep = 2 * sweep_direction(slabs);
+    std::vector<std::uint32_t> order(bodies);
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(),
+              [&](auto a, auto b) { return slabs[a * stride + sweep] < slabs[b * stride + sweep]; });
+    const auto apart = [&](std::uint32_t a, std::uint32_t b) {
+        for (std::size_t i = 0; i < stride; i += 2)
+            if (slabs[a * stride + i] > slabs[b * stride + i + 1]
+                || slabs[b * stride + i] > slabs[a * stride + i + 1])
+                return true;
+        return false;
+    };
+    std::vector<BodyPair> pairs;
+    for (std::uint32_t i = 0; i < bodies; ++i) {
+        const auto a = order[i];
+        for (std::uint32_t j = i + 1; j < bodies; ++j) {
+            const auto b = order[j];
+            if (slabs[b * stride + sweep] > slabs[a * stride + sweep + 1]) break;
+            if (scene_.bodies[a].fixed && scene_.bodies[b].fixed) continue;
+            if (!apart(a, b)) pairs.push_back({std::min(a, b), std::max(a, b)});
+        }
+    }
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+} // namespace tandem

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/kdop/device_scene.h"
+
+namespace tandem {
+
+/// Finds body pairs whose volumes may overlap, on the host: slabs of a simple bound of each body along the
+/// geometry's own directions, swept along the direction that spreads the bodies most. Bounds along any other
+/// directions could drop pairs whose k-DOPs overlap. Widened by the rounding of transform and slabs, so no
+/// pair whose root k-DOPs overlap is ever dropped. Pairs of two fixed bodies are left out.
+class Broad {
+public:
+    enum class Bound {
+        sphere, ///< the paper's: a sphere around each mesh
+        tight   ///< a box of the mesh's frame; a deformable body's own slabs
+    };
+
+    Broad(const Scene& scene, const Geometry& geometry, Bound bound);
+
+    /// Pairs in ascending order. O(n log n) and the pairs that overlap along the sweep.
+    std::vector<BodyPair> pairs(const Frame& frame) const;
+
+private:
+    struct Shape {
+        Eigen::Vector3d centre, half;
+        double radius = 0; ///< of the sphere around `centre`
+        double reach = 0;  ///< largest distance of a vertex from the mesh's origin
+    };
+
+    Shape shape_of(const std::vector<Eigen::Vector3d>& vertices) const;
+    void bound_rigid(const Shape& shape, const Pose& pose, double* slabs) const;
+    void bound_deformed(const std::vector<Eigen::Vector3d>& vertices, double* slabs) const;
+    std::size_t sweep_direction(const std::vector<double>& slabs) const;
+
+    const Scene& scene_;
+    std::vector<Eigen::Vector3d> directions_;
+    Bound bound_;
+    double roundoff_;
+    std::vector<Shape> shapes_; ///< by mesh
+};
+
+Broad::Bound broad_bound(const Settings& settings);
+
+} // namespace tandem

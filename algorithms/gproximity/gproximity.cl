@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: MIT
+// gProximity's traversal with dynamic load balancing (Lauterbach, Mo, Manocha 2010), from its published
+// description and the numbers of its two implementations. Every work-group owns a queue of node pairs in
+// global memory and works on a local queue loaded from its top; an idle counter ends the launch; balancing
+// evens the queues out.
+#include "backends/portable.h"
+#include "algorithms/pairs.clh"
+
+#ifndef LOCAL_QUEUE
+#define LOCAL_QUEUE 600
+#endif
+#ifndef INITIAL_ITEMS
+#define INITIAL_ITEMS 192
+#endif
+#ifndef IDLE_LIMIT
+#define IDLE_LIMIT 86
+#endif
+#ifndef REFILL
+#define REFILL 0
+#endif
+#ifndef FULL_EXIT
+#define FULL_EXIT 1
+#endif
+
+#define ITEM_WORDS 3 // body pair, node of a, node of b
+
+DEVICE void copy_item(GLOBAL uint* to, GLOBAL const uint* from) {
+    to[0] = from[0];
+    to[1] = from[1];
+    to[2] = from[2];
+}
+
+// Queue `queue` of item number `item` when `total` items are spread evenly over `queues`, the first ones
+// taking one more; its place in that queue in *place.
+DEVICE uint queue_of_item(uint item, uint total, uint queues, uint* place) {
+    const uint share = total / queues;
+    const uint longer = total % queues; // queues with share + 1 items
+    const uint in_longer = longer * (share + 1u);
+    if (item < in_longer) {
+        *place = item % (share + 1u);
+        return item / (share + 1u);
+    }
+    *place = (item - in_longer) % share;
+    return longer + (item - in_longer) / share;
+}
+
+DEVICE uint share_of_queue(uint queue, uint total, uint queues) {
+    return total / queues + (queue < total % queues ? 1u : 0u);
+}
+
+// Root pairs of body pairs first..first+count-1, spread evenly over the queues.
+KERNEL
+void scatter_roots(GLOBAL uint* items, GLOBAL uint* counts, uint queues, uint queue_capacity, uint first,
+                   uint count) {
+    for (uint i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
+        uint place;
+        const uint queue = queue_of_item(i, count, queues, &place);
+        GLOBAL uint* item = items + ((ulong)queue * queue_capacity + place) * ITEM_WORDS;
+        item[0] = first + i;
+        item[1] = 1u;
+        item[2] = 1u;
+    }
+    for (uint queue = GLOBAL_ID; queue < queues; queue += GLOBAL_COUNT)
+        counts[queue] = share_of_queue(queue, count, queues);
+}
+
+// What one node pair leads to: a candidate pair, nothing, or two children to push.
+typedef struct {
+    uint pair, a, b;
+    uint descend; // 0 none, 1 children of a, 2 children of b
+} Step;
+
+DEVICE Step walk_item(Step step, GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* ids,
+                      GLOBAL const uint* pairs, GLOBAL uint* found, uint capacity, GLOBAL uint* status,
+                      Tally* tally) {
+    const uint body_a = pairs[2u * step.pair];
+    const uint body_b = pairs[2u * step.pair + 1u];
+    GLOBAL const uint* a = bodies + (ulong)body_a * BODY_WORDS;
+    GLOBAL const uint* b = bodies + (ulong)body_b * BODY_WORDS;
+    GLOBAL const real* node_a = node_at(nodes, a[BODY_NODES] + step.a);
+    GLOBAL const real* node_b = node_at(nodes, b[BODY_NODES] + step.b);
+    step.descend = 0u;
+    if (COUNT_WORK) tally->tests += 1;
+    if (!overlap(node_a, node_b)) return step;
+    const int leaf_a = is_leaf(step.a, a[BODY_TETRAHEDRON_COUNT]);
+    const int leaf_b = is_leaf(step.b, b[BODY_TETRAHEDRON_COUNT]);
+    if (leaf_a && leaf_b)
+        emit(tally, status, found, capacity, bodies, ids, body_a, body_b,
+             leaf_item(step.a, a[BODY_TETRAHEDRON_COUNT]), leaf_item(step.b, b[BODY_TETRAHEDRON_COUNT]));
+    else
+        step.descend = leaf_b || (!leaf_a && node_size(node_a) > node_size(node_b)) ? 1u : 2u;
+    return step;
+}
+
+// Pushes the two children of a step: into the local queue, or past its end onto the top of the group's own
+// queue, where room was made sure of beforehand.
+DEVICE void push_children(Step step, LOCAL uint* queue, LOCAL uint* size, GLOBAL uint* own, uint stored) {
+    const uint slot = LOCAL_ATOMIC_ADD(size, 2u);
+    for (uint child = 0; child < 2u; ++child) {
+        const uint a = step.descend == 1u ? 2u * step.a + child : step.a;
+        const uint b = step.descend == 2u ? 2u * step.b + child : step.b;
+        if (slot + child < (uint)LOCAL_QUEUE) {
+            queue[(slot + child) * ITEM_WORDS] = step.pair;
+            queue[(slot + child) * ITEM_WORDS + 1u] = a;
+            queue[(slot + child) * ITEM_WORDS + 2u] = b;
+        } else {
+            GLOBAL uint* item = own + (ulong)(stored + slot + child - (uint)LOCAL_QUEUE) * ITEM_WORDS;
+            item[0] = step.pair;
+            item[1] = a;
+            item[2] = b;
+        }
+    }
+}
+
+// A group's shared words.
+#define SIZE 0   // items in the local queue
+#define STORED 1 // items in the group's own queue in global memory, below the local ones
+#define TAKE 2   // of SIZE, items that still lie on top of the own queue and are to be loaded
+#define STOP 3
+
+// Takes up to INITIAL_ITEMS from the top of the own queue.
+DEVICE void take_items(LOCAL uint* shared, uint stored) {
+    const uint most = (uint)INITIAL_ITEMS < (uint)LOCAL_QUEUE ? (uint)INITIAL_ITEMS : (uint)LOCAL_QUEUE;
+    shared[TAKE] = stored < most ? stored : most;
+    shared[STORED] = stored - shared[TAKE];
+    shared[SIZE] = shared[TAKE];
+    shared[STOP] = shared[SIZE] == 0u ? 1u : 0u;
+}
+
+// After a round of `active` items: accounts for what went past the local queue, refills an empty one, and
+// decides whether the group stops: nothing left or no progress, local or own queue full, or too many groups
+// idle.
+DEVICE void settle_round(LOCAL uint* shared, uint active, uint queue_capacity, GLOBAL uint* idle,
+                         GLOBAL uint* status) {
+    const uint size = shared[SIZE];
+    const uint spilled = size > (uint)LOCAL_QUEUE ? size - (uint)LOCAL_QUEUE : 0u;
+    const uint margin = 2u * (uint)GROUP_SIZE + (uint)LOCAL_QUEUE;
+    shared[TAKE] = 0u;
+    shared[SIZE] = size - spilled;
+    shared[STORED] += spilled;
+    if (COUNT_WORK && spilled != 0u) counter_add(status + STATUS_SPILLS, spilled);
+    if (REFILL && size == 0u && shared[STORED] != 0u) {
+        take_items(shared, shared[STORED]);
+        if (COUNT_WORK) counter_add(status + STATUS_REFILLS, 1u);
+    }
+    uint stop = shared[SIZE] == 0u || active == 0u ? 1u : 0u;
+    if (FULL_EXIT && shared[SIZE] + (uint)GROUP_SIZE >= (uint)LOCAL_QUEUE) stop = 1u;
+    if (FULL_EXIT && shared[STORED] + margin >= queue_capacity) stop = 1u;
+    if (stop == 0u && IDLE_LIMIT != 0 && ATOMIC_READ(idle) >= (uint)IDLE_LIMIT) stop = 1u;
+    shared[STOP] = stop;
+}
+
+// One launch: every group empties its queue as far as the rules let it. A round takes the top of the local
+// queue, at most one item a work-item, and never more than the group's own queue could store if all of them
+// split.
+KERNEL
+void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* ids,
+                     GLOBAL const uint* pairs, GLOBAL uint* items, GLOBAL uint* counts, uint queue_capacity,
+                     GLOBAL uint* idle, GLOBAL uint* found, uint capacity, GLOBAL uint* status) {
+    LOCAL_ARRAY(uint, queue, LOCAL_QUEUE * ITEM_WORDS);
+    LOCAL_ARRAY(uint, shared, 4);
+    GLOBAL uint* own = items + (ulong)GROUP_ID * queue_capacity * ITEM_WORDS;
+    Tally tally = empty_tally();
+    if (LOCAL_ID == 0u) take_items(shared, counts[GROUP_ID]);
+    BARRIER;
+    uint stop = shared[STOP];
+    while (stop == 0u) {
+        const uint size = shared[SIZE];
+        const uint stored = shared[STORED];
+        for (uint i = LOCAL_ID; i < shared[TAKE] * ITEM_WORDS; i += (uint)GROUP_SIZE)
+            queue[i] = own[(ulong)stored * ITEM_WORDS + i];
+        BARRIER;
+        const uint room = queue_capacity - stored - size;
+        const uint lanes = size < (uint)GROUP_SIZE ? size : (uint)GROUP_SIZE;
+        const uint active = lanes < room ? lanes : room;
+        Step step = {0u, 0u, 0u, 0u};
+        if (LOCAL_ID < active) {
+            LOCAL const uint* item = queue + (size - active + LOCAL_ID) * ITEM_WORDS;
+            step.pair = item[0];
+            step.a = item[1];
+            step.b = item[2];
+        }
+        if (LOCAL_ID == 0u) shared[SIZE] = size - active;
+        BARRIER;
+        if (LOCAL_ID < active) {
+            step = walk_item(step, nodes, bodies, ids, pairs, found, capacity, status, &tally);
+            if (step.descend != 0u) push_children(step, queue, shared + SIZE, own, stored);
+        }
+        BARRIER_GLOBAL;
+        if (LOCAL_ID == 0u) settle_round(shared, active, queue_capacity, idle, status);
+        BARRIER;
+        stop = shared[STOP];
+    }
+    // Back onto the own queue's top. Items of a refill that was not begun still lie there.
+    for (uint i = LOCAL_ID; shared[TAKE] == 0u && i < shared[SIZE] * ITEM_WORDS; i += (uint)GROUP_SIZE)
+        own[(ulong)shared[STORED] * ITEM_WORDS + i] = queue[i];
+    if (LOCAL_ID == 0u) {
+        counts[GROUP_ID] = shared[STORED] + shared[SIZE];
+        ATOMIC_ADD(idle, 1u);
+    }
+    flush(&tally, status);
+}
+
+// Sums the queues and decides whether to balance: totals = {items, balance}, starts = exclusive sums. One
+// group.
+KERNEL
+void plan_balance(GLOBAL const uint* counts, uint queues, uint low, uint high, GLOBAL uint* starts,
+                  GLOBAL uint* totals) {
+    LOCAL_ARRAY(uint, sums, GROUP_SIZE);
+    LOCAL_ARRAY(uint, wanted, GROUP_SIZE);
+    const uint part = (queues + (uint)GROUP_SIZE - 1u) / (uint)GROUP_SIZE;
+    const uint first = LOCAL_ID * part < queues ? LOCAL_ID * part : queues;
+    const uint last = first + part < queues ? first + part : queues;
+    uint sum = 0;
+    uint want = 0;
+    for (uint i = first; i < last; ++i) {
+        sum += counts[i];
+        want |= counts[i] < low || counts[i] >= high ? 1u : 0u;
+    }
+    sums[LOCAL_ID] = sum;
+    wanted[LOCAL_ID] = want;
+    BARRIER;
+    if (LOCAL_ID == 0u) {
+        uint start = 0;
+        uint any = 0;
+        for (uint i = 0; i < (uint)GROUP_SIZE; ++i) {
+            const uint own = sums[i];
+            sums[i] = start;
+            start += own;
+            any |= wanted[i];
+        }
+        starts[queues] = start;
+        totals[0] = start;
+        totals[1] = start != 0u ? any : 0u;
+    }
+    BARRIER;
+    uint start = sums[LOCAL_ID];
+    for (uint i = first; i < last; ++i) {
+        starts[i] = start;
+        start += counts[i];
+    }
+}
+
+// Moves every item to its place with the whole device: the two-phase balance of g-Planner
+// (gproximity.md 12.1).
+KERNEL
+void move_balance(GLOBAL const uint* from, GLOBAL uint* to, GLOBAL uint* counts, uint queues,
+                  uint queue_capacity, GLOBAL const uint* starts, GLOBAL const uint* totals) {
+    const uint total = totals[1] != 0u ? totals[0] : 0u;
+    for (uint i = GLOBAL_ID; i < total; i += GLOBAL_COUNT) {
+        uint low = 0;
+        uint high = queues;
+        while (low + 1u < high) {
+            const uint middle = low + (high - low) / 2u;
+            if (starts[middle] <= i)
+                low = middle;
+            else
+                high = middle;
+        }
+        uint place;
+        const uint queue = queue_of_item(i, total, queues, &place);
+        copy_item(to + ((ulong)queue * queue_capacity + place) * ITEM_WORDS,
+                  from + ((ulong)low * queue_capacity + (i - starts[low])) * ITEM_WORDS);
+    }
+    for (uint queue = GLOBAL_ID; total != 0u && queue < queues; queue += GLOBAL_COUNT)
+        counts[queue] = share_of_queue(queue, total, queues);
+}
+
+// The same as the originals do it: one group, output queue after output queue, in runs of at most one item a
+// work-item with a barrier behind each. Source and target queues are walked together.
+KERNEL
+void move_balance_serially(GLOBAL const uint* from, GLOBAL uint* to, GLOBAL uint* counts, uint queues,
+                           uint queue_capacity, GLOBAL const uint* starts, GLOBAL const uint* totals) {
+    const uint total = totals[1] != 0u ? totals[0] : 0u;
+    uint source = 0;
+    uint moved = 0;
+    uint queue = 0;
+    uint place = 0;
+    while (moved < total) {
+        while (starts[source + 1u] <= moved) ++source;
+        while (place >= share_of_queue(queue, total, queues)) {
+            ++queue;
+            place = 0;
+        }
+        uint run = starts[source + 1u] - moved;
+        const uint space = share_of_queue(queue, total, queues) - place;
+        run = run < space ? run : space;
+        run = run < (uint)GROUP_SIZE ? run : (uint)GROUP_SIZE;
+        if (LOCAL_ID < run)
+            copy_item(
+                to + ((ulong)queue * queue_capacity + place + LOCAL_ID) * ITEM_WORDS,
+                from + ((ulong)source * queue_capacity + (moved - starts[source]) + LOCAL_ID) * ITEM_WORDS);
+        BARRIER;
+        moved += run;
+        place += run;
+    }
+    for (uint i = LOCAL_ID; total != 0u && i < queues; i += (uint)GROUP_SIZE)
+        counts[i] = share_of_queue(i, total, queues);
+}

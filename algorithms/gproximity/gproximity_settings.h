@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/settings.h"
+#include "backends/device.h"
+
+#include <span>
+
+namespace tandem {
+
+std::span<const Parameter> gproximity_parameters();
+std::span<const Preset> gproximity_presets();
+
+/// The numbers of a gproximity session, once the device has filled in what was left to it.
+struct QueueSizes {
+    std::uint32_t groups = 0;         ///< work-groups = queues
+    std::uint32_t local_queue = 0;    ///< items
+    std::uint32_t initial_items = 0;  ///< loaded at the start and at each refill
+    std::uint32_t queue_capacity = 0; ///< items of one queue in global memory
+    std::uint32_t idle_limit = 0;     ///< idle groups that end a launch; 0: never
+    std::uint32_t batch = 0;          ///< body pairs a batch; 0: all
+    std::uint32_t balance_group_size = 0;
+};
+
+/// `group_size` is the effective one. Throws InputError when the local queue does not fit the device or a
+/// queue would hold less than one round.
+QueueSizes queue_sizes(const Settings& settings, const DeviceInfo& info, std::uint32_t group_size);
+
+} // namespace tandem

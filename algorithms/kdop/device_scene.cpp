@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/kdop/device_scene.h"
+
+#include "algorithms/kdop/pack.h"
+#include "algorithms/sources.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace tandem {
+
+namespace {
+
+constexpr std::uint32_t body_words = 8;
+constexpr std::uint32_t level_words = 4;
+constexpr std::uint32_t job_words = 3;
+constexpr std::uint32_t in_world_flag = 1;
+constexpr std::uint32_t strip = 5; ///< STRIP of refit.cl
+
+std::uint64_t groups_for(std::uint64_t items, std::uint64_t per_group) {
+    return (items + per_group - 1) / per_group;
+}
+
+} // namespace
+
+DeviceScene::DeviceScene(Device& device, const Scene& scene, const Geometry& geometry, std::uint32_t leaves,
+                         std::uint32_t group_size, Residency residency)
+    : device_(device),
+      scene_(scene),
+      geometry_(geometry),
+      leaves_(leaves),
+      group_size_(group_size),
+      residency_(residency) {
+    for (const auto& mesh : scene.meshes) {
+        meshes_.push_back(ordered(mesh));
+        mesh_levels_.push_back(chunk_levels(static_cast<std::uint32_t>(mesh.tetrahedra.size()), leaves));
+    }
+    lay_out();
+    plan_strips();
+    auto defines = geometry_defines(geometry, group_size);
+    const auto& source = kernel_source("algorithms/kdop/refit.cl");
+    defines["LEAF_BITS"] = std::to_string(ceil_log2(leaves));
+    strips_kernel_ = device.compile(source, "refit_strips", defines);
+    roots_kernel_ = device.compile(source, "refit_roots", defines);
+    if (residency == Residency::published)
+        transform_kernel_ = device.compile(source, "transform_vertices", defines);
+    upload_static();
+}
+
+bool DeviceScene::in_world(std::size_t body) const {
+    return residency_ == Residency::published || scene_.bodies[body].deformable;
+}
+
+std::size_t DeviceScene::vertices_of(std::size_t body) const {
+    return meshes_[scene_.bodies[body].mesh].vertices.size();
+}
+
+/// Assigns every body its rows: shared topology and rigid vertices by mesh, deformable vertices and nodes by
+/// body. Published residency shares nothing.
+void DeviceScene::lay_out() {
+    const bool shared = residency_ == Residency::resident;
+    std::vector<std::uint32_t> first_level, first_tetrahedron, first_vertex;
+    for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) {
+        first_level.push_back(static_cast<std::uint32_t>(level_rows_.size() / level_words));
+        for (const auto& level : mesh_levels_[mesh])
+            level_rows_.insert(level_rows_.end(), {level.slot, level.items, level.chunks, 0});
+        first_tetrahedron.push_back(static_cast<std::uint32_t>(tetrahedron_total_));
+        first_vertex.push_back(static_cast<std::uint32_t>(vertex_total_));
+        if (!shared) continue;
+        tetrahedron_total_ += meshes_[mesh].ids.size();
+        vertex_total_ += meshes_[mesh].vertices.size();
+    }
+    for (std::size_t body = 0; body < scene_.bodies.size(); ++body) {
+        const auto mesh = scene_.bodies[body].mesh;
+        const auto tetrahedra = static_cast<std::uint32_t>(meshes_[mesh].ids.size());
+        const bool own_vertices = in_world(body);
+        body_rows_.insert(body_rows_.end(),
+                          {shared ? first_tetrahedron[mesh] : static_cast<std::uint32_t>(tetrahedron_total_),
+                           own_vertices ? static_cast<std::uint32_t>(vertex_total_) : first_vertex[mesh],
+                           static_cast<std::uint32_t>(slots_), first_level[mesh],
+                           static_cast<std::uint32_t>(mesh_levels_[mesh].size()), tetrahedra,
+                           own_vertices ? in_world_flag : 0u, 0u});
+        if (!shared) tetrahedron_total_ += tetrahedra;
+        if (own_vertices) vertex_total_ += vertices_of(body);
+        slots_ += slot_count(mesh_levels_[mesh]);
+    }
+    constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+    if (slots_ > most || vertex_total_ > most || tetrahedron_total_ > most)
+        throw DeviceError("scene: more than 2^32 nodes, vertices or tetrahedra; leave bodies out");
+}
+
+/// Level by level, each from its deepest nodes up, in strips of at most `strip` + 1 depths.
+void DeviceScene::plan_strips() {
+    std::size_t level_count = 0;
+    for (const auto& levels : mesh_levels_) level_count = std::max(level_count, levels.size());
+    for (std::uint32_t level = 0; level < level_count; ++level) {
+        std::uint32_t deepest = 0;
+        for (const auto& levels : mesh_levels_)
+            if (level < levels.size())
+                deepest = std::max(deepest, ceil_log2(std::min(levels[level].items, leaves_)));
+        for (std::uint32_t bottom = deepest;;) {
+            const auto top = bottom > strip ? bottom - strip : 0;
+            strips_.push_back(
+                {level, bottom - top, static_cast<std::uint32_t>(jobs_.size() / job_words), 0, 0});
+            plan_strip(level, false, top);
+            strips_.back().dynamic_jobs = strips_.back().jobs;
+            plan_strip(level, true, top);
+            if (top == 0) break;
+            bottom = top - 1;
+        }
+    }
+}
+
+void DeviceScene::plan_strip(std::uint32_t level, bool fixed, std::uint32_t top) {
+    for (std::uint32_t body = 0; body < scene_.bodies.size(); ++body) {
+        const auto& levels = mesh_levels_[scene_.bodies[body].mesh];
+        if (scene_.bodies[body].fixed != fixed || level >= levels.size()) continue;
+        for (std::uint32_t chunk = 0; chunk < levels[level].chunks; ++chunk) {
+            const auto items = std::min(leaves_, levels[level].items - chunk * leaves_);
+            for (std::uint32_t root = 1u << top; root < std::min(2u << top, 2 * items); ++root) {
+                jobs_.insert(jobs_.end(), {body, chunk, root});
+                ++strips_.back().jobs;
+            }
+        }
+    }
+}
+
+std::vector<std::byte> DeviceScene::shared_vertices() const {
+    std::vector<std::byte> bytes;
+    for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh)
+        pack_vertices(bytes, geometry_, meshes_[mesh], scene_.meshes[mesh].vertices);
+    return bytes;
+}
+
+void DeviceScene::upload_static() {
+    const StageScope scope(device_, Stage::write);
+    const auto put = [&](Buffer& buffer, std::span<const std::byte> bytes, std::string_view label) {
+        buffer = device_.allocate(bytes.size(), label);
+        device_.upload(buffer, bytes);
+    };
+    std::vector<std::uint32_t> tetrahedra, ids;
+    std::vector<std::uint8_t> boundary;
+    const auto add = [&](const OrderedMesh& mesh) {
+        tetrahedra.insert(tetrahedra.end(), mesh.tetrahedra.begin(), mesh.tetrahedra.end());
+        ids.insert(ids.end(), mesh.ids.begin(), mesh.ids.end());
+        boundary.insert(boundary.end(), mesh.boundary.begin(), mesh.boundary.end());
+    };
+    if (residency_ == Residency::resident)
+        for (const auto& mesh : meshes_) add(mesh);
+    else
+        for (const auto& body : scene_.bodies) add(meshes_[body.mesh]);
+    put(tetrahedra_, bytes_of(tetrahedra), "tetrahedra");
+    put(ids_, bytes_of(ids), "tetrahedron ids");
+    put(boundary_, bytes_of(boundary), "boundary faces");
+    put(bodies_, bytes_of(body_rows_), "bodies");
+    put(levels_, bytes_of(level_rows_), "levels");
+    put(job_table_, bytes_of(jobs_), "refit jobs");
+    const auto real = real_bytes(geometry_);
+    nodes_ = device_.allocate(slots_ * static_cast<std::uint64_t>(geometry_.k) * real, "nodes");
+    poses_ = device_.allocate(scene_.bodies.size() * 12 * real, "poses");
+    vertices_ = device_.allocate(vertex_total_ * 4 * real, "vertices");
+    if (residency_ == Residency::resident) {
+        device_.upload(vertices_, shared_vertices());
+        return;
+    }
+    local_vertices_ = device_.allocate(vertex_total_ * 4 * real, "local vertices");
+    vertex_bodies_ = device_.allocate(vertex_total_ * 4, "vertex bodies");
+}
+
+void DeviceScene::upload_poses(const Frame& frame) {
+    const auto moves = [](const Body& body) { return !body.fixed && !body.deformable; };
+    if (!fresh_ && std::none_of(scene_.bodies.begin(), scene_.bodies.end(), moves)) return;
+    std::vector<std::byte> bytes;
+    {
+        const HostWork work(device_, Stage::preprocess, "pack poses");
+        bytes.reserve(frame.poses.size() * 12 * real_bytes(geometry_));
+        for (const auto& pose : frame.poses) pack_pose(bytes, geometry_, pose);
+    }
+    const StageScope scope(device_, Stage::write);
+    device_.upload(poses_, bytes);
+}
+
+void DeviceScene::upload_deformed(const Frame& frame) {
+    std::vector<std::byte> bytes;
+    std::uint64_t first = vertex_total_;
+    {
+        const HostWork work(device_, Stage::preprocess, "pack vertices");
+        for (std::size_t body = 0; body < scene_.bodies.size(); ++body) {
+            if (!scene_.bodies[body].deformable) continue;
+            first = std::min<std::uint64_t>(first, body_rows_[body * body_words + 1]);
+            pack_vertices(bytes, geometry_, meshes_[scene_.bodies[body].mesh], frame.deformed[body]);
+        }
+    }
+    if (bytes.empty()) return;
+    const StageScope scope(device_, Stage::write);
+    device_.upload(vertices_, bytes, first * 4 * real_bytes(geometry_));
+}
+
+void DeviceScene::refit(bool all) {
+    const StageScope scope(device_, Stage::refit);
+    const std::uint32_t per_group = std::max(1u, group_size_ >> strip);
+    for (const auto& s : strips_) {
+        const auto jobs = all ? s.jobs : s.dynamic_jobs;
+        const std::array<Argument, 11> arguments{nodes_,      bodies_,   levels_,    poses_,
+                                                 tetrahedra_, vertices_, job_table_, s.first_job,
+                                                 jobs,        s.level,   s.height};
+        device_.launch(strips_kernel_, {groups_for(jobs, per_group), group_size_}, arguments);
+    }
+    const std::array<Argument, 4> arguments{nodes_, bodies_, levels_, body_count()};
+    device_.launch(
+        roots_kernel_,
+        {groups_for(std::uint64_t{body_count()} * static_cast<std::uint64_t>(geometry_.k / 2), group_size_),
+         group_size_},
+        arguments);
+}
+
+void DeviceScene::update(const Frame& frame) {
+    if (residency_ == Residency::published) {
+        update_published(frame);
+        return;
+    }
+    upload_poses(frame);
+    upload_deformed(frame);
+    refit(fresh_);
+    fresh_ = false;
+}
+
+} // namespace tandem

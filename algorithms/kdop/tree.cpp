@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/kdop/tree.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <numeric>
+
+namespace tandem {
+
+namespace {
+
+constexpr std::uint32_t lattice = (1u << 21) - 1;
+
+/// Spreads the 21 low bits of x to every third bit.
+std::uint64_t spread(std::uint64_t x) {
+    x &= lattice;
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    return (x | x << 2) & 0x1249249249249249;
+}
+
+Eigen::Vector3d centroid(const Mesh& mesh, const Tetrahedron& t) {
+    return 0.25 * ((mesh.vertices[t[0]] + mesh.vertices[t[1]]) + (mesh.vertices[t[2]] + mesh.vertices[t[3]]));
+}
+
+std::uint32_t cell(double offset, double scale) {
+    // The scale is finite and the offset non-negative, so that only the upper end needs clamping.
+    return static_cast<std::uint32_t>(std::min(offset * scale, static_cast<double>(lattice)));
+}
+
+} // namespace
+
+std::uint64_t morton_code(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    return spread(x) << 2 | spread(y) << 1 | spread(z);
+}
+
+std::vector<std::uint32_t> morton_order(const Mesh& mesh) {
+    const auto count = mesh.tetrahedra.size();
+    std::vector<Eigen::Vector3d> centroids(count);
+    std::transform(mesh.tetrahedra.begin(), mesh.tetrahedra.end(), centroids.begin(),
+                   [&](const auto& t) { return centroid(mesh, t); });
+    Eigen::Vector3d lower = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+    Eigen::Vector3d upper = -lower;
+    for (const auto& c : centroids) {
+        lower = lower.cwiseMin(c);
+        upper = upper.cwiseMax(c);
+    }
+    const double extent = count ? (upper - lower).maxCoeff() : 0.0;
+    // An extent of zero, or one so small that its inverse overflows, puts everything into one cell.
+    const double scale = extent > std::numeric_limits<double>::min() * lattice ? lattice / extent : 0.0;
+    std::vector<std::uint64_t> codes(count);
+    std::transform(centroids.begin(), centroids.end(), codes.begin(), [&](const Eigen::Vector3d& c) {
+        const Eigen::Vector3d offset = c - lower;
+        return morton_code(cell(offset.x(), scale), cell(offset.y(), scale), cell(offset.z(), scale));
+    });
+    std::vector<std::uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return codes[a] < codes[b]; });
+    return order;
+}
+
+std::uint32_t leaves_of_chunk_bytes(std::uint64_t bytes, int k) {
+    const auto most = bytes / (4 * static_cast<std::uint64_t>(k) + 24) / 2;
+    const auto perfect = std::bit_floor(std::clamp<std::uint64_t>(most, 4, 1u << 15));
+    return static_cast<std::uint32_t>(perfect / 2);
+}
+
+std::vector<Level> chunk_levels(std::uint32_t tetrahedra, std::uint32_t leaves) {
+    std::vector<Level> levels;
+    std::uint32_t slot = 0;
+    std::uint32_t items = tetrahedra;
+    while (true) {
+        const std::uint32_t chunks = items / leaves + (items % leaves != 0 ? 1u : 0u);
+        levels.push_back({slot, items, chunks});
+        if (chunks <= leaves) return levels;
+        slot += 2 * items;
+        items = chunks;
+    }
+}
+
+std::uint32_t slot_count(std::span<const Level> levels) {
+    return levels.back().slot + 2 * levels.back().items;
+}
+
+std::uint32_t ceil_log2(std::uint32_t n) { return static_cast<std::uint32_t>(std::bit_width(n - 1)); }
+
+OrderedMesh ordered(const Mesh& mesh) {
+    OrderedMesh result;
+    result.ids = morton_order(mesh);
+    constexpr auto unseen = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> renumbered(mesh.vertices.size(), unseen);
+    for (const auto id : result.ids) {
+        result.boundary.push_back(mesh.boundary[id]);
+        for (const auto vertex : mesh.tetrahedra[id]) {
+            if (renumbered[vertex] == unseen) {
+                renumbered[vertex] = static_cast<std::uint32_t>(result.vertices.size());
+                result.vertices.push_back(vertex);
+            }
+            result.tetrahedra.push_back(renumbered[vertex]);
+        }
+    }
+    return result;
+}
+
+} // namespace tandem
