@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/plan.h"
+
+#include <string>
+#include <vector>
+
+namespace tandem {
+
+/// Options of `tandem run` and `tandem check`, as given.
+struct RunOptions {
+    std::string scene;
+    std::vector<std::string> meshes; ///< --mesh: instead of a scene
+    std::vector<std::string> poses;  ///< --pose "tx ty tz qw qx qy qz", in the order of the meshes
+    Request request;
+    std::string frames; ///< "FIRST:LAST" or "N"; empty: all frames of the scene
+    std::size_t repeat = 3;
+    std::size_t profile = 0; ///< replay so often, with nothing else, for a profiler
+    std::string out;
+    std::string dump_pairs, dump_contacts;
+    std::vector<std::string> require; ///< devices or backends whose absence is a failure
+    bool check = true;
+    bool quiet = false;
+};
+
+/// Each returns the exit code: 0 ok, 1 a check failed, 3 a device failed. Bad use throws InputError.
+int run_command(const RunOptions& options);
+int check_command(const RunOptions& options);
+int devices_command(bool json, const std::vector<std::string>& require);
+int scenes_command(bool json);
+int algorithms_command(bool json);
+
+} // namespace tandem

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/traversal.h"
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+namespace tandem {
+
+/// A text file that is written line by line and opened before anything is measured. Throws InputError.
+class DumpFile {
+public:
+    /// An empty path writes nowhere.
+    DumpFile(const std::string& path, std::string_view header);
+
+    explicit operator bool() const { return file_ != nullptr; }
+    void pairs(std::size_t frame, std::span<const Pair> pairs);
+    void contacts(std::size_t frame, std::span<const ContactPoint> contacts);
+
+private:
+    struct Close {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+    void check() const;
+
+    std::string path_;
+    std::unique_ptr<std::FILE, Close> file_;
+};
+
+inline constexpr std::string_view pairs_header = "frame,body_a,tet_a,body_b,tet_b\n";
+inline constexpr std::string_view contacts_header =
+    "frame,body_a,tet_a,body_b,tet_b,px,py,pz,nx,ny,nz,depth\n";
+
+} // namespace tandem

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace tandem {
+
+/// Where and with what a record was made; no host name. Empty or 0 when unknown.
+struct Environment {
+    std::string commit;
+    bool dirty = false;
+    std::string date; ///< UTC, ISO 8601
+    std::string processor;
+    std::uint32_t cores = 0;
+    std::uint64_t memory = 0; ///< bytes
+    std::string compiler;
+};
+
+Environment environment();
+
+} // namespace tandem

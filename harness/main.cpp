@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "harness/commands.h"
+#include "scenes/error.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace {
+
+using tandem::InputError;
+using tandem::RunOptions;
+
+/// --set NAME=V1,V2 pairs, in order.
+std::vector<std::pair<std::string, std::vector<std::string>>>
+parse_sets(const std::vector<std::string>& texts) {
+    std::vector<std::pair<std::string, std::vector<std::string>>> sets;
+    for (const auto& text : texts) {
+        const auto equals = text.find('=');
+        if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+            throw InputError(fmt::format("--set {}: give NAME=VALUE or NAME=VALUE,VALUE", text));
+        sets.emplace_back(text.substr(0, equals), CLI::detail::split(text.substr(equals + 1), ','));
+    }
+    return sets;
+}
+
+void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string>& sets) {
+    app.add_option("scene", options.scene, "NAME, NAME:par=value,... or a scene description (.json)");
+    app.add_option("--mesh", options.meshes, "a scene of mesh files instead")->expected(1)->take_all();
+    app.add_option("--pose", options.poses, "\"tx ty tz qw qx qy qz\", one per --mesh, in order")
+        ->expected(1)
+        ->take_all();
+    app.add_option("--algorithm", options.request.algorithms,
+                   "A,B (see 'tandem algorithms'); all when left out")
+        ->delimiter(',');
+    app.add_option("--preset", options.request.presets, "P,Q; each algorithm's first when left out")
+        ->delimiter(',');
+    app.add_option("--device", options.request.devices, "D,E or all (see 'tandem devices')")->delimiter(',');
+    app.add_option("--frames", options.frames, "FIRST:LAST, both inclusive; all when left out");
+    app.add_option("--set", sets, "NAME=V1,V2: several values make several cells")->expected(1)->take_all();
+    app.add_option("--out", options.out, "append records to this JSON-lines file");
+    app.add_option("--require", options.require, "devices or backends whose absence is a failure")
+        ->delimiter(',');
+    app.add_flag("--quiet", options.quiet, "no progress line");
+}
+
+int dispatch(int argc, char** argv) {
+    CLI::App app{"tandem: ways of walking bounding-volume hierarchies in tandem, measured and checked"};
+    app.require_subcommand(1);
+    RunOptions run;
+    RunOptions check;
+    std::vector<std::string> run_sets;
+    std::vector<std::string> check_sets;
+    std::vector<std::string> require;
+    bool json = false;
+    auto* run_app = app.add_subcommand("run", "measure; print a table, append records");
+    add_run_options(*run_app, run, run_sets);
+    run_app->add_option("--repeat", run.repeat, "samples per cell")->check(CLI::Range(1, 1000));
+    run_app->add_option("--profile", run.profile, "only replay the frames N times, for a profiler");
+    run_app->add_option("--dump-pairs", run.dump_pairs, "write the first cell's candidate pairs as CSV");
+    run_app->add_option("--dump-contacts", run.dump_contacts, "write the first cell's contacts as CSV");
+    run_app->add_flag("!--no-check", run.check, "do not compare with the reference");
+    auto* check_app =
+        app.add_subcommand("check", "device x algorithm agreement matrix; exit 1 on any difference");
+    add_run_options(*check_app, check, check_sets);
+    auto* devices_app = app.add_subcommand("devices", "what there is, or why there is not");
+    devices_app->add_option("--require", require, "devices or backends whose absence is a failure")
+        ->delimiter(',');
+    auto* scenes_app = app.add_subcommand("scenes", "scenes the program makes, with their parameters");
+    auto* algorithms_app = app.add_subcommand("algorithms", "algorithms with their presets and settings");
+    for (auto* listing : {devices_app, scenes_app, algorithms_app})
+        listing->add_flag("--json", json, "as JSON");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp& help) {
+        return app.exit(help);
+    } catch (const CLI::ParseError& error) {
+        throw InputError(fmt::format("{}; see 'tandem --help'", error.what()));
+    }
+    run.request.sets = parse_sets(run_sets);
+    check.request.sets = parse_sets(check_sets);
+    if (*run_app) return tandem::run_command(run);
+    if (*check_app) return tandem::check_command(check);
+    if (*devices_app) return tandem::devices_command(json, require);
+    if (*scenes_app) return tandem::scenes_command(json);
+    return tandem::algorithms_command(json);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return dispatch(argc, argv);
+    } catch (const InputError& error) {
+        fmt::print(stderr, "tandem: {}\n", error.what());
+        return 2;
+    } catch (const tandem::DeviceError& error) {
+        fmt::print(stderr, "tandem: {}\n", error.what());
+        return 3;
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "tandem: out of memory; use fewer bodies or frames\n");
+        return 3;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "tandem: {}\n", error.what());
+        return 3;
+    }
+}

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/traversal.h"
+#include "backends/registry.h"
+
+#include <map>
+
+namespace tandem {
+
+/// algorithm x settings x device; the scene and frames are those of the run.
+struct Cell {
+    const Traversal* algorithm = nullptr;
+    std::string preset;
+    Settings settings; ///< resolved
+    Device* device = nullptr;
+};
+
+/// What the user asked for.
+struct Request {
+    std::vector<std::string> algorithms;                                ///< empty: all
+    std::vector<std::string> presets;                                   ///< empty: each algorithm's first
+    std::vector<std::string> devices;                                   ///< empty: opencl:0; "all"
+    std::vector<std::pair<std::string, std::vector<std::string>>> sets; ///< --set NAME=V1,V2
+};
+
+/// Devices of the request, in its order. Throws InputError that names the reason of absence and what there
+/// is.
+std::vector<Device*> choose_devices(const std::vector<BackendReport>& backends,
+                                    std::span<const std::string> names);
+
+/// All cells: algorithms x presets x every combination of values x devices. A preset that none of the chosen
+/// algorithms has, and a setting that none declares, are InputErrors.
+std::vector<Cell> plan(const Request& request, std::span<Device* const> devices);
+
+/// "chunked resident on opencl:0", with the settings that differ from the preset.
+std::string describe(const Cell& cell);
+
+} // namespace tandem

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include "harness/record.h"
+
+#include "harness/environment.h"
+#include "harness/statistics.h"
+#include "scenes/error.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <unistd.h>
+
+namespace tandem {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
+
+Json known(std::int64_t value) { return value < 0 ? Json(nullptr) : Json(value); }
+
+Json known(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+Json digest_json(const Digest& digest) {
+    return {{"count", digest.count}, {"a", hex(digest.a)}, {"b", hex(digest.b)}};
+}
+
+Json with_summary(const std::vector<std::int64_t>& samples) {
+    Json json{{"samples", samples}};
+    if (samples.empty()) return json;
+    const auto s = summarise(samples);
+    json.update({{"median", s.median}, {"q1", s.q1}, {"q3", s.q3}, {"low", s.low}, {"high", s.high}});
+    return json;
+}
+
+Json total_json(const Measurement& m) {
+    std::vector<std::int64_t> sums;
+    for (const auto& frames : m.total_ns)
+        sums.push_back(std::accumulate(frames.begin(), frames.end(), std::int64_t{0}));
+    auto json = with_summary(sums);
+    json["frames"] = m.total_ns;
+    return json;
+}
+
+template<class Value>
+std::vector<Value> column(const Measurement& m, std::size_t stage, Value StageSample::*member) {
+    std::vector<Value> values;
+    for (const auto& frame : m.stages) values.push_back(frame[stage].*member);
+    return values;
+}
+
+Json stages_json(const Measurement& m) {
+    Json json = Json::object();
+    for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
+        const auto host = column(m, stage, &StageSample::host_ns);
+        if (std::all_of(host.begin(), host.end(), [](auto v) { return v == 0; })) continue;
+        const auto sum = [&](auto member) {
+            const auto values = column(m, stage, member);
+            return std::accumulate(values.begin(), values.end(), std::uint64_t{0});
+        };
+        json[std::string(stage_names[stage])] = {
+            {"device_ns", with_summary(column(m, stage, &StageSample::device_ns))},
+            {"host_ns", with_summary(host)},
+            {"launches", sum(&StageSample::launches)},
+            {"waits", sum(&StageSample::waits)},
+            {"bytes", sum(&StageSample::bytes)}};
+    }
+    return json;
+}
+
+Json scene_json(const Scene& scene) {
+    std::size_t inverted = 0;
+    std::size_t degenerate = 0;
+    for (const auto& body : scene.bodies) {
+        inverted += scene.meshes[body.mesh].inverted;
+        degenerate += scene.meshes[body.mesh].degenerate;
+    }
+    return {{"name", scene.name},
+            {"key", scene.key},
+            {"digest", hex(scene.digest)},
+            {"units", scene.units},
+            {"bodies", scene.bodies.size()},
+            {"vertices", vertex_count(scene)},
+            {"tetrahedra", tetrahedron_count(scene)},
+            {"inverted", inverted},
+            {"degenerate", degenerate}};
+}
+
+Json device_json(const DeviceInfo& info) {
+    return {{"id", info.id},
+            {"name", info.name},
+            {"driver", info.driver},
+            {"compiler", info.compiler},
+            {"hardware", known(info.hardware)},
+            {"kind", info.is_gpu ? "gpu" : "cpu"},
+            {"compute_units", info.compute_units},
+            {"memory_bytes", info.global_bytes}};
+}
+
+Json kernels_json(const std::vector<KernelFacts>& kernels) {
+    Json json = Json::array();
+    for (const auto& kernel : kernels)
+        json.push_back({{"entry", kernel.entry},
+                        {"defines", kernel.defines},
+                        {"compile_ms", kernel.compile_ms},
+                        {"registers", known(kernel.registers)},
+                        {"local_bytes", known(kernel.local_bytes)},
+                        {"spill_bytes", known(kernel.spill_bytes)}});
+    return json;
+}
+
+Json environment_json() {
+    const auto e = environment();
+    return {{"commit", known(e.commit)},       {"dirty", e.dirty},     {"date", e.date},
+            {"processor", known(e.processor)}, {"cores", e.cores},     {"memory_bytes", e.memory},
+            {"compiler", e.compiler},          {"clocks_mhz", nullptr}};
+}
+
+std::string settings_key(const Settings& settings) {
+    std::string key;
+    for (const auto& [name, value] : settings)
+        key += fmt::format("{}{}={}", key.empty() ? "" : ",", name, value);
+    return key;
+}
+
+Json agreement_json(const Measurement& m, const Scene& scene) {
+    const auto& a = m.agreement;
+    if (a.frames == 0) return nullptr;
+    return {{"reference", reference_method(scene) == Method::brute_force ? "brute force" : "sweep"},
+            {"frames", a.frames},
+            {"missing", a.missing},
+            {"extra", a.extra},
+            {"contact_frames_wrong", a.contact_frames_wrong},
+            {"digest", digest_json(a.digest)},
+            {"contact_digest", digest_json(a.contact_digest)}};
+}
+
+std::string status_of(const Measurement& m, const std::string& failure) {
+    if (!failure.empty()) return "failed";
+    return m.agreement.ok() ? "ok" : "wrong";
+}
+
+} // namespace
+
+Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, const Measurement& m,
+                 const std::string& failure) {
+    const auto& settings = m.settings.empty() ? cell.settings : m.settings;
+    Json json;
+    json["schema"] = 1;
+    json["key"] = fmt::format("{}|{}|{}@{}|{}:{}|{}", cell.algorithm->name(), cell.device->info().id,
+                              scene.key, hex(scene.digest), range.first, range.last, settings_key(settings));
+    json["status"] = status_of(m, failure);
+    json["failure"] = known(failure);
+    json["algorithm"] = cell.algorithm->name();
+    json["preset"] = cell.preset;
+    json["settings"] = settings;
+    json["scene"] = scene_json(scene);
+    json["frames"] = {{"first", range.first}, {"last", range.last}};
+    json["devices"] = Json::array({device_json(cell.device->info())});
+    json["total_ns"] = total_json(m);
+    json["breakdown_ns"] = with_summary(m.breakdown_ns);
+    json["stages"] = stages_json(m);
+    json["work"] = {{"body_pairs", m.body_pairs}, {"candidate_pairs", m.candidate_pairs},
+                    {"contacts", m.contacts},     {"bvtt_nodes", m.work.bvtt_nodes},
+                    {"seeds", m.work.seeds},      {"balances", m.work.balances},
+                    {"refills", m.work.refills},  {"spills", m.work.spills},
+                    {"rejected", m.rejected},     {"retries", m.retries}};
+    json["kernels"] = kernels_json(m.kernels);
+    json["preparation"] = {{"host_ns", m.prepare_ns}, {"device_bytes", m.device_bytes}};
+    json["agreement"] = agreement_json(m, scene);
+    json["error"] = {{"degenerate_pairs", m.degenerate}};
+    json["environment"] = environment_json();
+    return json;
+}
+
+RecordFile::RecordFile(const std::string& path) : path_(path) {
+    if (path.empty()) return;
+    file_ = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+    if (file_ < 0)
+        throw InputError(
+            fmt::format("{}: cannot be written ({}); choose another --out", path, std::strerror(errno)));
+}
+
+RecordFile::~RecordFile() {
+    if (file_ >= 0) close(file_);
+}
+
+void RecordFile::append(const Json& record) {
+    if (file_ < 0) return;
+    const auto line = record.dump() + "\n";
+    if (write(file_, line.data(), line.size()) != static_cast<ssize_t>(line.size()) || fsync(file_) != 0)
+        throw InputError(fmt::format("{}: writing failed ({})", path_, std::strerror(errno)));
+}
+
+} // namespace tandem

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/sampler.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace tandem {
+
+/// One measured cell as the JSON object of results/record.schema.json. `failure` is the reason when the cell
+/// did not finish; `measurement` is then what there is.
+nlohmann::ordered_json make_record(const Cell& cell, const Scene& scene, const FrameRange& range,
+                                   const Measurement& measurement, const std::string& failure);
+
+/// Appends records to a JSON-lines file, one write and one fsync a record.
+class RecordFile {
+public:
+    /// Opens for appending; throws InputError when the file cannot be written. An empty path writes nowhere.
+    explicit RecordFile(const std::string& path);
+    ~RecordFile();
+    RecordFile(const RecordFile&) = delete;
+    RecordFile& operator=(const RecordFile&) = delete;
+
+    void append(const nlohmann::ordered_json& record);
+
+private:
+    std::string path_;
+    int file_ = -1;
+};
+
+} // namespace tandem

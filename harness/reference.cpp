@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: MIT
+#include "harness/reference.h"
+
+#include "algorithms/contacts/reference.h"
+#include "harness/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+namespace tandem {
+
+namespace {
+
+/// World vertices of a body in the cell's precision.
+template<class Real>
+std::vector<std::array<Real, 3>> world_vertices(const Scene& scene, const Frame& frame, std::size_t body) {
+    const bool deformable = scene.bodies[body].deformable;
+    const auto& source = deformable ? frame.deformed[body] : scene.meshes[scene.bodies[body].mesh].vertices;
+    std::array<std::array<Real, 4>, 3> rows{};
+    if (!deformable) {
+        const auto& pose = frame.poses[body];
+        const auto& p = pose.rotation;
+        const double norm = std::sqrt((p.w() * p.w() + p.x() * p.x()) + (p.y() * p.y() + p.z() * p.z()));
+        const double w = p.w() / norm, x = p.x() / norm, y = p.y() / norm, z = p.z() / norm;
+        const double matrix[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+                                     {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+                                     {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
+        for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j) rows[i][j] = static_cast<Real>(matrix[i][j]);
+            rows[i][3] = static_cast<Real>(pose.translation[i]);
+        }
+    }
+    std::vector<std::array<Real, 3>> world;
+    for (const auto& v : source) {
+        const std::array<Real, 3> local{static_cast<Real>(v.x()), static_cast<Real>(v.y()),
+                                        static_cast<Real>(v.z())};
+        if (deformable) {
+            world.push_back(local);
+            continue;
+        }
+        std::array<Real, 3> moved{};
+        for (int i = 0; i < 3; ++i)
+            moved[i] = ((rows[i][0] * local[0] + rows[i][1] * local[1]) + rows[i][2] * local[2]) + rows[i][3];
+        world.push_back(moved);
+    }
+    return world;
+}
+
+/// Slabs of a body's tetrahedra, `stride` reals each: lower bounds, then upper bounds.
+template<class Real>
+struct Bounds {
+    std::size_t axes = 0;
+    std::vector<std::array<Real, 3>> vertices;
+    std::vector<Real> slabs;
+    std::vector<Real> whole; ///< of the body
+
+    const Real* tetrahedron(std::size_t i) const { return &slabs[i * 2 * axes]; }
+};
+
+template<class Real>
+bool overlapping(const Real* a, const Real* b, std::size_t axes) {
+    for (std::size_t axis = 0; axis < axes; ++axis)
+        if (a[axis] > b[axes + axis] || b[axis] > a[axes + axis]) return false;
+    return true;
+}
+
+/// Projection of a point with its error bound: terms are added in the order x, y, z; three terms have two
+/// roundings, and safe rounding widens those by 4u(|first sum| + |sum|).
+template<class Real>
+std::pair<Real, Real> project(const std::array<Real, 3>& point, const std::array<int, 3>& direction,
+                              Rounding rounding) {
+    Real sum = 0;
+    Real before = 0;
+    int terms = 0;
+    for (int i = 0; i < 3; ++i) {
+        if (direction[i] == 0) continue;
+        before = sum;
+        if (terms == 0)
+            sum = direction[i] > 0 ? point[i] : -point[i];
+        else
+            sum = direction[i] > 0 ? sum + point[i] : sum - point[i];
+        ++terms;
+    }
+    Real bound = 0;
+    if (terms == 3 && rounding == Rounding::safe)
+        bound = (std::fabs(before) + std::fabs(sum)) * (2 * std::numeric_limits<Real>::epsilon());
+    return {sum - bound, sum + bound};
+}
+
+template<class Real>
+Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& geometry, std::size_t body) {
+    const auto axes = directions(geometry);
+    Bounds<Real> bounds;
+    bounds.axes = axes.size();
+    bounds.vertices = world_vertices<Real>(scene, frame, body);
+    const auto& tetrahedra = scene.meshes[scene.bodies[body].mesh].tetrahedra;
+    bounds.slabs.resize(tetrahedra.size() * 2 * axes.size());
+    bounds.whole.assign(axes.size(), std::numeric_limits<Real>::infinity());
+    bounds.whole.insert(bounds.whole.end(), axes.size(), -std::numeric_limits<Real>::infinity());
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+        for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
+            Real lower = std::numeric_limits<Real>::infinity();
+            Real upper = -lower;
+            for (const auto vertex : tetrahedra[t]) {
+                const auto [low, high] = project(bounds.vertices[vertex], axes[axis], geometry.rounding);
+                lower = std::min(lower, low);
+                upper = std::max(upper, high);
+            }
+            bounds.slabs[t * 2 * axes.size() + axis] = lower;
+            bounds.slabs[t * 2 * axes.size() + axes.size() + axis] = upper;
+            bounds.whole[axis] = std::min(bounds.whole[axis], lower);
+            bounds.whole[axes.size() + axis] = std::max(bounds.whole[axes.size() + axis], upper);
+        }
+    }
+    return bounds;
+}
+
+/// Tetrahedra of one body that overlap the whole of another, sorted by their lower bound on the first axis.
+template<class Real>
+std::vector<std::uint32_t> near(const Bounds<Real>& body, const Bounds<Real>& other) {
+    std::vector<std::uint32_t> result;
+    for (std::uint32_t t = 0; t < body.slabs.size() / (2 * body.axes); ++t)
+        if (overlapping(body.tetrahedron(t), other.whole.data(), body.axes)) result.push_back(t);
+    std::sort(result.begin(), result.end(),
+              [&](auto x, auto y) { return body.tetrahedron(x)[0] < body.tetrahedron(y)[0]; });
+    return result;
+}
+
+/// Calls hit(ta, tb) for each overlapping pair whose interval on the first axis starts in one of the two
+/// lists.
+template<class Real, class Hit>
+void sweep(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
+    const auto list_a = near(a, b);
+    const auto list_b = near(b, a);
+    const auto scan = [&](const Bounds<Real>& x, const Bounds<Real>& y, auto from, auto end, auto tx,
+                          auto each) {
+        for (auto it = from; it != end && y.tetrahedron(*it)[0] <= x.tetrahedron(tx)[x.axes]; ++it)
+            if (overlapping(x.tetrahedron(tx), y.tetrahedron(*it), x.axes)) each(*it);
+    };
+    auto at_a = list_a.begin();
+    auto at_b = list_b.begin();
+    while (at_a != list_a.end() && at_b != list_b.end()) {
+        if (a.tetrahedron(*at_a)[0] <= b.tetrahedron(*at_b)[0]) {
+            scan(a, b, at_b, list_b.end(), *at_a, [&](auto tb) { hit(*at_a, tb); });
+            ++at_a;
+        } else {
+            scan(b, a, at_a, list_a.end(), *at_b, [&](auto ta) { hit(ta, *at_b); });
+            ++at_b;
+        }
+    }
+}
+
+template<class Real, class Hit>
+void test_all(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
+    for (std::uint32_t ta = 0; ta < a.slabs.size() / (2 * a.axes); ++ta)
+        for (std::uint32_t tb = 0; tb < b.slabs.size() / (2 * b.axes); ++tb)
+            if (overlapping(a.tetrahedron(ta), b.tetrahedron(tb), a.axes)) hit(ta, tb);
+}
+
+template<class Real>
+void add_contacts(const Scene& scene, const std::vector<Bounds<Real>>& bounds, std::span<const Pair> pairs,
+                  ReferenceAnswer& answer, std::mutex& mutex) {
+    ContactCounts counts;
+    Digest digest;
+    const auto corners = [&](std::uint32_t body, std::uint32_t tetrahedron) {
+        std::array<std::array<Real, 3>, 4> result;
+        for (int i = 0; i < 4; ++i)
+            result[i] =
+                bounds[body].vertices[scene.meshes[scene.bodies[body].mesh].tetrahedra[tetrahedron][i]];
+        return result;
+    };
+    for (const auto& p : pairs) {
+        const auto flags_a = scene.meshes[scene.bodies[p.body_a].mesh].boundary[p.tet_a];
+        const auto flags_b = scene.meshes[scene.bodies[p.body_b].mesh].boundary[p.tet_b];
+        for (const auto& contact : reference_contacts<Real>(
+                 corners(p.body_a, p.tet_a), corners(p.body_b, p.tet_b), flags_a, flags_b, counts)) {
+            const auto [a, b] = contact_terms<Real>(p.body_a, p.tet_a, p.body_b, p.tet_b, contact);
+            ++digest.count;
+            digest.a += a;
+            digest.b += b;
+        }
+    }
+    const std::scoped_lock lock(mutex);
+    answer.contacts += digest.count;
+    answer.contact_digest.count += digest.count;
+    answer.contact_digest.a += digest.a;
+    answer.contact_digest.b += digest.b;
+    answer.degenerate += counts.degenerate;
+    answer.rejected += counts.rejected;
+}
+
+template<class Real>
+ReferenceAnswer answer_in(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
+                          Method method) {
+    std::vector<Bounds<Real>> bounds(scene.bodies.size());
+    parallel_for(bounds.size(),
+                 [&](std::size_t body) { bounds[body] = bounds_of<Real>(scene, frame, geometry, body); });
+    std::vector<std::vector<Pair>> found(bounds.size());
+    parallel_for(bounds.size(), [&](std::size_t index) {
+        const auto a = static_cast<std::uint32_t>(index);
+        for (std::uint32_t b = a + 1; b < bounds.size(); ++b) {
+            if (scene.bodies[a].fixed && scene.bodies[b].fixed) continue;
+            const auto hit = [&](std::uint32_t ta, std::uint32_t tb) { found[a].push_back({a, ta, b, tb}); };
+            if (method == Method::brute_force)
+                test_all(bounds[a], bounds[b], hit);
+            else if (overlapping(bounds[a].whole.data(), bounds[b].whole.data(), bounds[a].axes))
+                sweep(bounds[a], bounds[b], hit);
+        }
+        std::sort(found[a].begin(), found[a].end());
+    });
+    ReferenceAnswer answer;
+    for (const auto& part : found) answer.pairs.insert(answer.pairs.end(), part.begin(), part.end());
+    answer.digest = digest_of(answer.pairs);
+    if (!contacts) return answer;
+    std::mutex mutex;
+    constexpr std::size_t part = 4096;
+    parallel_for((answer.pairs.size() + part - 1) / part, [&](std::size_t i) {
+        const auto all = std::span<const Pair>(answer.pairs);
+        add_contacts(scene, bounds, all.subspan(i * part, std::min(part, all.size() - i * part)), answer,
+                     mutex);
+    });
+    return answer;
+}
+
+std::uint64_t split_mix(std::uint64_t x) {
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+}
+
+} // namespace
+
+ReferenceAnswer reference(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
+                          Method method) {
+    return geometry.precision == Precision::twice
+               ? answer_in<double>(scene, frame, geometry, contacts, method)
+               : answer_in<float>(scene, frame, geometry, contacts, method);
+}
+
+Method reference_method(const Scene& scene) {
+    constexpr double most_tests = 4e6;
+    const auto tetrahedra = static_cast<double>(tetrahedron_count(scene));
+    return tetrahedra * tetrahedra / 2 <= most_tests ? Method::brute_force : Method::sweep;
+}
+
+Digest digest_of(std::span<const Pair> pairs) {
+    Digest digest;
+    digest.count = pairs.size();
+    for (const auto& p : pairs) {
+        const auto first = std::uint64_t{p.body_a} << 32 | p.tet_a;
+        const auto second = std::uint64_t{p.body_b} << 32 | p.tet_b;
+        const auto term = split_mix(split_mix(first) + second);
+        digest.a += term;
+        digest.b += split_mix(term + 0x9e3779b97f4a7c15u);
+    }
+    return digest;
+}
+
+Difference difference(std::span<const Pair> expected, std::span<const Pair> found) {
+    Difference result;
+    auto e = expected.begin();
+    auto f = found.begin();
+    while (e != expected.end() && f != found.end()) {
+        if (*e == *f) {
+            ++e;
+            ++f;
+        } else if (*e < *f) {
+            ++result.missing;
+            ++e;
+        } else {
+            ++result.extra;
+            ++f;
+        }
+    }
+    result.missing += static_cast<std::uint64_t>(expected.end() - e);
+    result.extra += static_cast<std::uint64_t>(found.end() - f);
+    return result;
+}
+
+} // namespace tandem

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/plan.h"
+#include "harness/reference.h"
+
+#include <functional>
+#include <optional>
+
+namespace tandem {
+
+/// Frames FIRST..LAST of a scene, made before anything is measured.
+struct FrameRange {
+    std::size_t first = 0;
+    std::size_t last = 0;
+    std::vector<Frame> frames;
+};
+
+/// Throws InputError when the scene has no such frames.
+FrameRange make_frames(const Scene& scene, std::size_t first, std::size_t last);
+
+/// Answers of the reference per frame, computed once for each geometry.
+class References {
+public:
+    References(const Scene& scene, const FrameRange& range) : scene_(scene), range_(range) {}
+
+    const ReferenceAnswer& answer(const Geometry& geometry, std::size_t index);
+
+private:
+    const Scene& scene_;
+    const FrameRange& range_;
+    std::vector<std::pair<Geometry, std::vector<std::optional<ReferenceAnswer>>>> known_;
+};
+
+/// Sums of a stage over one frame of the breakdown run.
+struct StageSample {
+    std::int64_t device_ns = 0;
+    std::int64_t host_ns = 0;
+    std::uint64_t launches = 0, waits = 0, bytes = 0;
+};
+
+/// The cell's answers against the reference.
+struct Agreement {
+    std::uint64_t frames = 0; ///< compared
+    std::uint64_t missing = 0, extra = 0;
+    std::uint64_t contact_frames_wrong = 0; ///< frames whose contacts differ in any bit
+    Digest digest;                          ///< sums over the frames
+    Digest contact_digest;
+
+    bool ok() const { return missing == 0 && extra == 0 && contact_frames_wrong == 0; }
+};
+
+/// Everything one cell gave.
+struct Measurement {
+    Settings settings;                               ///< as the device took them
+    std::vector<std::vector<std::int64_t>> total_ns; ///< [repeat][frame], nothing but the span timed
+    std::vector<std::array<StageSample, stage_names.size()>> stages;  ///< [frame] of the breakdown run
+    std::vector<std::int64_t> breakdown_ns;                           ///< [frame] span of the breakdown run
+    std::vector<std::uint64_t> body_pairs, candidate_pairs, contacts; ///< [frame]
+    std::uint64_t degenerate = 0, rejected = 0, retries = 0;
+    Work work;
+    Agreement agreement;
+    std::vector<KernelFacts> kernels;
+    std::int64_t prepare_ns = 0; ///< upload of static data and compilation; in no sample
+    std::size_t device_bytes = 0;
+};
+
+struct SampleOptions {
+    std::size_t repeat = 3;
+    bool check = true;
+    bool count_work = true;
+    std::function<void(std::string_view)> progress = [](std::string_view) {};
+};
+
+/// Prepares the cell; replays the frames once to warm up and check every answer, `repeat` times with only the
+/// span of each frame timed (checking the digest after each), once with timestamps on every command, and once
+/// with counting kernels.
+Measurement measure(const Cell& cell, const Scene& scene, const FrameRange& range, References& references,
+                    const SampleOptions& options);
+
+} // namespace tandem

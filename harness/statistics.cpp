@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "harness/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace tandem {
+
+namespace {
+
+double quantile(const std::vector<double>& sorted, double fraction) {
+    const double at = fraction * static_cast<double>(sorted.size() - 1);
+    const auto below = static_cast<std::size_t>(std::floor(at));
+    const auto above = std::min(below + 1, sorted.size() - 1);
+    return sorted[below] + (at - std::floor(at)) * (sorted[above] - sorted[below]);
+}
+
+std::vector<double> bootstrap_medians(const std::vector<double>& samples) {
+    std::mt19937_64 random(20180606);
+    std::vector<double> medians(1000);
+    std::vector<double> drawn(samples.size());
+    for (auto& median : medians) {
+        for (auto& value : drawn) value = samples[random() % samples.size()];
+        std::sort(drawn.begin(), drawn.end());
+        median = quantile(drawn, 0.5);
+    }
+    std::sort(medians.begin(), medians.end());
+    return medians;
+}
+
+} // namespace
+
+Summary summarise(std::span<const std::int64_t> samples) {
+    std::vector<double> sorted(samples.begin(), samples.end());
+    std::sort(sorted.begin(), sorted.end());
+    Summary summary{quantile(sorted, 0.5), quantile(sorted, 0.25), quantile(sorted, 0.75), sorted.front(),
+                    sorted.back()};
+    if (sorted.front() == sorted.back()) return summary;
+    const auto medians = bootstrap_medians(sorted);
+    summary.low = quantile(medians, 0.025);
+    summary.high = quantile(medians, 0.975);
+    return summary;
+}
+
+} // namespace tandem

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace tandem {
+
+/// Order statistics of samples. Quartiles interpolate linearly between order statistics (Hyndman and Fan
+/// 1996, definition 7); low..high is the 95 % percentile-bootstrap interval of the median (Efron 1979; 1,000
+/// resamples from a fixed seed, so that a record can be recomputed).
+struct Summary {
+    double median = 0, q1 = 0, q3 = 0, low = 0, high = 0;
+};
+
+/// `samples` must not be empty.
+Summary summarise(std::span<const std::int64_t> samples);
+
+} // namespace tandem

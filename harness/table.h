@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/sampler.h"
+
+#include <string>
+
+namespace tandem {
+
+/// A finished cell for the printed table.
+struct Row {
+    const Cell* cell;
+    const Measurement* measurement;
+};
+
+/// The form of the paper's Table 5: milliseconds per stage over all frames, launches, waits, pairs, contacts.
+/// Kernel and transfer columns are device times, broad, preprocess and postprocess host times, total the
+/// median sample.
+std::string stage_table(std::span<const Row> rows);
+
+/// The form of the paper's Table 4: how many times longer each gproximity row takes than each chunked row on
+/// the same device, in total, narrow phase, kernels alone, reads, writes and launches.
+std::string speedup_table(std::span<const Row> rows);
+
+} // namespace tandem
