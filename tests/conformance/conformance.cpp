@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: MIT
+// Every algorithm and preset against brute force, on the host and on OpenCL, over a pairwise covering array
+// of settings and group sizes. Iterates the list of algorithms: a new one is covered by being listed.
+#include "algorithms/broad/broad.h"
+#include "tests/support/cells.h"
+#include "tests/support/scenes.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+/// Axes of settings that `traversal` declares.
+std::vector<Axis> axes_of(const Traversal& traversal) {
+    const auto of = [](const std::string& name, const std::vector<std::string>& values) {
+        Axis axis;
+        for (const auto& value : values) axis.push_back({{name, value}});
+        return axis;
+    };
+    std::vector<Axis> axes{{{{"k", "6"}},
+                            {{"k", "8"}},
+                            {{"k", "8"}, {"axes", "coordinate"}},
+                            {{"k", "14"}},
+                            {{"k", "18"}},
+                            {{"k", "26"}}},
+                           of("precision", {"float", "double"}),
+                           of("rounding", {"safe", "nearest"}),
+                           of("group_size", {"1", "8", "32", "64"}),
+                           of("residency", {"resident", "published"}),
+                           of("work_items", {"64", "2048"}),
+                           of("pair_capacity", {"1", "100000"}),
+                           of("contact_capacity", {"1", "100000"})};
+    if (traversal.name() == "chunked") {
+        axes.push_back(of("leaves", {"2", "4", "32"}));
+        axes.push_back(of("seed_threshold", {"1", "40", "1e7"}));
+        axes.push_back(of("seed_capacity", {"1", "65536"}));
+        axes.push_back(of("root_test", {"yes", "no"}));
+    }
+    if (traversal.name() == "gproximity") {
+        axes.push_back(of("groups", {"8", "13"}));
+        axes.push_back(of("local_queue", {"4", "200"}));
+        axes.push_back(of("initial_items", {"1", "0"}));
+        axes.push_back(of("queue_capacity", {"4", "1000"}));
+        axes.push_back(of("idle_limit", {"1", "1000"}));
+        axes.push_back(of("batch", {"0", "5"}));
+        axes.push_back(of("upload", {"seeds", "queues"}));
+        axes.push_back(of("refill", {"yes", "no"}));
+        axes.push_back(of("full_exit", {"yes", "no"}));
+        axes.push_back(of("balance", {"parallel", "serial"}));
+        axes.push_back(of("balance_group_size", {"1", "32"}));
+    }
+    return axes;
+}
+
+/// Runs both frames of `scene` and compares pairs, digests and contacts with the reference.
+void expect_right(Device& on, const Traversal& traversal, const Scene& scene, const Settings& given,
+                  std::uint64_t& pairs, std::uint64_t& contacts) {
+    SCOPED_TRACE(fmt::format("{} on {}:{}", traversal.name(), on.info().id, text(given)));
+    const auto settings = resolve(traversal.parameters(), {}, given, traversal.name());
+    const std::array devices{&on};
+    const auto session = traversal.prepare(devices, scene, settings);
+    const auto geometry = geometry_of(settings);
+    for (std::size_t i = 0; i < scene.frame_count; ++i) {
+        const auto frame = scene.frame(i);
+        const auto expected = reference(scene, frame, geometry, true, Method::brute_force);
+        const auto result = session->run(frame, all_pairs(scene));
+        EXPECT_EQ(session->download(result), expected.pairs);
+        EXPECT_EQ(session->digest(result), expected.digest);
+        EXPECT_EQ(session->contact_digest(result), expected.contact_digest);
+        EXPECT_EQ(result.degenerate, expected.degenerate);
+        EXPECT_EQ(result.rejected, expected.rejected);
+        pairs += result.count;
+        contacts += result.contacts;
+    }
+    on.finish();
+}
+
+class Conformance : public testing::TestWithParam<std::string> {};
+
+void cover(const std::string& device_id, const std::string& algorithm_name, std::uint64_t seed) {
+    const auto& traversal = algorithm(algorithm_name);
+    auto& on = device(device_id);
+    const auto rows = pairwise(axes_of(traversal));
+    std::uint64_t cells = 0;
+    for (const auto& row : rows) {
+        std::uint64_t pairs = 0;
+        std::uint64_t contacts = 0;
+        expect_right(on, traversal, crowd(seed + cells, 7, 0.8), row, pairs, contacts);
+        EXPECT_GT(pairs, 0u) << text(row);
+        EXPECT_GT(contacts, 0u) << text(row);
+        ++cells;
+        if (testing::Test::HasFailure()) return;
+    }
+    EXPECT_GE(cells, 12u);
+    fmt::print("{} cells of {} on {}\n", cells, algorithm_name, device_id);
+}
+
+TEST_P(Conformance, ChunkedOverCoveringArray) { cover(GetParam(), "chunked", 100); }
+TEST_P(Conformance, GproximityOverCoveringArray) { cover(GetParam(), "gproximity", 200); }
+
+TEST_P(Conformance, EveryPreset) {
+    auto& on = device(GetParam());
+    const auto scene = crowd(5, 9, 0.9);
+    std::uint64_t cells = 0;
+    for (const auto* traversal : algorithms()) {
+        for (const auto& p : traversal->presets()) {
+            auto given = p.values;
+            if (given.contains("groups"))
+                given["queue_bytes"] = "1048576"; // 64 MiB a batch would only take time
+            std::uint64_t pairs = 0;
+            std::uint64_t contacts = 0;
+            expect_right(on, *traversal, scene, given, pairs, contacts);
+            EXPECT_GT(pairs, 100u) << p.name;
+            EXPECT_GT(contacts, 100u) << p.name;
+            ++cells;
+        }
+    }
+    EXPECT_GE(cells, 9u);
+    fmt::print("{} presets on {}\n", cells, GetParam());
+}
+
+TEST_P(Conformance, CountAndDigestModesAgreeWithPairs) {
+    auto& on = device(GetParam());
+    const auto scene = crowd(11, 8, 0.8);
+    const auto frame = scene.frame(1);
+    for (const auto* traversal : algorithms()) {
+        const auto expected = reference(scene, frame, {}, false, Method::brute_force);
+        ASSERT_GT(expected.digest.count, 0u);
+        for (const std::string output : {"count", "digest"}) {
+            const auto settings =
+                resolve(traversal->parameters(), {}, {{"output", output}}, traversal->name());
+            const std::array devices{&on};
+            const auto session = traversal->prepare(devices, scene, settings);
+            const auto result = session->run(frame, all_pairs(scene));
+            EXPECT_EQ(result.count, expected.digest.count);
+            if (output == "digest") {
+                EXPECT_EQ(session->digest(result), expected.digest);
+            }
+        }
+    }
+}
+
+TEST_P(Conformance, EmptyAnswerIsEmpty) {
+    auto& on = device(GetParam());
+    auto scene = crowd(3, 4, 0.5);
+    auto frame = scene.frame(0);
+    for (std::size_t i = 0; i < frame.poses.size(); ++i)
+        frame.poses[i].translation = Eigen::Vector3d(10.0 * static_cast<double>(i + 1), 0, 0);
+    for (const auto* traversal : algorithms()) {
+        const auto settings = resolve(traversal->parameters(), {}, {}, traversal->name());
+        const std::array devices{&on};
+        const auto session = traversal->prepare(devices, scene, settings);
+        EXPECT_EQ(session->run(frame, all_pairs(scene)).count, 0u);
+        EXPECT_EQ(session->run(frame, {}).count, 0u);
+    }
+}
+
+TEST_P(Conformance, CapacityOfExactlyTheAnswerNeedsNoRetry) {
+    auto& on = device(GetParam());
+    const auto scene = crowd(21, 8, 0.8);
+    const auto frame = scene.frame(0);
+    const auto expected = reference(scene, frame, {}, true, Method::brute_force);
+    for (const auto* traversal : algorithms()) {
+        for (const std::uint64_t less : {0u, 1u}) {
+            const auto settings = resolve(traversal->parameters(), {},
+                                          {{"pair_capacity", std::to_string(expected.digest.count - less)},
+                                           {"contact_capacity", std::to_string(expected.contacts - less)}},
+                                          traversal->name());
+            const std::array devices{&on};
+            const auto session = traversal->prepare(devices, scene, settings);
+            const auto result = session->run(frame, all_pairs(scene));
+            EXPECT_EQ(result.retries > 0, less > 0);
+            EXPECT_EQ(session->digest(result), expected.digest);
+            EXPECT_EQ(session->contact_digest(result), expected.contact_digest);
+        }
+    }
+}
+
+TEST_P(Conformance, TenRunsGiveTheSameSet) {
+    auto& on = device(GetParam());
+    const auto scene = crowd(31, 10, 0.9);
+    const auto frame = scene.frame(0);
+    for (const auto* traversal : algorithms()) {
+        const auto settings = resolve(traversal->parameters(), {}, {}, traversal->name());
+        const std::array devices{&on};
+        const auto session = traversal->prepare(devices, scene, settings);
+        const auto first = session->download(session->run(frame, all_pairs(scene)));
+        ASSERT_FALSE(first.empty());
+        for (int i = 1; i < 10; ++i)
+            EXPECT_EQ(session->download(session->run(frame, all_pairs(scene))), first);
+    }
+}
+
+/// Eight queues, tiny local queues and a low idle limit: balancing, refills, spills and growth all have to
+/// happen.
+TEST_P(Conformance, GproximityIsForcedThroughEveryMechanism) {
+    auto& on = device(GetParam());
+    const auto scene = crowd(41, 12, 0.6);
+    const auto frame = scene.frame(0);
+    const auto expected = reference(scene, frame, {}, true, Method::brute_force);
+    const auto& traversal = algorithm("gproximity");
+    for (const std::string balance : {"parallel", "serial"}) {
+        const auto settings = resolve(traversal.parameters(), {},
+                                      {{"groups", "8"},
+                                       {"group_size", "8"},
+                                       {"local_queue", "4"},
+                                       {"initial_items", "2"},
+                                       {"queue_capacity", "16"},
+                                       {"idle_limit", "8"},
+                                       {"balance", balance},
+                                       {"balance_group_size", "8"}},
+                                      traversal.name());
+        const std::array devices{&on};
+        const auto session = traversal.prepare(devices, scene, settings);
+        session->count_work(true);
+        const auto result = session->run(frame, all_pairs(scene));
+        EXPECT_EQ(session->digest(result), expected.digest);
+        EXPECT_EQ(session->contact_digest(result), expected.contact_digest);
+        EXPECT_GT(result.work.balances, 0u);
+        EXPECT_GT(result.work.refills, 0u);
+        EXPECT_GT(result.work.spills, 0u);
+        EXPECT_GT(result.retries, 0u);
+        fmt::print("{} balances, {} refills, {} spills, {} retries\n", result.work.balances,
+                   result.work.refills, result.work.spills, result.retries);
+    }
+}
+
+TEST_P(Conformance, ResidentChunkedWaitsOnce) {
+    auto& on = device(GetParam());
+    const auto scene = crowd(51, 10, 0.9);
+    const auto& traversal = algorithm("chunked");
+    for (const std::string threshold : {"1", "1e7"}) {
+        const auto settings = resolve(traversal.parameters(), {},
+                                      {{"leaves", "4"}, {"seed_threshold", threshold}}, traversal.name());
+        const std::array devices{&on};
+        const auto session = traversal.prepare(devices, scene, settings);
+        for (std::size_t i = 0; i < scene.frame_count; ++i) {
+            on.finish();
+            ASSERT_GT(session->run(scene.frame(i), all_pairs(scene)).count, 0u);
+            const auto trace = on.finish();
+            EXPECT_EQ(std::count_if(trace.events.begin(), trace.events.end(),
+                                    [](const auto& e) { return e.blocked; }),
+                      1);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, Conformance, testing::Values("host", "opencl:0"),
+                         [](const auto& test) { return test.param == "host" ? "Host" : "Opencl"; });
+
+TEST(Reference, SweepEqualsBruteForce) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const auto scene = crowd(seed, 8, 0.7);
+        for (const auto& geometry :
+             {Geometry{}, Geometry{.k = 8}, Geometry{.k = 26, .precision = Precision::twice}}) {
+            const auto brute = reference(scene, scene.frame(0), geometry, true, Method::brute_force);
+            const auto swept = reference(scene, scene.frame(0), geometry, true, Method::sweep);
+            EXPECT_FALSE(brute.pairs.empty());
+            EXPECT_EQ(brute.pairs, swept.pairs);
+            EXPECT_EQ(brute.contact_digest, swept.contact_digest);
+        }
+    }
+}
+
+TEST(Reference, DifferenceCountsBothWays) {
+    const std::vector<Pair> expected{{0, 1, 1, 1}, {0, 2, 1, 1}, {0, 3, 1, 1}};
+    const std::vector<Pair> found{{0, 1, 1, 1}, {0, 1, 1, 1}, {0, 4, 1, 1}};
+    const auto result = difference(expected, found);
+    EXPECT_EQ(result.missing, 2u);
+    EXPECT_EQ(result.extra, 2u);
+    EXPECT_NE(digest_of(expected), digest_of(found));
+}
+
+TEST(Broad, NeverDropsAPairWithCandidates) {
+    std::uint64_t pairs = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        const auto scene = crowd(1000 + seed, 9, 2.0);
+        for (const auto& geometry :
+             {Geometry{.k = 8}, Geometry{.k = 6}, Geometry{.k = 18, .precision = Precision::twice}}) {
+            const auto answer = reference(scene, scene.frame(1), geometry, false, Method::brute_force);
+            for (const auto bound : {Broad::Bound::sphere, Broad::Bound::tight}) {
+                const auto found = Broad(scene, geometry, bound).pairs(scene.frame(1));
+                EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
+                for (const auto& p : answer.pairs)
+                    ASSERT_TRUE(std::binary_search(found.begin(), found.end(), BodyPair{p.body_a, p.body_b}));
+                pairs += answer.pairs.size();
+            }
+        }
+    }
+    EXPECT_GT(pairs, 1000u);
+}
+
+} // namespace
+} // namespace tandem

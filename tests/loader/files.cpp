@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/error.h"
+#include "scenes/mesh.h"
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+/// What the tests of all formats share; each declares what it uses.
+namespace tandem::loader {
+
+std::string folder() {
+    static const auto path = [] {
+        const auto folder =
+            std::filesystem::path(testing::TempDir()) / ("tandem-" + std::to_string(getpid()));
+        std::filesystem::create_directories(folder);
+        return folder.string();
+    }();
+    return path;
+}
+
+std::string write_file(const std::string& name, std::string_view bytes) {
+    const auto path = folder() + "/" + name;
+    std::ofstream(path, std::ios::binary) << bytes;
+    return path;
+}
+
+std::string replaced(std::string text, std::string_view from, std::string_view to) {
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << "the test replaces what is not there: " << from;
+    return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+/// The mesh that every format's example holds: two tetrahedra that share a face, and a vertex of no use.
+void expect_example(const Mesh& mesh, bool single = false) {
+    const std::vector<Eigen::Vector3d> vertices = {{0, 0, 0},   {1, 0, 0},         {0, 1, 0},
+                                                   {0, 0, 1.5}, {-0.25, 2, 0.125}, {0.1, 0.2, -3e-7}};
+    ASSERT_EQ(mesh.vertices.size(), vertices.size());
+    for (std::size_t v = 0; v < vertices.size(); ++v)
+        EXPECT_EQ(mesh.vertices[v], single ? vertices[v].cast<float>().cast<double>().eval() : vertices[v])
+            << v;
+    EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {4, 3, 2, 1}}));
+}
+
+/// Reading these bytes throws one line: path, `place`, ... `reason` ...; what to do.
+void expect_failure(const std::string& name, std::string_view bytes, const std::string& place,
+                    std::string_view reason) {
+    const auto path = write_file(name, bytes);
+    SCOPED_TRACE(name + place + std::string(reason));
+    try {
+        read_mesh(path);
+        ADD_FAILURE() << "no error";
+    } catch (const InputError& error) {
+        const std::string what = error.what();
+        EXPECT_TRUE(what.starts_with(path + place)) << what;
+        EXPECT_NE(what.find(reason), std::string::npos) << what;
+        EXPECT_NE(what.find("; "), std::string::npos) << what;
+        EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+    }
+}
+
+} // namespace tandem::loader

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/mesh.h"
+
+#include <gtest/gtest.h>
+
+namespace tandem::loader {
+
+std::string write_file(const std::string& name, std::string_view bytes);
+std::string replaced(std::string text, std::string_view from, std::string_view to);
+void expect_example(const Mesh& mesh, bool single);
+void expect_failure(const std::string& name, std::string_view bytes, const std::string& place,
+                    std::string_view reason);
+
+namespace {
+
+const std::string version2 = R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+1
+3 1 "body"
+$EndPhysicalNames
+$Nodes
+6
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1.5
+5 -0.25 2 0.125
+6 0.1 0.2 -3e-7
+$EndNodes
+$Elements
+3
+1 2 2 0 1 1 2 3
+2 4 2 1 1 1 2 3 4
+3 4 3 1 1 0 5 4 3 2
+$EndElements
+)";
+
+const std::string version4 = R"($MeshFormat
+4.1 0 8
+$EndMeshFormat
+$Nodes
+3 6 10 60
+2 1 0 2
+30
+10
+0 0 0
+1 0 0
+2 1 1 1
+20
+0 1 0 0.5 0.25
+3 1 0 3
+60
+50
+40
+0 0 1.5
+-0.25 2 0.125
+0.1 0.2 -3e-7
+$EndNodes
+$Elements
+3 3 1 3
+2 1 2 1
+1 10 20 30
+3 1 4 1
+2 30 10 20 60
+3 2 4 1
+3 50 60 20 10
+$EndElements
+$Surface
+1
+1 2 3
+$EndSurface
+)";
+
+TEST(GmshAscii, Version2) { expect_example(read_mesh(write_file("two.msh", version2)), false); }
+
+TEST(GmshAscii, Version4ParametricAndGappyTags) {
+    expect_example(read_mesh(write_file("four.msh", version4)), false);
+}
+
+TEST(GmshAscii, OtherElements) {
+    expect_failure("hex2.msh", replaced(version2, "2 4 2 1", "2 5 2 1"), ":20",
+                   "element type 5 (8-node hexahedron)");
+    expect_failure("second4.msh", replaced(version4, "3 2 4 1", "3 2 11 1"), ":28",
+                   "element type 11 (10-node second-order tetrahedron)");
+    expect_failure("odd.msh", replaced(version2, "2 4 2 1", "2 77 2 1"), ":20", "element type 77 is unknown");
+}
+
+TEST(GmshAscii, OtherVersions) {
+    expect_failure("one.msh", "$NOD\n1\n1 0 0 0\n$ENDNOD\n", ":1", "MSH version 1 is not read");
+    expect_failure("forty.msh", replaced(version4, "4.1", "4.0"), ":2", "MSH version '4.0' is not read");
+    expect_failure("parametric.msh", replaced(version2, "$Nodes", "$ParametricNodes"), ":8",
+                   "$ParametricNodes");
+}
+
+TEST(GmshAscii, BadNumbers) {
+    expect_failure("nan2.msh", replaced(version2, "0 0 1.5", "0 0 nan"), ":13",
+                   "coordinate z 'nan' is not finite");
+    expect_failure("inf4.msh", replaced(version4, "0 0 1.5", "0 inf 1.5"), ":18", "'inf' is not finite");
+    expect_failure("index2.msh", replaced(version2, "5 4 3 2", "5 4 9 2"), ":21", "node 9 is not in $Nodes");
+    expect_failure("negative2.msh", replaced(version2, "5 4 3 2", "5 4 -3 2"), ":21",
+                   "node -3 is not in $Nodes");
+    expect_failure("index4.msh", replaced(version4, "50 60 20 10", "50 60 20 11"), ":29",
+                   "node 11 is not in $Nodes");
+    expect_failure("twice4.msh", replaced(version4, "\n40\n", "\n50\n"), ":20", "node 50 occurs twice");
+    expect_failure("size.msh", replaced(version2, "2.2 0 8", "2.2 0 4"), ":2", "the data size is not 8");
+}
+
+TEST(GmshAscii, BadCounts) {
+    expect_failure("nodes2.msh", replaced(version2, "\n6\n1 0", "\n123456\n1 0"), ":9",
+                   "123456 nodes announced");
+    expect_failure("cells2.msh", replaced(version2, "\n3\n1 2 2", "\n12345\n1 2 2"), ":18",
+                   "12345 elements announced");
+    expect_failure("nodes4.msh", replaced(version4, "3 6 10 60", "3 99999 10 60"), ":5",
+                   "99999 nodes announced");
+    expect_failure("block4.msh", replaced(version4, "2 1 0 2", "2 1 0 99999"), ":6", "99999 nodes announced");
+    expect_failure("cells4.msh", replaced(version4, "3 2 4 1", "3 2 4 88888"), ":28",
+                   "88888 elements announced");
+    expect_failure("sum4.msh", replaced(version4, "3 3 1 3", "3 2 1 3"), ":29", "the blocks hold 3 elements");
+}
+
+TEST(GmshAscii, BadStructure) {
+    expect_failure("cut2.msh", version2.substr(0, version2.find("3 4 3 1")) + "3 4 3", ":21",
+                   "the file ends before");
+    expect_failure("open2.msh", replaced(version2, "$EndNodes", ""), ":17",
+                   "expected $EndNodes, found '$Elements'");
+    expect_failure("open4.msh", replaced(version4, "$EndSurface", ""), ":31", "section $Surface has no end");
+    expect_failure("early.msh", "$Nodes\n0\n$EndNodes\n", ":1", "$Nodes comes before $MeshFormat");
+    expect_failure("stray.msh", replaced(version2, "$Elements", "Elements"), ":17",
+                   "expected a section such as");
+    expect_failure("other.msh", "solid\n", ":1", "expected a section such as $Nodes, found 'solid'");
+    expect_failure("flat.msh", version2.substr(0, version2.find("$Elements")), ": ", "no tetrahedra");
+}
+
+} // namespace
+
+} // namespace tandem::loader

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/mesh.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <limits>
+#include <zlib.h>
+
+namespace tandem::loader {
+
+std::string write_file(const std::string& name, std::string_view bytes);
+std::string replaced(std::string text, std::string_view from, std::string_view to);
+void expect_example(const Mesh& mesh, bool single);
+void expect_failure(const std::string& name, std::string_view bytes, const std::string& place,
+                    std::string_view reason);
+
+namespace {
+
+std::string base64(std::string_view bytes) {
+    const std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t group = 0;
+        for (std::size_t b = 0; b < 3; ++b)
+            group = group << 8 | (i + b < bytes.size() ? static_cast<unsigned char>(bytes[i + b]) : 0u);
+        for (std::size_t d = 0; d < 4; ++d)
+            text += i + d > bytes.size() ? '=' : digits[group >> (18 - 6 * d) & 63];
+    }
+    return text;
+}
+
+/// How a file stores its arrays.
+struct Encoding {
+    enum { ascii, inlined, appended, raw } format = inlined;
+    bool compressed = false;
+    bool wide = false;     ///< headers of 64 bits, Float64 and Int64; else 32, Float32 and Int32
+    bool big = false;      ///< big endian
+    std::size_t part = 24; ///< bytes of a compressed part
+};
+
+template<class T>
+std::string number(T value, const Encoding& how) {
+    std::string raw(reinterpret_cast<const char*>(&value), sizeof value);
+    if (how.big) std::reverse(raw.begin(), raw.end());
+    return raw;
+}
+
+std::string header(std::uint64_t value, const Encoding& how) {
+    return how.wide ? number(value, how) : number(static_cast<std::uint32_t>(value), how);
+}
+
+std::string block(const std::string& data, const Encoding& how) {
+    const bool text = how.format != Encoding::raw;
+    if (!how.compressed) {
+        const auto whole = header(data.size(), how) + data;
+        return text ? base64(whole) : whole;
+    }
+    std::string sizes, parts;
+    std::size_t count = 0;
+    for (std::size_t at = 0; at < data.size(); at += how.part, ++count) {
+        const auto part = data.substr(at, how.part);
+        std::string packed(compressBound(part.size()), '\0');
+        uLongf size = packed.size();
+        compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(part.data()),
+                 part.size());
+        parts += packed.substr(0, size);
+        sizes += header(size, how);
+    }
+    const auto head =
+        header(count, how) + header(how.part, how) + header(data.size() % how.part, how) + sizes;
+    return text ? base64(head) + base64(parts) : head + parts; // the header is encoded on its own
+}
+
+/// The example with a triangle before its tetrahedra; values may be changed by the caller.
+struct Example {
+    std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1.5, -0.25, 2, 0.125, 0.1, 0.2, -3e-7};
+    std::vector<std::int64_t> connectivity = {0, 1, 2, 0, 1, 2, 3, 4, 3, 2, 1};
+    std::vector<std::int64_t> offsets = {3, 7, 11};
+    std::vector<std::int64_t> types = {5, 10, 10};
+    std::string appended = {};
+
+    template<class Values>
+    std::string array(const std::string& attributes, const std::string& type, const Values& values,
+                      const Encoding& how) {
+        const auto open = "<DataArray type=\"" + type + "\" " + attributes + " format=\"";
+        std::string data, text;
+        for (const auto value : values) {
+            text += std::to_string(value) + " ";
+            if (type == "UInt8") data += number(static_cast<std::uint8_t>(value), how);
+            if (type == "Int32") data += number(static_cast<std::int32_t>(value), how);
+            if (type == "Int64") data += number(static_cast<std::int64_t>(value), how);
+            if (type == "Float32") data += number(static_cast<float>(value), how);
+            if (type == "Float64") data += number(static_cast<double>(value), how);
+        }
+        if (how.format == Encoding::ascii) return open + "ascii\">\n" + text + "\n</DataArray>\n";
+        if (how.format == Encoding::inlined)
+            return open + "binary\">\n" + block(data, how) + "\n</DataArray>\n";
+        const auto offset = std::to_string(appended.size());
+        appended += block(data, how);
+        return open + "appended\" offset=\"" + offset + "\"/>\n";
+    }
+
+    std::string file(const Encoding& how) {
+        const std::string real = how.wide ? "Float64" : "Float32", whole = how.wide ? "Int64" : "Int32";
+        std::string text =
+            "<?xml version=\"1.0\"?>\n<!-- <Piece> -->\n<VTKFile type=\"UnstructuredGrid\" byte_order=\"";
+        text += how.big ? "BigEndian" : "LittleEndian";
+        text += how.wide ? "\" header_type=\"UInt64\"" : "\"";
+        text += how.compressed ? " compressor=\"vtkZLibDataCompressor\">\n" : ">\n";
+        text += "<UnstructuredGrid>\n<Piece NumberOfPoints=\"6\" NumberOfCells=\"3\">\n<PointData>\n";
+        text += "<DataArray type=\"Float32\" Name=\"s\" "
+                "format=\"ascii\">nan</DataArray>\n</PointData>\n<Points>\n";
+        text += array("Name=\"Points\" NumberOfComponents=\"3\"", real, points, how) + "</Points>\n<Cells>\n";
+        text += array("Name=\"connectivity\"", whole, connectivity, how);
+        text += array("Name=\"offsets\"", whole, offsets, how);
+        text += array("Name=\"types\"", "UInt8", types, how) + "</Cells>\n</Piece>\n</UnstructuredGrid>\n";
+        if (how.format == Encoding::appended)
+            text += "<AppendedData encoding=\"base64\">\n_" + appended + "\n";
+        if (how.format == Encoding::raw) text += "<AppendedData encoding=\"raw\">\n_" + appended + "\n";
+        if (!appended.empty()) text += "</AppendedData>\n";
+        return text + "</VTKFile>\n";
+    }
+};
+
+/// Text with all digits: std::to_string keeps six.
+std::string ascii() {
+    auto text = Example().file({.format = Encoding::ascii, .wide = true});
+    return replaced(text, "-0.000000", "-3e-7");
+}
+
+TEST(Vtu, Ascii) { expect_example(read_mesh(write_file("ascii.vtu", ascii())), false); }
+
+TEST(Vtu, EveryEncoding) {
+    for (const auto format : {Encoding::inlined, Encoding::appended, Encoding::raw})
+        for (const int bits : {0, 1, 2, 3, 4, 5, 6, 7}) {
+            SCOPED_TRACE(std::to_string(format) + " " + std::to_string(bits));
+            const Encoding how{format, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0};
+            expect_example(read_mesh(write_file("two.vtu", Example().file(how))), !how.wide);
+        }
+}
+
+TEST(Vtu, PiecesAppend) {
+    const auto one = ascii();
+    const auto start = one.find("<Piece Number"), end = one.find("</UnstructuredGrid>");
+    const auto mesh = read_mesh(write_file("pieces.vtu", one.substr(0, end) + one.substr(start)));
+    EXPECT_EQ(mesh.vertices.size(), 12u);
+    EXPECT_EQ(mesh.tetrahedra.size(), 4u);
+    EXPECT_EQ(mesh.tetrahedra.back(), (Tetrahedron{10, 9, 8, 7}));
+}
+
+TEST(Vtu, OtherCells) {
+    Example second;
+    second.types[2] = 24;
+    const std::string reason = "cells of type 24 (quadratic tetrahedron)";
+    expect_failure("text.vtu", second.file({.format = Encoding::ascii}), ":22", reason);
+    expect_failure("binary.vtu", second.file({}), ":21: DataArray 'types': byte 2", reason);
+}
+
+TEST(Vtu, BadNumbers) {
+    Example index;
+    index.connectivity[10] = 6;
+    expect_failure("index.vtu", index.file({.format = Encoding::ascii}), ":16", "vertex 6 is out of range");
+    expect_failure("indexb.vtu", index.file({}), ":15: DataArray 'connectivity': byte 40",
+                   "vertex 6 is out of range");
+    Example nan;
+    nan.points[4] = std::numeric_limits<double>::quiet_NaN();
+    expect_failure("nan.vtu", nan.file({.format = Encoding::ascii}), ":11",
+                   "coordinate y 'nan' is not finite");
+    expect_failure("nanb.vtu", nan.file({.wide = true}), ":10: DataArray 'Points': byte 32", "is not finite");
+    expect_failure("nanr.vtu", nan.file({Encoding::raw, true}), ":10: DataArray 'Points': byte 16",
+                   "is not finite");
+    Example order;
+    order.offsets = {7, 3, 11};
+    expect_failure("order.vtu", order.file({}), ":18: DataArray 'offsets': byte 4", "offset 3 is below");
+}
+
+TEST(Vtu, BadCounts) {
+    const auto text = ascii();
+    expect_failure("points.vtu", replaced(text, "Points=\"6\"", "Points=\"66666\""), ":10",
+                   "66666 points announced");
+    expect_failure("less.vtu", replaced(text, "Points=\"6\"", "Points=\"5\""), ":11",
+                   "more numbers than announced");
+    expect_failure("cells.vtu", replaced(text, "Cells=\"3\"", "Cells=\"99999\""), ":",
+                   "99999 offsets announced");
+    expect_failure("count.vtu", replaced(text, "Points=\"6\"", "Points=\"six\""), ":5", "found 'six'");
+    const auto binary = Example().file({});
+    expect_failure("pointsb.vtu", replaced(binary, "Points=\"6\"", "Points=\"7777777\""),
+                   ":10: DataArray 'Points'", "7777777 points announced");
+}
+
+TEST(Vtu, BadData) {
+    const auto raw = Example().file({.format = Encoding::raw, .wide = true});
+    const auto start = raw.find("\n_") + 2;
+    auto large = raw;
+    large[start + 6] = 1;
+    expect_failure("large.vtu", large, ":10", "the data end before");
+    expect_failure("offset.vtu", replaced(raw, "offset=\"0\"", "offset=\"99999\""), ":10",
+                   "offset '99999' is not inside");
+    auto packed = Example().file({.format = Encoding::raw, .compressed = true});
+    const auto head = packed.find("\n_") + 2;
+    auto parts = packed;
+    parts[head + 2] = 1;
+    expect_failure("parts.vtu", parts, ":10", "the data end before");
+    auto whole = packed;
+    whole[head + 7] = 1;
+    expect_failure("whole.vtu", whole, ":10", "cannot hold");
+    packed[head + 12 + 12 + 5] ^= 0x55;
+    expect_failure("broken.vtu", packed, ":10", "part 0 does not decompress");
+    auto letters = Example().file({});
+    letters[letters.find("\"binary\">\n") + 14] = '!';
+    expect_failure("letters.vtu", letters, ":10", "not base64");
+}
+
+TEST(Vtu, BadStructure) {
+    const auto text = ascii();
+    expect_failure("cut.vtu", text.substr(0, text.find("</UnstructuredGrid>")), ":27",
+                   "the file ends before </VTKFile>");
+    expect_failure("open.vtu", text.substr(0, text.find("</VTKFile") + 5), ":", "a tag without '>'");
+    expect_failure("kind.vtu", replaced(text, "\"UnstructuredGrid\"", "\"PolyData\""), ":3",
+                   "'PolyData' is not read");
+    expect_failure("lz4.vtu", replaced(text, "byte_order", "compressor=\"vtkLZ4DataCompressor\" byte_order"),
+                   ":3", "compressor 'vtkLZ4DataCompressor' is not read");
+    expect_failure("type.vtu", replaced(text, "\"Float64\"", "\"String\""), ":10", "number type 'String'");
+    expect_failure("header.vtu", replaced(text, "UInt64", "UInt16"), ":3", "unknown header_type 'UInt16'");
+    expect_failure("lacks.vtu", replaced(text, "\"offsets\"", "\"ends\""), ":5", "Piece lacks");
+    expect_failure("other.vtu", "<?xml version=\"1.0\"?>\n<html></html>", ":1", "expected the tag VTKFile");
+}
+
+/// A file cut anywhere before its data end is an error, never a crash.
+TEST(Vtu, Truncated) {
+    for (const auto format : {Encoding::ascii, Encoding::inlined, Encoding::appended, Encoding::raw}) {
+        const auto whole = Example().file({format, true, true});
+        const auto end = whole.rfind(format == Encoding::raw ? "</AppendedData" : "</VTKFile");
+        for (std::size_t size = 0; size + 1 < end; ++size)
+            expect_failure("cut.vtu", whole.substr(0, size), ":", "; ");
+    }
+}
+
+} // namespace
+
+} // namespace tandem::loader

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/traversal.h"
+#include "backends/registry.h"
+#include "harness/reference.h"
+#include "scenes/random.h"
+
+#include <algorithm>
+#include <set>
+
+namespace tandem::testing_support {
+
+inline Device& device(std::string_view id) {
+    static const auto backends = discover();
+    for (const auto& backend : backends)
+        for (const auto& candidate : backend.devices)
+            if (candidate->info().id == id) return *candidate;
+    throw DeviceError("no device " + std::string(id));
+}
+
+/// Values of one setting (or of several at once, written "k=8,axes=coordinate").
+using Axis = std::vector<Settings>;
+
+/// Rows such that every pair of values of any two axes stands together in at least one of them; greedy, fixed
+/// seed.
+inline std::vector<Settings> pairwise(const std::vector<Axis>& axes) {
+    using Choice = std::pair<std::size_t, std::size_t>; // axis, value
+    std::set<std::pair<Choice, Choice>> open;
+    for (std::size_t i = 0; i < axes.size(); ++i)
+        for (std::size_t j = i + 1; j < axes.size(); ++j)
+            for (std::size_t a = 0; a < axes[i].size(); ++a)
+                for (std::size_t b = 0; b < axes[j].size(); ++b) open.insert({{i, a}, {j, b}});
+    Random random(7);
+    std::vector<Settings> rows;
+    while (!open.empty()) {
+        std::vector<std::size_t> best;
+        std::size_t most = 0;
+        const auto covers = [&](const std::vector<std::size_t>& row) {
+            return static_cast<std::size_t>(std::count_if(open.begin(), open.end(), [&](const auto& pair) {
+                return row[pair.first.first] == pair.first.second
+                       && row[pair.second.first] == pair.second.second;
+            }));
+        };
+        for (int attempt = 0; attempt < 100; ++attempt) {
+            std::vector<std::size_t> row;
+            for (const auto& axis : axes) row.push_back(random.next() % axis.size());
+            row[open.begin()->first.first] = open.begin()->first.second;
+            row[open.begin()->second.first] = open.begin()->second.second;
+            if (const auto count = covers(row); count > most) {
+                most = count;
+                best = row;
+            }
+        }
+        Settings settings;
+        for (std::size_t i = 0; i < axes.size(); ++i)
+            settings.insert(axes[i][best[i]].begin(), axes[i][best[i]].end());
+        rows.push_back(settings);
+        std::erase_if(open, [&](const auto& pair) {
+            return best[pair.first.first] == pair.first.second
+                   && best[pair.second.first] == pair.second.second;
+        });
+    }
+    return rows;
+}
+
+/// All body pairs but fixed-fixed ones: the traversal must not need the broad phase.
+inline std::vector<BodyPair> all_pairs(const Scene& scene) {
+    std::vector<BodyPair> pairs;
+    for (std::uint32_t a = 0; a < scene.bodies.size(); ++a)
+        for (std::uint32_t b = a + 1; b < scene.bodies.size(); ++b)
+            if (!scene.bodies[a].fixed || !scene.bodies[b].fixed) pairs.push_back({a, b});
+    return pairs;
+}
+
+inline std::string text(const Settings& settings) {
+    std::string result;
+    for (const auto& [name, value] : settings) result += " " + name + "=" + value;
+    return result;
+}
+
+} // namespace tandem::testing_support

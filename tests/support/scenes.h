@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "scenes/digest.h"
+#include "scenes/random.h"
+#include "scenes/scene.h"
+
+namespace tandem::testing_support {
+
+/// A box of cells x cells x cells cubes of six tetrahedra each, its inner vertices shaken.
+inline Mesh shaken_box(std::uint32_t cells, Random& random) {
+    Mesh mesh;
+    mesh.name = "box";
+    const auto side = cells + 1;
+    for (std::uint32_t i = 0; i < side * side * side; ++i) {
+        const Eigen::Vector3d lattice(i % side, i / side % side, i / side / side);
+        const Eigen::Vector3d shake(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2),
+                                    random.uniform(-0.2, 0.2));
+        mesh.vertices.push_back((lattice + shake) / cells - Eigen::Vector3d::Constant(0.5));
+    }
+    constexpr std::uint32_t orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    const std::uint32_t step[3] = {1, side, side * side};
+    for (std::uint32_t cell = 0; cell < cells * cells * cells; ++cell) {
+        const auto corner = cell % cells + side * (cell / cells % cells + side * (cell / cells / cells));
+        for (const auto& order : orders) {
+            const auto second = corner + step[order[0]];
+            const auto third = second + step[order[1]];
+            mesh.tetrahedra.push_back({corner, second, third, third + step[order[2]]});
+        }
+    }
+    complete_mesh(mesh, "shaken box");
+    return mesh;
+}
+
+/// Bodies of three meshes (1 tetrahedron, 48, 162) crowded together; body 0 fixed, body 1 deformable; two
+/// frames.
+inline Scene crowd(std::uint64_t seed, std::uint32_t bodies, double spread) {
+    Random random(seed);
+    Scene scene;
+    scene.name = scene.key = "crowd";
+    Mesh one;
+    one.vertices = {{0, 0, 0}, {0.7, 0, 0}, {0, 0.7, 0}, {0, 0, 0.7}};
+    one.tetrahedra = {{0, 1, 2, 3}};
+    complete_mesh(one, "one");
+    scene.meshes = {shaken_box(3, random), shaken_box(2, random), one};
+    std::vector<std::array<Pose, 2>> poses(bodies);
+    for (std::uint32_t i = 0; i < bodies; ++i) {
+        scene.bodies.push_back({.mesh = i < 2 ? i : i % 3, .fixed = i == 0, .deformable = i == 1});
+        for (auto& pose : poses[i])
+            pose = {random.rotation(),
+                    Eigen::Vector3d(random.uniform(), random.uniform(), random.uniform()) * spread};
+        if (i == 0) poses[i][1] = poses[i][0];
+        if (i == 1) poses[i] = {};
+    }
+    scene.frame_count = 2;
+    scene.frame = [poses, rest = scene.meshes[1].vertices](std::size_t frame) {
+        Frame result;
+        result.deformed.resize(poses.size());
+        for (const auto& pose : poses) result.poses.push_back(pose[frame]);
+        for (const auto& v : rest)
+            result.deformed[1].push_back(Eigen::Vector3d(v.x() + 0.3, v.y() * (1 + 0.2 * v.x()),
+                                                         v.z() + 0.1 * static_cast<double>(frame)));
+        return result;
+    };
+    scene.digest = digest_of(scene);
+    return scene;
+}
+
+} // namespace tandem::testing_support

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// The Device contract, on every device there is; PoCL has to be there.
+#include "algorithms/sources.h"
+#include "backends/registry.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <numeric>
+
+namespace tandem {
+namespace {
+
+std::vector<Device*> devices() {
+    static const auto backends = discover();
+    std::vector<Device*> all;
+    for (const auto& backend : backends)
+        for (const auto& device : backend.devices) all.push_back(device.get());
+    return all;
+}
+
+std::string message_of(const std::function<void()>& call) {
+    try {
+        call();
+    } catch (const DeviceError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(Registry, HasHostAndOpencl) {
+    const auto backends = discover();
+    ASSERT_EQ(backends.size(), 2u);
+    EXPECT_EQ(backends[0].devices.size(), 1u);
+    EXPECT_GE(backends[1].devices.size(), 1u) << backends[1].reason;
+}
+
+TEST(Device, CopiesUploadsAtOnceAndReadsBack) {
+    for (auto* device : devices()) {
+        std::vector<std::uint32_t> values(1000);
+        std::iota(values.begin(), values.end(), 7u);
+        const auto buffer = device->allocate(4000, "numbers");
+        device->upload(buffer, bytes_of(values));
+        const auto kept = values;
+        std::fill(values.begin(), values.end(), 0u);
+        std::vector<std::uint32_t> back(1000);
+        device->download(buffer, std::as_writable_bytes(std::span(back)));
+        EXPECT_EQ(back, kept) << device->info().id;
+        device->clear(buffer, 8, 4);
+        device->download(buffer, std::as_writable_bytes(std::span(back)));
+        EXPECT_EQ(back[0], kept[0]);
+        EXPECT_EQ(back[1], 0u);
+        EXPECT_EQ(back[2], 0u);
+        EXPECT_EQ(back[3], kept[3]);
+        device->finish();
+    }
+}
+
+TEST(Device, TracesEveryCommandOnceUnderItsStage) {
+    for (auto* device : devices()) {
+        device->finish();
+        device->set_clocks(Clocks::on);
+        const auto buffer = device->allocate(64, "words");
+        const std::vector<std::uint32_t> words(16, 1);
+        {
+            const StageScope scope(*device, Stage::seed);
+            device->upload(buffer, bytes_of(words));
+        }
+        { const HostWork work(*device, Stage::broad, "thinking"); }
+        std::vector<std::uint32_t> back(16);
+        {
+            const StageScope scope(*device, Stage::read);
+            device->download(buffer, std::as_writable_bytes(std::span(back)));
+        }
+        const auto trace = device->finish();
+        device->set_clocks(Clocks::off);
+        ASSERT_EQ(trace.events.size(), 3u) << device->info().id;
+        EXPECT_EQ(trace.events[0].stage, Stage::seed);
+        EXPECT_EQ(trace.events[0].bytes, 64u);
+        EXPECT_FALSE(trace.events[0].blocked);
+        EXPECT_GE(trace.events[0].device_ns, 0);
+        EXPECT_EQ(trace.events[1].command, Command::host_work);
+        EXPECT_EQ(trace.events[1].stage, Stage::broad);
+        EXPECT_EQ(trace.events[2].command, Command::download);
+        EXPECT_TRUE(trace.events[2].blocked);
+        EXPECT_TRUE(device->finish().events.empty());
+    }
+}
+
+TEST(Device, SaysWhatDoesNotFit) {
+    for (auto* device : devices()) {
+        const auto too_much = device->info().max_allocation + 1;
+        EXPECT_THAT(message_of([&] { device->allocate(too_much, "everything"); }),
+                    testing::AllOf(testing::HasSubstr(std::to_string(too_much)),
+                                   testing::HasSubstr("everything"),
+                                   testing::HasSubstr(std::to_string(device->info().max_allocation))));
+        const auto small = device->allocate(16, "small");
+        const std::vector<std::uint32_t> words(5, 0);
+        EXPECT_THAT(message_of([&] { device->upload(small, bytes_of(words)); }),
+                    testing::HasSubstr("exceeds buffer 'small'"));
+    }
+}
+
+TEST(Device, CountsWhatItHolds) {
+    for (auto* device : devices()) {
+        const auto before = device->bytes_allocated();
+        {
+            const auto buffer = device->allocate(4096, "page");
+            EXPECT_EQ(device->bytes_allocated(), before + 4096);
+        }
+        EXPECT_EQ(device->bytes_allocated(), before);
+    }
+}
+
+TEST(Device, NamesTheKernelThatDoesNotCompile) {
+    for (auto* device : devices()) {
+        const auto& source = kernel_source("algorithms/kdop/refit.cl");
+        const Defines defines{
+            {"K", "10"}, {"AXES", "0"}, {"PRECISION", "32"}, {"ROUNDING", "1"}, {"GROUP_SIZE", "1"}};
+        const auto message = message_of([&] { device->compile(source, "refit_strips", defines); });
+        EXPECT_THAT(message, testing::HasSubstr("refit.cl")) << device->info().id;
+        EXPECT_EQ(message.find('\n'), std::string::npos);
+    }
+}
+
+} // namespace
+} // namespace tandem

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/traversal.h"
+#include "scenes/error.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using testing::HasSubstr;
+
+template<class Call>
+std::string message_of(Call call) {
+    try {
+        call();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+Settings with(const Settings& given) {
+    const auto& chunked = algorithm("chunked");
+    return resolve(chunked.parameters(), {}, given, chunked.name());
+}
+
+TEST(Settings, DefaultsAreThoseOfTheDesign) {
+    const auto settings = with({});
+    EXPECT_EQ(settings.at("k"), "18");
+    EXPECT_EQ(settings.at("rounding"), "safe");
+    EXPECT_EQ(settings.at("precision"), "float");
+    EXPECT_EQ(settings.at("seed_threshold"), "10000000");
+    EXPECT_EQ(settings.at("residency"), "resident");
+}
+
+TEST(Settings, IntegersMayBeWrittenWithAnExponent) {
+    EXPECT_EQ(with({{"seed_threshold", "1e3"}}).at("seed_threshold"), "1000");
+    EXPECT_THAT(message_of([] { with({{"seed_threshold", "1.5"}}); }), HasSubstr("impossible"));
+}
+
+TEST(Settings, UnknownNamesOfferTheNearest) {
+    EXPECT_THAT(message_of([] { with({{"rouding", "safe"}}); }), HasSubstr("the nearest is 'rounding'"));
+    EXPECT_THAT(message_of([] { with({{"k", "10"}}); }), HasSubstr("choose one of 6, 8, 14, 18, 26"));
+    EXPECT_THAT(message_of([] { with({{"group_size", "0"}}); }), HasSubstr("from 1 to 1024"));
+    EXPECT_THAT(message_of([] { algorithm("chunky"); }), HasSubstr("the nearest is 'chunked'"));
+    EXPECT_THAT(message_of([] { preset(algorithm("gproximity"), "fare"); }),
+                HasSubstr("the nearest is 'fair'"));
+    EXPECT_THAT(message_of([] {
+                    geometry_of(with({{"k", "18"}, {"axes", "coordinate"}}));
+                }),
+                HasSubstr("goes with k=8"));
+}
+
+TEST(Settings, EveryPresetResolves) {
+    std::size_t presets = 0;
+    for (const auto* traversal : algorithms()) {
+        for (const auto& p : traversal->presets()) {
+            const auto settings = resolve(traversal->parameters(), p.values, {}, traversal->name());
+            EXPECT_EQ(settings.size(), traversal->parameters().size());
+            ++presets;
+        }
+    }
+    EXPECT_GE(presets, 9u);
+}
+
+TEST(Geometry, DirectionsAreHalfOfK) {
+    for (const int k : {6, 8, 14, 18, 26})
+        EXPECT_EQ(directions({.k = k}).size(), static_cast<std::size_t>(k) / 2);
+    EXPECT_EQ(directions({.k = 8})[1], (std::array<int, 3>{1, 1, -1}));
+    EXPECT_EQ(directions({.k = 8, .coordinate_axes = true})[1], (std::array<int, 3>{0, 1, 0}));
+}
+
+} // namespace
+} // namespace tandem
