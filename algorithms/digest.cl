@@ -3,9 +3,8 @@
 #include "backends/portable.h"
 #include "algorithms/pairs.clh"
 
-KERNEL
-void digest_pairs(GLOBAL const uint* found, uint capacity, GLOBAL const uint* bodies, GLOBAL const uint* ids,
-                  GLOBAL uint* status) {
+KERNEL void digest_pairs(GLOBAL const uint* found, uint capacity, GLOBAL const uint* bodies,
+                         GLOBAL const uint* ids, GLOBAL uint* status) {
     Tally tally = empty_tally();
     const uint count =
         status[STATUS_PAIRS + 1] != 0u || status[STATUS_PAIRS] > capacity ? capacity : status[STATUS_PAIRS];

@@ -31,9 +31,8 @@ DEVICE uint seed_level(GLOBAL const uint* a, GLOBAL const uint* b, GLOBAL const 
 }
 
 // seeds[level * (pair_count + 1) + pair] = number of chunk pairs that body pair starts with at that level.
-KERNEL
-void count_seeds(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
-                 GLOBAL const uint* pairs, uint pair_count, uint level_count, GLOBAL ulong* seeds) {
+KERNEL void count_seeds(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
+                        GLOBAL const uint* pairs, uint pair_count, uint level_count, GLOBAL ulong* seeds) {
     for (uint pair = GLOBAL_ID; pair < pair_count; pair += GLOBAL_COUNT) {
         GLOBAL const uint* a = bodies + (ulong)pairs[2u * pair] * BODY_WORDS;
         GLOBAL const uint* b = bodies + (ulong)pairs[2u * pair + 1u] * BODY_WORDS;
@@ -48,8 +47,7 @@ void count_seeds(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL con
 
 // Turns each level's counts into starts, with the total at the end: one work-group a level; each work-item
 // sums a contiguous part, work-item 0 scans the parts.
-KERNEL
-void scan_seeds(GLOBAL ulong* seeds, uint pair_count) {
+KERNEL void scan_seeds(GLOBAL ulong* seeds, uint pair_count) {
     LOCAL_ARRAY(ulong, parts, GROUP_SIZE);
     GLOBAL ulong* row = seeds + (ulong)GROUP_ID * (pair_count + 1u);
     const uint part = (pair_count + (uint)GROUP_SIZE - 1u) / (uint)GROUP_SIZE;
@@ -140,11 +138,11 @@ DEVICE void hand_down(GLOBAL uint* status, uint level, GLOBAL uint* below, uint 
 // One launch walks the seeds of one level. `seeds` holds the starts of that level's own seeds; `handed` the
 // seeds from the level above (or the host's), `below` takes those for the level below. Node pairs on the
 // stack overlap.
-KERNEL
-void traverse(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
-              GLOBAL const uint* ids, GLOBAL const uint* pairs, uint pair_count, uint level,
-              GLOBAL const ulong* seeds, GLOBAL const uint* handed, uint handed_capacity, GLOBAL uint* below,
-              uint below_capacity, GLOBAL uint* found, uint capacity, GLOBAL uint* status) {
+KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
+                     GLOBAL const uint* ids, GLOBAL const uint* pairs, uint pair_count, uint level,
+                     GLOBAL const ulong* seeds, GLOBAL const uint* handed, uint handed_capacity,
+                     GLOBAL uint* below, uint below_capacity, GLOBAL uint* found, uint capacity,
+                     GLOBAL uint* status) {
     LOCAL_ARRAY(uint, stacks, STACK_DEPTH * GROUP_SIZE);
     GLOBAL const ulong* starts = seeds + (ulong)level * (pair_count + 1u);
     const ulong own = starts[pair_count];

@@ -128,11 +128,11 @@ DEVICE void store_contact(const Encounter* e, Point translation, Point at, real 
 
 // Contacts of pairs first.. of `found`. One reservation a pair; past contact_capacity only the counter goes
 // on.
-KERNEL
-void generate_contacts(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* bodies,
-                       GLOBAL const real* poses, GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
-                       GLOBAL const uchar* boundary, GLOBAL uint* contact_ids, GLOBAL real* contact_values,
-                       uint contact_capacity, GLOBAL uint* status) {
+KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_capacity,
+                              GLOBAL const uint* bodies, GLOBAL const real* poses,
+                              GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
+                              GLOBAL const uchar* boundary, GLOBAL uint* contact_ids,
+                              GLOBAL real* contact_values, uint contact_capacity, GLOBAL uint* status) {
     const uint pairs = status[STATUS_PAIRS];
     const uint count = status[STATUS_PAIRS + 1] != 0u || pairs > pair_capacity ? pair_capacity : pairs;
     for (uint i = first + GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
@@ -181,10 +181,9 @@ DEVICE ulong bits_of(real value) {
 }
 
 // Digest of the contacts: every term mixes the pair, the feature and the bits of the seven values.
-KERNEL
-void digest_contacts(GLOBAL const uint* found, GLOBAL const uint* bodies, GLOBAL const uint* ids,
-                     GLOBAL const uint* contact_ids, GLOBAL const real* contact_values, uint contact_capacity,
-                     GLOBAL uint* status) {
+KERNEL void digest_contacts(GLOBAL const uint* found, GLOBAL const uint* bodies, GLOBAL const uint* ids,
+                            GLOBAL const uint* contact_ids, GLOBAL const real* contact_values,
+                            uint contact_capacity, GLOBAL uint* status) {
     const uint contacts = status[STATUS_CONTACTS];
     const uint count =
         status[STATUS_CONTACTS + 1] != 0u || contacts > contact_capacity ? contact_capacity : contacts;

@@ -49,9 +49,8 @@ DEVICE uint share_of_queue(uint queue, uint total, uint queues) {
 }
 
 // Root pairs of body pairs first..first+count-1, spread evenly over the queues.
-KERNEL
-void scatter_roots(GLOBAL uint* items, GLOBAL uint* counts, uint queues, uint queue_capacity, uint first,
-                   uint count) {
+KERNEL void scatter_roots(GLOBAL uint* items, GLOBAL uint* counts, uint queues, uint queue_capacity,
+                          uint first, uint count) {
     for (uint i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         uint place;
         const uint queue = queue_of_item(i, count, queues, &place);
@@ -153,10 +152,10 @@ DEVICE void settle_round(LOCAL uint* shared, uint active, uint queue_capacity, G
 // One launch: every group empties its queue as far as the rules let it. A round takes the top of the local
 // queue, at most one item a work-item, and never more than the group's own queue could store if all of them
 // split.
-KERNEL
-void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* ids,
-                     GLOBAL const uint* pairs, GLOBAL uint* items, GLOBAL uint* counts, uint queue_capacity,
-                     GLOBAL uint* idle, GLOBAL uint* found, uint capacity, GLOBAL uint* status) {
+KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* ids,
+                            GLOBAL const uint* pairs, GLOBAL uint* items, GLOBAL uint* counts,
+                            uint queue_capacity, GLOBAL uint* idle, GLOBAL uint* found, uint capacity,
+                            GLOBAL uint* status) {
     LOCAL_ARRAY(uint, queue, LOCAL_QUEUE * ITEM_WORDS);
     LOCAL_ARRAY(uint, shared, 4);
     GLOBAL uint* own = items + (ulong)GROUP_ID * queue_capacity * ITEM_WORDS;
@@ -203,9 +202,8 @@ void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL
 
 // Sums the queues and decides whether to balance: totals = {items, balance}, starts = exclusive sums. One
 // group.
-KERNEL
-void plan_balance(GLOBAL const uint* counts, uint queues, uint low, uint high, GLOBAL uint* starts,
-                  GLOBAL uint* totals) {
+KERNEL void plan_balance(GLOBAL const uint* counts, uint queues, uint low, uint high, GLOBAL uint* starts,
+                         GLOBAL uint* totals) {
     LOCAL_ARRAY(uint, sums, GROUP_SIZE);
     LOCAL_ARRAY(uint, wanted, GROUP_SIZE);
     const uint part = (queues + (uint)GROUP_SIZE - 1u) / (uint)GROUP_SIZE;
@@ -243,9 +241,8 @@ void plan_balance(GLOBAL const uint* counts, uint queues, uint low, uint high, G
 
 // Moves every item to its place with the whole device: the two-phase balance of g-Planner
 // (gproximity.md 12.1).
-KERNEL
-void move_balance(GLOBAL const uint* from, GLOBAL uint* to, GLOBAL uint* counts, uint queues,
-                  uint queue_capacity, GLOBAL const uint* starts, GLOBAL const uint* totals) {
+KERNEL void move_balance(GLOBAL const uint* from, GLOBAL uint* to, GLOBAL uint* counts, uint queues,
+                         uint queue_capacity, GLOBAL const uint* starts, GLOBAL const uint* totals) {
     const uint total = totals[1] != 0u ? totals[0] : 0u;
     for (uint i = GLOBAL_ID; i < total; i += GLOBAL_COUNT) {
         uint low = 0;
@@ -268,9 +265,8 @@ void move_balance(GLOBAL const uint* from, GLOBAL uint* to, GLOBAL uint* counts,
 
 // The same as the originals do it: one group, output queue after output queue, in runs of at most one item a
 // work-item with a barrier behind each. Source and target queues are walked together.
-KERNEL
-void move_balance_serially(GLOBAL const uint* from, GLOBAL uint* to, GLOBAL uint* counts, uint queues,
-                           uint queue_capacity, GLOBAL const uint* starts, GLOBAL const uint* totals) {
+KERNEL void move_balance_serially(GLOBAL const uint* from, GLOBAL uint* to, GLOBAL uint* counts, uint queues,
+                                  uint queue_capacity, GLOBAL const uint* starts, GLOBAL const uint* totals) {
     const uint total = totals[1] != 0u ? totals[0] : 0u;
     uint source = 0;
     uint moved = 0;

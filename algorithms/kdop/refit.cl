@@ -66,10 +66,9 @@ DEVICE void refit_node(GLOBAL real* nodes, GLOBAL const uint* body, GLOBAL const
     copy_node(target, node_at(nodes, chunk_at(body[BODY_NODES], row - LEVEL_WORDS, item).base + 1u));
 }
 
-KERNEL
-void refit_strips(GLOBAL real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
-                  GLOBAL const real* poses, GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
-                  GLOBAL const uint* jobs, uint first_job, uint job_count, uint level, uint height) {
+KERNEL void refit_strips(GLOBAL real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
+                         GLOBAL const real* poses, GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
+                         GLOBAL const uint* jobs, uint first_job, uint job_count, uint level, uint height) {
     for (uint up = 0; up <= height; ++up) {
         const uint depth = height - up;
         for (uint i = LOCAL_ID; i < ((uint)STRIP_JOBS << depth); i += GROUP_SIZE) {
@@ -86,8 +85,8 @@ void refit_strips(GLOBAL real* nodes, GLOBAL const uint* bodies, GLOBAL const ui
 }
 
 // The volume of the whole body, in its slot 0: the union of its top level's chunk roots (paper, Algorithm 1).
-KERNEL
-void refit_roots(GLOBAL real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels, uint body_count) {
+KERNEL void refit_roots(GLOBAL real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
+                        uint body_count) {
     const uint index = GLOBAL_ID;
     if (index >= body_count * SLABS) return;
     GLOBAL const uint* body = bodies + (ulong)(index / SLABS) * BODY_WORDS;
@@ -107,9 +106,9 @@ void refit_roots(GLOBAL real* nodes, GLOBAL const uint* bodies, GLOBAL const uin
 
 // World vertices as the paper's code makes them: a stage of its own, read back and uploaded again by the
 // host.
-KERNEL
-void transform_vertices(GLOBAL const real* vertices, GLOBAL real* world, GLOBAL const uint* vertex_bodies,
-                        GLOBAL const real* poses, uint vertex_count) {
+KERNEL void transform_vertices(GLOBAL const real* vertices, GLOBAL real* world,
+                               GLOBAL const uint* vertex_bodies, GLOBAL const real* poses,
+                               uint vertex_count) {
     for (uint i = GLOBAL_ID; i < vertex_count; i += GLOBAL_COUNT) {
         Point p;
         p.x = vertices[(ulong)i * 4];

@@ -36,7 +36,8 @@ bool read_version(GmshFile& file) {
 void skip_section(Scanner& in, std::string_view name) {
     const auto end = in.text().find(fmt::format("$End{}", name.substr(1)), in.at());
     if (end == std::string_view::npos)
-        in.fail(fmt::format("section {} has no end", name), "the file is truncated: copy or export it again");
+        in.fail(fmt::format("section {} has no end", quoted(name)),
+                "the file is truncated: copy or export it again");
     in.seek(end);
 }
 
@@ -44,7 +45,7 @@ void end_section(Scanner& in, std::string_view name) {
     const auto wanted = fmt::format("$End{}", name.substr(1));
     const auto word = in.token(wanted);
     if (word != wanted)
-        in.fail(fmt::format("expected {}, found {}", wanted, quoted(word)),
+        in.fail(fmt::format("expected {}, found {}", quoted(wanted), quoted(word)),
                 "correct the count of the section");
 }
 

@@ -81,7 +81,7 @@ Mesh parse_medit(std::string_view bytes, const std::string& source) {
             read_tetrahedra(in, mesh);
         } else {
             if (is_foreign(keyword) && in.get<std::uint64_t>("a count") > 0)
-                in.fail(fmt::format("cells of type {} are not tetrahedra", keyword),
+                in.fail(fmt::format("cells of type {} are not tetrahedra", quoted(keyword)),
                         "split them into linear tetrahedra");
             skip_numbers(in);
         }

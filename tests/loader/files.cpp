@@ -10,14 +10,26 @@
 /// What the tests of all formats share; each declares what it uses.
 namespace tandem::loader {
 
+namespace {
+
+/// A folder of this process, gone when it ends.
+struct Folder {
+    std::filesystem::path path =
+        std::filesystem::path(testing::TempDir()) / ("tandem-" + std::to_string(getpid()));
+    Folder() { std::filesystem::create_directories(path); }
+    ~Folder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path, ignored);
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+};
+
+} // namespace
+
 std::string folder() {
-    static const auto path = [] {
-        const auto folder =
-            std::filesystem::path(testing::TempDir()) / ("tandem-" + std::to_string(getpid()));
-        std::filesystem::create_directories(folder);
-        return folder.string();
-    }();
-    return path;
+    static const Folder folder;
+    return folder.path.string();
 }
 
 std::string write_file(const std::string& name, std::string_view bytes) {

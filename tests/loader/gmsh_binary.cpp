@@ -92,7 +92,7 @@ TEST(GmshBinary, BadStructure) {
     expect_failure("big.msh", replaced(version2(), ints(1), std::string("\0\0\0\1", 4)), ": byte 20",
                    "big endian");
     expect_failure("end2.msh", replaced(version2(), "$EndNodes", "$EndNoise"), ": byte ",
-                   "expected $EndNodes");
+                   "expected '$EndNodes'");
 }
 
 /// A file cut anywhere before its last section's end is an error that names a byte, never a crash.
