@@ -61,7 +61,7 @@
 #define REAL_INFINITY ((real)__int_as_float(0x7f800000))
 typedef unsigned char uchar;
 typedef unsigned int uint;
-typedef unsigned long long ulong;
+typedef unsigned long ulong; // 64 bits where CUDA runs on Linux, as glibc has it
 
 #else // host C++: groups of one work-item, see backends/host/dialect.h
 #define KERNEL static

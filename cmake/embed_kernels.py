@@ -81,7 +81,11 @@ def main():
     parser.add_argument("--out", type=pathlib.Path)
     parser.add_argument("--geometries", nargs="+")
     parser.add_argument("--kernels", nargs="+")
+    parser.add_argument("--flatten", help="only print this kernel file with its headers")
     arguments = parser.parse_args()
+    if arguments.flatten:
+        print("\n".join(flatten(arguments.root, arguments.flatten, set())))
+        return
     arguments.out.mkdir(parents=True, exist_ok=True)
     kernels = {name: "\n".join(flatten(arguments.root, name, set())) + "\n" for name in arguments.kernels}
     write(arguments.out / "sources.cpp", sources(kernels))

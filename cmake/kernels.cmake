@@ -9,7 +9,11 @@ function(tandem_kernels target)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/backends/portable.h
        ${PROJECT_SOURCE_DIR}/algorithms/*.clh)
   set(geometries)
-  foreach(k_axes 6:0 8:0 8:1 14:0 18:0 26:0)
+  set(directions 6:0 8:0 8:1 14:0 18:0 26:0)
+  if(TANDEM_SANITIZE) # sanitized kernels take long to compile, and k = 8 and 18 reach every line
+    set(directions 8:0 18:0)
+  endif()
+  foreach(k_axes ${directions})
     string(REPLACE ":" ";" pair ${k_axes})
     list(GET pair 0 k)
     list(GET pair 1 axes)

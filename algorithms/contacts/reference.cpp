@@ -2,11 +2,9 @@
 #include "algorithms/contacts/reference.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <type_traits>
 
 namespace tandem {
 
@@ -15,213 +13,245 @@ namespace {
 template<class Real>
 using Vector = std::array<Real, 3>;
 
+constexpr unsigned edge_ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+constexpr unsigned face_corners[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
+
+template<class Real>
+constexpr Real unit_roundoff = std::numeric_limits<Real>::epsilon() / 2;
+
 template<class Real>
 Vector<Real> operator-(const Vector<Real>& a, const Vector<Real>& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
 template<class Real>
+Vector<Real> operator+(const Vector<Real>& a, const Vector<Real>& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+template<class Real>
+Vector<Real> operator*(const Vector<Real>& a, Real b) {
+    return {a[0] * b, a[1] * b, a[2] * b};
+}
+
+template<class Real>
+Vector<Real> operator/(const Vector<Real>& a, Real b) {
+    return {a[0] / b, a[1] / b, a[2] / b};
+}
+
+template<class Real>
 Real dot(const Vector<Real>& a, const Vector<Real>& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    const Real xy = a[0] * b[0] + a[1] * b[1];
+    return xy + a[2] * b[2];
 }
 
 template<class Real>
 Vector<Real> cross(const Vector<Real>& a, const Vector<Real>& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    Vector<Real> result;
+    for (unsigned i = 0; i < 3; ++i) {
+        const unsigned j = (i + 1) % 3, k = (i + 2) % 3;
+        result[i] = a[j] * b[k] - a[k] * b[j];
+    }
+    return result;
 }
 
 template<class Real>
-Real extent(const Vector<Real>& v) {
-    return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
+Real largest(const Vector<Real>& a) {
+    return std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])});
 }
 
-constexpr int edges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-constexpr int faces[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
-
-/// One tetrahedron of the pair with the plane of each face.
+/// The power of two that takes `length` into [1, 2), bounded by the largest finite one.
 template<class Real>
-struct Shape {
-    static constexpr Real unit = std::numeric_limits<Real>::epsilon() / 2;
+Real scale_of(Real length) {
+    int exponent = 0;
+    std::frexp(length, &exponent);
+    return std::ldexp(Real(1), std::min(1 - exponent, std::numeric_limits<Real>::max_exponent - 1));
+}
 
-    Corners<Real> corners;
-    std::array<Vector<Real>, 4> normals{};
+template<class Real>
+struct Tetrahedron {
+    Corners<Real> corners; ///< relative to A's first one and scaled
+    Corners<Real> normals; ///< outward, of the face opposite each corner
 
-    bool finish() {
-        std::array<Vector<Real>, 3> sides;
-        Real longest = 0;
-        for (int i = 0; i < 3; ++i) {
-            sides[i] = corners[i + 1] - corners[0];
-            longest = std::max(longest, extent(sides[i]));
-        }
-        const Real volume = dot(sides[0], cross(sides[1], sides[2]));
-        if (!(std::fabs(volume) > 48 * unit * (longest * longest * longest))) return false;
-        for (int f = 0; f < 4; ++f) {
-            const auto& first = corners[faces[f][0]];
-            auto normal = cross(corners[faces[f][1]] - first, corners[faces[f][2]] - first);
-            Real length = std::sqrt(dot(normal, normal));
-            if (!(length > 0)) return false;
-            if (dot(normal, corners[f] - first) > 0) length = -length;
-            for (auto& x : normal) x /= length;
-            normals[f] = normal;
-        }
-        return true;
-    }
-
-    Real distance(int face, const Vector<Real>& p) const {
-        return dot(normals[face], p - corners[faces[face][0]]);
-    }
-
-    bool holds(const Vector<Real>& p, int ignored, Real size) const {
-        for (int f = 0; f < 4; ++f)
-            if (f != ignored && !(distance(f, p) <= 32 * unit * size)) return false;
-        return true;
-    }
-
-    std::optional<Vector<Real>> cut_by(const Shape& other, int edge, int face, Real size) const {
-        const auto& p = corners[edges[edge][0]];
-        const auto& q = corners[edges[edge][1]];
-        const Real from = other.distance(face, p);
-        const Real to = other.distance(face, q);
-        if (!(std::min(from, to) < 0 && std::max(from, to) > 0)) return std::nullopt;
-        const Real part = from / (from - to);
-        Vector<Real> at;
-        for (int i = 0; i < 3; ++i) at[i] = p[i] + part * (q[i] - p[i]);
-        if (!other.holds(at, face, size)) return std::nullopt;
-        return at;
+    Real distance(unsigned face, const Vector<Real>& p) const {
+        return dot(normals[face], p - corners[face_corners[face][0]]);
     }
 };
 
+/// Outward unit normals, or nothing when the volume could be zero.
 template<class Real>
-bool apart_along(const Shape<Real>& a, const Shape<Real>& b, const Vector<Real>& axis, Real size) {
-    std::array<Real, 4> at_a, at_b;
-    for (int i = 0; i < 4; ++i) {
-        at_a[i] = dot(axis, a.corners[i]);
-        at_b[i] = dot(axis, b.corners[i]);
+std::optional<Corners<Real>> outward_normals(const Corners<Real>& world) {
+    Vector<Real> extent;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const auto [low, high] =
+            std::minmax({world[0][axis], world[1][axis], world[2][axis], world[3][axis]});
+        extent[axis] = high - low;
     }
-    const auto [low_a, high_a] = std::minmax_element(at_a.begin(), at_a.end());
-    const auto [low_b, high_b] = std::minmax_element(at_b.begin(), at_b.end());
-    const Real norm = std::fabs(axis[0]) + std::fabs(axis[1]) + std::fabs(axis[2]);
-    const Real margin = 16 * Shape<Real>::unit * (norm * size);
-    return *low_b - *high_a > margin || *low_a - *high_b > margin;
+    const Real scale = scale_of(largest(extent));
+    Corners<Real> corners;
+    for (unsigned i = 0; i < 4; ++i) corners[i] = (world[i] - world[0]) * scale;
+    extent = extent * scale;
+    const Real determinant = dot(corners[1], cross(corners[2], corners[3]));
+    if (std::abs(determinant) <= 48 * unit_roundoff<Real> * (extent[0] * extent[1] * extent[2]))
+        return std::nullopt;
+    Corners<Real> normals;
+    for (unsigned face = 0; face < 4; ++face) {
+        const auto& [first, second, third] = face_corners[face];
+        Vector<Real> normal = cross(corners[second] - corners[first], corners[third] - corners[first]);
+        const Real longest = largest(normal);
+        if (longest == 0) return std::nullopt;
+        normal = normal / longest;
+        normal = normal / std::sqrt(dot(normal, normal));
+        const bool inward = face % 2 == 0 ? determinant < 0 : determinant > 0;
+        normals[face] = inward ? normal * Real(-1) : normal;
+    }
+    return normals;
 }
 
+/// One pair, its contacts in the making.
 template<class Real>
-bool apart(const Shape<Real>& a, const Shape<Real>& b, Real size) {
-    std::vector<Vector<Real>> axes(a.normals.begin(), a.normals.end());
-    axes.insert(axes.end(), b.normals.begin(), b.normals.end());
-    for (const auto& [a0, a1] : edges)
-        for (const auto& [b0, b1] : edges)
-            axes.push_back(cross(a.corners[a1] - a.corners[a0], b.corners[b1] - b.corners[b0]));
-    return std::any_of(axes.begin(), axes.end(),
-                       [&](const auto& axis) { return apart_along(a, b, axis, size); });
-}
-
-/// The face of a in the most opposing pair of boundary faces, or -1.
-template<class Real>
-int opposing_face(const Shape<Real>& a, const Shape<Real>& b, unsigned boundary_a, unsigned boundary_b) {
-    int chosen = -1;
-    Real least = std::numeric_limits<Real>::infinity();
-    for (int i = 0; i < 16; ++i) {
-        if ((boundary_a >> (i / 4) & 1) == 0 || (boundary_b >> (i % 4) & 1) == 0) continue;
-        const Real facing = dot(a.normals[i / 4], b.normals[i % 4]);
-        if (facing < least) {
-            least = facing;
-            chosen = i / 4;
+class ReferencePair {
+public:
+    /// False when the pair is degenerate.
+    bool load(const Corners<Real>& a, const Corners<Real>& b) {
+        const Real longest_allowed = std::ldexp(Real(1), std::numeric_limits<Real>::max_exponent - 5);
+        origin_ = a[0];
+        for (unsigned i = 0; i < 4; ++i) {
+            solids_[0].corners[i] = a[i] - origin_;
+            solids_[1].corners[i] = b[i] - origin_;
         }
+        for (const auto& solid : solids_)
+            for (const auto& corner : solid.corners)
+                for (const Real value : corner) {
+                    if (!std::isfinite(value) || std::abs(value) > longest_allowed) return false;
+                    size_ = std::max(size_, std::abs(value));
+                }
+        scale_ = scale_of(size_);
+        size_ *= scale_;
+        for (auto& solid : solids_)
+            for (auto& corner : solid.corners) corner = corner * scale_;
+        const auto normals_a = outward_normals(a);
+        const auto normals_b = outward_normals(b);
+        if (!normals_a || !normals_b) return false;
+        solids_[0].normals = *normals_a;
+        solids_[1].normals = *normals_b;
+        return true;
     }
-    return chosen;
-}
 
-template<class Real>
-std::optional<Vector<Real>> feature_point(const Shape<Real>& a, const Shape<Real>& b, unsigned feature,
-                                          Real size) {
-    const int i = static_cast<int>(feature);
-    if (i < 4) return b.holds(a.corners[i], -1, size) ? std::optional(a.corners[i]) : std::nullopt;
-    if (i < 8) return a.holds(b.corners[i - 4], -1, size) ? std::optional(b.corners[i - 4]) : std::nullopt;
-    if (i < 32) return a.cut_by(b, (i - 8) / 4, (i - 8) % 4, size);
-    return b.cut_by(a, (i - 32) / 4, (i - 32) % 4, size);
-}
+    bool separated() const {
+        for (const auto& solid : solids_)
+            for (const auto& normal : solid.normals)
+                if (separated_along(normal)) return true;
+        for (const auto& [i, j] : edge_ends)
+            for (const auto& [k, l] : edge_ends) {
+                const auto& a = solids_[0].corners;
+                const auto& b = solids_[1].corners;
+                if (separated_along(cross(a[j] - a[i], b[l] - b[k]))) return true;
+            }
+        return false;
+    }
 
-std::uint64_t split_mix(std::uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
-}
+    std::vector<Contact<Real>> contacts(unsigned boundary_a, unsigned boundary_b) const {
+        std::vector<Contact<Real>> result;
+        const auto face = opposing(boundary_a, boundary_b);
+        if (!face) return result;
+        for (unsigned owner = 0; owner < 2; ++owner)
+            for (unsigned corner = 0; corner < 4; ++corner)
+                if (inside(solids_[1 - owner], solids_[owner].corners[corner], 4))
+                    keep(result, *face, 4 * owner + corner, solids_[owner].corners[corner]);
+        for (unsigned owner = 0; owner < 2; ++owner)
+            for (unsigned edge = 0; edge < 6; ++edge)
+                for (unsigned other = 0; other < 4; ++other)
+                    if (const auto p = crossing(owner, edge, other))
+                        keep(result, *face, 8 + 24 * owner + 4 * edge + other, *p);
+        return result;
+    }
 
-template<class Real>
-std::uint64_t bits_of(Real value) {
-    if constexpr (std::is_same_v<Real, double>)
-        return std::bit_cast<std::uint64_t>(value);
-    else
-        return std::bit_cast<std::uint32_t>(value);
-}
+private:
+    Real tolerance() const { return 32 * unit_roundoff<Real> * size_; }
+
+    bool separated_along(const Vector<Real>& axis) const {
+        const Real norm = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
+        if (norm < std::ldexp(Real(1), -96)) return false;
+        Vector<Real> along[4];
+        for (unsigned i = 0; i < 4; ++i)
+            along[i] = {dot(axis, solids_[0].corners[i]), dot(axis, solids_[1].corners[i]), 0};
+        const auto [low_a, high_a] = std::minmax({along[0][0], along[1][0], along[2][0], along[3][0]});
+        const auto [low_b, high_b] = std::minmax({along[0][1], along[1][1], along[2][1], along[3][1]});
+        const Real enough = 12 * unit_roundoff<Real> * norm * size_;
+        return low_b - high_a > enough || low_a - high_b > enough;
+    }
+
+    std::optional<unsigned> opposing(unsigned boundary_a, unsigned boundary_b) const {
+        std::optional<unsigned> best;
+        Real least = 0;
+        for (unsigned a = 0; a < 4; ++a)
+            for (unsigned b = 0; b < 4; ++b) {
+                if ((boundary_a & 1u << a) == 0 || (boundary_b & 1u << b) == 0) continue;
+                const Real value = dot(solids_[0].normals[a], solids_[1].normals[b]);
+                if (best && value >= least) continue;
+                best = a;
+                least = value;
+            }
+        return best;
+    }
+
+    /// Whether p is behind all faces of the solid but `skipped`.
+    bool inside(const Tetrahedron<Real>& solid, const Vector<Real>& p, unsigned skipped) const {
+        for (unsigned face = 0; face < 4; ++face)
+            if (face != skipped && solid.distance(face, p) > tolerance()) return false;
+        return true;
+    }
+
+    std::optional<Vector<Real>> crossing(unsigned owner, unsigned edge, unsigned face) const {
+        const auto& from = solids_[owner].corners[edge_ends[edge][0]];
+        const auto& to = solids_[owner].corners[edge_ends[edge][1]];
+        const auto& other = solids_[1 - owner];
+        const Real ahead = other.distance(face, from);
+        const Real behind = other.distance(face, to);
+        if (std::min(std::abs(ahead), std::abs(behind)) <= tolerance()) return std::nullopt;
+        if ((ahead > 0) == (behind > 0)) return std::nullopt;
+        const Vector<Real> p = from + (to - from) * (ahead / (ahead - behind));
+        return inside(other, p, face) ? std::optional(p) : std::nullopt;
+    }
+
+    void keep(std::vector<Contact<Real>>& result, unsigned face, unsigned feature,
+              const Vector<Real>& p) const {
+        const auto& a = solids_[0];
+        const Real depth = a.distance(face, p);
+        if (std::abs(depth) >= std::abs(a.distance(face, a.corners[face])) / 2) return;
+        const Vector<Real> no_negative_zero{};
+        result.push_back({feature, p / scale_ + origin_ + no_negative_zero,
+                          a.normals[face] + no_negative_zero, depth / scale_ + Real(0)});
+    }
+
+    std::array<Tetrahedron<Real>, 2> solids_;
+    Vector<Real> origin_{};
+    Real size_ = 0;
+    Real scale_ = 1;
+};
 
 } // namespace
 
 template<class Real>
-std::vector<Contact<Real>> reference_contacts(const Corners<Real>& world_a, const Corners<Real>& world_b,
+std::vector<Contact<Real>> reference_contacts(const Corners<Real>& a, const Corners<Real>& b,
                                               unsigned boundary_a, unsigned boundary_b,
                                               ContactCounts& counts) {
-    const auto origin = world_a[0];
-    Shape<Real> a, b;
-    Real size = 0;
-    bool finite = true;
-    for (int i = 0; i < 4; ++i) {
-        a.corners[i] = world_a[i] - origin;
-        b.corners[i] = world_b[i] - origin;
-        for (const auto& v : {a.corners[i], b.corners[i]})
-            for (const auto x : v) finite = finite && std::isfinite(x);
-        size = std::max({size, extent(a.corners[i]), extent(b.corners[i])});
-    }
-    if (!finite || !a.finish() || !b.finish()) {
+    ReferencePair<Real> pair;
+    if (!pair.load(a, b)) {
         ++counts.degenerate;
         return {};
     }
-    if (apart(a, b, size)) {
+    if (pair.separated()) {
         ++counts.rejected;
         return {};
     }
-    const int face = opposing_face(a, b, boundary_a, boundary_b);
-    if (face < 0) return {};
-    const auto normal = a.normals[face];
-    const auto base = a.corners[faces[face][0]];
-    const Real half = std::fabs(dot(normal, a.corners[face] - base)) / 2;
-    std::vector<Contact<Real>> contacts;
-    for (unsigned feature = 0; feature < 56; ++feature) {
-        const auto at = feature_point(a, b, feature, size);
-        if (!at) continue;
-        const Real depth = dot(normal, *at - base);
-        if (!(std::fabs(depth) < half)) continue;
-        Contact<Real> contact{feature, {}, {}, depth + 0};
-        for (int i = 0; i < 3; ++i) {
-            contact.point[i] = (*at)[i] + origin[i] + 0;
-            contact.normal[i] = normal[i] + 0;
-        }
-        contacts.push_back(contact);
-    }
-    return contacts;
-}
-
-template<class Real>
-std::pair<std::uint64_t, std::uint64_t> contact_terms(std::uint32_t body_a, std::uint32_t tet_a,
-                                                      std::uint32_t body_b, std::uint32_t tet_b,
-                                                      const Contact<Real>& contact) {
-    auto term =
-        split_mix(split_mix(std::uint64_t{body_a} << 32 | tet_a) + (std::uint64_t{body_b} << 32 | tet_b));
-    term = split_mix(term + contact.feature);
-    for (const auto x : contact.point) term = split_mix(term + bits_of(x));
-    for (const auto x : contact.normal) term = split_mix(term + bits_of(x));
-    term = split_mix(term + bits_of(contact.depth));
-    return {term, split_mix(term + 0x9e3779b97f4a7c15u)};
+    return pair.contacts(boundary_a, boundary_b);
 }
 
 template std::vector<Contact<float>> reference_contacts(const Corners<float>&, const Corners<float>&,
                                                         unsigned, unsigned, ContactCounts&);
 template std::vector<Contact<double>> reference_contacts(const Corners<double>&, const Corners<double>&,
                                                          unsigned, unsigned, ContactCounts&);
-template std::pair<std::uint64_t, std::uint64_t> contact_terms(std::uint32_t, std::uint32_t, std::uint32_t,
-                                                               std::uint32_t, const Contact<float>&);
-template std::pair<std::uint64_t, std::uint64_t> contact_terms(std::uint32_t, std::uint32_t, std::uint32_t,
-                                                               std::uint32_t, const Contact<double>&);
 
 } // namespace tandem

@@ -8,33 +8,40 @@
 
 namespace tandem {
 
-/// Pairs without contacts, by reason.
-struct ContactCounts {
-    std::uint64_t degenerate =
-        0; ///< a tetrahedron's volume cannot be told from zero, or a coordinate is not finite
-    std::uint64_t rejected = 0; ///< a separating axis tells the tetrahedra apart
-};
-
-/// A contact in world coordinates; depth < 0 inside a. Features as README.md here numbers them.
-template<class Real>
-struct Contact {
-    unsigned feature = 0;
-    std::array<Real, 3> point{}, normal{};
-    Real depth = 0;
-};
-
+/// The corners of a tetrahedron in world coordinates, in either orientation.
 template<class Real>
 using Corners = std::array<std::array<Real, 3>, 4>;
 
-/// The contacts of two tetrahedra in order of their features; bit i of `boundary` flags the face opposite
-/// corner i. Serial code that shares nothing with the kernel but its arithmetic, so that results have equal
-/// bits. Float and double.
+/// A point where two tetrahedra touch. `feature`: 0..3 corner of A in B, 4..7 corner of B in A,
+/// 8 + 4 edge + face: A's edge through B's face, 32 + 4 edge + face: B's edge through A's face, with edges
+/// 01 02 03 12 13 23 and a face named by the corner opposite it.
+template<class Real>
+struct Contact {
+    unsigned feature = 0;
+    std::array<Real, 3> point{};
+    std::array<Real, 3> normal{}; ///< unit, out of A; the same for all contacts of a pair
+    Real depth = 0;               ///< signed distance from A's face, negative when the point is below it
+
+    bool operator==(const Contact&) const = default;
+};
+
+/// Pairs that gave no contact, by reason.
+struct ContactCounts {
+    std::uint64_t degenerate = 0; ///< no certain volume, or a coordinate that is no usable number
+    std::uint64_t rejected = 0;   ///< told apart by a separating axis
+
+    bool operator==(const ContactCounts&) const = default;
+};
+
+/// The contacts of one pair in ascending order of feature, by the arithmetic of contacts.cl but none of its
+/// code: equal to the kernel's bit by bit. Bit i of `boundary_a`: the face opposite corner i of A is on its
+/// mesh's boundary. Real is float or double.
 template<class Real>
 std::vector<Contact<Real>> reference_contacts(const Corners<Real>& a, const Corners<Real>& b,
                                               unsigned boundary_a, unsigned boundary_b,
                                               ContactCounts& counts);
 
-/// The two terms of a contact in the digest; tetrahedra in input order.
+/// The two terms a contact adds to the order-free digest; tetrahedra in input order.
 template<class Real>
 std::pair<std::uint64_t, std::uint64_t> contact_terms(std::uint32_t body_a, std::uint32_t tet_a,
                                                       std::uint32_t body_b, std::uint32_t tet_b,

@@ -145,7 +145,7 @@ DEVICE void settle_round(LOCAL uint* shared, uint active, uint queue_capacity, G
     uint stop = shared[SIZE] == 0u || active == 0u ? 1u : 0u;
     if (FULL_EXIT && shared[SIZE] + (uint)GROUP_SIZE >= (uint)LOCAL_QUEUE) stop = 1u;
     if (FULL_EXIT && shared[STORED] + margin >= queue_capacity) stop = 1u;
-    if (stop == 0u && IDLE_LIMIT != 0 && ATOMIC_READ(idle) >= (uint)IDLE_LIMIT) stop = 1u;
+    if (stop == 0u && ATOMIC_READ(idle) >= (uint)IDLE_LIMIT) stop = 1u;
     shared[STOP] = stop;
 }
 

@@ -63,7 +63,7 @@ void read_elements(In& in, GmshFile& file) {
         in.template get<std::int32_t>("the tag of an entity");
         const auto type = require_type(in, in.template get<std::int32_t>("the type of elements"));
         const auto n = in.template get<std::uint64_t>("the number of elements in a block");
-        const auto columns = static_cast<std::size_t>(1 + type.nodes);
+        const auto columns = 1 + static_cast<std::size_t>(type.nodes);
         in.room(n, columns, 8 * columns, "elements");
         for (std::uint64_t i = 0; i < n; ++i) {
             in.template get<std::uint64_t>("the tag of an element");

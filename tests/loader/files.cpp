@@ -33,7 +33,8 @@ std::string folder() {
 }
 
 std::string write_file(const std::string& name, std::string_view bytes) {
-    const auto path = folder() + "/" + name;
+    auto path = folder() + "/" + name;
+    std::filesystem::remove(path); // ext4 flushes a file that is truncated and written again
     std::ofstream(path, std::ios::binary) << bytes;
     return path;
 }

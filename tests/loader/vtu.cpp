@@ -231,7 +231,7 @@ TEST(Vtu, Truncated) {
     for (const auto format : {Encoding::ascii, Encoding::inlined, Encoding::appended, Encoding::raw}) {
         const auto whole = Example().file({format, true, true});
         const auto end = whole.find(format < Encoding::appended ? "</VTKFile" : "</AppendedData");
-        for (std::size_t size = 0; size + 1 < end; ++size)
+        for (std::size_t size = 0; size + 1 < end; size += 5)
             expect_failure("cut.vtu", whole.substr(0, size), ":", "; ");
     }
 }

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+// The contact kernel on every device there is against the serial reference: equal bits.
+#include "contacts_pairs.h"
+
+#include "algorithms/sources.h"
+#include "backends/registry.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace tandem::test {
+namespace {
+
+constexpr std::uint32_t status_pairs = 0, status_contacts = 6, status_digest_a = 8, status_digest_b = 10,
+                        status_degenerate = 12, status_rejected = 14, status_words = 84;
+
+struct Row {
+    std::uint32_t pair, feature;
+};
+
+/// What a device made of the pairs.
+template<class Real>
+struct Outcome {
+    std::vector<std::uint32_t> status;
+    std::vector<Row> rows;
+    std::vector<Real> values;
+
+    std::uint64_t counter(std::uint32_t word) const {
+        return status[word] | std::uint64_t{status[word + 1]} << 32;
+    }
+};
+
+/// Pairs as the kernels see them: body 0 has all tetrahedra a, body 1 all b, both in world coordinates.
+template<class Real>
+class Stage {
+public:
+    Stage(Device& device, const std::vector<TetrahedronPair<Real>>& pairs, std::uint32_t group_size)
+        : device_(device), group_size_(group_size) {
+        const auto count = static_cast<std::uint32_t>(pairs.size());
+        std::vector<std::uint32_t> tetrahedra, ids, found;
+        std::vector<unsigned char> boundary;
+        std::vector<Real> vertices;
+        for (const bool second : {false, true})
+            for (const auto& pair : pairs) {
+                for (const auto& corner : second ? pair.b : pair.a) {
+                    tetrahedra.push_back(static_cast<std::uint32_t>(vertices.size() / 4)
+                                         - (second ? 4 * count : 0));
+                    vertices.insert(vertices.end(), {corner[0], corner[1], corner[2], 0});
+                }
+                boundary.push_back(static_cast<unsigned char>(second ? pair.boundary_b : pair.boundary_a));
+            }
+        for (std::uint32_t i = 0; i < 2 * count; ++i) ids.push_back(input_id(i % count));
+        for (std::uint32_t i = 0; i < count; ++i) found.insert(found.end(), {0, 1, i, i});
+        const std::uint32_t in_world = 1;
+        bodies_ = uploaded(std::vector<std::uint32_t>{0, 0, 0, 0, 0, count, in_world, 0, //
+                                                      count, 4 * count, 0, 0, 0, count, in_world, 0});
+        poses_ = uploaded(std::vector<Real>(24));
+        tetrahedra_ = uploaded(tetrahedra);
+        vertices_ = uploaded(vertices);
+        boundary_ = uploaded(boundary);
+        ids_ = uploaded(ids);
+        found_ = uploaded(found);
+    }
+
+    static std::uint32_t input_id(std::uint32_t item) { return item ^ 1u; }
+
+    Outcome<Real> run(std::uint32_t first, std::uint32_t pairs, std::uint32_t high,
+                      std::uint32_t pair_capacity, std::uint32_t capacity) {
+        const Defines defines{{"K", "18"},
+                              {"AXES", "0"},
+                              {"ROUNDING", "1"},
+                              {"PRECISION", sizeof(Real) == 8 ? "64" : "32"},
+                              {"GROUP_SIZE", std::to_string(group_size_)}};
+        const auto& source = kernel_source("algorithms/contacts/contacts.cl");
+        Outcome<Real> outcome{std::vector<std::uint32_t>(status_words),
+                              std::vector<Row>(capacity + 8, {~0u, ~0u}),
+                              std::vector<Real>(8 * (capacity + 8), Real(-7))};
+        outcome.status[status_pairs] = pairs;
+        outcome.status[status_pairs + 1] = high;
+        const Buffer status = uploaded(outcome.status), rows = uploaded(outcome.rows),
+                     values = uploaded(outcome.values);
+        const Grid grid{16, group_size_};
+        const std::array<Argument, 12> generate{found_, first,       pair_capacity, bodies_,
+                                                poses_, tetrahedra_, vertices_,     boundary_,
+                                                rows,   values,      capacity,      status};
+        device_.launch(device_.compile(source, "generate_contacts", defines), grid, generate);
+        const std::array<Argument, 7> digest{found_, bodies_, ids_, rows, values, capacity, status};
+        device_.launch(device_.compile(source, "digest_contacts", defines), grid, digest);
+        device_.download(status, std::as_writable_bytes(std::span(outcome.status)));
+        device_.download(rows, std::as_writable_bytes(std::span(outcome.rows)));
+        device_.download(values, std::as_writable_bytes(std::span(outcome.values)));
+        return outcome;
+    }
+
+private:
+    template<class T>
+    Buffer uploaded(const std::vector<T>& values) {
+        Buffer buffer = device_.allocate(values.size() * sizeof(T), "test");
+        device_.upload(buffer, bytes_of(values), 0, true);
+        return buffer;
+    }
+
+    Device& device_;
+    std::uint32_t group_size_;
+    Buffer bodies_, poses_, tetrahedra_, vertices_, boundary_, ids_, found_;
+};
+
+/// What the reference says, per pair and in all.
+template<class Real>
+struct Expected {
+    explicit Expected(const std::vector<TetrahedronPair<Real>>& pairs) {
+        for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+            const auto& p = pairs[i];
+            contacts.push_back(reference_contacts(p.a, p.b, p.boundary_a, p.boundary_b, counts));
+            total += contacts.back().size();
+            const auto id = Stage<Real>::input_id(i);
+            for (const auto& contact : contacts.back()) {
+                const auto [a, b] = contact_terms(0, id, 1, id, contact);
+                digest_a += a;
+                digest_b += b;
+            }
+        }
+    }
+
+    std::vector<std::vector<Contact<Real>>> contacts;
+    ContactCounts counts;
+    std::uint64_t total = 0, digest_a = 0, digest_b = 0;
+};
+
+/// The contacts of an outcome by pair, in ascending order of feature.
+template<class Real>
+std::vector<std::vector<Contact<Real>>> by_pair(const Outcome<Real>& outcome, std::size_t rows,
+                                                std::size_t pairs) {
+    std::vector<std::vector<Contact<Real>>> result(pairs);
+    for (std::size_t i = 0; i < rows; ++i) {
+        const Real* v = &outcome.values[8 * i];
+        EXPECT_EQ(v[7], 0);
+        result.at(outcome.rows[i].pair)
+            .push_back({outcome.rows[i].feature, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]});
+    }
+    for (auto& contacts : result)
+        std::sort(contacts.begin(), contacts.end(),
+                  [](const auto& a, const auto& b) { return a.feature < b.feature; });
+    return result;
+}
+
+template<class Real>
+std::vector<TetrahedronPair<Real>> random_pairs(std::size_t count) {
+    PairMaker<Real> maker;
+    std::vector<TetrahedronPair<Real>> pairs;
+    for (std::size_t i = 0; i < count; ++i)
+        pairs.push_back(
+            maker.make(static_cast<typename PairMaker<Real>::Family>(i % PairMaker<Real>::family_count)));
+    return pairs;
+}
+
+template<class Real>
+class ContactsKernel : public testing::Test {
+protected:
+    void SetUp() override {
+        for (auto& backend : discover())
+            for (auto& device : backend.devices)
+                if (sizeof(Real) == 4 || device->info().has_double) devices.push_back(std::move(device));
+        ASSERT_FALSE(devices.empty());
+    }
+
+    /// Group sizes to run with: the host runs groups of one.
+    static std::vector<std::uint32_t> group_sizes(const Device& device) {
+        if (device.info().max_group_size == 1) return {1};
+        return {1, 64};
+    }
+
+    std::vector<std::unique_ptr<Device>> devices;
+};
+
+using Reals = testing::Types<float, double>;
+TYPED_TEST_SUITE(ContactsKernel, Reals);
+
+TYPED_TEST(ContactsKernel, EqualsTheReferenceBitForBit) {
+    const auto pairs = random_pairs<TypeParam>(28000);
+    const Expected<TypeParam> expected(pairs);
+    ASSERT_GT(expected.total, pairs.size() / 4);
+    ASSERT_GT(expected.counts.degenerate, 1000u);
+    ASSERT_GT(expected.counts.rejected, 1000u);
+    const auto count = static_cast<std::uint32_t>(pairs.size());
+    for (auto& device : this->devices)
+        for (const auto group_size : this->group_sizes(*device)) {
+            SCOPED_TRACE(device->info().id + " groups of " + std::to_string(group_size));
+            Stage<TypeParam> stage(*device, pairs, group_size);
+            const auto outcome = stage.run(0, count, 0, count, static_cast<std::uint32_t>(expected.total));
+            ASSERT_EQ(outcome.counter(status_contacts), expected.total);
+            EXPECT_EQ(outcome.counter(status_degenerate), expected.counts.degenerate);
+            EXPECT_EQ(outcome.counter(status_rejected), expected.counts.rejected);
+            EXPECT_EQ(outcome.counter(status_digest_a),
+                      expected.digest_a); // takes in every bit of every value
+            EXPECT_EQ(outcome.counter(status_digest_b), expected.digest_b);
+            EXPECT_EQ(by_pair(outcome, expected.total, pairs.size()), expected.contacts);
+        }
+}
+
+TYPED_TEST(ContactsKernel, PastCapacityCountingGoesOnAndNothingIsWritten) {
+    const auto pairs = random_pairs<TypeParam>(700);
+    const Expected<TypeParam> expected(pairs);
+    for (auto& device : this->devices)
+        for (const std::uint32_t capacity : {1u, 2u, 50u}) {
+            SCOPED_TRACE(device->info().id);
+            ASSERT_GT(expected.total, capacity);
+            Stage<TypeParam> stage(*device, pairs, this->group_sizes(*device).back());
+            const auto outcome = stage.run(0, 700, 0, 700, capacity);
+            EXPECT_EQ(outcome.counter(status_contacts), expected.total);
+            for (std::uint32_t i = 0; i < capacity + 8; ++i)
+                EXPECT_EQ(outcome.rows[i].pair == ~0u, i >= capacity) << i;
+            for (std::uint32_t i = 8 * capacity; i < 8 * (capacity + 8); ++i)
+                EXPECT_EQ(outcome.values[i], -7);
+        }
+}
+
+TYPED_TEST(ContactsKernel, TakesOnlyThePairsThatAreThere) {
+    auto pairs = random_pairs<TypeParam>(700);
+    const std::vector part(pairs.begin() + 100, pairs.begin() + 400);
+    const Expected<TypeParam> expected(part);
+    const auto capacity = static_cast<std::uint32_t>(expected.total);
+    for (auto& device : this->devices) {
+        SCOPED_TRACE(device->info().id);
+        Stage<TypeParam> stage(*device, pairs, this->group_sizes(*device).back());
+        EXPECT_EQ(stage.run(100, 400, 0, 700, capacity).counter(status_contacts), expected.total);
+        EXPECT_EQ(stage.run(100, 700, 0, 400, capacity).counter(status_contacts), expected.total);
+        EXPECT_EQ(stage.run(100, 3, 1, 400, capacity).counter(status_contacts), expected.total);
+        EXPECT_EQ(stage.run(0, 0, 0, 700, capacity).counter(status_contacts), 0u);
+    }
+}
+
+} // namespace
+} // namespace tandem::test

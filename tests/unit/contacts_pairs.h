@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/contacts/reference.h"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace tandem::test {
+
+/// Two tetrahedra and the boundary bits of their faces.
+template<class Real>
+struct TetrahedronPair {
+    Corners<Real> a, b;
+    unsigned boundary_a = 15, boundary_b = 15;
+};
+
+template<class Real, class Change>
+Corners<Real> changed(Corners<Real> corners, Change change) {
+    for (auto& corner : corners)
+        for (auto& x : corner) x = change(x);
+    return corners;
+}
+
+template<class Real>
+Corners<Real> moved(Corners<Real> corners, const std::array<Real, 3>& by) {
+    for (auto& corner : corners)
+        for (unsigned axis = 0; axis < 3; ++axis) corner[axis] += by[axis];
+    return corners;
+}
+
+/// Families of pairs that are near each other. The same seed gives the same pairs on every platform.
+template<class Real>
+class PairMaker {
+public:
+    enum Family { generic, lattice, sliver, small, far, mixed_sizes, spoiled, family_count };
+
+    TetrahedronPair<Real> make(Family family) {
+        const auto lattice_point = [this] { return static_cast<Real>(static_cast<int>(random_() % 5) - 2); };
+        const auto point = [this] { return uniform(); };
+        TetrahedronPair<Real> pair{corners(point), corners(point), bits(), bits()};
+        if (random_() % 4 != 0) pair.boundary_a = pair.boundary_b = 15;
+        if (family == lattice) pair.a = corners(lattice_point), pair.b = corners(lattice_point);
+        if (family == sliver) pair.a[3] = between(pair.a, Real(1e-5) * uniform());
+        if (family == small) scale(pair, Real(1e-4), Real(1e-4));
+        if (family == mixed_sizes) scale(pair, 1, Real(0.01));
+        if (family == far) {
+            pair.a = moved<Real>(pair.a, {1000, -500, 250});
+            pair.b = moved<Real>(pair.b, {1000, -500, 250});
+        }
+        if (family == spoiled) spoil(pair);
+        return pair;
+    }
+
+    Real uniform() { return std::ldexp(static_cast<Real>(random_() >> 8), -23) - 1; }
+
+private:
+    unsigned bits() { return static_cast<unsigned>(random_() % 16); }
+
+    template<class Coordinate>
+    Corners<Real> corners(Coordinate coordinate) {
+        Corners<Real> result;
+        for (auto& corner : result)
+            for (auto& x : corner) x = coordinate();
+        return result;
+    }
+
+    static std::array<Real, 3> between(const Corners<Real>& c, Real off) {
+        return {(c[0][0] + c[1][0] + c[2][0]) / 3 + off, (c[0][1] + c[1][1] + c[2][1]) / 3,
+                (c[0][2] + c[1][2] + c[2][2]) / 3};
+    }
+
+    static void scale(TetrahedronPair<Real>& pair, Real a, Real b) {
+        pair.a = changed(pair.a, [a](Real x) { return x * a; });
+        pair.b = changed(pair.b, [b](Real x) { return x * b; });
+    }
+
+    void spoil(TetrahedronPair<Real>& pair) {
+        const Real values[] = {std::numeric_limits<Real>::quiet_NaN(), std::numeric_limits<Real>::infinity(),
+                               std::numeric_limits<Real>::max(), std::numeric_limits<Real>::denorm_min()};
+        auto& corners = random_() % 2 == 0 ? pair.a : pair.b;
+        if (random_() % 2 == 0)
+            corners[random_() % 4][random_() % 3] = values[random_() % 4];
+        else
+            corners[random_() % 4] = corners[random_() % 4];
+    }
+
+    std::mt19937 random_{20240611};
+};
+
+} // namespace tandem::test

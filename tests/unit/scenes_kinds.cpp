@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/builtin.h"
+#include "scenes/digest.h"
+#include "scenes/error.h"
+#include "scenes/scene.h"
+
+#include <bit>
+#include <cmath>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <set>
+
+namespace tandem {
+
+namespace {
+
+using testing::HasSubstr;
+
+std::string failure(const std::string& specification) {
+    try {
+        make_scene(specification);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+/// The largest relative distance of a coordinate from the nearest single-precision number.
+double distance_from_single(const Mesh& mesh) {
+    double worst = 0;
+    for (const auto& v : mesh.vertices)
+        for (const double x : v) {
+            const volatile float narrow = static_cast<float>(x);
+            if (x != 0) worst = std::max(worst, std::fabs(static_cast<double>(narrow) - x) / std::fabs(x));
+        }
+    return worst;
+}
+
+std::size_t boundary_faces(const Mesh& mesh) {
+    std::size_t count = 0;
+    for (const auto flags : mesh.boundary) count += static_cast<std::size_t>(std::popcount(flags));
+    return count;
+}
+
+struct Expected {
+    std::string name;
+    std::size_t vertices, tetrahedra, boundary;
+    Eigen::Vector3d size;
+};
+
+TEST(ScenesBuiltin, CountsAndSizes) {
+    const Expected all[] = {{"jack", 798, 2337, 1392, {1, 1, 1}},
+                            {"glass", 551, 1682, 1070, {0.889, 1, 0.889}},
+                            {"plate", 550, 1734, 1020, {4, 0.5, 4}}};
+    EXPECT_EQ(built_in_names().size(), std::size(all));
+    for (const auto& expected : all) {
+        SCOPED_TRACE(expected.name);
+        const auto mesh = built_in_mesh(expected.name);
+        // The paper's counts, within 2 %.
+        EXPECT_NEAR(static_cast<double>(mesh.vertices.size()) / static_cast<double>(expected.vertices), 1,
+                    0.02);
+        EXPECT_NEAR(static_cast<double>(mesh.tetrahedra.size()) / static_cast<double>(expected.tetrahedra), 1,
+                    0.02);
+        EXPECT_EQ(boundary_faces(mesh), expected.boundary);
+        EXPECT_EQ(mesh.inverted, 0u);
+        EXPECT_EQ(mesh.degenerate, 0u);
+        EXPECT_LE(distance_from_single(mesh), 0.5e-8) << "nine digits of a single-precision number";
+        Eigen::Vector3d lower = mesh.vertices.front();
+        Eigen::Vector3d upper = lower;
+        std::set<std::array<double, 3>> different;
+        for (const auto& v : mesh.vertices) {
+            lower = lower.cwiseMin(v);
+            upper = upper.cwiseMax(v);
+            different.insert({v.x(), v.y(), v.z()});
+        }
+        EXPECT_EQ(different.size(), mesh.vertices.size());
+        EXPECT_LT((upper - lower - expected.size).cwiseAbs().maxCoeff(), 0.002);
+    }
+}
+
+TEST(ScenesBuiltin, UnknownName) {
+    EXPECT_THROW(built_in_mesh("jak"), InputError);
+    EXPECT_THAT(failure("pile:mesh=jak"), HasSubstr("unknown mesh 'jak'; the nearest is 'jack'"));
+}
+
+TEST(ScenesPlates, RestIsAStackOfTouchingTurnedPlates) {
+    const auto scene = make_scene("plates");
+    ASSERT_EQ(scene.bodies.size(), 3u);
+    EXPECT_EQ(scene.frame_count, 500u);
+    const auto frame = scene.frame(0);
+    const auto& rest = scene.meshes[0].vertices;
+    for (std::size_t plate = 0; plate < 3; ++plate) {
+        EXPECT_TRUE(scene.bodies[plate].deformable);
+        EXPECT_TRUE(frame.poses[plate].translation.isZero());
+        ASSERT_EQ(frame.deformed[plate].size(), rest.size());
+        const Eigen::AngleAxisd turn(0.3 * static_cast<double>(plate), Eigen::Vector3d::UnitY());
+        for (std::size_t v = 0; v < rest.size(); ++v) {
+            const Eigen::Vector3d lifted(0, 0.5 * static_cast<double>(plate), 0);
+            ASSERT_LT((frame.deformed[plate][v] - (turn * rest[v] + lifted)).norm(), 1e-14);
+        }
+    }
+}
+
+TEST(ScenesPlates, EndsTwistOneDegreeAStepForthAndBack) {
+    const auto scene = make_scene("plates:count=1,frames=401");
+    const auto& rest = scene.meshes[0].vertices;
+    const auto twist_of = [&](std::size_t step, std::size_t v) {
+        const auto p = scene.frame(step).deformed[0][v];
+        return std::atan2(p.y(), p.x()) - std::atan2(rest[v].y(), rest[v].x());
+    };
+    const auto end = static_cast<std::size_t>(
+        std::find_if(rest.begin(), rest.end(), [](const auto& p) { return p.z() == 2 && p.x() == 2; })
+        - rest.begin());
+    ASSERT_LT(end, rest.size());
+    constexpr double degree = 0.017453292519943295;
+    EXPECT_NEAR(twist_of(1, end), degree, 1e-14);
+    EXPECT_NEAR(twist_of(100, end), 100 * degree, 1e-14);
+    EXPECT_NEAR(std::remainder(twist_of(200, end) - 200 * degree, 360 * degree), 0, 1e-14);
+    EXPECT_NEAR(twist_of(399, end), degree, 1e-14);
+    EXPECT_EQ(scene.frame(400).deformed[0], scene.frame(0).deformed[0]) << "no drift";
+    for (std::size_t v = 0; v < rest.size(); ++v) {
+        ASSERT_EQ(scene.frame(90).deformed[0][v].z(), rest[v].z());
+        if (rest[v].z() == 0) {
+            ASSERT_EQ(scene.frame(90).deformed[0][v], rest[v]) << "the middle stays";
+        }
+    }
+}
+
+TEST(ScenesPile, DensityIsSolidVolumeOverBox) {
+    // Centres of many bodies fill the box from which they are drawn.
+    const auto scene = make_scene("pile:bodies=4000,density=0.3,mesh=plate,frames=1");
+    Eigen::Vector3d lower = Eigen::Vector3d::Constant(1e9);
+    Eigen::Vector3d upper = -lower;
+    for (const auto& pose : scene.frame(0).poses) {
+        lower = lower.cwiseMin(pose.translation);
+        upper = upper.cwiseMax(pose.translation);
+    }
+    const double side = std::cbrt(4000 * 8 / 0.3);
+    EXPECT_LE((upper - lower).maxCoeff(), side);
+    EXPECT_GT((upper - lower).minCoeff(), 0.99 * side);
+}
+
+TEST(ScenesPile, MovesSlowlyAsARigidBody) {
+    const auto scene = make_scene("pile:bodies=20,frames=5");
+    for (std::size_t step = 0; step + 1 < scene.frame_count; ++step)
+        for (std::size_t body = 0; body < 20; ++body) {
+            const auto now = scene.frame(step).poses[body];
+            const auto next = scene.frame(step + 1).poses[body];
+            ASSERT_NEAR(now.rotation.norm(), 1, 1e-15);
+            ASSERT_GT(now.rotation.angularDistance(next.rotation), 0.02);
+            ASSERT_LT(now.rotation.angularDistance(next.rotation), 0.04);
+            ASSERT_GT((now.translation - next.translation).norm(), 0);
+            ASSERT_LT((now.translation - next.translation).norm(), 0.01);
+        }
+}
+
+TEST(ScenesPile, FarMovesEveryBodyAlike) {
+    const auto near = make_scene("pile:bodies=5").frame(3);
+    const auto far = make_scene("pile:bodies=5,far=1024").frame(3);
+    for (std::size_t body = 0; body < 5; ++body) {
+        const Eigen::Vector3d moved = far.poses[body].translation - near.poses[body].translation;
+        EXPECT_LT((moved - Eigen::Vector3d::Constant(1024)).norm(), 1e-12);
+        EXPECT_EQ(far.poses[body].rotation.coeffs(), near.poses[body].rotation.coeffs());
+    }
+}
+
+TEST(ScenesPile, SeedDecides) {
+    const auto once = make_scene("pile:bodies=5,seed=2");
+    EXPECT_EQ(once.digest, make_scene("pile:seed=2,bodies=5").digest);
+    EXPECT_EQ(once.key, make_scene("pile:seed=2,bodies=5").key);
+    const auto other = make_scene("pile:bodies=5,seed=3");
+    EXPECT_NE(once.digest, other.digest);
+    EXPECT_NE(once.frame(0).poses[0].translation, other.frame(0).poses[0].translation);
+}
+
+TEST(ScenesKinds, EveryKindSaysWhatItModels) {
+    for (const auto& kind : scene_kinds()) {
+        const auto scene = make_scene(kind.name);
+        EXPECT_EQ(scene.name, kind.name);
+        EXPECT_FALSE(kind.models.empty());
+        EXPECT_EQ(kind.models.find('\n'), std::string::npos);
+        for (const auto& p : kind.parameters) EXPECT_THAT(scene.key, HasSubstr(p.name + "=" + p.value));
+    }
+}
+
+TEST(ScenesKinds, BadSpecifications) {
+    EXPECT_THAT(failure("pyle"), HasSubstr("unknown scene 'pyle'; the nearest is 'pile'"));
+    EXPECT_THAT(failure("pile:bodys=3"), HasSubstr("'bodys'; the nearest is 'bodies'"));
+    EXPECT_THAT(failure("pile:seed"), HasSubstr("seed has no value"));
+    for (const auto* value : {"bodies=0", "bodies=-1", "bodies=2.5", "bodies=", "bodies=3 ", "density=nan",
+                              "density=0", "density=inf", "frames=0", "seed=x"}) {
+        const auto what = failure(std::string("pile:") + value);
+        EXPECT_THAT(what, HasSubstr(value));
+        EXPECT_THAT(what, testing::ContainsRegex("give a number from .* to "));
+    }
+}
+
+/// One tetrahedron that stands still.
+Scene still() {
+    Scene scene;
+    scene.key = "still";
+    Mesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.tetrahedra = {{0, 1, 2, 3}};
+    scene.meshes = {mesh};
+    scene.bodies = {Body{}};
+    scene.frame = [](std::size_t) { return Frame{{Pose{}}, {{}}}; };
+    return scene;
+}
+
+TEST(ScenesDigest, SameOnEveryMachine) {
+    EXPECT_EQ(digest_of(still()), 0x00042bb31a1b8d4bu);
+    EXPECT_EQ(make_scene("plates").digest, 0x94d1be62d4250a18u);
+    EXPECT_EQ(make_scene("pile").digest, 0x020c7c37144a149au);
+}
+
+TEST(ScenesDigest, SeesEveryPart) {
+    std::set<std::uint64_t> digests{digest_of(still())};
+    auto scene = still();
+    scene.meshes[0].vertices[2].x() = 0x1p-1074;
+    digests.insert(digest_of(scene));
+    scene = still();
+    std::swap(scene.meshes[0].tetrahedra[0][1], scene.meshes[0].tetrahedra[0][2]);
+    digests.insert(digest_of(scene));
+    scene = still();
+    scene.bodies[0].fixed = true;
+    digests.insert(digest_of(scene));
+    scene = still();
+    scene.frame = [](std::size_t) { return Frame{{Pose{.translation = {1, 0, 0}}}, {{}}}; };
+    digests.insert(digest_of(scene));
+    EXPECT_EQ(digests.size(), 5u);
+}
+
+} // namespace
+
+} // namespace tandem
