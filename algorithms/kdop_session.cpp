@@ -137,7 +137,7 @@ FrameResult KdopSession::run(const Frame& frame, std::span<const BodyPair> pairs
     scene_.update(frame);
     upload_pairs(pairs);
     for (std::uint64_t retries = 0;; ++retries) {
-        device_.clear(status_, STATUS_WORDS * 4);
+        clear_status();
         contacts_read_ = 0;
         if (!pairs.empty()) do_walk(pairs);
         if (makes_contacts() && !published_ && !pairs.empty())
@@ -153,9 +153,21 @@ FrameResult KdopSession::run(const Frame& frame, std::span<const BodyPair> pairs
 
 Status KdopSession::read_status() {
     const StageScope scope(device_, Stage::read);
-    std::array<std::uint32_t, STATUS_WORDS> words{};
-    device_.download(status_, std::as_writable_bytes(std::span(words)));
-    return Status(words);
+    device_.download(status_, std::as_writable_bytes(std::span(status_words_)));
+    return Status(status_words_);
+}
+
+void KdopSession::clear_status() {
+    status_words_.assign(STATUS_WORDS, 0);
+    device_.clear(status_, STATUS_WORDS * 4);
+}
+
+void KdopSession::set_status(std::size_t word, std::uint64_t value) {
+    status_words_[word] = static_cast<std::uint32_t>(value);
+    status_words_[word + 1] = static_cast<std::uint32_t>(value >> 32);
+    // Written whole: Oclgrind 21.10 takes the rest of a buffer for uninitialised after a partial write.
+    const StageScope scope(device_, Stage::write);
+    device_.upload(status_, bytes_of(status_words_), 0, published_);
 }
 
 bool KdopSession::grow(const Status& status) {
@@ -216,7 +228,8 @@ std::uint64_t KdopSession::publish_contacts(std::uint64_t first) {
 Digest KdopSession::digest(const FrameResult& result) {
     if (result.digest) return *result.digest;
     const StageScope scope(device_, Stage::postprocess);
-    device_.clear(status_, 16, STATUS_DIGEST_A * 4);
+    set_status(STATUS_DIGEST_A, 0);
+    set_status(STATUS_DIGEST_B, 0);
     const std::array<Argument, 5> arguments{found_, static_cast<std::uint32_t>(capacity_), scene_.bodies(),
                                             scene_.tetrahedron_ids(), status_};
     device_.launch(digest_kernel_, {groups_, scene_.group_size()}, arguments);
@@ -227,7 +240,8 @@ Digest KdopSession::digest(const FrameResult& result) {
 Digest KdopSession::contact_digest(const FrameResult& result) {
     if (!contact_stage_) return {};
     const StageScope scope(device_, Stage::postprocess);
-    device_.clear(status_, 16, STATUS_CONTACT_DIGEST_A * 4);
+    set_status(STATUS_CONTACT_DIGEST_A, 0);
+    set_status(STATUS_CONTACT_DIGEST_B, 0);
     contact_stage_->launch_digest(found_, status_);
     const auto status = read_status();
     return {result.contacts, status.counter(STATUS_CONTACT_DIGEST_A),

@@ -55,6 +55,10 @@ protected:
     /// contacts are read back at once. Returns the pairs found so far.
     std::uint64_t publish_contacts(std::uint64_t first);
     Status read_status();
+    /// Clears the status; its words are those of status.clh.
+    void clear_status();
+    /// Sets the 64-bit counter at `word`, with all others as they were last read or cleared.
+    void set_status(std::size_t word, std::uint64_t value);
 
     const DeviceScene& scene() const { return scene_; }
     const Buffer& pairs() const { return pairs_; }
@@ -83,6 +87,7 @@ private:
     std::uint64_t pair_room_ = 0;
     std::uint64_t contacts_read_ = 0;
     bool counting_ = false;
+    std::vector<std::uint32_t> status_words_; ///< as last read, cleared or set
     Buffer pairs_, status_, found_;
     Kernel digest_kernel_;
     std::unique_ptr<ContactStage> contact_stage_;

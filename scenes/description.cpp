@@ -114,8 +114,12 @@ Motion read_motion(const Json& json, const Place& place, std::size_t frames) {
         if (!(length > 0)) (place / "spin").fail("must have an axis that is not 0");
         motion.axis = {spin[0] / length, spin[1] / length, spin[2] / length};
         motion.spin = spin[3];
+        if (!(std::fabs(motion.spin) * static_cast<double>(frames) <= 1e6))
+            (place / "spin").fail("must turn by no more than 1e6 radians in all frames together");
     }
     if (!json.contains("poses")) return motion;
+    for (const auto* name : {"position", "rotation", "velocity", "spin"})
+        if (json.contains(name)) (place / name).fail("is replaced by poses; leave one out");
     if (!json["poses"].is_array() || json["poses"].size() != frames)
         (place / "poses").fail(fmt::format("must be one pose a frame, {} in all", frames));
     for (std::size_t i = 0; i < frames; ++i) {
@@ -193,7 +197,8 @@ Scene load_description(const std::string& path) {
         motions.push_back(read_motion(json["bodies"][i], root / "bodies" / i, scene.frame_count));
     }
     scene.frame = [motions = std::move(motions)](std::size_t index) { return frame_of(motions, index); };
-    scene.key = scene.name;
+    scene.key = fmt::format("{}:frames={},bodies={:016x}", scene.name, scene.frame_count,
+                            digest_of(json["bodies"].dump()));
     scene.digest = digest_of(scene);
     return scene;
 }

@@ -46,6 +46,12 @@ void add(Digester& digester, const Frame& frame) {
 
 } // namespace
 
+std::uint64_t digest_of(std::string_view text) {
+    Digester digester;
+    digester.add(text);
+    return digester.value();
+}
+
 std::uint64_t digest_of(const Scene& scene) {
     Digester digester;
     digester.add(scene.key);

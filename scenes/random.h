@@ -26,7 +26,7 @@ private:
 };
 
 /// Sine and cosine from IEEE operations only, so that poses have the same bits everywhere: reduction by pi/2
-/// in two parts, Taylor polynomials. Absolute error below 2e-16 for |angle| <= 1e4.
+/// in two parts, Taylor polynomials. Absolute error below 2e-16 for |angle| <= 1e6.
 struct SineCosine {
     double sine, cosine;
 };

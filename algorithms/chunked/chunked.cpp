@@ -208,7 +208,7 @@ std::vector<std::uint32_t> ChunkedSession::seeds_of_level(std::span<const BodyPa
 void ChunkedSession::walk_published(std::span<const BodyPair> body_pairs) {
     reserve_starts(0);
     device().clear(starts_, starts_.bytes());
-    while (!try_published(body_pairs)) device().clear(status(), STATUS_WORDS * 4);
+    while (!try_published(body_pairs)) clear_status();
 }
 
 /// False when a seed buffer was too small; it has grown, and the walk starts again.
@@ -229,9 +229,7 @@ bool ChunkedSession::try_published(std::span<const BodyPair> body_pairs) {
         {
             const StageScope scope(device(), Stage::write);
             device().upload(handed_[level % 2], bytes_of(seeds), handed * seed_words * 4, true);
-            const auto word = static_cast<std::uint32_t>(total);
-            device().upload(status(), std::as_bytes(std::span(&word, 1)), (STATUS_LEVELS + 2 * level) * 4,
-                            true);
+            set_status(STATUS_LEVELS + 2 * level, total);
         }
         traverse(level, 0);
         found_before = publish_contacts(found_before);

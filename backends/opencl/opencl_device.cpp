@@ -230,10 +230,19 @@ std::uint64_t OpenclDevice::do_download(const Buffer::Impl& from, std::span<std:
 }
 
 std::uint64_t OpenclDevice::do_clear(Buffer::Impl& buffer, std::size_t bytes, std::size_t offset) {
+    // Small clears are writes: Oclgrind 21.10 takes what clEnqueueFillBuffer fills for uninitialised.
+    static const std::array<std::byte, 65536> zeros{};
+    auto* memory = static_cast<OpenclBuffer&>(buffer).memory;
+    const auto what = fmt::format("clearing '{}'", buffer.label);
+    if (bytes <= zeros.size()) {
+        check(clEnqueueWriteBuffer(active_, memory, CL_FALSE, offset, bytes, zeros.data(), 0, nullptr,
+                                   event_slot()),
+              "clEnqueueWriteBuffer", what);
+        return ticket();
+    }
     const cl_uchar zero = 0;
-    check(clEnqueueFillBuffer(active_, static_cast<OpenclBuffer&>(buffer).memory, &zero, 1, offset, bytes, 0,
-                              nullptr, event_slot()),
-          "clEnqueueFillBuffer", fmt::format("clearing '{}'", buffer.label));
+    check(clEnqueueFillBuffer(active_, memory, &zero, 1, offset, bytes, 0, nullptr, event_slot()),
+          "clEnqueueFillBuffer", what);
     return ticket();
 }
 

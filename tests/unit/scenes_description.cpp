@@ -103,6 +103,20 @@ TEST_F(ScenesDescription, ErrorsNameThePath) {
     EXPECT_THAT(body_failure(R"("spin": [0, 0, 0, 1])"), HasSubstr("/bodies/0/spin: must have an axis"));
     EXPECT_THAT(body_failure(R"("poses": [[0, 0, 0, 1, 0, 0, 0]])"), HasSubstr("one pose a frame, 2 in all"));
     EXPECT_THAT(body_failure(R"("fixed": true, "velocity": [1, 0, 0])"), HasSubstr("is fixed and moves"));
+    EXPECT_THAT(body_failure(R"("spin": [0, 0, 1, 1e300])"),
+                HasSubstr("/bodies/0/spin: must turn by no more"));
+    EXPECT_THAT(body_failure(R"("poses": [[0,0,0,1,0,0,0], [0,0,0,1,0,0,0]], "spin": [0, 0, 1, 1])"),
+                HasSubstr("/bodies/0/spin: is replaced by poses"));
+}
+
+TEST_F(ScenesDescription, DigestSeesEveryFrame) {
+    const auto digest = [&](const std::string& middle) {
+        return load(R"({"frames": 3, "meshes": {"j": {"builtin": "jack"}}, "bodies": [{"mesh": "j", "poses": [
+                    [0, 0, 0, 1, 0, 0, 0], )"
+                    + middle + ", [1, 0, 0, 1, 0, 0, 0]]}]}")
+            .digest;
+    };
+    EXPECT_NE(digest("[0, 0, 0, 1, 0, 0, 0]"), digest("[9, 0, 0, 1, 0, 0, 0]"));
 }
 
 TEST_F(ScenesDescription, AdHocScenesTakePosesInOrder) {
