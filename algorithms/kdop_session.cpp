@@ -140,7 +140,7 @@ FrameResult KdopSession::run(const Frame& frame, std::span<const BodyPair> pairs
         clear_status();
         contacts_read_ = 0;
         if (!pairs.empty()) do_walk(pairs);
-        if (makes_contacts() && !published_ && !pairs.empty())
+        if (makes_contacts() && !published_ && !counting_ && !pairs.empty())
             contact_stage_->launch(found_, 0, capacity_, status_);
         const auto status = read_status();
         if (grow(status)) continue;
@@ -210,7 +210,7 @@ FrameResult KdopSession::result_of(const Status& status) const {
 
 std::uint64_t KdopSession::publish_contacts(std::uint64_t first) {
     const auto found = read_status().counter(STATUS_PAIRS);
-    if (found <= first || !makes_contacts()) return found;
+    if (found <= first || !makes_contacts() || counting_) return found;
     contact_stage_->launch(found_, first, capacity_, status_);
     const auto contacts = std::min(read_status().counter(STATUS_CONTACTS), contact_stage_->capacity());
     if (contacts > contacts_read_) {

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+// The hierarchies on the device: containment, equal bits on host and OpenCL, the memory they take.
+#include "algorithms/kdop/device_scene.h"
+#include "algorithms/kdop/pack.h"
+#include "tests/support/cells.h"
+#include "tests/support/scenes.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+std::vector<Geometry> geometries() {
+    std::vector<Geometry> all;
+#ifdef TANDEM_FEW_GEOMETRIES
+    for (const int k : {8, 18})
+#else
+    for (const int k : {6, 8, 14, 18, 26})
+#endif
+        for (const auto precision : {Precision::single, Precision::twice})
+            for (const auto rounding : {Rounding::nearest, Rounding::safe})
+                all.push_back(
+                    {.k = k, .coordinate_axes = false, .precision = precision, .rounding = rounding});
+    return all;
+}
+
+std::vector<std::byte> nodes_of(const DeviceScene& scene) {
+    std::vector<std::byte> bytes(scene.slots() * static_cast<std::uint64_t>(scene.geometry().k)
+                                 * real_bytes(scene.geometry()));
+    scene.device().download(scene.nodes(), bytes);
+    return bytes;
+}
+
+template<class Real>
+std::vector<double> as_doubles(std::span<const std::byte> bytes) {
+    std::vector<Real> values(bytes.size() / sizeof(Real));
+    std::memcpy(values.data(), bytes.data(), bytes.size());
+    return {values.begin(), values.end()};
+}
+
+/// A vertex in world coordinates as the device computes it.
+template<class Real>
+std::array<Real, 3> world(const Scene& scene, const Frame& frame, std::uint32_t body, std::uint32_t vertex) {
+    if (scene.bodies[body].deformable) {
+        const auto& v = frame.deformed[body][vertex];
+        return {static_cast<Real>(v.x()), static_cast<Real>(v.y()), static_cast<Real>(v.z())};
+    }
+    const auto& v = scene.meshes[scene.bodies[body].mesh].vertices[vertex];
+    const auto rows = pose_rows(frame.poses[body]);
+    std::array<Real, 3> result{};
+    for (std::size_t i = 0; i < 3; ++i)
+        result[i] = ((static_cast<Real>(rows[4 * i]) * static_cast<Real>(v.x())
+                      + static_cast<Real>(rows[4 * i + 1]) * static_cast<Real>(v.y()))
+                     + static_cast<Real>(rows[4 * i + 2]) * static_cast<Real>(v.z()))
+                    + static_cast<Real>(rows[4 * i + 3]);
+    return result;
+}
+
+/// Checks that the body's root slabs hold the exact projection of every vertex; returns how many were
+/// checked.
+template<class Real>
+std::uint64_t check_roots(const Scene& scene, const Frame& frame, const DeviceScene& on_device,
+                          long double slack) {
+    const auto& geometry = on_device.geometry();
+    const auto values = as_doubles<Real>(nodes_of(on_device));
+    const auto axes = directions(geometry);
+    std::uint64_t checked = 0;
+    for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) {
+        const auto* root =
+            &values[std::size_t{on_device.body_rows()[body * 8 + 2]} * static_cast<std::size_t>(geometry.k)];
+        for (std::uint32_t v = 0; v < scene.meshes[scene.bodies[body].mesh].vertices.size(); ++v) {
+            const auto p = world<Real>(scene, frame, body, v);
+            for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+                long double exact =
+                    0; // 64-bit significands hold these sums of float exactly, of double to 2^-64
+                for (std::size_t i = 0; i < 3; ++i)
+                    exact += static_cast<long double>(axes[axis][i]) * static_cast<long double>(p[i]);
+                EXPECT_LE(static_cast<long double>(root[axis]), exact + slack * std::fabs(exact));
+                EXPECT_GE(static_cast<long double>(root[axis + axes.size()]),
+                          exact - slack * std::fabs(exact));
+                ++checked;
+            }
+        }
+    }
+    return checked;
+}
+
+TEST(Bounds, SafeRootsContainEveryVertex) {
+    const auto scene = crowd(61, 9, 50.0);
+    const auto frame = scene.frame(1);
+    std::uint64_t checked = 0;
+    for (const auto& geometry : geometries()) {
+        // Directions with at most two non-zeros keep comparisons safe, not containment: their one rounding is
+        // allowed.
+        if (geometry.rounding != Rounding::safe) continue;
+        DeviceScene on_device(device("host"), scene, geometry, 4, 1, Residency::resident);
+        on_device.update(frame);
+        checked += geometry.precision == Precision::twice
+                       ? check_roots<double>(scene, frame, on_device, 0x1p-52L)
+                       : check_roots<float>(scene, frame, on_device, 0x1p-23L);
+    }
+    EXPECT_GT(checked, 10000u);
+}
+
+TEST(Bounds, HostAndOpenclHaveEqualBits) {
+    const auto scene = crowd(62, 9, 3.0);
+    std::uint64_t bytes = 0;
+    for (const auto& geometry : geometries()) {
+        for (const std::uint32_t leaves : {2u, 32u, 256u}) {
+            DeviceScene host(device("host"), scene, geometry, leaves, 1, Residency::resident);
+            DeviceScene opencl(device("opencl:0"), scene, geometry, leaves, 64, Residency::resident);
+            for (std::size_t i = 0; i < scene.frame_count; ++i) {
+                host.update(scene.frame(i));
+                opencl.update(scene.frame(i));
+                const auto slots = static_cast<std::size_t>(geometry.k) * real_bytes(geometry);
+                const auto a = nodes_of(host);
+                const auto b = nodes_of(opencl);
+                // Slot 0 of a chunk is unused, but for that of a body's first chunk.
+                for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) {
+                    const std::size_t first = host.body_rows()[body * 8 + 2];
+                    for (const auto& level : host.levels(body)) {
+                        for (std::uint32_t slot = 0; slot < 2 * level.items; ++slot) {
+                            if (slot % (2 * leaves) == 0 && level.slot + slot != 0) continue;
+                            const auto at = (first + level.slot + slot) * slots;
+                            ASSERT_EQ(std::memcmp(&a[at], &b[at], slots), 0)
+                                << "body " << body << " slot " << slot;
+                            bytes += slots;
+                        }
+                    }
+                }
+            }
+            device("opencl:0").finish();
+            device("host").finish();
+        }
+    }
+    fmt::print("{} bytes of nodes equal\n", bytes);
+    EXPECT_GT(bytes, 1000000u);
+}
+
+TEST(Bounds, MemoryStaysWithinItsBudget) {
+    for (const std::string key : {"pile:bodies=50,frames=1", "plates:count=50,frames=1"}) {
+        const auto scene = make_scene(key);
+        for (const auto& geometry : geometries()) {
+            auto& on = device("host");
+            const auto before = on.bytes_allocated();
+            const DeviceScene on_device(on, scene, geometry, 32, 1, Residency::resident);
+            const auto real = real_bytes(geometry);
+            const auto node = real * static_cast<std::size_t>(geometry.k) + 8;
+            const auto topology = scene.meshes.front().tetrahedra.size() * 32
+                                  + scene.meshes.front().vertices.size() * 4 * real + 4096;
+            EXPECT_LE(on.bytes_allocated() - before,
+                      node * on_device.slots() + 4 * real * vertex_count(scene) + topology)
+                << key;
+        }
+    }
+}
+
+TEST(Bounds, FixedBodiesAreRefittedOnce) {
+    const auto scene = crowd(63, 6, 1.0);
+    auto& on = device("host");
+    DeviceScene on_device(on, scene, {}, 8, 1, Residency::resident);
+    const auto groups_of = [&] {
+        on.finish();
+        on_device.update(scene.frame(0));
+        std::uint64_t groups = 0;
+        for (const auto& event : on.finish().events)
+            groups += event.label == "refit_strips" ? event.groups : 0;
+        return groups;
+    };
+    const auto first = groups_of();
+    const auto second = groups_of();
+    EXPECT_GT(second, 0u);
+    EXPECT_LT(second, first);
+}
+
+} // namespace
+} // namespace tandem
