@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: MIT
+# The library, its few public headers and an exported package: find_package(tandem), tandem::tandem.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+install(TARGETS tandem EXPORT tandem-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS tandem-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+set(public_headers
+  backends/device.h backends/trace.h backends/registry.h backends/host/host_device.h backends/opencl/opencl_device.h
+  algorithms/traversal.h algorithms/settings.h algorithms/kdop/device_scene.h algorithms/kdop/kdop_settings.h
+  algorithms/kdop/tree.h algorithms/broad/broad.h scenes/scene.h scenes/mesh.h scenes/builtin.h scenes/error.h)
+foreach(header ${public_headers})
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tandem/${folder})
+endforeach()
+install(EXPORT tandem-targets NAMESPACE tandem:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/tandem)
+file(WRITE ${PROJECT_BINARY_DIR}/tandem-config.cmake "include(CMakeFindDependencyMacro)
+foreach(package Eigen3 fmt nlohmann_json OpenCL ZLIB Threads)
+  find_dependency(\${package})
+endforeach()
+include(\${CMAKE_CURRENT_LIST_DIR}/tandem-targets.cmake)
+")
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/tandem-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/tandem-config.cmake ${PROJECT_BINARY_DIR}/tandem-config-version.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/tandem)

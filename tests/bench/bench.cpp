@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+// Microbenchmarks of the stages, on every device there is. Iterations are timed by the host around one wait;
+// ratios within one run mean something, times of a processor nothing about a GPU.
+#include "algorithms/broad/broad.h"
+#include "algorithms/contacts/reference.h"
+#include "algorithms/kdop/device_scene.h"
+#include "algorithms/sources.h"
+#include "algorithms/traversal.h"
+#include "backends/registry.h"
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+namespace tandem {
+namespace {
+
+const Scene& jacks() {
+    static const auto scene = make_scene("pile:bodies=64,frames=2");
+    return scene;
+}
+
+std::uint32_t group_size(const Device& device) { return device.info().max_group_size == 1 ? 1 : 64; }
+
+void transfer(benchmark::State& state, Device& device, bool up) {
+    std::vector<std::byte> bytes(static_cast<std::size_t>(state.range(0)));
+    const auto buffer = device.allocate(bytes.size(), "transfer");
+    for ([[maybe_unused]] auto _ : state) {
+        if (up)
+            device.upload(buffer, bytes, 0, true);
+        else
+            device.download(buffer, bytes);
+        device.finish();
+    }
+    state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations()) * state.range(0));
+}
+
+/// A kernel that does next to nothing, and the wait for it.
+void launch_latency(benchmark::State& state, Device& device) {
+    const auto kernel = device.compile(kernel_source("algorithms/kdop/refit.cl"), "refit_roots",
+                                       geometry_defines({}, group_size(device)));
+    const auto empty = device.allocate(64, "empty");
+    const std::array<Argument, 4> arguments{empty, empty, empty, 0u};
+    device.launch(kernel, {1, group_size(device)}, arguments);
+    device.finish();
+    for ([[maybe_unused]] auto _ : state) {
+        device.launch(kernel, {1, group_size(device)}, arguments);
+        device.finish();
+    }
+}
+
+void refit(benchmark::State& state, Device& device) {
+    DeviceScene scene(device, jacks(), {.k = static_cast<int>(state.range(0))}, 32, group_size(device),
+                      Residency::resident);
+    const auto frame = jacks().frame(0);
+    scene.update(frame); // PoCL compiles for a group size at the first launch
+    device.finish();
+    for ([[maybe_unused]] auto _ : state) {
+        scene.update(frame);
+        device.finish();
+    }
+    state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * scene.slots() * 4)
+                            * state.range(0));
+}
+
+/// One frame of an algorithm; contacts on or off tells the contact kernel's share, a threshold of 1 the
+/// seeding's.
+void frame(benchmark::State& state, Device& device, const std::string& name, const Settings& given) {
+    const auto& traversal = algorithm(name);
+    const auto settings = resolve(traversal.parameters(), {}, given, name);
+    const std::array devices{&device};
+    const auto session = traversal.prepare(devices, jacks(), settings);
+    const auto first = jacks().frame(0);
+    const auto pairs = Broad(jacks(), geometry_of(settings), Broad::Bound::sphere).pairs(first);
+    auto found = session->run(first, pairs).count;
+    device.finish();
+    for ([[maybe_unused]] auto _ : state) {
+        found = session->run(first, pairs).count;
+        device.finish();
+    }
+    state.counters["pairs"] = static_cast<double>(found);
+    state.counters["pairs/s"] =
+        benchmark::Counter(static_cast<double>(found), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void broad(benchmark::State& state) {
+    const auto scene = make_scene(fmt::format("pile:bodies={},frames=1", state.range(0)));
+    const Broad search(scene, {}, Broad::Bound::sphere);
+    const auto first = scene.frame(0);
+    for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(search.pairs(first));
+    state.SetComplexityN(state.range(0));
+}
+
+/// Preparation has to be linear in bodies.
+void prepare(benchmark::State& state, Device& device) {
+    const auto scene = make_scene(fmt::format("pile:bodies={},frames=1", state.range(0)));
+    const auto& traversal = algorithm("chunked");
+    const std::array devices{&device};
+    for ([[maybe_unused]] auto _ : state) {
+        traversal.prepare(devices, scene, resolve(traversal.parameters(), {}, {}, traversal.name()));
+        device.finish();
+    }
+    state.SetComplexityN(state.range(0));
+}
+
+void register_for(Device& device) {
+    const auto name = [&](std::string_view what) { return fmt::format("{}/{}", what, device.info().id); };
+    const auto add = [&](std::string_view what, auto call) {
+        return benchmark::RegisterBenchmark(name(what).c_str(), call)
+            ->Unit(benchmark::kMicrosecond)
+            ->UseRealTime();
+    };
+    add("upload", [&](auto& state) { transfer(state, device, true); })->Arg(4096)->Arg(1 << 24);
+    add("download", [&](auto& state) { transfer(state, device, false); })->Arg(4096)->Arg(1 << 24);
+    add("launch", [&](auto& state) { launch_latency(state, device); });
+    add("refit", [&](auto& state) { refit(state, device); })->Arg(8)->Arg(18)->Arg(26);
+    add("prepare", [&](auto& state) { prepare(state, device); })
+        ->Arg(50)
+        ->Arg(100)
+        ->Arg(200)
+        ->Complexity(benchmark::oN);
+    const std::vector<std::pair<std::string, Settings>> variants{
+        {"contacts", {}},
+        {"no contacts", {{"contact_rule", "none"}}},
+        {"count only", {{"output", "count"}}},
+        {"seeded from the top", {{"contact_rule", "none"}, {"seed_threshold", "1"}}}};
+    for (const auto& [what, given] : variants)
+        add(fmt::format("chunked, {}", what),
+            [&device, given = given](auto& state) { frame(state, device, "chunked", given); });
+    add("gproximity, contacts", [&](auto& state) { frame(state, device, "gproximity", {}); });
+    add("gproximity, no contacts", [&](auto& state) {
+        frame(state, device, "gproximity", {{"contact_rule", "none"}});
+    });
+}
+
+} // namespace
+} // namespace tandem
+
+int main(int argc, char** argv) {
+    const auto backends = tandem::discover();
+    for (const auto& backend : backends)
+        for (const auto& device : backend.devices) tandem::register_for(*device);
+    benchmark::RegisterBenchmark("broad", tandem::broad)->Arg(200)->Arg(2000)->Unit(benchmark::kMicrosecond);
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+}
