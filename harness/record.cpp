@@ -164,11 +164,18 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["total_ns"] = total_json(m);
     json["breakdown_ns"] = with_summary(m.breakdown_ns);
     json["stages"] = stages_json(m);
-    json["work"] = {{"body_pairs", m.body_pairs}, {"candidate_pairs", m.candidate_pairs},
-                    {"contacts", m.contacts},     {"bvtt_nodes", m.work.bvtt_nodes},
-                    {"seeds", m.work.seeds},      {"balances", m.work.balances},
-                    {"refills", m.work.refills},  {"spills", m.work.spills},
-                    {"rejected", m.rejected},     {"retries", m.retries}};
+    json["work"] = {{"body_pairs", m.body_pairs},
+                    {"candidate_pairs", m.candidate_pairs},
+                    {"contacts", m.contacts},
+                    {"bvtt_nodes", m.work.bvtt_nodes},
+                    {"seeds", m.work.seeds},
+                    {"balances", m.work.balances},
+                    {"refills", m.work.refills},
+                    {"spills", m.work.spills},
+                    {"queue_bytes", m.work.queue_bytes},
+                    {"published_queue_bytes", m.work.published_queue_bytes},
+                    {"rejected", m.rejected},
+                    {"retries", m.retries}};
     json["kernels"] = kernels_json(m.kernels);
     json["preparation"] = {{"host_ns", m.prepare_ns}, {"device_bytes", m.device_bytes}};
     json["agreement"] = agreement_json(m, scene);

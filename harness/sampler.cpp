@@ -172,6 +172,8 @@ void Sampler::count() {
         out_.work.balances += work.balances;
         out_.work.refills += work.refills;
         out_.work.spills += work.spills;
+        out_.work.queue_bytes = work.queue_bytes;
+        out_.work.published_queue_bytes = work.published_queue_bytes;
         device_.finish();
     }
     session_->count_work(false);

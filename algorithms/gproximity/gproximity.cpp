@@ -45,8 +45,9 @@ private:
     void do_walk(std::span<const BodyPair> pairs) override;
     bool do_grow(const Status& status) override;
     void do_compile(const Defines& defines) override;
-    void do_report(Work& work) const override { work.balances = balances_; }
+    void do_report(Work& work) const override;
 
+    std::uint64_t queue_bytes() const;
     void reserve_queues();
     void seed(std::uint32_t first, std::uint32_t count);
     void upload_whole_queues(std::uint32_t first, std::uint32_t count);
@@ -80,8 +81,20 @@ void GproximitySession::do_compile(const Defines& common) {
     if (serial_) move_ = device().compile(source, "move_balance_serially", defines);
 }
 
+std::uint64_t GproximitySession::queue_bytes() const {
+    return std::uint64_t{sizes_.groups} * sizes_.queue_capacity * item_words * 4;
+}
+
+/// The release took min(largest allocation, a quarter of the memory) for one array (tvcg18.md 2.1).
+void GproximitySession::do_report(Work& work) const {
+    const auto& info = scene().device().info();
+    work.balances = balances_;
+    work.queue_bytes = queue_bytes();
+    work.published_queue_bytes = std::min(info.max_allocation, info.global_bytes / 4);
+}
+
 void GproximitySession::reserve_queues() {
-    const auto bytes = std::uint64_t{sizes_.groups} * sizes_.queue_capacity * item_words * 4;
+    const auto bytes = queue_bytes();
     for (auto& buffer : items_) {
         buffer = {};
         buffer = device().allocate(bytes, "queues");
