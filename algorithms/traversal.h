@@ -37,13 +37,14 @@ struct Digest {
 
 /// What a walk did, from a counting build that is never timed.
 struct Work {
-    std::uint64_t bvtt_nodes = 0; ///< node pairs tested
-    std::uint64_t seeds = 0;      ///< node pairs the walks started from
-    std::uint64_t balances = 0;   ///< balance launches that moved work
-    std::uint64_t refills = 0;    ///< times a group loaded more from its queue inside a launch
-    std::uint64_t spills = 0;     ///< node pairs that left a full local queue for the global one
-    std::uint64_t queue_bytes = 0;           ///< gproximity: one array of queues
-    std::uint64_t published_queue_bytes = 0; ///< what the paper's release would have made of it on this device
+    std::uint64_t bvtt_nodes = 0;  ///< node pairs tested
+    std::uint64_t seeds = 0;       ///< node pairs the walks started from
+    std::uint64_t balances = 0;    ///< balance launches that moved work
+    std::uint64_t refills = 0;     ///< times a group loaded more from its queue inside a launch
+    std::uint64_t spills = 0;      ///< node pairs that left a full local queue for the global one
+    std::uint64_t queue_bytes = 0; ///< gproximity: one array of queues
+    std::uint64_t published_queue_bytes =
+        0; ///< what the paper's release would have made of it on this device
 };
 
 /// A frame's answer. The pairs lie in a buffer of the device until the next run.

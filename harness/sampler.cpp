@@ -54,7 +54,8 @@ public:
         broad_ = std::make_unique<Broad>(scene, geometry_, broad_bound(out.settings));
     }
 
-    void check(References& references, bool compare);
+    void check(References& references, bool against_reference,
+               const std::function<void(std::size_t)>& progress);
     void time();
     void break_down();
     void count();
@@ -107,9 +108,11 @@ void Sampler::compare(const ReferenceAnswer& expected, const FrameResult& result
         ++agreement.contact_frames_wrong;
 }
 
-void Sampler::check(References& references, bool against_reference) {
+void Sampler::check(References& references, bool against_reference,
+                    const std::function<void(std::size_t)>& progress) {
     session_->reset();
     for (std::size_t i = 0; i < range_.frames.size(); ++i) {
+        progress(i);
         const auto result = run(i);
         const bool counted = out_.settings.at("output") == "count";
         auto digest = counted ? Digest{result.count, 0, 0} : session_->digest(result);
@@ -209,8 +212,9 @@ Measurement measure(const Cell& cell, const Scene& scene, const FrameRange& rang
     options.progress(fmt::format("{}: preparing", name));
     cell.device->take_kernels();
     Sampler sampler(cell, scene, range, out);
-    options.progress(fmt::format("{}: checking", name));
-    sampler.check(references, options.check);
+    sampler.check(references, options.check, [&](std::size_t frame) {
+        options.progress(fmt::format("{}: checking frame {} of {}", name, frame + 1, range.frames.size()));
+    });
     for (std::size_t i = 0; i < options.repeat; ++i) {
         options.progress(fmt::format("{}: sample {} of {}", name, i + 1, options.repeat));
         sampler.time();
