@@ -6,6 +6,7 @@ import itertools
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -13,13 +14,15 @@ import unittest
 
 import jsonschema
 
+if len(sys.argv) != 3:
+    sys.exit(__doc__)
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
 
 
-def tandem(*arguments, environment=None):
+def tandem(*arguments, environment=None, timeout=300):
     """(exit code, standard output, lines of standard error less PoCL's own)."""
-    done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, timeout=300,
+    done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, timeout=timeout,
                           env={**os.environ, **(environment or {})})
     lines = [line for line in done.stderr.splitlines() if line.strip() and not line.rstrip().endswith("generated.")]
     return done.returncode, done.stdout, lines
@@ -55,7 +58,32 @@ def boxes(points, tets):
     return [[(min(points[v][axis] for v in t), max(points[v][axis] for v in t)) for axis in range(3)] for t in tets]
 
 
-class CommandLine(unittest.TestCase):
+def overlapping(a, b):
+    """Pairs of tetrahedra whose boxes overlap or touch. Coordinates are multiples of 1/8, so this is exact."""
+    return [(i, j) for i, x in enumerate(boxes(*a)) for j, y in enumerate(boxes(*b))
+            if all(p[0] <= q[1] and q[0] <= p[1] for p, q in zip(x, y))]
+
+
+def places(value, path=()):
+    """Every path to a value inside a JSON document, parents first."""
+    for name, child in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
+        yield (*path, name)
+        yield from places(child, (*path, name))
+
+
+def changed(record, path, change):
+    """A copy of `record` after change(parent of path, last name of path)."""
+    copy = json.loads(json.dumps(record))
+    parent = copy
+    for name in path[:-1]:
+        parent = parent[name]
+    change(parent, path[-1])
+    return copy
+
+
+class Case(unittest.TestCase):
+    """What every case needs: a folder, a good mesh in it, and readers of what the program writes."""
+
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -82,80 +110,176 @@ class CommandLine(unittest.TestCase):
         self.assertTrue(errors[0].startswith("tandem: "), errors)
         for part in [expected] if isinstance(expected, str) else expected:
             self.assertIn(part, errors[0])
+        print(f"\n  {status}: {errors[0]}", end="", file=sys.stderr)
         return out
 
+    def dump(self, path, header):
+        """Rows of a dump below its header, which must be sorted by their first five numbers."""
+        rows = list(csv.reader(path.read_text().splitlines()))
+        self.assertEqual(",".join(rows[0]), header)
+        ids = [tuple(map(int, row[:5])) for row in rows[1:]]
+        self.assertEqual(ids, sorted(ids))
+        self.assertEqual({len(row) for row in rows}, {len(rows[0])})
+        return rows[1:], ids
+
+
+class CommandLine(Case):
     def test_listings(self):
+        keys = {"devices": {"backend", "reason", "devices"}, "scenes": {"name", "models", "parameters"},
+                "algorithms": {"name", "summary", "parameters", "presets"}}
         for name, words in (("devices", ["host", "opencl:0"]), ("scenes", ["plates", "pile", "density"]),
                             ("algorithms", ["chunked", "gproximity", "unc2010", "seed_threshold"])):
             status, out, errors = tandem(name)
             self.assertEqual((status, errors), (0, []))
             for word in words:
                 self.assertIn(word, out)
-            status, out, _ = tandem(name, "--json")
-            self.assertEqual(status, 0)
-            self.assertTrue(json.loads(out))
+            status, out, errors = tandem(name, "--json")
+            self.assertEqual((status, errors), (0, []))
+            entries = json.loads(out)
+            self.assertGreater(len(entries), 1)
+            for entry in entries:
+                self.assertLessEqual(keys[name], set(entry))
+            self.assertTrue(all(word in out for word in words))
 
     def test_run_records_and_appends(self):
         out = self.work / "run.jsonl"
-        arguments = ("run", "plates", "--frames", "20:21", "--device", "host,opencl:0", "--repeat", 2, "--out", out)
+        arguments = ("run", "plates", "--frames", "20:21", "--algorithm", "chunked,gproximity", "--device", "host,opencl:0",
+                     "--repeat", 2, "--out", out)
         status, text, errors = tandem(*arguments)
         self.assertEqual((status, errors), (0, []), text)
         self.assertEqual(text.count(": right: "), 4, text)
-        for word in ("method", "traverse", "launches", "how many times chunked is faster"):
+        for word in ("method", "traverse", "launches", "total ms", "how many times chunked is faster", "narrow"):
             self.assertIn(word, text)
-        first = out.read_text()
+        first = out.read_bytes()
         records = self.records(out)
-        self.assertEqual(len(records), 4)
+        self.assertEqual([(r["devices"][0]["id"], r["algorithm"]) for r in records],
+                         list(itertools.product(["host", "opencl:0"], ["chunked", "gproximity"])))
         self.assertEqual({r["status"] for r in records}, {"ok"})
         self.assertEqual(len({json.dumps(r["agreement"]["digest"]) for r in records}), 1)
-        self.assertGreater(records[0]["agreement"]["digest"]["count"], 1000)
-        self.assertEqual(len(records[0]["total_ns"]["samples"]), 2)
-        self.assertGreater(records[0]["stages"]["traverse"]["device_ns"]["median"], 0)
-        self.assertEqual(tandem(*arguments[:2], "--frames", "0", "--algorithm", "chunked", "--set", "k=6,8", "--out", out)[0], 0)
-        self.assertTrue(out.read_text().startswith(first))
-        self.assertEqual([r["settings"]["k"] for r in self.records(out)[4:]], ["6", "8"])
+        self.assertEqual(len({json.dumps(r["agreement"]["contact_digest"]) for r in records}), 1)
+        for record in records:
+            self.assertGreater(record["agreement"]["digest"]["count"], 1000)
+            self.assertEqual(sum(record["work"]["candidate_pairs"]), record["agreement"]["digest"]["count"])
+            self.assertEqual([sum(frames) for frames in record["total_ns"]["frames"]], record["total_ns"]["samples"])
+            self.assertEqual(len(record["total_ns"]["samples"]), 2)
+            self.assertGreater(record["stages"]["traverse"]["device_ns"]["median"], 0)
+        self.assertEqual(tandem(*arguments)[0], 0)
+        self.assertTrue(out.read_bytes().startswith(first))
+        self.assertEqual([r["key"] for r in self.records(out)], [r["key"] for r in records] * 2)
+
+    def test_several_values_make_several_cells(self):
+        out = self.work / "cells.jsonl"
+        status, text, errors = tandem("run", "plates", "--frames", "0", "--algorithm", "chunked", "--set", "k=6,8",
+                                      "--set", "precision=float,double", "--repeat", 1, "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual([(r["settings"]["k"], r["settings"]["precision"]) for r in self.records(out)],
+                         list(itertools.product(["6", "8"], ["float", "double"])))
 
     def test_schema_can_fail(self):
+        """Every field of a real record: taken away, of another type, null, or with another one beside it."""
         out = self.work / "schema.jsonl"
-        tandem("run", "--mesh", self.good, "--device", "host", "--algorithm", "chunked", "--out", out)
+        tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "opencl:0", "--algorithm", "gproximity", "--out", out)
         record = self.records(out)[0]
-        for change in ({"status": "fine"}, {"surprise": 1}, {"frames": {"first": 0}}, {"key": None}):
+        maps, nullable = {"settings", "defines"}, {"failure", "agreement", "commit", "processor", "clocks_mhz", "hardware",
+                                                   "registers", "local_bytes", "spill_bytes"}
+        seen = set()
+        for path in places(record):
+            shape = tuple(0 if isinstance(name, int) else name for name in path)
+            if shape in seen:
+                continue
+            seen.add(shape)
+            parent, name = path[-2] if len(path) > 1 else None, path[-1]
+            optional = parent in maps or parent == "stages" or isinstance(name, int)
+            with self.subTest(path=path):
+                gone = changed(record, path, lambda p, n: p.pop(n))
+                self.assertTrue(optional or not self.validator.is_valid(gone), "taken away")
+                self.assertFalse(self.validator.is_valid(changed(record, path, lambda p, n: p.update({n: {"x": []}})
+                                                                 if isinstance(p, dict) else p.append({"x": []}))), "type")
+                null = changed(record, path, lambda p, n: p.__setitem__(n, None))
+                self.assertEqual(self.validator.is_valid(null), name in nullable, "null")
+                if not isinstance(name, int) and parent not in maps:
+                    more = changed(record, path, lambda p, n: p.update(surprise=1))
+                    self.assertFalse(self.validator.is_valid(more), "one more")
+        self.assertGreater(len(seen), 150)
+        for change in ({"status": "fine"}, {"status": "failed"}, {"failure": "device lost"}, {"failure": ""}, {"schema": 2},
+                       {"stages": {"travers": record["stages"]["traverse"]}}, {"breakdown_ns": {"samples": []}},
+                       {"total_ns": {**record["total_ns"], "samples": []}}, {"devices": []}, {"settings": {"k": 18}},
+                       {"scene": {**record["scene"], "digest": "0123456789ABCDEF"}},
+                       {"agreement": {**record["agreement"], "missing": 1}}):
             self.assertFalse(self.validator.is_valid({**record, **change}), change)
 
+    def test_validate_records(self):
+        script = SOURCE / "tests/validate_records.py"
+
+        def validate(*files):
+            done = subprocess.run([sys.executable, str(script), *map(str, files)], capture_output=True, text=True)
+            return done.returncode, done.stdout + done.stderr
+
+        good, bad, empty = (self.work / name for name in ("good.jsonl", "bad.jsonl", "empty.jsonl"))
+        tandem("run", "--mesh", self.good, "--device", "host", "--out", good)
+        line = good.read_text().splitlines()[0]
+        bad.write_text(line + "\n" + line.replace('"count":0,', '"count":-1,', 1) + "\n" + line[:100] + "\n")
+        empty.write_text("")
+        self.assertEqual(validate(good), (0, "2 records valid\n"))
+        status, text = validate(good, bad)
+        self.assertEqual(status, 1, text)
+        self.assertRegex(text, r"bad\.jsonl:2: /agreement/\w*digest/count: ")
+        self.assertIn("bad.jsonl:3: not JSON", text)
+        for files in ([empty], [self.work / "none.jsonl"], [good, self.work / "none.jsonl"]):
+            self.assertEqual(validate(*files)[0], 1, files)
+        self.assertEqual(validate()[0], 0)
+
     def test_check_prints_the_matrix(self):
-        for scene in ("plates", "pile:bodies=8,frames=2"):
-            status, out, errors = tandem("check", scene, "--frames", "0:1")
+        presets = sum(len(entry["presets"]) for entry in json.loads(tandem("algorithms", "--json")[1]))
+        devices = [d["id"] for entry in json.loads(tandem("devices", "--json")[1]) for d in entry["devices"]]
+        for arguments in (("plates", "--frames", "20:21"), ("pile:bodies=8,frames=2",)):
+            status, out, errors = tandem("check", *arguments)
             self.assertEqual((status, errors), (0, []), out)
-            rows = [line.split() for line in out.splitlines() if line.startswith(("host ", "opencl:0 "))]
-            self.assertEqual(len(rows), 18, out)
+            rows = [line.split() for line in out.splitlines() if line.split()[:1] and line.split()[0] in devices]
+            self.assertEqual(len(rows), presets * len(devices), out)
             for row in rows:
                 self.assertGreater(int(row[3]), 0)
-                self.assertEqual(row[4:6], ["0", "0"], out)
+                self.assertEqual((row[4:6], row[8]), (["0", "0"], "yes"), out)
+            self.assertIn("\nall agree with the reference\n", out)
 
     def test_dumps_agree_with_brute_force(self):
         parts = [bar(4, (0, 0, 0)), bar(3, (0.5, 0.25, 0.375))]
         files = [gmsh(self.work / f"part{i}.msh", *part) for i, part in enumerate(parts)]
-        pairs, contacts, out = (self.work / name for name in ("p.csv", "c.csv", "d.jsonl"))
-        status, text, errors = tandem("run", "--mesh", files[0], "--mesh", files[1], "--pose", "0 0 0 1 0 0 0", "--pose",
-                                      "0.125 0 0 1 0 0 0", "--set", "k=6", "--algorithm", "chunked", "--dump-pairs", pairs,
-                                      "--dump-contacts", contacts, "--out", out)
+        header = ("frame,body_a,tet_a,body_b,tet_b", "frame,body_a,tet_a,body_b,tet_b,px,py,pz,nx,ny,nz,depth")
+        # Poses without any rounding: a shift, and half a turn about z.
+        for pose, sign, shift in (("0.125 0 0 1 0 0 0", 1, (0.125, 0, 0)), ("3.5 1 -0.375 0 0 0 1", -1, (3.5, 1, -0.375))):
+            moved = ([(sign * x + shift[0], sign * y + shift[1], z + shift[2]) for x, y, z in parts[1][0]], parts[1][1])
+            expected = [(0, 0, a, 1, b) for a, b in overlapping(parts[0], moved)]
+            self.assertGreater(len(expected), 50)
+            self.assertLess(len(expected), len(parts[0][1]) * len(parts[1][1]))
+            for algorithm, rounding in itertools.product(("chunked", "gproximity"), ("nearest", "safe")):
+                pairs, contacts, out = (self.work / f"d{len(list(self.work.iterdir()))}.{end}" for end in ("p", "c", "jsonl"))
+                status, text, errors = tandem("run", "--mesh", files[0], "--mesh", files[1], "--pose", "0 0 0 1 0 0 0", "--pose",
+                                              pose, "--set", "k=6", "--set", f"rounding={rounding}", "--algorithm", algorithm,
+                                              "--repeat", 1, "--dump-pairs", pairs, "--dump-contacts", contacts, "--out", out)
+                self.assertEqual((status, errors), (0, []), text)
+                self.assertEqual(self.dump(pairs, header[0])[1], expected)
+                work = self.records(out)[0]["work"]
+                self.assertEqual(work["candidate_pairs"], [len(expected)])
+                rows, ids = self.dump(contacts, header[1])
+                self.assertEqual(len(rows), work["contacts"][0])
+                self.assertGreater(len(rows), 10)
+                self.assertLessEqual(set(ids), set(expected))
+                for row in rows:
+                    self.assertAlmostEqual(sum(float(x) ** 2 for x in row[8:11]), 1, places=5)
+
+    def test_dumps_of_several_frames(self):
+        pairs, contacts, out = (self.work / name for name in ("p.csv", "c.csv", "frames.jsonl"))
+        status, text, errors = tandem("run", "plates", "--frames", "20:21", "--repeat", 1, "--algorithm", "gproximity",
+                                      "--dump-pairs", pairs, "--dump-contacts", contacts, "--out", out)
         self.assertEqual((status, errors), (0, []), text)
-        rows = list(csv.reader(pairs.read_text().splitlines()))
-        self.assertEqual(rows[0], "frame,body_a,tet_a,body_b,tet_b".split(","))
-        moved = ([tuple(x + (0.125 if axis == 0 else 0) for axis, x in enumerate(p)) for p in parts[1][0]], parts[1][1])
-        expected = [["0", "0", str(a), "1", str(b)] for a, box_a in enumerate(boxes(*parts[0]))
-                    for b, box_b in enumerate(boxes(*moved))
-                    if all(x[0] <= y[1] and y[0] <= x[1] for x, y in zip(box_a, box_b))]
-        self.assertGreater(len(expected), 50)
-        self.assertEqual(rows[1:], expected)
-        record = self.records(out)[0]
-        self.assertEqual(record["work"]["candidate_pairs"], [len(expected)])
-        lines = list(csv.reader(contacts.read_text().splitlines()))
-        self.assertEqual(lines[0], "frame,body_a,tet_a,body_b,tet_b,px,py,pz,nx,ny,nz,depth".split(","))
-        self.assertEqual(len(lines) - 1, record["work"]["contacts"][0])
-        self.assertGreater(len(lines), 10)
-        for line in lines[1:]:
-            self.assertAlmostEqual(sum(float(x) ** 2 for x in line[8:11]), 1, places=5)
+        work = self.records(out)[0]["work"]
+        for path, columns, counts in ((pairs, 5, work["candidate_pairs"]), (contacts, 12, work["contacts"])):
+            header = "frame,body_a,tet_a,body_b,tet_b,px,py,pz,nx,ny,nz,depth".split(",")[:columns]
+            ids = self.dump(path, ",".join(header))[1]
+            self.assertEqual([sum(row[0] == frame for row in ids) for frame in (20, 21)], counts)
+            self.assertEqual(len(ids), sum(counts))
+        self.assertTrue(all(a < b for _, a, _, b, _ in self.dump(pairs, "frame,body_a,tet_a,body_b,tet_b")[1]))
 
     def test_tiny_capacities_retry(self):
         out = self.work / "tiny.jsonl"
@@ -168,31 +292,42 @@ class CommandLine(unittest.TestCase):
     def test_bad_meshes(self):
         points, tets = bar(2, (0, 0, 0))
         whole = self.good.read_text()
-        cases = {
-            "missing.msh": (None, "missing.msh"),
-            "short.msh": (whole[: len(whole) // 2], "short.msh:"),
-            "nan.msh": (whole.replace("1 0 0 0\n" if "\n1 0 0 0\n" in whole else "1 0.0 0.0 0.0\n", "1 nan 0 0\n", 1), "nan.msh:"),
-            "count.msh": (whole.replace("$Elements\n24", "$Elements\n999999999999"), "count.msh:"),
-            "noise.msh": ("this is no mesh\n", "noise.msh"),
+        far = [[5000, *tets[0][1:]], *tets[1:]]
+        texts = {
+            "short.msh": whole[: len(whole) // 2],
+            "nan.msh": whole.replace("\n1 0.0 0.0 0.0\n", "\n1 nan 0 0\n", 1),
+            "count.msh": whole.replace("$Elements\n24", "$Elements\n999999999999"),
+            "range.msh": gmsh(self.work / "range.msh", points, far).read_text(),
+            "hexa.msh": gmsh(self.work / "hexa.msh", points, [(0, 1, 3, 2, 4, 5, 7, 6)], 5).read_text(),
         }
-        for name, (text, expected) in cases.items():
+        reasons = {"short.msh": "", "nan.msh": "nan", "count.msh": "999999999999", "range.msh": "5001", "hexa.msh": "hexahedr"}
+        for name, text in texts.items():
+            self.assertNotEqual(text, whole)
             path = self.work / name
-            if text is not None:
-                path.write_text(text)
-            self.bad(expected, "run", "--mesh", path, "--mesh", self.good)
-        far = [list(t) for t in tets]
-        far[0][0] = 5000
-        self.bad("range.msh:", "run", "--mesh", gmsh(self.work / "range.msh", points, far))
-        hexa = [(0, 1, 3, 2, 4, 5, 7, 6)]
-        self.bad(["hexa.msh:", "hexahedr"], "run", "--mesh", gmsh(self.work / "hexa.msh", points, hexa, 5))
+            path.write_text(text)
+            for arguments in (("--mesh", path, "--mesh", self.good), ("--mesh", self.good, "--mesh", path)):
+                self.bad(reasons[name], "run", *arguments)
+            errors = tandem("run", "--mesh", path)[2]
+            self.assertRegex(errors[0], re.escape(str(path)) + r":\d+: ")
+        noise = self.work / "noise.msh"
+        noise.write_text("this is no mesh\n")
+        surface = gmsh(self.work / "surface.msh", points, [])
+        for path, reason in ((noise, ""), (surface, "no tetrahedra"), (self.work / "missing.msh", ""), (self.work, "folder")):
+            self.bad([str(path), reason], "run", "--mesh", path)
 
     def test_bad_scenes(self):
         empty = self.work / "empty.json"
         empty.write_text('{"meshes": {"j": {"builtin": "jack"}}, "bodies": []}')
-        self.bad("bodies", "run", empty)
+        self.bad(["empty.json", "bodies"], "run", empty)
+        empty.write_text('{"meshes": {"j": {"builtin": "jack"}}}')
+        self.bad(["empty.json", "bodies"], "run", empty)
+        empty.write_text('{"meshes": \n')
+        self.bad("empty.json", "run", empty)
         self.bad("the nearest is 'plates'", "run", "plate")
         self.bad("the nearest is 'density'", "run", "pile:densty=1")
-        self.bad("impossible", "run", "pile:density=-1")
+        for value in ("pile:density=-1", "pile:density=nan", "pile:bodies=0", "pile:bodies=2.5", "plates:count=99999999999999999"):
+            self.bad("impossible", "run", value)
+        self.bad("no value", "run", "pile:density")
         self.bad("the nearest is 'jack'", "run", "pile:mesh=jak")
         self.bad("absent.json", "run", self.work / "absent.json")
 
@@ -201,41 +336,174 @@ class CommandLine(unittest.TestCase):
         self.bad("the nearest is 'seed_threshold'", "run", "plates", "--set", "seed_treshold=1")
         self.bad("the nearest is 'opencl:0'", "run", "plates", "--device", "opencl:7")
         self.bad("the nearest is 'fair'", "run", "plates", "--preset", "fairr")
-        for setting in ("k=10", "group_size=0", "leaves=3", "precision=half", "pair_capacity=-1"):
-            self.bad("impossible", "run", "plates", "--algorithm", "chunked", "--set", setting, "--frames", "0")
-        for frames in ("5:2", "0:500", "x", "1:"):
+        self.bad("the nearest is 'opencl:0'", "check", "plates", "--device", "opencl:7")
+        self.bad("the nearest is 'chunked'", "check", "plates", "--algorithm", "chunkd")
+        for setting in ("k=10", "group_size=0", "leaves=3", "precision=half", "pair_capacity=-1", "pair_capacity=4294967296",
+                        "k=6,,8", "axes=coordinate"):
+            expected = "goes with k=8 only" if setting == "axes=coordinate" else "impossible"
+            self.bad(expected, "run", "plates", "--algorithm", "chunked", "--set", setting, "--frames", "0")
+        for frames in ("5:2", "0:500", "500", "x", "1:", "-1:2", "0:99999999999999999999"):
             self.bad("frames", "run", "plates", "--frames", frames)
-        self.bad("--pose", "run", "--mesh", self.good, "--pose", "0 0 0 1 0 0")
+        for pose in ("0 0 0 1 0 0", "0 0 0 1 0 0 0 0", "0 0 0 0 0 0 0", "nan 0 0 1 0 0 0", "a b c d e f g", ""):
+            self.bad("--pose", "run", "--mesh", self.good, "--pose", pose)
+        self.bad("--pose", "run", "--mesh", self.good, "--pose", "0 0 0 1 0 0 0", "--pose", "0 0 0 1 0 0 0")
+        self.bad("exclude", "run", "plates", "--mesh", self.good)
         self.bad("scene", "run")
         self.bad("--set", "run", "plates", "--set", "k")
         self.bad("--help", "run", "plates", "--nonsense")
         self.bad("--help")
-        self.bad("--require cuda", "run", "plates", "--require", "cuda")
+        for repeat in ("0", "-1", "x"):
+            self.bad("--repeat", "run", "plates", "--repeat", repeat)
+        self.bad("--help", "fly")
+
+    def test_required_devices(self):
+        present = {e["backend"] for e in json.loads(tandem("devices", "--json")[1]) if e["devices"]}
+        absent = "cuda:99" if "cuda" in present else "cuda"
+        for arguments in (("run", "plates"), ("check", "plates"), ("devices",)):
+            self.bad(f"--require {absent}: ", *arguments, "--require", absent)
+        self.assertEqual(tandem("devices", "--require", "host,opencl,opencl:0")[0], 0)
 
     def test_unwritable_output_is_found_first(self):
         for option in ("--out", "--dump-pairs", "--dump-contacts"):
             out = self.bad("cannot be written", "run", "plates", "--frames", "0", option, self.work / "no/such/file")
             self.assertNotIn("traverse", out)
 
+    def test_too_little_memory(self):
+        """1 TiB is more than any device has: both numbers are told, the record says failed, what was recorded stays."""
+        for device in ("host", "opencl:0"):
+            out = self.work / f"memory{device}.jsonl"
+            arguments = ("run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "gproximity", "--device", device,
+                         "--repeat", 1, "--out", out)
+            self.assertEqual(tandem(*arguments)[0], 0)
+            before = out.read_bytes()
+            self.bad("queues", *arguments, "--set", "queue_bytes=67108864,1099511627776", code=3)
+            self.assertTrue(out.read_bytes().startswith(before))
+            records = self.records(out)
+            self.assertEqual([r["status"] for r in records], ["ok", "ok", "failed"])
+            needed, there_is = map(int, re.search(r"needs (\d+) bytes.* (\d+)$", records[2]["failure"]).groups())
+            self.assertGreater(needed, 10**12)
+            self.assertLess(there_is, needed)
+            self.assertGreater(there_is, 0)
+
     def test_a_failing_cell_keeps_what_is_recorded(self):
         out = self.work / "fail.jsonl"
-        status, text, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "chunked", "--device", "host",
-                                      "--set", "pair_capacity=64,4294967295", "--set", "precision=double", "--out", out)
-        self.assertEqual(status, 3, text)
-        self.assertEqual(len(errors), 1, errors)
-        self.assertIn("68719476720", errors[0])
+        out.write_text("what was there before\n")
+        memory = min(d["memory_bytes"] for e in json.loads(tandem("devices", "--json")[1]) for d in e["devices"]
+                     if d["id"] == "opencl:0")
+        if memory >= 68719476720:
+            self.skipTest("the device has room for 4,294,967,295 pairs")
+        self.bad("68719476720", "run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "chunked", "--device", "opencl:0",
+                 "--set", "pair_capacity=64,4294967295,128", "--repeat", 1, "--out", out, code=3)
+        first, rest = out.read_text().split("\n", 1)
+        self.assertEqual(first, "what was there before")
+        out.write_text(rest)
         records = self.records(out)
-        self.assertEqual([r["status"] for r in records], ["ok", "failed"])
+        self.assertEqual([r["status"] for r in records], ["ok", "failed", "ok"])
         self.assertIn("68719476720", records[1]["failure"])
 
     def test_without_any_driver(self):
         nothing = {"OCL_ICD_VENDORS": "/nonexistent/"}
-        status, out, _ = tandem("devices", environment=nothing)
-        self.assertEqual(status, 0)
+        status, out, errors = tandem("devices", environment=nothing)
+        self.assertEqual((status, errors), (0, []))
         self.assertIn("opencl: no platform", out)
+        reasons = {e["backend"]: e["reason"] for e in json.loads(tandem("devices", "--json", environment=nothing)[1])}
+        self.assertIn("no platform", reasons["opencl"])
         self.bad("opencl: no platform", "run", "plates", "--device", "opencl:0", environment=nothing)
+        self.bad("opencl: no platform", "run", "plates", environment=nothing)
+        self.bad("opencl: no platform", "devices", "--require", "opencl", environment=nothing)
         status, out, _ = tandem("run", "--mesh", self.good, "--device", "host", environment=nothing)
         self.assertEqual(status, 0, out)
+
+
+class KnownDefects(Case):
+    """What is wrong today. Whoever repairs one moves its case up, without the marker; until then ctest asks for that."""
+
+    def cell(self, *arguments, **options):
+        return tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked",
+                      "--repeat", 1, *arguments, **options)
+
+    @unittest.expectedFailure
+    def test_check_takes_one_algorithm(self):
+        for name in ("chunked", "gproximity"):
+            status, out, errors = tandem("check", "plates", "--frames", "0", "--algorithm", name, "--device", "host")
+            self.assertEqual((status, errors), (0, []), out)
+
+    @unittest.expectedFailure
+    def test_coordinates_beyond_single_precision(self):
+        """A bar stretched through another: 108 pairs in double; float must find them too or refuse (exit 2)."""
+        points, tets = bar(2, (0, 0, 0))
+        long = gmsh(self.work / "long.msh", [(x * 1e39, y, z) for x, y, z in points], tets)
+        other = gmsh(self.work / "other.msh", *bar(3, (0.5, 0.25, 0.375)))
+        counts = []
+        for precision in ("double", "float"):
+            out = self.work / f"{precision}.jsonl"
+            status = tandem("run", "--mesh", long, "--mesh", other, "--device", "host", "--algorithm", "chunked", "--repeat", 1,
+                            "--set", "k=6", "--set", f"precision={precision}", "--out", out)[0]
+            counts.append(self.records(out)[0]["work"]["candidate_pairs"] if status == 0 else status)
+        self.assertIn(counts[1], (counts[0], 2))
+
+    @unittest.expectedFailure
+    def test_impossible_cells_are_found_before_any_is_measured(self):
+        out = self.work / "late.jsonl"
+        self.cell("--set", "leaves=4,3", "--out", out)
+        self.assertFalse(out.exists() and out.read_text())
+
+    @unittest.expectedFailure
+    def test_dumps_without_pairs_are_found_first(self):
+        out = self.work / "digest.jsonl"
+        self.cell("--set", "output=digest", "--dump-pairs", self.work / "digest.csv", "--out", out)
+        self.assertFalse(out.exists() and out.read_text())
+
+    @unittest.expectedFailure
+    def test_dump_after_a_failed_cell_keeps_the_table(self):
+        status, text, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "gproximity", "--device",
+                                      "host", "--repeat", 1, "--set", "queue_bytes=1099511627776,67108864", "--dump-pairs",
+                                      self.work / "failed.csv")
+        self.assertEqual((status, len(errors), text.count(": right: ")), (3, 1, 1))
+
+    @unittest.expectedFailure
+    def test_a_failure_is_one_line_without_an_empty_one(self):
+        done = subprocess.run([str(PROGRAM), "run", "--mesh", self.good, "--algorithm", "gproximity", "--device", "host", "--set",
+                               "queue_bytes=1099511627776"], capture_output=True, text=True, timeout=60)
+        self.assertTrue(done.stderr.startswith("tandem: "), done.stderr)
+
+    @unittest.expectedFailure
+    def test_any_file_name_can_be_recorded(self):
+        path = os.path.join(os.fsencode(self.work), b"na\xffme.msh")
+        with open(path, "wb") as file:
+            file.write(self.good.read_bytes())
+        done = subprocess.run([os.fsencode(PROGRAM), b"run", b"--mesh", path, b"--device", b"host", b"--repeat", b"1", b"--out",
+                               os.fsencode(self.work / "name.jsonl")], capture_output=True, timeout=60)
+        self.assertIn(done.returncode, (0, 2), done.stderr)
+
+    @unittest.expectedFailure
+    def test_records_go_into_a_pipe(self):
+        self.assertEqual(self.cell("--out", "/dev/stdout")[0], 0)
+
+    @unittest.expectedFailure
+    def test_a_negative_profile_is_refused(self):
+        self.assertEqual(self.cell("--profile", "-1", timeout=3)[0], 2)
+
+    @unittest.expectedFailure
+    def test_poses_without_meshes_are_refused(self):
+        pose = ("--pose", "1 0 0 1 0 0 0")
+        self.assertEqual(tandem("run", "pile:bodies=2,frames=1", "--device", "host", "--repeat", 1, *pose)[0], 2)
+
+    @unittest.expectedFailure
+    def test_unknown_devices_beside_all_are_refused(self):
+        self.assertEqual(tandem("run", "pile:bodies=2,frames=1", "--repeat", 1, "--device", "all,nosuch")[0], 2)
+
+    @unittest.expectedFailure
+    def test_a_folder_is_no_scene_description(self):
+        folder = self.work / "folder.json"
+        folder.mkdir()
+        self.bad("folder.json", "run", folder)
+
+    @unittest.expectedFailure
+    def test_the_place_in_a_scene_description_reads_well(self):
+        path = self.work / "place.json"
+        path.write_text('{"meshes": {"j": {"builtin": "jack"}}}')
+        self.assertNotIn(": :", tandem("run", path)[2][0])
 
 
 if __name__ == "__main__":

@@ -9,43 +9,52 @@ import sys
 import jsonschema
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+SHOWN = 10
 
 
-def problems(path, validator):
-    """(line number, text) of everything wrong in a file, and how many records it has."""
-    found, count = [], 0
-    for number, line in enumerate(path.read_text().splitlines(), 1):
-        count += 1
-        try:
-            record = json.loads(line)
-        except json.JSONDecodeError as error:
-            found.append((number, f"not JSON: {error}"))
-            continue
-        for error in validator.iter_errors(record):
-            place = "/".join(map(str, error.absolute_path))
-            found.append((number, f"/{place}: {error.message}"))
-    return found, count
+def no_constant(name):
+    raise ValueError(f"{name} is not JSON; unknown is null")
 
 
-def main():
+def problems_of(line, validator):
+    """What is wrong with one line, each with its place in the record."""
+    try:
+        record = json.loads(line, parse_constant=no_constant)
+    except ValueError as error:
+        return [f"not JSON: {error}"]
+    return [f"/{'/'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in validator.iter_errors(record)]
+
+
+def problems_in(path, validator):
+    """(line number, text) of everything wrong in a file, and how many lines it has."""
+    try:
+        lines = path.read_bytes().decode("utf-8").removesuffix("\n").split("\n")
+    except (OSError, UnicodeDecodeError) as error:
+        return [(1, str(error))], 0
+    lines = [] if lines == [""] else lines
+    return [(n, text) for n, line in enumerate(lines, 1) for text in problems_of(line, validator)], len(lines)
+
+
+def main(names):
     schema = json.loads((ROOT / "results/record.schema.json").read_text())
     jsonschema.Draft7Validator.check_schema(schema)
     validator = jsonschema.Draft7Validator(schema)
-    given = [pathlib.Path(name) for name in sys.argv[1:]]
-    files = given or sorted((ROOT / "results").glob("**/*.jsonl"))
-    total, wrong = 0, 0
+    files = [pathlib.Path(name) for name in names] or sorted((ROOT / "results").glob("**/*.jsonl"))
+    if not files:
+        print("no records are committed yet")
+        return 0
+    total, found = 0, []
     for path in files:
-        found, count = problems(path, validator)
+        problems, count = problems_in(path, validator)
         total += count
-        wrong += len(found)
-        for number, text in found[:10]:
-            print(f"{path}:{number}: {text}", file=sys.stderr)
-    if given and total == 0:
-        print("no records in the files given", file=sys.stderr)
-        return 1
-    print(f"{total} records valid" if wrong == 0 else f"{wrong} problems in {total} records")
-    return 1 if wrong else 0
+        found += [f"{path}:{number}: {text}" for number, text in problems]
+    if not found and total == 0:
+        found = [f"{files[0]}:1: no records in the files"]
+    for text in found[:SHOWN]:
+        print(text, file=sys.stderr)
+    print(f"{len(found)} problems in {total} records" if found else f"{total} records valid")
+    return 1 if found else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))
