@@ -42,17 +42,6 @@ const std::vector<Parameter> common{
     {"contact_capacity", "1048576", {}, 1, word_limit, "contacts there is room for at first"},
 };
 
-/// The settings as this device takes them: groups have one work-item where it knows no larger ones.
-Settings effective(Settings settings, const DeviceInfo& info) {
-    const auto wanted = integer(settings, "group_size");
-    if (info.max_group_size == 1)
-        settings["group_size"] = "1";
-    else if (wanted > info.max_group_size)
-        throw InputError(fmt::format("setting group_size={} is impossible on {}; it takes at most {}", wanted,
-                                     info.id, info.max_group_size));
-    return settings;
-}
-
 std::uint32_t group_size_of(const Settings& settings) {
     return static_cast<std::uint32_t>(integer(settings, "group_size"));
 }
@@ -84,6 +73,18 @@ std::vector<Parameter> kdop_parameters(std::span<const Parameter> own) {
     all.insert(all.end(), common.begin(), common.end());
     all.insert(all.end(), own.begin(), own.end());
     return all;
+}
+
+Settings effective(Settings settings, const DeviceInfo& info) {
+    if (geometry_of(settings).precision == Precision::twice && !info.has_double)
+        throw InputError(fmt::format("setting precision=double is impossible on {}; choose float", info.id));
+    const auto wanted = integer(settings, "group_size");
+    if (info.max_group_size == 1)
+        settings["group_size"] = "1";
+    else if (wanted > info.max_group_size)
+        throw InputError(fmt::format("setting group_size={} is impossible on {}; it takes at most {}", wanted,
+                                     info.id, info.max_group_size));
+    return settings;
 }
 
 KdopSession::KdopSession(Device& device, const Scene& scene, Settings settings, std::uint32_t leaves)

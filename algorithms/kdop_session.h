@@ -11,6 +11,10 @@ namespace tandem {
 /// Parameters of every algorithm that walks k-DOP hierarchies, geometry included; `own` are appended.
 std::vector<Parameter> kdop_parameters(std::span<const Parameter> own);
 
+/// The settings as a device takes them: groups have one work-item where it knows no larger ones. Throws
+/// InputError for what it cannot do.
+Settings effective(Settings settings, const DeviceInfo& info);
+
 enum class Output { pairs, count, digest };
 
 /// The words of status.clh after a frame.

@@ -38,6 +38,7 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
         throw InputError(
             fmt::format("{} runs on one device at a time; {} were given", name(), devices.size()));
     if (scene.bodies.empty()) throw InputError(fmt::format("scene {} has no bodies", scene.name));
+    check(settings, devices.front()->info());
     return do_prepare(*devices.front(), scene, settings);
 }
 

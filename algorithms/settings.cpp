@@ -51,8 +51,8 @@ Settings resolve(std::span<const Parameter> parameters, const Settings& preset, 
     }
     for (const auto* source : {&preset, &given}) {
         for (const auto& [name, value] : *source) {
-            const auto found =
-                std::find_if(parameters.begin(), parameters.end(), [&](auto& p) { return p.name == name; });
+            const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                            [&name = name](auto& p) { return p.name == name; });
             if (found == parameters.end())
                 throw InputError(unknown(fmt::format("setting of {}", algorithm), name, names));
             settings[name] = checked(*found, value);

@@ -69,6 +69,7 @@ public:
     /// Forgets what was carried from frame to frame.
     virtual void reset() = 0;
     /// Finds the candidate pairs of `frame` among `pairs`, and their contacts. Waits until they are known.
+    /// Coordinates must pass check_range (kdop/range.h).
     virtual FrameResult run(const Frame& frame, std::span<const BodyPair> pairs) = 0;
     /// Digests of the last frame's pairs and contacts, summed where they are. Not part of a measured frame.
     virtual Digest digest(const FrameResult& result) = 0;
@@ -93,12 +94,16 @@ public:
     virtual std::span<const Parameter> parameters() const = 0;
     virtual std::span<const Preset> presets() const = 0;
 
+    /// Throws InputError when resolved settings do not fit each other or the device.
+    void check(const Settings& settings, const DeviceInfo& info) const { do_check(settings, info); }
+
     /// `settings` are resolved ones. Throws InputError or DeviceError. Sessions on several devices at once
     /// are not there yet: `devices` holds one.
     std::unique_ptr<Session> prepare(std::span<Device* const> devices, const Scene& scene,
                                      const Settings& settings) const;
 
 private:
+    virtual void do_check(const Settings& settings, const DeviceInfo& info) const = 0;
     virtual std::unique_ptr<Session> do_prepare(Device& device, const Scene& scene,
                                                 const Settings& settings) const = 0;
 };

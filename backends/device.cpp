@@ -28,7 +28,7 @@ std::string kernel_key(const KernelSource& source, std::string_view entry, const
 
 /// Keeps the device's count of live bytes right, whoever drops the last handle.
 std::shared_ptr<Buffer::Impl> counted(std::shared_ptr<Buffer::Impl> impl,
-                                      std::shared_ptr<std::size_t> count) {
+                                      const std::shared_ptr<std::size_t>& count) {
     *count += impl->bytes;
     auto* raw = impl.get();
     return {raw, [impl = std::move(impl), count](Buffer::Impl*) mutable {

@@ -32,9 +32,13 @@ void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string
     app.add_option("--algorithm", options.request.algorithms,
                    "A,B (see 'tandem algorithms'); all when left out")
         ->delimiter(',');
-    app.add_option("--preset", options.request.presets, "P,Q; each algorithm's first when left out")
+    app.add_option(
+           "--preset", options.request.presets,
+           "P,Q or all (see 'tandem algorithms'); when left out each algorithm's first, for check all")
         ->delimiter(',');
-    app.add_option("--device", options.request.devices, "D,E or all (see 'tandem devices')")->delimiter(',');
+    app.add_option("--device", options.request.devices,
+                   "D,E or all (see 'tandem devices'); when left out opencl:0, for check all")
+        ->delimiter(',');
     app.add_option("--frames", options.frames, "FIRST:LAST, both inclusive; all when left out");
     app.add_option("--set", sets, "NAME=V1,V2: several values make several cells")->expected(1)->take_all();
     app.add_option("--out", options.out, "append records to this JSON-lines file");
@@ -55,9 +59,12 @@ int dispatch(int argc, char** argv) {
     auto* run_app = app.add_subcommand("run", "measure; print a table, append records");
     add_run_options(*run_app, run, run_sets);
     run_app->add_option("--repeat", run.repeat, "samples per cell")->check(CLI::Range(1, 1000));
-    run_app->add_option("--profile", run.profile, "only replay the frames N times, for a profiler");
-    run_app->add_option("--dump-pairs", run.dump_pairs, "write the first cell's candidate pairs as CSV");
-    run_app->add_option("--dump-contacts", run.dump_contacts, "write the first cell's contacts as CSV");
+    run_app->add_option("--profile", run.profile, "only replay the frames N times, for a profiler")
+        ->check(CLI::Range(1, 1000000));
+    run_app->add_option("--dump-pairs", run.dump_pairs,
+                        "write the first finished cell's candidate pairs as CSV");
+    run_app->add_option("--dump-contacts", run.dump_contacts,
+                        "write the first finished cell's contacts as CSV");
     run_app->add_flag("!--no-check", run.check, "do not compare with the reference");
     auto* check_app =
         app.add_subcommand("check", "device x algorithm agreement matrix; exit 1 on any difference");

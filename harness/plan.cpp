@@ -19,6 +19,11 @@ std::string reasons(const std::vector<BackendReport>& backends) {
     return text.empty() ? "" : fmt::format(" ({})", text);
 }
 
+template<class Value>
+void add_once(std::vector<Value>& values, Value value) {
+    if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
+}
+
 bool declares(const Traversal& traversal, const std::string& name) {
     const auto parameters = traversal.parameters();
     return std::any_of(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == name; });
@@ -43,7 +48,7 @@ std::vector<Settings> combinations(const Request& request, const Traversal& trav
 
 std::vector<const Traversal*> choose_algorithms(const Request& request) {
     std::vector<const Traversal*> chosen;
-    for (const auto& name : request.algorithms) chosen.push_back(&algorithm(name));
+    for (const auto& name : request.algorithms) add_once(chosen, &algorithm(name));
     if (chosen.empty()) chosen.assign(algorithms().begin(), algorithms().end());
     return chosen;
 }
@@ -55,25 +60,43 @@ void check_sets(const Request& request, std::span<const Traversal* const> chosen
     const std::vector<std::string> names(known.begin(), known.end());
     for (const auto& [name, values] : request.sets)
         if (!known.contains(name)) throw InputError(unknown("setting", name, names));
+    for (auto set = request.sets.begin(); set != request.sets.end(); ++set)
+        if (std::any_of(request.sets.begin(), set, [&](const auto& s) { return s.first == set->first; }))
+            throw InputError(
+                fmt::format("--set {}=... is given twice; write --set {}=V1,V2", set->first, set->first));
 }
 
 /// The presets of `traversal` that the request names; its first when it names none at all.
 std::vector<const Preset*> choose_presets(const Request& request, const Traversal& traversal) {
     if (request.presets.empty()) return {&traversal.presets().front()};
     std::vector<const Preset*> chosen;
-    for (const auto& name : request.presets)
-        for (const auto& candidate : traversal.presets())
-            if (candidate.name == name) chosen.push_back(&candidate);
+    for (const auto& candidate : traversal.presets())
+        if (std::any_of(request.presets.begin(), request.presets.end(),
+                        [&](const auto& name) { return name == "all" || name == candidate.name; }))
+            chosen.push_back(&candidate);
+    if (chosen.empty() && !request.algorithms.empty())
+        throw InputError(fmt::format("{} has none of the presets {}; leave it or --preset out",
+                                     traversal.name(), fmt::join(request.presets, ", ")));
     return chosen;
 }
 
 void check_presets(const Request& request, std::span<const Traversal* const> chosen) {
-    std::vector<std::string> names;
+    std::vector<std::string> names{"all"};
     for (const auto* traversal : chosen)
-        for (const auto& candidate : traversal->presets()) names.push_back(candidate.name);
+        for (const auto& candidate : traversal->presets())
+            if (std::find(names.begin(), names.end(), candidate.name) == names.end())
+                names.push_back(candidate.name);
     for (const auto& name : request.presets)
         if (std::find(names.begin(), names.end(), name) == names.end())
             throw InputError(unknown("preset", name, names));
+}
+
+/// A cell whose settings fit its device.
+Cell make_cell(const Traversal& traversal, const Preset& preset, const Settings& given, Device& device) {
+    Cell cell{&traversal, preset.name,
+              resolve(traversal.parameters(), preset.values, given, traversal.name()), &device};
+    traversal.check(cell.settings, device.info());
+    return cell;
 }
 
 } // namespace
@@ -90,13 +113,16 @@ std::vector<Device*> choose_devices(const std::vector<BackendReport>& backends,
     }
     std::vector<Device*> chosen;
     for (const auto& name : names) {
-        if (name == "all") return present;
+        if (name == "all") {
+            for (auto* device : present) add_once(chosen, device);
+            continue;
+        }
         if (name.find('+') != std::string::npos)
             throw InputError(fmt::format(
                 "device {}: one cell on several devices is not supported yet; list them with ','", name));
         const auto found = std::find(ids.begin(), ids.end(), name);
         if (found == ids.end()) throw InputError(unknown("device", name, ids) + reasons(backends));
-        chosen.push_back(present[static_cast<std::size_t>(found - ids.begin())]);
+        add_once(chosen, present[static_cast<std::size_t>(found - ids.begin())]);
     }
     return chosen;
 }
@@ -110,10 +136,7 @@ std::vector<Cell> plan(const Request& request, std::span<Device* const> devices)
         for (const auto* traversal : chosen)
             for (const auto* preset : choose_presets(request, *traversal))
                 for (const auto& given : combinations(request, *traversal))
-                    cells.push_back(
-                        {traversal, preset->name,
-                         resolve(traversal->parameters(), preset->values, given, traversal->name()), device});
-    if (cells.empty()) throw InputError("nothing to run: none of the algorithms has one of the presets");
+                    cells.push_back(make_cell(*traversal, *preset, given, *device));
     return cells;
 }
 

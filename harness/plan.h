@@ -18,9 +18,9 @@ struct Cell {
 
 /// What the user asked for.
 struct Request {
-    std::vector<std::string> algorithms;                                ///< empty: all
-    std::vector<std::string> presets;                                   ///< empty: each algorithm's first
-    std::vector<std::string> devices;                                   ///< empty: opencl:0; "all"
+    std::vector<std::string> algorithms; ///< empty: all
+    std::vector<std::string> presets;    ///< empty: each algorithm's first; "all"
+    std::vector<std::string> devices;    ///< "all": every one
     std::vector<std::pair<std::string, std::vector<std::string>>> sets; ///< --set NAME=V1,V2
 };
 
@@ -29,8 +29,9 @@ struct Request {
 std::vector<Device*> choose_devices(const std::vector<BackendReport>& backends,
                                     std::span<const std::string> names);
 
-/// All cells: algorithms x presets x every combination of values x devices. A preset that none of the chosen
-/// algorithms has, and a setting that none declares, are InputErrors.
+/// All cells: devices x algorithms x presets x every combination of values. InputErrors: a preset that none
+/// of the chosen algorithms has, an algorithm chosen by name that has none of the presets, a setting that
+/// none declares or that is given twice, and settings that do not fit a device or each other.
 std::vector<Cell> plan(const Request& request, std::span<Device* const> devices);
 
 /// "chunked resident on opencl:0", with the settings that differ from the preset.

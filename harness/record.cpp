@@ -139,6 +139,21 @@ Json agreement_json(const Measurement& m, const Scene& scene) {
             {"contact_digest", digest_json(a.contact_digest)}};
 }
 
+Json work_json(const Measurement& m) {
+    return {{"body_pairs", m.body_pairs},
+            {"candidate_pairs", m.candidate_pairs},
+            {"contacts", m.contacts},
+            {"bvtt_nodes", m.work.bvtt_nodes},
+            {"seeds", m.work.seeds},
+            {"balances", m.work.balances},
+            {"refills", m.work.refills},
+            {"spills", m.work.spills},
+            {"queue_bytes", m.work.queue_bytes},
+            {"published_queue_bytes", m.work.published_queue_bytes},
+            {"rejected", m.rejected},
+            {"retries", m.retries}};
+}
+
 std::string status_of(const Measurement& m, const std::string& failure) {
     if (!failure.empty()) return "failed";
     return m.agreement.ok() ? "ok" : "wrong";
@@ -161,25 +176,16 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["scene"] = scene_json(scene);
     json["frames"] = {{"first", range.first}, {"last", range.last}};
     json["devices"] = Json::array({device_json(cell.device->info())});
-    json["total_ns"] = total_json(m);
-    json["breakdown_ns"] = with_summary(m.breakdown_ns);
+    const bool measured = failure.empty();
+    json["total_ns"] = measured ? total_json(m) : Json();
+    json["breakdown_ns"] = measured ? with_summary(m.breakdown_ns) : Json();
     json["stages"] = stages_json(m);
-    json["work"] = {{"body_pairs", m.body_pairs},
-                    {"candidate_pairs", m.candidate_pairs},
-                    {"contacts", m.contacts},
-                    {"bvtt_nodes", m.work.bvtt_nodes},
-                    {"seeds", m.work.seeds},
-                    {"balances", m.work.balances},
-                    {"refills", m.work.refills},
-                    {"spills", m.work.spills},
-                    {"queue_bytes", m.work.queue_bytes},
-                    {"published_queue_bytes", m.work.published_queue_bytes},
-                    {"rejected", m.rejected},
-                    {"retries", m.retries}};
+    json["work"] = measured ? work_json(m) : Json();
     json["kernels"] = kernels_json(m.kernels);
-    json["preparation"] = {{"host_ns", m.prepare_ns}, {"device_bytes", m.device_bytes}};
+    json["preparation"] =
+        measured ? Json{{"host_ns", m.prepare_ns}, {"device_bytes", m.device_bytes}} : Json();
     json["agreement"] = agreement_json(m, scene);
-    json["error"] = {{"degenerate_pairs", m.degenerate}};
+    json["error"] = measured ? Json{{"degenerate_pairs", m.degenerate}} : Json();
     json["environment"] = environment_json();
     return json;
 }
@@ -198,8 +204,11 @@ RecordFile::~RecordFile() {
 
 void RecordFile::append(const Json& record) {
     if (file_ < 0) return;
-    const auto line = record.dump() + "\n";
-    if (write(file_, line.data(), line.size()) != static_cast<ssize_t>(line.size()) || fsync(file_) != 0)
+    // File names need not be UTF-8; JSON must be.
+    const auto line = record.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    const bool written = write(file_, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+    // Pipes and terminals cannot be synchronised.
+    if (!written || (fsync(file_) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP))
         throw InputError(fmt::format("{}: writing failed ({})", path_, std::strerror(errno)));
 }
 

@@ -5,6 +5,7 @@
 #include "scenes/motion.h"
 #include "scenes/parameters.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
@@ -18,14 +19,16 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A place in the description, for messages: "file.json: /bodies/3/pose".
+/// A place in the description, for messages: "file.json: /bodies/3/pose: ".
 struct Place {
-    std::string text;
+    std::string file;
+    std::string pointer;
 
-    Place operator/(std::string_view name) const { return {fmt::format("{}/{}", text, name)}; }
-    Place operator/(std::size_t index) const { return {fmt::format("{}/{}", text, index)}; }
+    Place operator/(std::string_view name) const { return {file, fmt::format("{}/{}", pointer, name)}; }
+    Place operator/(std::size_t index) const { return {file, fmt::format("{}/{}", pointer, index)}; }
+    std::string text() const { return pointer.empty() ? file : fmt::format("{}: {}", file, pointer); }
     [[noreturn]] void fail(std::string_view what) const {
-        throw InputError(fmt::format("{}: {}", text, what));
+        throw InputError(fmt::format("{}: {}", text(), what));
     }
 };
 
@@ -96,7 +99,7 @@ Mesh read_one(const Json& json, const Place& place, const std::filesystem::path&
     const double scale = number(json["scale"], place / "scale");
     if (!(scale > 0)) (place / "scale").fail("must be above 0");
     for (auto& v : mesh.vertices) v *= scale;
-    complete_mesh(mesh, place.text);
+    complete_mesh(mesh, place.text());
     return mesh;
 }
 
@@ -140,6 +143,7 @@ Body read_body(const Json& json, const Place& place, const std::map<std::string,
     if (!json.contains("mesh")) place.fail("has no mesh");
     const auto name = text(json["mesh"], place / "mesh");
     std::vector<std::string> names;
+    names.reserve(meshes.size());
     for (const auto& [known, index] : meshes) names.push_back(known);
     const auto found = meshes.find(name);
     if (found == meshes.end()) (place / "mesh").fail(unknown("mesh", name, names));
@@ -151,11 +155,15 @@ Body read_body(const Json& json, const Place& place, const std::map<std::string,
 
 Json parse(const std::string& path) {
     std::ifstream file(path);
-    if (!file) throw InputError(fmt::format("{}: cannot be read; name an existing scene description", path));
+    if (!file || std::filesystem::is_directory(path))
+        throw InputError(fmt::format("{}: cannot be read; name an existing scene description", path));
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
     try {
-        return Json::parse(file);
-    } catch (const Json::exception& error) {
-        throw InputError(fmt::format("{}: {}", path, error.what()));
+        return Json::parse(text);
+    } catch (const Json::parse_error& error) {
+        const auto read = text.substr(0, error.byte == 0 ? 0 : error.byte - 1);
+        const auto line = 1 + std::count(read.begin(), read.end(), '\n');
+        throw InputError(fmt::format("{}:{}: not JSON; repair the description around this line", path, line));
     }
 }
 
@@ -170,7 +178,7 @@ Frame frame_of(const std::vector<Motion>& motions, std::size_t index) {
 
 Scene load_description(const std::string& path) {
     const auto json = parse(path);
-    const Place root{path + ": "};
+    const Place root{path, {}};
     check_names(json, root, {"name", "units", "frames", "meshes", "bodies"});
     Scene scene;
     scene.name = json.contains("name") ? text(json["name"], root / "name")
@@ -204,6 +212,7 @@ Scene load_description(const std::string& path) {
 }
 
 Scene scene_from_meshes(std::span<const std::string> files, std::span<const Pose> poses) {
+    if (poses.size() > files.size()) throw InputError("more poses than meshes; give one pose a mesh at most");
     Scene scene;
     scene.name = "meshes";
     std::vector<Motion> motions;

@@ -26,11 +26,23 @@ Number number(const SceneParameter& p, Number least, Number most) {
     return value;
 }
 
+/// A number without digits that say nothing (0.20 as 0.2), so that equal scenes have equal keys.
+std::string canonical(std::string_view value) {
+    double number = 0;
+    const auto* end = value.data() + value.size();
+    const auto result = std::from_chars(value.data(), end, number);
+    const bool plain = value.find_first_of(".eE") == std::string_view::npos;
+    if (plain || result.ec != std::errc{} || result.ptr != end) return std::string(value);
+    return fmt::format("{}", number);
+}
+
 /// Writes the values of "par=value,par=value" over the defaults.
 std::vector<SceneParameter> with_values(const SceneKind& kind, std::string_view text) {
     auto parameters = kind.parameters;
     std::vector<std::string> names;
+    names.reserve(parameters.size());
     for (const auto& p : parameters) names.push_back(p.name);
+    std::vector<bool> given(names.size());
     while (!text.empty()) {
         const auto item = text.substr(0, text.find(','));
         text.remove_prefix(std::min(text.size(), item.size() + 1));
@@ -41,7 +53,11 @@ std::vector<SceneParameter> with_values(const SceneKind& kind, std::string_view 
             throw InputError(unknown(fmt::format("parameter of scene {}", kind.name), name, names));
         if (equals == std::string_view::npos)
             throw InputError(fmt::format("scene parameter {} has no value; write {}=VALUE", name, name));
-        parameters[static_cast<std::size_t>(found - names.begin())].value = item.substr(equals + 1);
+        const auto index = static_cast<std::size_t>(found - names.begin());
+        if (given[index])
+            throw InputError(fmt::format("scene parameter {} is given twice; leave one out", name));
+        given[index] = true;
+        parameters[index].value = canonical(item.substr(equals + 1));
     }
     return parameters;
 }

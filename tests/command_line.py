@@ -415,20 +415,18 @@ class CommandLine(Case):
         self.assertEqual(status, 0, out)
 
 
-class KnownDefects(Case):
-    """What is wrong today. Whoever repairs one moves its case up, without the marker; until then ctest asks for that."""
+class Repaired(Case):
+    """What was wrong once."""
 
     def cell(self, *arguments, **options):
         return tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked",
                       "--repeat", 1, *arguments, **options)
 
-    @unittest.expectedFailure
     def test_check_takes_one_algorithm(self):
         for name in ("chunked", "gproximity"):
             status, out, errors = tandem("check", "plates", "--frames", "0", "--algorithm", name, "--device", "host")
             self.assertEqual((status, errors), (0, []), out)
 
-    @unittest.expectedFailure
     def test_coordinates_beyond_single_precision(self):
         """A bar stretched through another: 108 pairs in double; float must find them too or refuse (exit 2)."""
         points, tets = bar(2, (0, 0, 0))
@@ -442,32 +440,27 @@ class KnownDefects(Case):
             counts.append(self.records(out)[0]["work"]["candidate_pairs"] if status == 0 else status)
         self.assertIn(counts[1], (counts[0], 2))
 
-    @unittest.expectedFailure
     def test_impossible_cells_are_found_before_any_is_measured(self):
         out = self.work / "late.jsonl"
         self.cell("--set", "leaves=4,3", "--out", out)
         self.assertFalse(out.exists() and out.read_text())
 
-    @unittest.expectedFailure
     def test_dumps_without_pairs_are_found_first(self):
         out = self.work / "digest.jsonl"
         self.cell("--set", "output=digest", "--dump-pairs", self.work / "digest.csv", "--out", out)
         self.assertFalse(out.exists() and out.read_text())
 
-    @unittest.expectedFailure
     def test_dump_after_a_failed_cell_keeps_the_table(self):
         status, text, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "gproximity", "--device",
                                       "host", "--repeat", 1, "--set", "queue_bytes=1099511627776,67108864", "--dump-pairs",
                                       self.work / "failed.csv")
         self.assertEqual((status, len(errors), text.count(": right: ")), (3, 1, 1))
 
-    @unittest.expectedFailure
     def test_a_failure_is_one_line_without_an_empty_one(self):
         done = subprocess.run([str(PROGRAM), "run", "--mesh", self.good, "--algorithm", "gproximity", "--device", "host", "--set",
                                "queue_bytes=1099511627776"], capture_output=True, text=True, timeout=60)
         self.assertTrue(done.stderr.startswith("tandem: "), done.stderr)
 
-    @unittest.expectedFailure
     def test_any_file_name_can_be_recorded(self):
         path = os.path.join(os.fsencode(self.work), b"na\xffme.msh")
         with open(path, "wb") as file:
@@ -476,30 +469,24 @@ class KnownDefects(Case):
                                os.fsencode(self.work / "name.jsonl")], capture_output=True, timeout=60)
         self.assertIn(done.returncode, (0, 2), done.stderr)
 
-    @unittest.expectedFailure
     def test_records_go_into_a_pipe(self):
         self.assertEqual(self.cell("--out", "/dev/stdout")[0], 0)
 
-    @unittest.expectedFailure
     def test_a_negative_profile_is_refused(self):
         self.assertEqual(self.cell("--profile", "-1", timeout=3)[0], 2)
 
-    @unittest.expectedFailure
     def test_poses_without_meshes_are_refused(self):
         pose = ("--pose", "1 0 0 1 0 0 0")
         self.assertEqual(tandem("run", "pile:bodies=2,frames=1", "--device", "host", "--repeat", 1, *pose)[0], 2)
 
-    @unittest.expectedFailure
     def test_unknown_devices_beside_all_are_refused(self):
         self.assertEqual(tandem("run", "pile:bodies=2,frames=1", "--repeat", 1, "--device", "all,nosuch")[0], 2)
 
-    @unittest.expectedFailure
     def test_a_folder_is_no_scene_description(self):
         folder = self.work / "folder.json"
         folder.mkdir()
         self.bad("folder.json", "run", folder)
 
-    @unittest.expectedFailure
     def test_the_place_in_a_scene_description_reads_well(self):
         path = self.work / "place.json"
         path.write_text('{"meshes": {"j": {"builtin": "jack"}}}')

@@ -57,7 +57,7 @@ std::uint32_t leaves_of(const Settings& settings) {
     return given;
 }
 
-class ChunkedSession : public KdopSession {
+class ChunkedSession final : public KdopSession {
 public:
     ChunkedSession(Device& device, const Scene& scene, const Settings& settings)
         : KdopSession(device, scene, settings, leaves_of(settings)),
@@ -252,6 +252,10 @@ public:
     std::span<const Preset> presets() const override { return all_presets; }
 
 private:
+    void do_check(const Settings& settings, const DeviceInfo& info) const override {
+        effective(settings, info);
+        leaves_of(settings);
+    }
     std::unique_ptr<Session> do_prepare(Device& device, const Scene& scene,
                                         const Settings& settings) const override {
         return std::make_unique<ChunkedSession>(device, scene, settings);

@@ -24,7 +24,7 @@ std::uint32_t whole_mesh(const Scene& scene) {
     return std::bit_ceil(most);
 }
 
-class GproximitySession : public KdopSession {
+class GproximitySession final : public KdopSession {
 public:
     GproximitySession(Device& device, const Scene& scene, const Settings& given)
         : KdopSession(device, scene, given, whole_mesh(scene)),
@@ -242,6 +242,10 @@ public:
     std::span<const Preset> presets() const override { return gproximity_presets(); }
 
 private:
+    void do_check(const Settings& settings, const DeviceInfo& info) const override {
+        const auto fitting = effective(settings, info);
+        queue_sizes(fitting, info, static_cast<std::uint32_t>(integer(fitting, "group_size")));
+    }
     std::unique_ptr<Session> do_prepare(Device& device, const Scene& scene,
                                         const Settings& settings) const override {
         return std::make_unique<GproximitySession>(device, scene, settings);

@@ -158,7 +158,7 @@ std::shared_ptr<Kernel::Impl> HostDevice::do_compile(const KernelSource& source,
             continue;
         }
         const auto runtime = std::find_if(row->runtime.begin(), row->runtime.end(),
-                                          [&](const auto& d) { return d.name == name; });
+                                          [&name = name](const auto& d) { return d.name == name; });
         if (runtime == row->runtime.end())
             throw DeviceError(fmt::format("host: kernel '{}' has no parameter '{}'", entry, name));
         impl->runtime[static_cast<std::size_t>(runtime - row->runtime.begin())].second = std::stol(value);

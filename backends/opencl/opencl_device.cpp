@@ -337,14 +337,17 @@ std::pair<std::int64_t, std::int64_t> OpenclDevice::do_interval(std::uint64_t ti
     return {static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end - begin)};
 }
 
-/// The vendor files the loader would read, for the sentence that explains an empty list.
+/// Where the loader looks and the vendor files it finds there, for the sentence that explains an empty list.
 std::string vendor_files() {
+    const auto* chosen = std::getenv("OCL_ICD_VENDORS");
+    const std::string folder = chosen != nullptr ? chosen : "/etc/OpenCL/vendors";
     std::vector<std::string> names;
     std::error_code ignored;
-    for (const auto& entry : std::filesystem::directory_iterator("/etc/OpenCL/vendors", ignored))
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
         names.push_back(entry.path().filename().string());
     std::sort(names.begin(), names.end());
-    return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
+    return fmt::format("{} has: {}", folder,
+                       names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", ")));
 }
 
 std::vector<cl_device_id> devices_of(cl_platform_id platform) {
@@ -362,10 +365,9 @@ Found discover() {
     cl_uint count = 0;
     const auto code = clGetPlatformIDs(0, nullptr, &count);
     if (code != CL_SUCCESS || count == 0) {
-        found.reason = fmt::format(
-            "opencl: no platform (the loader returned {}; /etc/OpenCL/vendors has: {}); install a "
-            "driver, for a CPU the package pocl-opencl-icd",
-            code, vendor_files());
+        found.reason = fmt::format("opencl: no platform (the loader returned {}; {}); install a "
+                                   "driver, for a CPU the package pocl-opencl-icd",
+                                   code, vendor_files());
         return found;
     }
     std::vector<cl_platform_id> platforms(count);

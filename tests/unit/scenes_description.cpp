@@ -84,7 +84,7 @@ TEST_F(ScenesDescription, FilesAreFoundBesideIt) {
 
 TEST_F(ScenesDescription, ErrorsNameThePath) {
     const std::string meshes = R"({"meshes": {"j": {"builtin": "jack"}}, )";
-    EXPECT_THAT(failure("{"), HasSubstr("line 1"));
+    EXPECT_THAT(failure("{"), HasSubstr("scene.json:1: not JSON"));
     EXPECT_THAT(failure(meshes + R"("bodys": []})"),
                 HasSubstr("unknown name 'bodys'; the nearest is 'bodies'"));
     EXPECT_THAT(failure(meshes + R"("bodies": []})"), HasSubstr("has no bodies"));

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/commands.h"
+#include "harness/sampler.h"
+
+namespace tandem {
+
+/// The scene that the options name: a kind, a description, or mesh files with poses. Throws InputError.
+Scene open_scene(const RunOptions& options);
+
+/// The frames that the options name; throws InputError when the scene has no such frames.
+FrameRange open_frames(const RunOptions& options, const Scene& scene);
+
+/// Throws InputError for each name that is no backend with devices and no device.
+void check_required(const std::vector<BackendReport>& backends, const std::vector<std::string>& require);
+
+/// Refuses coordinates that the precision of a cell cannot hold, before anything is measured.
+void check_coordinates(std::span<const Cell> cells, const Scene& scene, const FrameRange& range);
+
+/// Refuses dumps that no cell can give, and two outputs in one file.
+void check_outputs(const RunOptions& options, std::span<const Cell> cells);
+
+} // namespace tandem

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "harness/commands.h"
+#include "harness/inputs.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+namespace tandem {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json parameters_json(std::span<const Parameter> parameters) {
+    Json json = Json::array();
+    for (const auto& p : parameters) {
+        Json row{{"name", p.name}, {"default", p.initial}, {"help", p.help}};
+        if (p.choices.empty())
+            row["range"] = {p.least, p.most};
+        else
+            row["choices"] = p.choices;
+        json.push_back(row);
+    }
+    return json;
+}
+
+Json device_json(const DeviceInfo& info) {
+    return {{"id", info.id},
+            {"name", info.name},
+            {"driver", info.driver},
+            {"compiler", info.compiler},
+            {"compute_units", info.compute_units},
+            {"memory_bytes", info.global_bytes},
+            {"local_bytes", info.local_bytes},
+            {"double", info.has_double}};
+}
+
+void print_algorithm(const Traversal& traversal) {
+    fmt::print("{}: {}\n  presets\n", traversal.name(), traversal.summary());
+    for (const auto& p : traversal.presets()) fmt::print("    {:<18} {}\n", p.name, p.help);
+    fmt::print("  settings\n");
+    for (const auto& p : traversal.parameters())
+        fmt::print("    {:<18} {:<10} {} [{}]\n", p.name, p.initial, p.help,
+                   p.choices.empty() ? fmt::format("{}..{}", p.least, p.most)
+                                     : fmt::format("{}", fmt::join(p.choices, ", ")));
+}
+
+} // namespace
+
+int devices_command(bool json, const std::vector<std::string>& require) {
+    const auto backends = discover();
+    Json all = Json::array();
+    for (const auto& backend : backends) {
+        Json entry{{"backend", backend.name},
+                   {"reason", backend.reason.empty() ? Json(nullptr) : Json(backend.reason)}};
+        entry["devices"] = Json::array();
+        for (const auto& device : backend.devices) {
+            const auto& info = device->info();
+            entry["devices"].push_back(device_json(info));
+            if (!json)
+                fmt::print("{:<10} {} ({}), {} compute units, {:.1f} GB, {}\n", info.id, info.name,
+                           info.driver, info.compute_units, static_cast<double>(info.global_bytes) * 1e-9,
+                           info.compiler);
+        }
+        if (!json && !backend.reason.empty()) fmt::print("{}\n", backend.reason);
+        all.push_back(entry);
+    }
+    if (json) fmt::print("{}\n", all.dump(2));
+    check_required(backends, require);
+    return 0;
+}
+
+int scenes_command(bool json) {
+    Json all = Json::array();
+    for (const auto& kind : scene_kinds()) {
+        Json parameters = Json::object();
+        for (const auto& p : kind.parameters) parameters[p.name] = {{"default", p.value}, {"help", p.help}};
+        all.push_back({{"name", kind.name}, {"models", kind.models}, {"parameters", parameters}});
+        if (json) continue;
+        const auto scene = make_scene(kind.name);
+        fmt::print("{}: {}\n  {} bodies, {} vertices, {} tetrahedra, {} frames\n", kind.name, kind.models,
+                   scene.bodies.size(), vertex_count(scene), tetrahedron_count(scene), scene.frame_count);
+        for (const auto& p : kind.parameters) fmt::print("    {:<10} {:<12} {}\n", p.name, p.value, p.help);
+    }
+    if (json) fmt::print("{}\n", all.dump(2));
+    return 0;
+}
+
+int algorithms_command(bool json) {
+    Json all = Json::array();
+    for (const auto* traversal : algorithms()) {
+        Json presets = Json::array();
+        for (const auto& p : traversal->presets())
+            presets.push_back({{"name", p.name}, {"help", p.help}, {"values", p.values}});
+        all.push_back({{"name", traversal->name()},
+                       {"summary", traversal->summary()},
+                       {"parameters", parameters_json(traversal->parameters())},
+                       {"presets", presets}});
+        if (!json) print_algorithm(*traversal);
+    }
+    if (json) fmt::print("{}\n", all.dump(2));
+    return 0;
+}
+
+} // namespace tandem
