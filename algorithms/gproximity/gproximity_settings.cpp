@@ -96,9 +96,9 @@ QueueSizes queue_sizes(const Settings& settings, const DeviceInfo& info, std::ui
         static_cast<std::uint32_t>(std::min<std::uint64_t>(info.local_bytes / item_bytes / 4, 2048));
     if (sizes.local_queue == 0) sizes.local_queue = std::max(fitting, 4u);
     if (sizes.local_queue * item_bytes + 64 > info.local_bytes)
-        throw InputError(fmt::format("setting local_queue={} needs {} bytes of local memory and {} has {}; lower it",
-                                     sizes.local_queue, sizes.local_queue * item_bytes, info.id,
-                                     info.local_bytes));
+        throw InputError(
+            fmt::format("setting local_queue={} needs {} bytes of local memory and {} has {}; lower it",
+                        sizes.local_queue, sizes.local_queue * item_bytes, info.id, info.local_bytes));
     sizes.initial_items = number(settings, "initial_items");
     if (sizes.initial_items == 0) sizes.initial_items = 3 * group_size;
     sizes.queue_capacity = number(settings, "queue_capacity");
