@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "tests/loader/files.h"
+
 #include "scenes/error.h"
 #include "scenes/mesh.h"
 
@@ -7,7 +9,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-/// What the tests of all formats share; each declares what it uses.
 namespace tandem::loader {
 
 namespace {
@@ -46,7 +47,7 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
 }
 
 /// The mesh that every format's example holds: two tetrahedra that share a face, and a vertex of no use.
-void expect_example(const Mesh& mesh, bool single = false) {
+void expect_example(const Mesh& mesh, bool single) {
     const std::vector<Eigen::Vector3d> vertices = {{0, 0, 0},   {1, 0, 0},         {0, 1, 0},
                                                    {0, 0, 1.5}, {-0.25, 2, 0.125}, {0.1, 0.2, -3e-7}};
     ASSERT_EQ(mesh.vertices.size(), vertices.size());

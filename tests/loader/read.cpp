@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "tests/loader/files.h"
 #include "scenes/error.h"
 #include "scenes/read/read.h"
 
@@ -9,11 +10,6 @@
 #include <sstream>
 
 namespace tandem::loader {
-
-std::string folder();
-std::string write_file(const std::string& name, std::string_view bytes);
-void expect_failure(const std::string& name, std::string_view bytes, const std::string& place,
-                    std::string_view reason);
 
 namespace {
 

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include "tests/loader/files.h"
 #include "scenes/mesh.h"
 
 #include <gtest/gtest.h>
 
 namespace tandem::loader {
-
-std::string write_file(const std::string& name, std::string_view bytes);
-std::string replaced(std::string text, std::string_view from, std::string_view to);
-void expect_example(const Mesh& mesh, bool single);
-void expect_failure(const std::string& name, std::string_view bytes, const std::string& place,
-                    std::string_view reason);
 
 namespace {
 
