@@ -216,16 +216,18 @@ TEST_P(Conformance, GproximityIsForcedThroughEveryMechanism) {
                                       traversal.name());
         const std::array devices{&on};
         const auto session = traversal.prepare(devices, scene, settings);
-        session->count_work(true);
+        const auto timed = session->run(frame, all_pairs(scene));
+        EXPECT_EQ(session->digest(timed), expected.digest);
+        EXPECT_EQ(session->contact_digest(timed), expected.contact_digest);
+        EXPECT_GT(timed.retries, 0u);
+        session->count_work(true); // the counting build makes no contacts
         const auto result = session->run(frame, all_pairs(scene));
         EXPECT_EQ(session->digest(result), expected.digest);
-        EXPECT_EQ(session->contact_digest(result), expected.contact_digest);
         EXPECT_GT(result.work.balances, 0u);
         EXPECT_GT(result.work.refills, 0u);
         EXPECT_GT(result.work.spills, 0u);
-        EXPECT_GT(result.retries, 0u);
         fmt::print("{} balances, {} refills, {} spills, {} retries\n", result.work.balances,
-                   result.work.refills, result.work.spills, result.retries);
+                   result.work.refills, result.work.spills, timed.retries);
     }
 }
 
