@@ -50,8 +50,9 @@ Buffer Device::allocate(std::size_t bytes, std::string_view label) {
     // Zero-sized buffers are not allowed by OpenCL; one word keeps callers free of special cases.
     const auto size = std::max<std::size_t>(bytes, 16);
     if (size > has.max_allocation)
-        throw DeviceError(fmt::format("{}: buffer '{}' needs {} bytes, and one allocation holds at most {}",
-                                      has.id, label, size, has.max_allocation));
+        throw DeviceError(
+            fmt::format("{} ({}): buffer '{}' needs {} bytes, and one allocation holds at most {}", has.id,
+                        has.name, label, size, has.max_allocation));
     auto impl = do_allocate(size);
     impl->bytes = size;
     impl->label = label;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "backends/registry.h"
 
+#include "backends/cuda/cuda_device.h"
 #include "backends/host/host_device.h"
 #include "backends/opencl/opencl_device.h"
 
@@ -19,6 +20,11 @@ BackendReport find_opencl() {
     return {.name = "opencl", .devices = std::move(found.devices), .reason = std::move(found.reason)};
 }
 
+BackendReport find_cuda() {
+    auto found = cuda::discover();
+    return {.name = "cuda", .devices = std::move(found.devices), .reason = std::move(found.reason)};
+}
+
 template<class Find>
 BackendReport guarded(std::string name, Find find) {
     try {
@@ -34,6 +40,7 @@ std::vector<BackendReport> discover() {
     std::vector<BackendReport> reports;
     reports.push_back(guarded("host", find_host));
     reports.push_back(guarded("opencl", find_opencl));
+    reports.push_back(guarded("cuda", find_cuda));
     return reports;
 }
 

@@ -57,10 +57,10 @@ for preset in resident published; do
 done
 check --algorithm chunked --set precision=double --set output=digest
 check --algorithm chunked --set precision=double --set output=count
-queues=(--algorithm gproximity --set groups=3 --set local_queue=12 --set initial_items=4 --set queue_capacity=64
+queues=(--algorithm gproximity --set groups=3 --set initial_items=4 --set queue_capacity=64
         --set balance_group_size=8)
-check "${queues[@]}" --set balance=parallel
-check "${queues[@]}" --set balance=serial
+check "${queues[@]}" --set local_queue=12 --set balance=parallel
+check "${queues[@]}" --set local_queue=12 --set balance=serial
 check "${queues[@]}" --set k=26 --set residency=published --set upload=queues --set full_exit=yes --set refill=no \
   --set local_queue=30 --set batch=2
 "$program" devices | grep -q Oclgrind || { echo "these runs were not on Oclgrind" >&2; exit 1; }

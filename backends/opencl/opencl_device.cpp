@@ -2,6 +2,8 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include "backends/opencl/opencl_device.h"
 
+#include "backends/ptxas_log.h"
+
 #include <CL/cl.h>
 #include <algorithm>
 #include <filesystem>
@@ -49,10 +51,11 @@ std::string device_text(cl_device_id device, cl_device_info what) {
 std::string hardware_id(cl_device_id device) {
     constexpr cl_device_info pci_bus = 0x4008;
     constexpr cl_device_info pci_slot = 0x4009;
+    constexpr cl_device_info pci_domain = 0x400A;
     if (device_text(device, CL_DEVICE_EXTENSIONS).find("cl_nv_device_attribute_query") == std::string::npos)
         return {};
-    return fmt::format("pci {:02x}:{:02x}", device_value<cl_uint>(device, pci_bus),
-                       device_value<cl_uint>(device, pci_slot) >> 3);
+    return fmt::format("pci {:04x}:{:02x}:{:02x}", device_value<cl_uint>(device, pci_domain),
+                       device_value<cl_uint>(device, pci_bus), device_value<cl_uint>(device, pci_slot) >> 3);
 }
 
 DeviceInfo describe(cl_device_id device, std::size_t index) {
@@ -72,6 +75,14 @@ DeviceInfo describe(cl_device_id device, std::size_t index) {
     info.local_bytes = device_value<cl_ulong>(device, CL_DEVICE_LOCAL_MEM_SIZE);
     info.has_double = device_value<cl_device_fp_config>(device, CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
     return info;
+}
+
+std::string build_log(cl_program program, cl_device_id device) {
+    std::size_t size = 0;
+    clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
+    std::string log(size, '\0');
+    clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
+    return log;
 }
 
 struct OpenclBuffer : Buffer::Impl {
@@ -256,10 +267,7 @@ cl_program OpenclDevice::program(const KernelSource& source, const std::string& 
     check(code, "clCreateProgramWithSource", "compiling");
     if (clBuildProgram(made, 1, &device_, options.c_str(), nullptr, nullptr) == CL_SUCCESS)
         return programs_[key] = made;
-    std::size_t size = 0;
-    clGetProgramBuildInfo(made, device_, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
-    std::string log(size, '\0');
-    clGetProgramBuildInfo(made, device_, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
+    auto log = build_log(made, device_);
     clReleaseProgram(made);
     std::replace(log.begin(), log.end(), '\n', ' ');
     throw DeviceError(
@@ -273,10 +281,14 @@ std::shared_ptr<Kernel::Impl> OpenclDevice::do_compile(const KernelSource& sourc
          & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT)
         != 0)
         options += " -cl-fp32-correctly-rounded-divide-sqrt";
+    const bool verbose =
+        device_text(device_, CL_DEVICE_EXTENSIONS).find("cl_nv_compiler_options") != std::string::npos;
+    if (verbose) options += " -cl-nv-verbose";
     for (const auto& [name, value] : defines) options += fmt::format(" -D{}={}", name, value);
     auto kernel = std::make_shared<OpenclKernel>();
     cl_int code = CL_SUCCESS;
-    kernel->kernel = clCreateKernel(program(source, options), std::string(entry).c_str(), &code);
+    auto* made = program(source, options);
+    kernel->kernel = clCreateKernel(made, std::string(entry).c_str(), &code);
     check(code, "clCreateKernel", fmt::format("looking for '{}' in {}", entry, source.name));
     cl_ulong local = 0;
     std::size_t group = 0;
@@ -284,6 +296,11 @@ std::shared_ptr<Kernel::Impl> OpenclDevice::do_compile(const KernelSource& sourc
                              nullptr);
     clGetKernelWorkGroupInfo(kernel->kernel, device_, CL_KERNEL_WORK_GROUP_SIZE, sizeof(group), &group,
                              nullptr);
+    if (verbose) {
+        const auto use = use_of(build_log(made, device_), entry);
+        kernel->facts.registers = use.registers;
+        kernel->facts.spill_bytes = use.spill_bytes;
+    }
     kernel->facts.local_bytes = static_cast<std::int64_t>(local);
     kernel->facts.max_group_size = static_cast<std::int64_t>(group);
     return kernel;

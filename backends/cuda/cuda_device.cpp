@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: MIT
+#include "backends/cuda/cuda_device.h"
+
+#include "backends/cuda/driver.h"
+#include "backends/cuda/nvrtc.h"
+#include "backends/cuda/staging.h"
+#include "backends/ptxas_log.h"
+
+#include <array>
+#include <cstdio>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fstream>
+
+namespace tandem::cuda {
+
+namespace {
+
+std::string names_of_devices(const Driver& driver) {
+    int count = 0;
+    driver.cuDeviceGetCount(&count);
+    std::vector<std::string> names;
+    for (int i = 0; i < count; ++i) {
+        std::array<char, 256> text{};
+        driver.cuDeviceGetName(text.data(), static_cast<int>(text.size()), i);
+        names.emplace_back(text.data());
+    }
+    return fmt::format("{} device(s): {}", count, fmt::join(names, ", "));
+}
+
+Nvrtc open_nvrtc(const Driver& driver) {
+    try {
+        return Nvrtc(driver.version);
+    } catch (const DeviceError& error) {
+        throw DeviceError(fmt::format("cuda: {}, but {}", names_of_devices(driver), error.what()));
+    }
+}
+
+/// What every device of the process shares.
+struct Libraries {
+    Driver driver;
+    Nvrtc nvrtc = open_nvrtc(driver);
+};
+
+/// Keeps a device's primary context alive.
+class PrimaryContext {
+public:
+    PrimaryContext() = default;
+    PrimaryContext(const PrimaryContext&) = delete;
+    PrimaryContext& operator=(const PrimaryContext&) = delete;
+    ~PrimaryContext() {
+        if (driver_ != nullptr) driver_->cuDevicePrimaryCtxRelease_v2(handle_);
+    }
+    Result retain(const Driver& driver, DeviceHandle handle, Context& context) {
+        const auto code = driver.cuDevicePrimaryCtxRetain(&context, handle);
+        if (code == 0) driver_ = &driver;
+        handle_ = handle;
+        return code;
+    }
+
+private:
+    const Driver* driver_ = nullptr;
+    DeviceHandle handle_ = 0;
+};
+
+/// The version of the kernel driver, where Linux tells.
+std::string kernel_driver() {
+    std::ifstream file("/sys/module/nvidia/version");
+    std::string version;
+    file >> version;
+    return version.empty() ? "" : ", " + version;
+}
+
+/// "0000:3b:00.0" as OpenCL's hardware text has it, so that one GPU seen twice is recognised.
+std::string hardware_of_pci(const char* address) {
+    unsigned domain = 0;
+    unsigned bus = 0;
+    unsigned slot = 0;
+    if (std::sscanf(address, "%x:%x:%x", &domain, &bus, &slot) != 3) return {};
+    return fmt::format("pci {:04x}:{:02x}:{:02x}", domain, bus, slot);
+}
+
+struct CudaBuffer : Buffer::Impl {
+    const Driver* driver = nullptr;
+    Context context = nullptr;
+    DevicePointer pointer = 0;
+    bool owned = true;
+    CudaBuffer() = default;
+    CudaBuffer(const CudaBuffer&) = delete;
+    CudaBuffer& operator=(const CudaBuffer&) = delete;
+    ~CudaBuffer() override {
+        if (!owned || pointer == 0) return;
+        driver->cuCtxSetCurrent(context);
+        driver->cuMemFree_v2(pointer);
+    }
+};
+
+struct CudaKernel : Kernel::Impl {
+    Function function = nullptr;
+};
+
+/// A kernel file compiled with one set of defines; its entries share it.
+struct LoadedModule {
+    Module module = nullptr;
+    Image image; ///< without its bytes
+};
+
+class CudaDevice : public Device {
+public:
+    CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index);
+    CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, Context context, Stream stream);
+    ~CudaDevice() override;
+
+    const DeviceInfo& info() const override { return info_; }
+
+private:
+    std::shared_ptr<Buffer::Impl> do_allocate(std::size_t bytes) override;
+    std::shared_ptr<Buffer::Impl> do_adopt(void* native) override;
+    std::uint64_t do_upload(Buffer::Impl& to, std::span<const std::byte> from, std::size_t offset,
+                            bool blocking) override;
+    std::uint64_t do_download(const Buffer::Impl& from, std::span<std::byte> to, std::size_t offset) override;
+    std::uint64_t do_clear(Buffer::Impl& buffer, std::size_t bytes, std::size_t offset) override;
+    std::shared_ptr<Kernel::Impl> do_compile(const KernelSource& source, std::string_view entry,
+                                             const Defines& defines) override;
+    std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) override;
+    void do_finish() override;
+    void do_set_clocks(Clocks clocks) override { timed_ = clocks == Clocks::on; }
+    std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) override;
+
+    void describe();
+    int attribute(DeviceAttribute what) const;
+    void check(Result result, std::string_view call, std::string_view what) const;
+    /// The context belongs to the thread; an application or another device may have set its own.
+    void make_current() const {
+        check(driver().cuCtxSetCurrent(context_), "cuCtxSetCurrent", "starting a command");
+    }
+    void wait(std::string_view what);
+    const LoadedModule& module(const KernelSource& source, const Defines& defines);
+    const Driver& driver() const { return libraries_->driver; }
+    /// Runs `submit` between two events when timestamps are on; the ticket.
+    template<class Submit>
+    std::uint64_t timed(const Submit& submit);
+    EventHandle next_event();
+
+    std::shared_ptr<Libraries> libraries_;
+    PrimaryContext primary_; ///< outlives everything below that frees memory in it
+    DeviceHandle handle_ = 0;
+    DeviceInfo info_;
+    Context context_ = nullptr;
+    Stream stream_ = nullptr;
+    bool owned_ = true;
+    bool timed_ = false;
+    int capability_ = 0;
+    std::map<std::string, LoadedModule> modules_;
+    Staging staging_;
+    std::vector<EventHandle>
+        events_; ///< begin and end of each command since the last reading, then spare ones
+    std::size_t events_used_ = 0;
+    std::size_t events_read_ = 0;
+};
+
+CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index)
+    : libraries_(std::move(libraries)), handle_(handle), staging_(libraries_->driver) {
+    info_.id = fmt::format("cuda:{}", index);
+    describe();
+    check(primary_.retain(driver(), handle_, context_), "cuDevicePrimaryCtxRetain", "opening the device");
+    make_current();
+    constexpr unsigned non_blocking = 1; // CU_STREAM_NON_BLOCKING: no ordering with the default stream
+    check(driver().cuStreamCreate(&stream_, non_blocking), "cuStreamCreate", "opening the device");
+}
+
+CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, Context context,
+                       Stream stream)
+    : libraries_(std::move(libraries)),
+      handle_(handle),
+      context_(context),
+      stream_(stream),
+      owned_(false),
+      staging_(libraries_->driver) {
+    info_.id = "cuda:adopted";
+    describe();
+}
+
+CudaDevice::~CudaDevice() {
+    driver().cuCtxSetCurrent(context_);
+    driver().cuStreamSynchronize(stream_);
+    for (auto* event : events_) driver().cuEventDestroy_v2(event);
+    for (const auto& [key, loaded] : modules_) driver().cuModuleUnload(loaded.module);
+    if (owned_) driver().cuStreamDestroy_v2(stream_);
+}
+
+int CudaDevice::attribute(DeviceAttribute what) const {
+    int value = 0;
+    check(driver().cuDeviceGetAttribute(&value, what, handle_), "cuDeviceGetAttribute",
+          "asking what the device is");
+    return value;
+}
+
+void CudaDevice::describe() {
+    std::array<char, 256> text{};
+    driver().cuDeviceGetName(text.data(), static_cast<int>(text.size()), handle_);
+    info_.name = text.data();
+    text = {};
+    driver().cuDeviceGetPCIBusId(text.data(), static_cast<int>(text.size()), handle_);
+    info_.hardware = hardware_of_pci(text.data());
+    capability_ = attribute(capability_major) * 10 + attribute(capability_minor);
+    info_.driver = fmt::format("CUDA {}{}", version_text(driver().version), kernel_driver());
+    info_.compiler =
+        fmt::format("NVRTC {} for sm_{}", version_text(libraries_->nvrtc.version()), capability_);
+    info_.is_gpu = true;
+    info_.compute_units = static_cast<std::uint32_t>(attribute(multiprocessor_count));
+    info_.max_group_size = static_cast<std::uint32_t>(attribute(max_threads_per_block));
+    info_.local_bytes = static_cast<std::uint64_t>(attribute(max_shared_per_block));
+    std::size_t memory = 0;
+    check(driver().cuDeviceTotalMem_v2(&memory, handle_), "cuDeviceTotalMem",
+          "asking for the device's memory");
+    info_.global_bytes = info_.max_allocation = memory;
+}
+
+void CudaDevice::check(Result result, std::string_view call, std::string_view what) const {
+    if (result == 0) return;
+    throw DeviceError(fmt::format("{} ({}): {} failed with {} while {}; driver for CUDA {}, NVRTC {}",
+                                  info_.id, info_.name, call, driver().describe(result), what,
+                                  version_text(driver().version), version_text(libraries_->nvrtc.version())));
+}
+
+EventHandle CudaDevice::next_event() {
+    if (events_used_ == events_.size()) {
+        EventHandle event = nullptr;
+        check(driver().cuEventCreate(&event, 0), "cuEventCreate", "timing a command");
+        events_.push_back(event);
+    }
+    return events_[events_used_++];
+}
+
+template<class Submit>
+std::uint64_t CudaDevice::timed(const Submit& submit) {
+    if (!timed_) {
+        submit();
+        return 0;
+    }
+    check(driver().cuEventRecord(next_event(), stream_), "cuEventRecord", "timing a command");
+    submit();
+    check(driver().cuEventRecord(next_event(), stream_), "cuEventRecord", "timing a command");
+    return events_used_ / 2;
+}
+
+void CudaDevice::wait(std::string_view what) {
+    check(driver().cuStreamSynchronize(stream_), "cuStreamSynchronize", what);
+    staging_.release();
+}
+
+std::shared_ptr<Buffer::Impl> CudaDevice::do_allocate(std::size_t bytes) {
+    make_current();
+    auto buffer = std::make_shared<CudaBuffer>();
+    buffer->driver = &driver();
+    buffer->context = context_;
+    std::size_t free = 0;
+    std::size_t total = 0;
+    driver().cuMemGetInfo_v2(&free, &total);
+    check(driver().cuMemAlloc_v2(&buffer->pointer, bytes), "cuMemAlloc",
+          fmt::format("allocating {} bytes with {} free of {}", bytes, free, total));
+    return buffer;
+}
+
+std::shared_ptr<Buffer::Impl> CudaDevice::do_adopt(void* native) {
+    auto buffer = std::make_shared<CudaBuffer>();
+    buffer->pointer = reinterpret_cast<DevicePointer>(native);
+    buffer->owned = false;
+    return buffer;
+}
+
+std::uint64_t CudaDevice::do_upload(Buffer::Impl& to, std::span<const std::byte> from, std::size_t offset,
+                                    bool blocking) {
+    make_current();
+    const auto target = static_cast<CudaBuffer&>(to).pointer + offset;
+    const auto what = [&] { return fmt::format("uploading '{}'", to.label); };
+    // A blocking upload reads the caller's pageable memory, as the paper's code did.
+    auto* staged = blocking ? nullptr : staging_.take(from.size());
+    if (staged != nullptr) std::memcpy(staged, from.data(), from.size());
+    const void* source = staged != nullptr ? staged : from.data();
+    const auto ticket = timed([&] {
+        check(driver().cuMemcpyHtoDAsync_v2(target, source, from.size(), stream_), "cuMemcpyHtoDAsync",
+              what());
+    });
+    if (staged == nullptr) wait(what());
+    return ticket;
+}
+
+std::uint64_t CudaDevice::do_download(const Buffer::Impl& from, std::span<std::byte> to, std::size_t offset) {
+    make_current();
+    constexpr std::size_t small = 65536;
+    const auto source = static_cast<const CudaBuffer&>(from).pointer + offset;
+    const auto what = [&] { return fmt::format("downloading '{}'", from.label); };
+    auto* staged = to.size() <= small ? staging_.take(to.size()) : nullptr;
+    void* target = staged != nullptr ? staged : to.data();
+    const auto ticket = timed([&] {
+        check(driver().cuMemcpyDtoHAsync_v2(target, source, to.size(), stream_), "cuMemcpyDtoHAsync", what());
+    });
+    wait(what());
+    if (staged != nullptr) std::memcpy(to.data(), staged, to.size());
+    return ticket;
+}
+
+std::uint64_t CudaDevice::do_clear(Buffer::Impl& buffer, std::size_t bytes, std::size_t offset) {
+    make_current();
+    const auto target = static_cast<CudaBuffer&>(buffer).pointer + offset;
+    return timed([&] {
+        check(driver().cuMemsetD8Async(target, 0, bytes, stream_), "cuMemsetD8Async",
+              fmt::format("clearing '{}'", buffer.label));
+    });
+}
+
+const LoadedModule& CudaDevice::module(const KernelSource& source, const Defines& defines) {
+    std::string key(source.name);
+    for (const auto& [name, value] : defines) key += fmt::format("|{}={}", name, value);
+    if (const auto found = modules_.find(key); found != modules_.end()) return found->second;
+    LoadedModule loaded;
+    try {
+        loaded.image = libraries_->nvrtc.compile(source, defines, capability_);
+    } catch (const DeviceError& error) {
+        throw DeviceError(fmt::format("{} ({}): {}", info_.id, info_.name, error.what()));
+    }
+    check(driver().cuModuleLoadData(&loaded.module, loaded.image.bytes.data()), "cuModuleLoadData",
+          fmt::format("loading {} ({})", source.name, loaded.image.target));
+    loaded.image.bytes.clear();
+    return modules_[key] = std::move(loaded);
+}
+
+std::shared_ptr<Kernel::Impl> CudaDevice::do_compile(const KernelSource& source, std::string_view entry,
+                                                     const Defines& defines) {
+    make_current();
+    const auto& loaded = module(source, defines);
+    auto kernel = std::make_shared<CudaKernel>();
+    const std::string name(entry);
+    check(driver().cuModuleGetFunction(&kernel->function, loaded.module, name.c_str()), "cuModuleGetFunction",
+          fmt::format("looking for '{}' in {}", entry, source.name));
+    const auto ask = [&](FunctionAttribute what) -> std::int64_t {
+        int value = -1;
+        return driver().cuFuncGetAttribute(&value, what, kernel->function) == 0 ? value : -1;
+    };
+    kernel->facts.registers = ask(function_registers);
+    kernel->facts.local_bytes = ask(function_shared_bytes);
+    kernel->facts.max_group_size = ask(function_max_threads);
+    const auto use = use_of(loaded.image.log, entry);
+    // Without the assembler's word, the private memory of a thread is a bound on what it spills.
+    kernel->facts.spill_bytes = use.spill_bytes >= 0 ? use.spill_bytes : ask(function_local_bytes);
+    return kernel;
+}
+
+std::uint64_t CudaDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) {
+    make_current();
+    std::vector<DevicePointer> pointers(arguments.size());
+    std::vector<void*> parameters(arguments.size());
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+        const auto& value = arguments[i].value();
+        if (const auto* const* buffer = std::get_if<Buffer::Impl*>(&value)) {
+            pointers[i] = static_cast<const CudaBuffer*>(*buffer)->pointer;
+            parameters[i] = &pointers[i];
+        } else {
+            // The driver copies the value before it returns.
+            parameters[i] = const_cast<std::byte*>(std::get<Argument::Scalar>(value).bytes.data());
+        }
+    }
+    const auto function = static_cast<CudaKernel&>(kernel).function;
+    const auto groups = static_cast<unsigned>(grid.groups);
+    if (grid.groups > 0x7fffffffu)
+        throw DeviceError(fmt::format("{}: '{}' with {} groups; a launch takes at most 2147483647", info_.id,
+                                      kernel.facts.entry, grid.groups));
+    return timed([&] {
+        check(
+            driver().cuLaunchKernel(function, groups, 1, 1, grid.group_size, 1, 1, 0, stream_,
+                                    parameters.data(), nullptr),
+            "cuLaunchKernel",
+            fmt::format("launching '{}' with {} groups of {}", kernel.facts.entry, groups, grid.group_size));
+    });
+}
+
+void CudaDevice::do_finish() {
+    make_current();
+    wait("waiting");
+}
+
+std::pair<std::int64_t, std::int64_t> CudaDevice::do_interval(std::uint64_t ticket) {
+    float begin = 0;
+    float length = 0;
+    auto* const first = events_.at(2 * ticket - 2);
+    auto* const last = events_.at(2 * ticket - 1);
+    const bool known = driver().cuEventElapsedTime(&begin, events_.front(), first) == 0
+                       && driver().cuEventElapsedTime(&length, first, last) == 0 && length >= 0;
+    if (++events_read_ == events_used_ / 2) events_used_ = events_read_ = 0;
+    if (!known) return {-1, -1};
+    const auto nanoseconds = [](float ms) {
+        return static_cast<std::int64_t>(static_cast<double>(ms) * 1e6);
+    };
+    return {nanoseconds(begin), nanoseconds(length)};
+}
+
+/// The driver and its compiler, loaded once.
+std::shared_ptr<Libraries> libraries() {
+    static const auto loaded = std::make_shared<Libraries>();
+    return loaded;
+}
+
+} // namespace
+
+Found discover() {
+    Found found;
+    try {
+        const auto loaded = libraries();
+        int count = 0;
+        loaded->driver.cuDeviceGetCount(&count);
+        for (int i = 0; i < count; ++i) {
+            DeviceHandle handle = 0;
+            loaded->driver.cuDeviceGet(&handle, i);
+            try {
+                found.devices.push_back(
+                    std::make_unique<CudaDevice>(loaded, handle, static_cast<std::size_t>(i)));
+            } catch (const DeviceError& error) {
+                found.reason = error.what();
+            }
+        }
+        if (count == 0) found.reason = "cuda: the driver is there, but no device";
+    } catch (const DeviceError& error) {
+        found.reason = error.what();
+    }
+    return found;
+}
+
+std::unique_ptr<Device> adopt(void* context, void* stream) {
+    const auto loaded = libraries();
+    DeviceHandle handle = 0;
+    loaded->driver.cuCtxSetCurrent(static_cast<Context>(context));
+    if (const auto code = loaded->driver.cuCtxGetDevice(&handle); code != 0)
+        throw DeviceError(
+            fmt::format("cuda: the context cannot be adopted: {}", loaded->driver.describe(code)));
+    return std::make_unique<CudaDevice>(loaded, handle, static_cast<Context>(context),
+                                        static_cast<Stream>(stream));
+}
+
+} // namespace tandem::cuda

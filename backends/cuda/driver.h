@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// The entry points of NVIDIA's driver that the adaptor uses, declared here so that no toolkit is needed to
+// build; a test compares them with <cuda.h> where there is one. Names and values: CUDA Driver API
+// reference, 13.0.
+#pragma once
+
+#include "backends/library.h"
+
+#include <cstddef>
+#include <string>
+
+struct CUctx_st;
+struct CUmod_st;
+struct CUfunc_st;
+struct CUstream_st;
+struct CUevent_st;
+
+namespace tandem::cuda {
+
+using Result = int; ///< CUresult; 0 is success
+using DeviceHandle = int;
+using DevicePointer = unsigned long long;
+using Context = CUctx_st*;
+using Module = CUmod_st*;
+using Function = CUfunc_st*;
+using Stream = CUstream_st*;
+using EventHandle = CUevent_st*;
+
+/// CUdevice_attribute and CUfunction_attribute, as far as they are asked for.
+enum DeviceAttribute : int {
+    max_threads_per_block = 1,
+    max_shared_per_block = 8,
+    multiprocessor_count = 16,
+    capability_major = 75,
+    capability_minor = 76
+};
+enum FunctionAttribute : int {
+    function_max_threads = 0,
+    function_shared_bytes = 1,
+    function_local_bytes = 3,
+    function_registers = 4
+};
+
+// ENTRY(symbol in the library, arguments): every one returns Result.
+#define TANDEM_CUDA_ENTRIES(ENTRY)                                                                           \
+    ENTRY(cuInit, (unsigned))                                                                                \
+    ENTRY(cuDriverGetVersion, (int*))                                                                        \
+    ENTRY(cuGetErrorName, (Result, const char**))                                                            \
+    ENTRY(cuGetErrorString, (Result, const char**))                                                          \
+    ENTRY(cuDeviceGetCount, (int*))                                                                          \
+    ENTRY(cuDeviceGet, (DeviceHandle*, int))                                                                 \
+    ENTRY(cuDeviceGetName, (char*, int, DeviceHandle))                                                       \
+    ENTRY(cuDeviceGetPCIBusId, (char*, int, DeviceHandle))                                                   \
+    ENTRY(cuDeviceGetAttribute, (int*, int, DeviceHandle))                                                   \
+    ENTRY(cuDeviceTotalMem_v2, (std::size_t*, DeviceHandle))                                                 \
+    ENTRY(cuDevicePrimaryCtxRetain, (Context*, DeviceHandle))                                                \
+    ENTRY(cuDevicePrimaryCtxRelease_v2, (DeviceHandle))                                                      \
+    ENTRY(cuCtxSetCurrent, (Context))                                                                        \
+    ENTRY(cuCtxGetDevice, (DeviceHandle*))                                                                   \
+    ENTRY(cuMemGetInfo_v2, (std::size_t*, std::size_t*))                                                     \
+    ENTRY(cuMemAlloc_v2, (DevicePointer*, std::size_t))                                                      \
+    ENTRY(cuMemFree_v2, (DevicePointer))                                                                     \
+    ENTRY(cuMemHostAlloc, (void**, std::size_t, unsigned))                                                   \
+    ENTRY(cuMemFreeHost, (void*))                                                                            \
+    ENTRY(cuMemcpyHtoDAsync_v2, (DevicePointer, const void*, std::size_t, Stream))                           \
+    ENTRY(cuMemcpyDtoHAsync_v2, (void*, DevicePointer, std::size_t, Stream))                                 \
+    ENTRY(cuMemsetD8Async, (DevicePointer, unsigned char, std::size_t, Stream))                              \
+    ENTRY(cuStreamCreate, (Stream*, unsigned))                                                               \
+    ENTRY(cuStreamDestroy_v2, (Stream))                                                                      \
+    ENTRY(cuStreamSynchronize, (Stream))                                                                     \
+    ENTRY(cuEventCreate, (EventHandle*, unsigned))                                                           \
+    ENTRY(cuEventDestroy_v2, (EventHandle))                                                                  \
+    ENTRY(cuEventRecord, (EventHandle, Stream))                                                              \
+    ENTRY(cuEventElapsedTime, (float*, EventHandle, EventHandle))                                            \
+    ENTRY(cuModuleLoadData, (Module*, const void*))                                                          \
+    ENTRY(cuModuleUnload, (Module))                                                                          \
+    ENTRY(cuModuleGetFunction, (Function*, Module, const char*))                                             \
+    ENTRY(cuFuncGetAttribute, (int*, int, Function))                                                         \
+    ENTRY(cuLaunchKernel, (Function, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned,   \
+                           Stream, void**, void**))
+
+/// The driver's entry points.
+struct Driver {
+    /// Loads libcuda.so.1 and starts it. Throws DeviceError: one sentence on what is missing.
+    Driver();
+
+#define TANDEM_DECLARE(name, arguments) Result(*name) arguments = nullptr;
+    TANDEM_CUDA_ENTRIES(TANDEM_DECLARE)
+#undef TANDEM_DECLARE
+
+    Library library;
+    int version = 0; ///< of the CUDA it supports: 13000 is 13.0
+
+    /// "CUDA_ERROR_OUT_OF_MEMORY (out of memory)"
+    std::string describe(Result result) const;
+};
+
+/// "13.0" of 13000.
+std::string version_text(int version);
+
+} // namespace tandem::cuda

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// NVRTC, the compiler of CUDA at run time; it needs no driver and no GPU. Names: NVRTC documentation, 13.0.
+#pragma once
+
+#include "backends/device.h"
+#include "backends/library.h"
+
+#include <vector>
+
+struct _nvrtcProgram;
+
+namespace tandem::cuda {
+
+using NvrtcResult = int; ///< nvrtcResult; 0 is success
+using Program = _nvrtcProgram*;
+
+// ENTRY(symbol in the library, arguments): every one returns NvrtcResult.
+#define TANDEM_NVRTC_ENTRIES(ENTRY)                                                                          \
+    ENTRY(nvrtcVersion, (int*, int*))                                                                        \
+    ENTRY(nvrtcGetNumSupportedArchs, (int*))                                                                 \
+    ENTRY(nvrtcGetSupportedArchs, (int*))                                                                    \
+    ENTRY(nvrtcCreateProgram,                                                                                \
+          (Program*, const char*, const char*, int, const char* const*, const char* const*))                 \
+    ENTRY(nvrtcDestroyProgram, (Program*))                                                                   \
+    ENTRY(nvrtcCompileProgram, (Program, int, const char* const*))                                           \
+    ENTRY(nvrtcGetProgramLogSize, (Program, std::size_t*))                                                   \
+    ENTRY(nvrtcGetProgramLog, (Program, char*))                                                              \
+    ENTRY(nvrtcGetPTXSize, (Program, std::size_t*))                                                          \
+    ENTRY(nvrtcGetPTX, (Program, char*))                                                                     \
+    ENTRY(nvrtcGetCUBINSize, (Program, std::size_t*))                                                        \
+    ENTRY(nvrtcGetCUBIN, (Program, char*))
+
+/// What a compilation gave.
+struct Image {
+    std::string bytes;  ///< CUBIN or PTX, ready to be loaded as a module
+    std::string target; ///< "sm_90 cubin" or "compute_90 ptx"
+    std::string log;
+};
+
+class Nvrtc {
+public:
+    /// Loads $TANDEM_NVRTC or the newest NVRTC whose major version is at most that of `driver_version` (0:
+    /// any). Throws DeviceError that says what was looked for.
+    explicit Nvrtc(int driver_version = 0);
+
+    int version() const { return version_; } ///< 13000 is 13.0
+    const std::string& library() const { return library_.name(); }
+    /// Compute capabilities it knows, as 90 for 9.0, ascending.
+    const std::vector<int>& architectures() const { return architectures_; }
+
+    /// Compiles for compute capability `architecture`: machine code where NVRTC knows it, else PTX of the
+    /// newest lower one. Throws DeviceError with the log.
+    Image compile(const KernelSource& source, const Defines& defines, int architecture,
+                  bool ptx = false) const;
+
+private:
+#define TANDEM_DECLARE(name, arguments) NvrtcResult(*name) arguments = nullptr;
+    TANDEM_NVRTC_ENTRIES(TANDEM_DECLARE)
+#undef TANDEM_DECLARE
+
+    Library library_;
+    int version_ = 0;
+    std::vector<int> architectures_;
+};
+
+} // namespace tandem::cuda

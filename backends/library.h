@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace tandem {
+
+/// A shared library found at run time. It stays loaded: drivers do not survive being unloaded.
+class Library {
+public:
+    /// Opens the first of `names` that there is. Throws DeviceError: "looked for A, B".
+    explicit Library(std::span<const std::string> names);
+
+    const std::string& name() const { return name_; }
+    /// The address of `symbol`; null when the library has none.
+    void* find(const char* symbol) const;
+
+private:
+    std::string name_;
+    void* handle_ = nullptr;
+};
+
+} // namespace tandem

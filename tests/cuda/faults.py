@@ -1,0 +1,101 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""faults.py PROGRAM FOLDER: what the program says when CUDA is absent, old, broken or failing, with the stubs of FOLDER."""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+if len(sys.argv) != 3:
+    sys.exit(__doc__)
+PROGRAM, FOLDER = (pathlib.Path(a).resolve() for a in sys.argv[1:])
+RUN = ("run", "pile:bodies=4,frames=1", "--repeat", "1", "--algorithm", "chunked")
+
+
+def tandem(*arguments, driver="driver", nvrtc=FOLDER / "nvrtc/libnvrtc.so", **variables):
+    environment = {**os.environ, "LD_LIBRARY_PATH": str(FOLDER / driver), **{k: str(v) for k, v in variables.items()}}
+    environment.pop("TANDEM_NVRTC", None)
+    if nvrtc:
+        environment["TANDEM_NVRTC"] = str(nvrtc)
+    done = subprocess.run([str(PROGRAM), *arguments], capture_output=True, text=True, env=environment, timeout=300)
+    return done.returncode, done.stdout, done.stderr.splitlines()
+
+
+def reason(**options):
+    """Why there is no CUDA device, and that nothing else was said or broken."""
+    status, out, errors = tandem("devices", "--json", **options)
+    assert status == 0 and not errors, (status, errors)
+    entries = {entry["backend"]: entry for entry in json.loads(out)}
+    assert entries["host"]["devices"] and not entries["cuda"]["devices"], entries
+    return entries["cuda"]["reason"]
+
+
+class Faults(unittest.TestCase):
+    def test_the_stub_is_a_device(self):
+        status, out, errors = tandem("devices", "--require", "cuda:0")
+        self.assertEqual((status, errors), (0, []))
+        self.assertRegex(out, r"cuda:0 +Stub GPU \(CUDA 13\.0")
+
+    def test_no_driver(self):
+        if subprocess.run("ldconfig -p | grep -q libcuda.so.1", shell=True).returncode == 0:
+            self.skipTest("this machine has a driver")
+        self.assertEqual(reason(driver="none"), "cuda: no driver (looked for libcuda.so.1); install NVIDIA's")
+        status, _, errors = tandem(*RUN, "--device", "cuda:0", driver="none")
+        self.assertEqual((status, len(errors)), (2, 1))
+        self.assertIn("unknown device 'cuda:0'; the nearest is", errors[0])
+        self.assertIn("cuda: no driver", errors[0])
+
+    def test_no_device(self):
+        self.assertIn("cuInit failed with CUDA_ERROR_NO_DEVICE", reason(STUB_INIT=100))
+
+    def test_driver_without_an_entry_point(self):
+        self.assertIn("has no cuLaunchKernel", reason(driver="old"))
+
+    def test_no_compiler(self):
+        text = reason(nvrtc="/nonexistent/libnvrtc.so")
+        self.assertIn("1 device(s): Stub GPU", text)
+        self.assertIn("/nonexistent/libnvrtc.so", text)
+
+    def test_driver_older_than_the_compiler(self):
+        self.assertIn("NVRTC 13.0 is newer than the driver, which is for CUDA 12.4", reason(STUB_VERSION=12040))
+        self.assertIn("no NVRTC goes with a driver for CUDA 10.2", reason(nvrtc=None, STUB_VERSION=10020))
+
+    def failed(self, **options):
+        """The one line on standard error and the record of a cell on the stub that fails after one that does not."""
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "out.jsonl"
+            status, _, errors = tandem(*RUN, "--device", "host,cuda:0", "--out", str(out), **options)
+            records = [json.loads(line) for line in out.read_text().splitlines()]
+        self.assertEqual(status, 3)
+        self.assertEqual(len(errors), 1, errors)
+        self.assertEqual([r["status"] for r in records], ["ok", "failed"])
+        self.assertIn(records[1]["failure"], errors[0])
+        self.assertIn("Stub GPU", errors[0])
+        return errors[0]
+
+    def test_out_of_memory(self):
+        self.assertRegex(self.failed(STUB_MEMORY=1000000), r"needs \d+ bytes, and one allocation holds at most 1000000")
+        self.assertRegex(self.failed(STUB_MEMORY=40000000),
+                         r"CUDA_ERROR_OUT_OF_MEMORY .* allocating \d+ bytes with \d+ free of 40000000")
+
+    def test_a_kernel_that_faults(self):
+        text = self.failed(STUB_FAULT=1)
+        self.assertIn("cuStreamSynchronize failed with CUDA_ERROR_ILLEGAL_ADDRESS", text)
+        self.assertIn("driver for CUDA 13.0, NVRTC 13.0", text)
+
+    def test_a_kernel_that_does_not_compile(self):
+        self.assertRegex(self.failed(STUB_BROKEN=1), r"\.cl does not compile with NVRTC 13\.0 for sm_90 cubin")
+
+    def test_wrong_answers_are_found(self):
+        """The stub's kernels do nothing: every pair is missing."""
+        status, out, errors = tandem(*RUN, "--device", "cuda:0")
+        self.assertEqual((status, errors), (1, []))
+        self.assertTrue(re.search(r"WRONG: [1-9]\d* missing, 0 extra", out), out)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)
