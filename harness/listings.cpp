@@ -25,7 +25,18 @@ Json parameters_json(std::span<const Parameter> parameters) {
     return json;
 }
 
-Json device_json(const DeviceInfo& info) {
+/// The device before `info` that is the same piece of hardware; empty when there is none.
+std::string same_as(const std::vector<BackendReport>& backends, const DeviceInfo& info) {
+    for (const auto& backend : backends) {
+        for (const auto& device : backend.devices) {
+            if (device->info().id == info.id) return {};
+            if (!info.hardware.empty() && device->info().hardware == info.hardware) return device->info().id;
+        }
+    }
+    return {};
+}
+
+Json device_json(const DeviceInfo& info, const std::string& same) {
     return {{"id", info.id},
             {"name", info.name},
             {"driver", info.driver},
@@ -33,7 +44,9 @@ Json device_json(const DeviceInfo& info) {
             {"compute_units", info.compute_units},
             {"memory_bytes", info.global_bytes},
             {"local_bytes", info.local_bytes},
-            {"double", info.has_double}};
+            {"double", info.has_double},
+            {"hardware", info.hardware.empty() ? Json(nullptr) : Json(info.hardware)},
+            {"same_as", same.empty() ? Json(nullptr) : Json(same)}};
 }
 
 void print_algorithm(const Traversal& traversal) {
@@ -57,11 +70,12 @@ int devices_command(bool json, const std::vector<std::string>& require) {
         entry["devices"] = Json::array();
         for (const auto& device : backend.devices) {
             const auto& info = device->info();
-            entry["devices"].push_back(device_json(info));
+            const auto same = same_as(backends, info);
+            entry["devices"].push_back(device_json(info, same));
             if (!json)
-                fmt::print("{:<10} {} ({}), {} compute units, {:.1f} GB, {}\n", info.id, info.name,
+                fmt::print("{:<10} {} ({}), {} compute units, {:.1f} GB, {}{}\n", info.id, info.name,
                            info.driver, info.compute_units, static_cast<double>(info.global_bytes) * 1e-9,
-                           info.compiler);
+                           info.compiler, same.empty() ? "" : fmt::format("; the same GPU as {}", same));
         }
         if (!json && !backend.reason.empty()) fmt::print("{}\n", backend.reason);
         all.push_back(entry);

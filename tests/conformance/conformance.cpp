@@ -251,8 +251,22 @@ TEST_P(Conformance, ResidentChunkedWaitsOnce) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Conformance, testing::Values("host", "opencl:0"),
-                         [](const auto& test) { return test.param == "host" ? "Host" : "Opencl"; });
+/// Host and opencl:0, without which the tests fail, and every other device there is.
+std::vector<std::string> device_names() {
+    std::vector<std::string> names{"host", "opencl:0"};
+    for (const auto& backend : discover())
+        for (const auto& found : backend.devices)
+            if (std::find(names.begin(), names.end(), found->info().id) == names.end())
+                names.push_back(found->info().id);
+    return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, Conformance, testing::ValuesIn(device_names()), [](const auto& test) {
+    std::string name = test.param == "opencl:0" ? "opencl" : test.param;
+    name.erase(std::remove(name.begin(), name.end(), ':'), name.end());
+    name.front() = static_cast<char>(std::toupper(name.front()));
+    return name;
+});
 
 TEST(Reference, SweepEqualsBruteForce) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "backends/cuda/nvrtc.h"
+
+#include <set>
+
+namespace tandem {
+
+/// A device that only compiles: preparing a session on it asks for exactly the kernels of that cell. Its
+/// memory is nowhere and its commands do nothing.
+class CompilingDevice : public Device {
+public:
+    CompilingDevice() {
+        info_.id = "nvrtc";
+        info_.name = "a GPU that is not there";
+        info_.compute_units = 132;
+        info_.max_group_size = 1024;
+        info_.global_bytes = info_.max_allocation = std::uint64_t{1} << 40;
+        info_.local_bytes = 49152;
+    }
+
+    /// Every (file, defines) asked for, and the entries of each.
+    const std::map<std::pair<std::string, Defines>, std::set<std::string>>& asked() const { return asked_; }
+    const DeviceInfo& info() const override { return info_; }
+
+private:
+    struct Nothing : Buffer::Impl {};
+    struct NoKernel : Kernel::Impl {};
+
+    std::shared_ptr<Buffer::Impl> do_allocate(std::size_t) override { return std::make_shared<Nothing>(); }
+    std::shared_ptr<Buffer::Impl> do_adopt(void*) override { return std::make_shared<Nothing>(); }
+    std::uint64_t do_upload(Buffer::Impl&, std::span<const std::byte>, std::size_t, bool) override {
+        return 0;
+    }
+    std::uint64_t do_download(const Buffer::Impl&, std::span<std::byte> to, std::size_t) override {
+        std::fill(to.begin(), to.end(), std::byte{0});
+        return 0;
+    }
+    std::uint64_t do_clear(Buffer::Impl&, std::size_t, std::size_t) override { return 0; }
+    std::shared_ptr<Kernel::Impl> do_compile(const KernelSource& source, std::string_view entry,
+                                             const Defines& defines) override {
+        asked_[{std::string(source.name), defines}].insert(std::string(entry));
+        return std::make_shared<NoKernel>();
+    }
+    std::uint64_t do_launch(Kernel::Impl&, Grid, std::span<const Argument>) override { return 0; }
+    void do_finish() override {}
+    void do_set_clocks(Clocks) override {}
+    std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t) override { return {-1, -1}; }
+
+    DeviceInfo info_;
+    std::map<std::pair<std::string, Defines>, std::set<std::string>> asked_;
+};
+
+} // namespace tandem

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+// nvrtc [--require nvrtc]: compiles every kernel of the plan with NVRTC, which needs no GPU: all define sets
+// for sm_90, the defaults for the other architectures. Without NVRTC it says how many kernels it did not
+// compile.
+#include "algorithms/sources.h"
+#include "algorithms/traversal.h"
+#include "backends/ptxas_log.h"
+#include "scenes/builtin.h"
+#include "tests/nvrtc/compiling_device.h"
+
+#include <algorithm>
+#include <atomic>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <optional>
+#include <thread>
+
+namespace tandem {
+namespace {
+
+bool required = false;
+
+using Programs = std::map<std::pair<std::string, Defines>, std::set<std::string>>;
+
+/// Opens NVRTC once; empty, with a word on what is not tested, where there is none.
+const std::optional<cuda::Nvrtc>& nvrtc() {
+    static const auto compiler = []() -> std::optional<cuda::Nvrtc> {
+        try {
+            return cuda::Nvrtc();
+        } catch (const DeviceError& error) {
+            fmt::print("{}\n", error.what());
+            return std::nullopt;
+        }
+    }();
+    return compiler;
+}
+
+/// Compiles what the sessions of the given settings ask for.
+void prepare(Device& device, const Traversal& traversal, const Settings& from, const Settings& given) {
+    auto scene = make_scene("pile:bodies=2,frames=1");
+    const auto settings = resolve(traversal.parameters(), from, given, traversal.name());
+    const std::array devices{&device};
+    const auto session = traversal.prepare(devices, scene, settings);
+    session->count_work(true);
+}
+
+/// The plan: every geometry with the first preset of every algorithm, and every preset and output with its
+/// own.
+Programs plan() {
+    CompilingDevice device;
+    for (const auto* traversal : algorithms()) {
+        for (const std::string k : {"6", "8", "8c", "14", "18", "26"})
+            for (const std::string precision : {"float", "double"})
+                for (const std::string rounding : {"nearest", "safe"})
+                    prepare(device, *traversal, {},
+                            {{"k", k.substr(0, k.find('c'))},
+                             {"axes", k == "8c" ? "coordinate" : "standard"},
+                             {"precision", precision},
+                             {"rounding", rounding}});
+        for (const auto& preset : traversal->presets())
+            for (const std::string output : {"pairs", "count", "digest"})
+                prepare(device, *traversal, preset.values, {{"output", output}});
+    }
+    return device.asked();
+}
+
+Programs defaults() {
+    CompilingDevice device;
+    for (const auto* traversal : algorithms())
+        for (const std::string precision : {"float", "double"})
+            prepare(device, *traversal, {}, {{"precision", precision}});
+    return device.asked();
+}
+
+/// Runs `work` over all programs on all cores.
+template<class Work>
+void for_each(const Programs& programs, const Work& work) {
+    std::vector<const Programs::value_type*> list;
+    for (const auto& program : programs) list.push_back(&program);
+    std::atomic<std::size_t> next = 0;
+    std::vector<std::jthread> threads;
+    for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i)
+        threads.emplace_back([&] {
+            for (auto n = next++; n < list.size(); n = next++) {
+                try {
+                    work(kernel_source(list[n]->first.first), list[n]->first.second, list[n]->second);
+                } catch (const DeviceError& error) {
+                    ADD_FAILURE() << error.what();
+                }
+            }
+        });
+}
+
+std::string text_of(const Defines& defines) {
+    std::string text;
+    for (const auto& [name, value] : defines) text += fmt::format(" {}={}", name, value);
+    return text;
+}
+
+/// False, with a word on it, when there is nothing to compile with.
+bool can_compile(const Programs& programs) {
+    if (nvrtc()) return true;
+    fmt::print("NOT compiled for want of NVRTC: {} kernel programs\n", programs.size());
+    EXPECT_FALSE(required) << "--require nvrtc";
+    return false;
+}
+
+TEST(Nvrtc, EveryProgramOfThePlanForHopper) {
+    const auto programs = plan();
+    ASSERT_GT(programs.size(), 100u);
+    if (!can_compile(programs)) return;
+    std::atomic<int> entries = 0;
+    for_each(programs,
+             [&](const KernelSource& source, const Defines& defines, const std::set<std::string>& names) {
+                 const auto image = nvrtc()->compile(source, defines, 90);
+                 EXPECT_EQ(image.target, "sm_90 cubin");
+                 EXPECT_GT(image.bytes.size(), 1000u) << source.name;
+                 for (const auto& name : names) {
+                     const auto use = use_of(image.log, name);
+                     EXPECT_GT(use.registers, 0) << name << "\n" << image.log;
+                     EXPECT_GE(use.spill_bytes, 0) << name;
+                     ++entries;
+                 }
+             });
+    fmt::print("{} programs, {} entries compiled for sm_90 by NVRTC {}\n", programs.size(), entries.load(),
+               nvrtc()->version());
+}
+
+/// Registers and spills of the float defaults, where speed is decided; the budget leaves a multiprocessor of
+/// sm_90 half of its 2048 work-items (64 registers each), contacts a quarter.
+TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
+    const auto programs = defaults();
+    if (!can_compile(programs)) return;
+    for (const auto& [key, names] : programs) {
+        const auto& [file, defines] = key;
+        const auto image = nvrtc()->compile(kernel_source(file), defines, 90);
+        for (const auto& name : names) {
+            const auto use = use_of(image.log, name);
+            fmt::print("{:<40} {:<20} {:>3} registers {:>4} bytes spilled{}\n", file, name, use.registers,
+                       use.spill_bytes,
+                       defines.contains("PRECISION") && defines.at("PRECISION") == "64" ? " (double)" : "");
+            if (defines.contains("PRECISION") && defines.at("PRECISION") == "64") continue;
+            EXPECT_LE(use.registers, name == "generate_contacts" ? 128 : 64) << name;
+            EXPECT_EQ(use.spill_bytes, 0) << name;
+        }
+    }
+}
+
+TEST(Nvrtc, NoFusedMultiplyAdd) {
+    const auto programs = defaults();
+    if (!can_compile(programs)) return;
+    for_each(programs, [&](const KernelSource& source, const Defines& defines, const std::set<std::string>&) {
+        const auto ptx = nvrtc()->compile(source, defines, 90, true).bytes;
+        EXPECT_NE(ptx.find(".visible .entry"), std::string::npos);
+        EXPECT_EQ(ptx.find("fma.rn.f"), std::string::npos) << source.name << text_of(defines);
+    });
+}
+
+TEST(Nvrtc, DefaultsForEveryArchitecture) {
+    const auto programs = defaults();
+    if (!can_compile(programs)) return;
+    const auto& known = nvrtc()->architectures();
+    for (const int architecture : {75, 80, 86, 89, 100, 120}) {
+        if (std::find(known.begin(), known.end(), architecture) == known.end()) {
+            fmt::print("NVRTC {} does not know {}; not compiled\n", nvrtc()->version(), architecture);
+            continue;
+        }
+        for_each(programs,
+                 [&](const KernelSource& source, const Defines& defines, const std::set<std::string>&) {
+                     EXPECT_GT(nvrtc()->compile(source, defines, architecture).bytes.size(), 1000u);
+                 });
+    }
+}
+
+TEST(Nvrtc, AnUnknownNewerArchitectureGetsPtx) {
+    if (!can_compile(defaults())) return;
+    const auto image =
+        nvrtc()->compile(kernel_source("algorithms/digest.cl"), {}, nvrtc()->architectures().back() + 10);
+    EXPECT_NE(image.target.find(" ptx"), std::string::npos);
+    EXPECT_NE(image.bytes.find(".version"), std::string::npos);
+    EXPECT_THROW(nvrtc()->compile(kernel_source("algorithms/digest.cl"), {}, 10), DeviceError);
+}
+
+TEST(Nvrtc, ErrorsHaveTheLogInOneLine) {
+    if (!can_compile(defaults())) return;
+    const KernelSource broken{"broken.cl", "KERNEL void nothing(\n"};
+    try {
+        nvrtc()->compile(broken, {{"K", "8"}}, 90);
+        FAIL();
+    } catch (const DeviceError& error) {
+        const std::string text = error.what();
+        EXPECT_NE(text.find("broken.cl does not compile with NVRTC"), std::string::npos);
+        EXPECT_NE(text.find("-DK=8"), std::string::npos);
+        EXPECT_NE(text.find("error"), std::string::npos);
+        EXPECT_EQ(text.find('\n'), std::string::npos);
+    }
+}
+
+} // namespace
+} // namespace tandem
+
+int main(int argc, char** argv) {
+    testing::InitGoogleTest(&argc, argv);
+    tandem::required = argc == 3 && std::string(argv[1]) == "--require" && std::string(argv[2]) == "nvrtc";
+    if (argc > 1 && !tandem::required) {
+        fmt::print(stderr, "test_nvrtc [--require nvrtc]\n");
+        return 2;
+    }
+    return RUN_ALL_TESTS();
+}
