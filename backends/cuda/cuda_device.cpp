@@ -4,6 +4,7 @@
 #include "backends/cuda/driver.h"
 #include "backends/cuda/nvrtc.h"
 #include "backends/cuda/staging.h"
+#include "backends/hardware.h"
 #include "backends/ptxas_log.h"
 
 #include <array>
@@ -69,15 +70,6 @@ std::string kernel_driver() {
     std::string version;
     file >> version;
     return version.empty() ? "" : ", " + version;
-}
-
-/// "0000:3b:00.0" as OpenCL's hardware text has it, so that one GPU seen twice is recognised.
-std::string hardware_of_pci(const char* address) {
-    unsigned domain = 0;
-    unsigned bus = 0;
-    unsigned slot = 0;
-    if (std::sscanf(address, "%x:%x:%x", &domain, &bus, &slot) != 3) return {};
-    return fmt::format("pci {:04x}:{:02x}:{:02x}", domain, bus, slot);
 }
 
 struct CudaBuffer : Buffer::Impl {
@@ -200,9 +192,8 @@ void CudaDevice::describe() {
     std::array<char, 256> text{};
     driver().cuDeviceGetName(text.data(), static_cast<int>(text.size()), handle_);
     info_.name = text.data();
-    text = {};
-    driver().cuDeviceGetPCIBusId(text.data(), static_cast<int>(text.size()), handle_);
-    info_.hardware = hardware_of_pci(text.data());
+    std::array<unsigned char, 16> uuid{};
+    if (driver().cuDeviceGetUuid_v2(uuid.data(), handle_) == 0) info_.hardware = uuid_text(uuid);
     capability_ = attribute(capability_major) * 10 + attribute(capability_minor);
     info_.driver = fmt::format("CUDA {}{}", version_text(driver().version), kernel_driver());
     info_.compiler =
@@ -342,9 +333,7 @@ std::shared_ptr<Kernel::Impl> CudaDevice::do_compile(const KernelSource& source,
     kernel->facts.registers = ask(function_registers);
     kernel->facts.local_bytes = ask(function_shared_bytes);
     kernel->facts.max_group_size = ask(function_max_threads);
-    const auto use = use_of(loaded.image.log, entry);
-    // Without the assembler's word, the private memory of a thread is a bound on what it spills.
-    kernel->facts.spill_bytes = use.spill_bytes >= 0 ? use.spill_bytes : ask(function_local_bytes);
+    kernel->facts.spill_bytes = use_of(loaded.image.log, entry).spill_bytes;
     return kernel;
 }
 

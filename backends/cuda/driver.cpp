@@ -28,7 +28,7 @@ Driver::Driver() : library(open_driver()) {
         entry = reinterpret_cast<std::remove_reference_t<decltype(entry)>>(library.find(name));
         if (entry == nullptr)
             throw DeviceError(
-                fmt::format("cuda: the driver {} has no {}; it is older than CUDA 11: install a newer one",
+                fmt::format("cuda: the driver {} has no {}; it is older than CUDA 11.4: install a newer one",
                             library.name(), name));
     };
 #define TANDEM_LOAD(name, arguments) load(name, #name);

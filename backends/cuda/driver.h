@@ -34,12 +34,7 @@ enum DeviceAttribute : int {
     capability_major = 75,
     capability_minor = 76
 };
-enum FunctionAttribute : int {
-    function_max_threads = 0,
-    function_shared_bytes = 1,
-    function_local_bytes = 3,
-    function_registers = 4
-};
+enum FunctionAttribute : int { function_max_threads = 0, function_shared_bytes = 1, function_registers = 4 };
 
 // ENTRY(symbol in the library, arguments): every one returns Result.
 #define TANDEM_CUDA_ENTRIES(ENTRY)                                                                           \
@@ -50,7 +45,7 @@ enum FunctionAttribute : int {
     ENTRY(cuDeviceGetCount, (int*))                                                                          \
     ENTRY(cuDeviceGet, (DeviceHandle*, int))                                                                 \
     ENTRY(cuDeviceGetName, (char*, int, DeviceHandle))                                                       \
-    ENTRY(cuDeviceGetPCIBusId, (char*, int, DeviceHandle))                                                   \
+    ENTRY(cuDeviceGetUuid_v2, (unsigned char*, DeviceHandle))                                                \
     ENTRY(cuDeviceGetAttribute, (int*, int, DeviceHandle))                                                   \
     ENTRY(cuDeviceTotalMem_v2, (std::size_t*, DeviceHandle))                                                 \
     ENTRY(cuDevicePrimaryCtxRetain, (Context*, DeviceHandle))                                                \

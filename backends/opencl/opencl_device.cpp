@@ -2,6 +2,7 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include "backends/opencl/opencl_device.h"
 
+#include "backends/hardware.h"
 #include "backends/ptxas_log.h"
 
 #include <CL/cl.h>
@@ -47,15 +48,11 @@ std::string device_text(cl_device_id device, cl_device_info what) {
     return text;
 }
 
-/// PCI address of an NVIDIA device (cl_nv_device_attribute_query), so that one GPU seen twice is recognised.
+/// The UUID of the hardware (cl_khr_device_uuid), so that one GPU seen twice is recognised.
 std::string hardware_id(cl_device_id device) {
-    constexpr cl_device_info pci_bus = 0x4008;
-    constexpr cl_device_info pci_slot = 0x4009;
-    constexpr cl_device_info pci_domain = 0x400A;
-    if (device_text(device, CL_DEVICE_EXTENSIONS).find("cl_nv_device_attribute_query") == std::string::npos)
-        return {};
-    return fmt::format("pci {:04x}:{:02x}:{:02x}", device_value<cl_uint>(device, pci_domain),
-                       device_value<cl_uint>(device, pci_bus), device_value<cl_uint>(device, pci_slot) >> 3);
+    constexpr cl_device_info uuid = 0x106A; // CL_DEVICE_UUID_KHR
+    if (device_text(device, CL_DEVICE_EXTENSIONS).find("cl_khr_device_uuid") == std::string::npos) return {};
+    return uuid_text(device_value<std::array<unsigned char, 16>>(device, uuid));
 }
 
 DeviceInfo describe(cl_device_id device, std::size_t index) {

@@ -60,8 +60,8 @@ Result cuDeviceGetName(char* name, int size, DeviceHandle) {
     std::strncpy(name, "Stub GPU", static_cast<std::size_t>(size));
     return 0;
 }
-Result cuDeviceGetPCIBusId(char* name, int size, DeviceHandle) {
-    std::strncpy(name, "0000:01:00.0", static_cast<std::size_t>(size));
+Result cuDeviceGetUuid_v2(unsigned char* uuid, DeviceHandle) {
+    std::memset(uuid, 0x5a, 16);
     return 0;
 }
 Result cuDeviceGetAttribute(int* value, int what, DeviceHandle) {

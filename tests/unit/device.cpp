@@ -29,9 +29,11 @@ std::string message_of(const std::function<void()>& call) {
 
 TEST(Registry, HasHostAndOpencl) {
     const auto backends = discover();
-    ASSERT_EQ(backends.size(), 2u);
+    ASSERT_EQ(backends.size(), 3u);
     EXPECT_EQ(backends[0].devices.size(), 1u);
     EXPECT_GE(backends[1].devices.size(), 1u) << backends[1].reason;
+    EXPECT_EQ(backends[2].name, "cuda");
+    for (const auto& backend : backends) EXPECT_EQ(backend.devices.empty(), !backend.reason.empty());
 }
 
 TEST(Device, CopiesUploadsAtOnceAndReadsBack) {
