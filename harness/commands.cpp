@@ -139,6 +139,7 @@ int run_command(const RunOptions& options) {
     SampleOptions sampling;
     sampling.repeat = options.repeat;
     sampling.check = options.check;
+    sampling.count_work = options.count;
     std::deque<Measurement> measurements;
     std::vector<Row> rows;
     int code = 0;

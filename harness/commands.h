@@ -21,13 +21,23 @@ struct RunOptions {
     std::string dump_pairs, dump_contacts;
     std::vector<std::string> require; ///< devices or backends whose absence is a failure
     bool check = true;
+    bool count = true; ///< replay once more with kernels that count their work
     bool quiet = false;
+};
+
+/// Options of `tandem devices`.
+struct DevicesOptions {
+    bool json = false;
+    bool measure = false;             ///< measure the ceilings of each
+    std::vector<std::string> devices; ///< of these only; empty: all
+    std::string out;                  ///< append records of ceilings
+    std::vector<std::string> require;
 };
 
 /// Each returns the exit code: 0 ok, 1 a check failed, 3 a device failed. Bad use throws InputError.
 int run_command(const RunOptions& options);
 int check_command(const RunOptions& options);
-int devices_command(bool json, const std::vector<std::string>& require);
+int devices_command(const DevicesOptions& options);
 int scenes_command(bool json);
 int algorithms_command(bool json);
 

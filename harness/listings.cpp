@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include "harness/ceilings.h"
 #include "harness/commands.h"
 #include "harness/inputs.h"
+#include "harness/record.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -59,10 +61,29 @@ void print_algorithm(const Traversal& traversal) {
                                      : fmt::format("{}", fmt::join(p.choices, ", ")));
 }
 
+/// `tandem devices --measure`: the ceilings of the chosen devices.
+int measure_devices(const std::vector<BackendReport>& backends, const DevicesOptions& options) {
+    check_required(backends, options.require);
+    const std::vector<std::string> all{"all"};
+    const auto chosen = choose_devices(backends, options.devices.empty() ? all : options.devices);
+    RecordFile file(options.out);
+    Json records = Json::array();
+    for (auto* device : chosen) {
+        const auto ceilings = measure_ceilings(*device);
+        records.push_back(ceilings_record(device->info(), ceilings));
+        file.append(records.back());
+        if (!options.json) fmt::print("{}", ceilings_table(device->info(), ceilings));
+    }
+    if (options.json) fmt::print("{}\n", records.dump(2));
+    return 0;
+}
+
 } // namespace
 
-int devices_command(bool json, const std::vector<std::string>& require) {
+int devices_command(const DevicesOptions& options) {
     const auto backends = discover();
+    if (options.measure) return measure_devices(backends, options);
+    const bool json = options.json;
     Json all = Json::array();
     for (const auto& backend : backends) {
         Json entry{{"backend", backend.name},
@@ -81,7 +102,7 @@ int devices_command(bool json, const std::vector<std::string>& require) {
         all.push_back(entry);
     }
     if (json) fmt::print("{}\n", all.dump(2));
-    check_required(backends, require);
+    check_required(backends, options.require);
     return 0;
 }
 

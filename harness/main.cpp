@@ -54,7 +54,7 @@ int dispatch(int argc, char** argv) {
     RunOptions check;
     std::vector<std::string> run_sets;
     std::vector<std::string> check_sets;
-    std::vector<std::string> require;
+    tandem::DevicesOptions devices;
     bool json = false;
     auto* run_app = app.add_subcommand("run", "measure; print a table, append records");
     add_run_options(*run_app, run, run_sets);
@@ -65,13 +65,19 @@ int dispatch(int argc, char** argv) {
                         "write the first finished cell's candidate pairs as CSV");
     run_app->add_option("--dump-contacts", run.dump_contacts,
                         "write the first finished cell's contacts as CSV");
+    run_app->add_flag("!--no-count", run.count, "leave out the replay that counts work");
     run_app->add_flag("!--no-check", run.check, "do not compare with the reference");
     auto* check_app =
         app.add_subcommand("check", "device x algorithm agreement matrix; exit 1 on any difference");
     add_run_options(*check_app, check, check_sets);
     auto* devices_app = app.add_subcommand("devices", "what there is, or why there is not");
-    devices_app->add_option("--require", require, "devices or backends whose absence is a failure")
+    devices_app->add_option("--require", devices.require, "devices or backends whose absence is a failure")
         ->delimiter(',');
+    auto* measure = devices_app->add_flag("--measure", devices.measure,
+                                          "measure what each can do: bandwidths, launches, overlap tests");
+    devices_app->add_option("--device", devices.devices, "measure D,E only")->delimiter(',')->needs(measure);
+    devices_app->add_option("--out", devices.out, "append the measurements to this JSON-lines file")
+        ->needs(measure);
     auto* scenes_app = app.add_subcommand("scenes", "scenes the program makes, with their parameters");
     auto* algorithms_app = app.add_subcommand("algorithms", "algorithms with their presets and settings");
     for (auto* listing : {devices_app, scenes_app, algorithms_app})
@@ -87,7 +93,10 @@ int dispatch(int argc, char** argv) {
     check.request.sets = parse_sets(check_sets);
     if (*run_app) return tandem::run_command(run);
     if (*check_app) return tandem::check_command(check);
-    if (*devices_app) return tandem::devices_command(json, require);
+    if (*devices_app) {
+        devices.json = json;
+        return tandem::devices_command(devices);
+    }
     if (*scenes_app) return tandem::scenes_command(json);
     return tandem::algorithms_command(json);
 }

@@ -90,7 +90,9 @@ Json scene_json(const Scene& scene) {
             {"degenerate", degenerate}};
 }
 
-Json device_json(const DeviceInfo& info) {
+} // namespace
+
+Json record_device(const DeviceInfo& info) {
     return {{"id", info.id},
             {"name", info.name},
             {"driver", info.driver},
@@ -100,6 +102,8 @@ Json device_json(const DeviceInfo& info) {
             {"compute_units", info.compute_units},
             {"memory_bytes", info.global_bytes}};
 }
+
+namespace {
 
 Json kernels_json(const std::vector<KernelFacts>& kernels) {
     Json json = Json::array();
@@ -113,12 +117,16 @@ Json kernels_json(const std::vector<KernelFacts>& kernels) {
     return json;
 }
 
-Json environment_json() {
+} // namespace
+
+Json record_environment() {
     const auto e = environment();
     return {{"commit", known(e.commit)},       {"dirty", e.dirty},     {"date", e.date},
             {"processor", known(e.processor)}, {"cores", e.cores},     {"memory_bytes", e.memory},
             {"compiler", e.compiler},          {"clocks_mhz", nullptr}};
 }
+
+namespace {
 
 std::string settings_key(const Settings& settings) {
     std::string key;
@@ -175,10 +183,11 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["settings"] = settings;
     json["scene"] = scene_json(scene);
     json["frames"] = {{"first", range.first}, {"last", range.last}};
-    json["devices"] = Json::array({device_json(cell.device->info())});
+    json["devices"] = Json::array({record_device(cell.device->info())});
     const bool measured = failure.empty();
     json["total_ns"] = measured ? total_json(m) : Json();
     json["breakdown_ns"] = measured ? with_summary(m.breakdown_ns) : Json();
+    json["device_span_ns"] = m.device_span_ns.empty() ? Json() : with_summary(m.device_span_ns);
     json["stages"] = stages_json(m);
     json["work"] = measured ? work_json(m) : Json();
     json["kernels"] = kernels_json(m.kernels);
@@ -186,7 +195,7 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
         measured ? Json{{"host_ns", m.prepare_ns}, {"device_bytes", m.device_bytes}} : Json();
     json["agreement"] = agreement_json(m, scene);
     json["error"] = measured ? Json{{"degenerate_pairs", m.degenerate}} : Json();
-    json["environment"] = environment_json();
+    json["environment"] = record_environment();
     return json;
 }
 

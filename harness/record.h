@@ -12,6 +12,10 @@ namespace tandem {
 nlohmann::ordered_json make_record(const Cell& cell, const Scene& scene, const FrameRange& range,
                                    const Measurement& measurement, const std::string& failure);
 
+/// The parts of a record that say where it was made.
+nlohmann::ordered_json record_device(const DeviceInfo& info);
+nlohmann::ordered_json record_environment();
+
 /// Appends records to a JSON-lines file, one write and one fsync a record.
 class RecordFile {
 public:

@@ -4,8 +4,10 @@
 #include "algorithms/broad/broad.h"
 #include "scenes/error.h"
 
+#include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
+#include <limits>
 
 namespace tandem {
 
@@ -35,6 +37,19 @@ std::array<StageSample, stage_names.size()> by_stage(const Trace& trace) {
         sample.bytes += moves ? event.bytes : 0;
     }
     return samples;
+}
+
+/// Device time from the begin of the first command to the end of the last; -1 when a command has no times.
+std::int64_t device_span(const Trace& trace) {
+    std::int64_t first = std::numeric_limits<std::int64_t>::max();
+    std::int64_t last = -1;
+    for (const auto& event : trace.events) {
+        if (event.command == Command::host_work || event.command == Command::wait) continue;
+        if (event.begin_ns < 0 || event.device_ns < 0) return -1;
+        first = std::min(first, event.begin_ns);
+        last = std::max(last, event.begin_ns + event.device_ns);
+    }
+    return last < 0 ? -1 : last - first;
 }
 
 /// One cell at work: the session, its broad phase, and the ways to replay the frames.
@@ -160,8 +175,13 @@ void Sampler::break_down() {
         const auto begin = Clock::now();
         run(i);
         out_.breakdown_ns.push_back(since(begin));
-        out_.stages.push_back(by_stage(device_.finish()));
+        const auto trace = device_.finish();
+        out_.stages.push_back(by_stage(trace));
+        out_.device_span_ns.push_back(device_span(trace));
     }
+    if (std::any_of(out_.device_span_ns.begin(), out_.device_span_ns.end(),
+                    [](auto span) { return span < 0; }))
+        out_.device_span_ns.clear();
     device_.set_clocks(Clocks::off);
 }
 

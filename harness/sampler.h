@@ -54,8 +54,9 @@ struct Agreement {
 struct Measurement {
     Settings settings;                               ///< as the device took them
     std::vector<std::vector<std::int64_t>> total_ns; ///< [repeat][frame], nothing but the span timed
-    std::vector<std::array<StageSample, stage_names.size()>> stages;  ///< [frame] of the breakdown run
-    std::vector<std::int64_t> breakdown_ns;                           ///< [frame] span of the breakdown run
+    std::vector<std::array<StageSample, stage_names.size()>> stages; ///< [frame] of the breakdown run
+    std::vector<std::int64_t> breakdown_ns;                          ///< [frame] span of the breakdown run
+    std::vector<std::int64_t> device_span_ns; ///< [frame] first begin to last end; empty when not known
     std::vector<std::uint64_t> body_pairs, candidate_pairs, contacts; ///< [frame]
     std::uint64_t degenerate = 0, rejected = 0, retries = 0;
     Work work;

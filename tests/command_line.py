@@ -141,6 +141,24 @@ class CommandLine(Case):
                 self.assertLessEqual(keys[name], set(entry))
             self.assertTrue(all(word in out for word in words))
 
+    def test_ceilings_are_measured_and_recorded(self):
+        out = self.work / "ceilings.jsonl"
+        status, text, errors = tandem("devices", "--measure", "--device", "opencl:0", "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertIn("read of device memory", text)
+        records = [json.loads(line) for line in out.read_text().splitlines()]
+        self.assertEqual([r["device"]["id"] for r in records], ["opencl:0"])
+        for name in ("copy_bytes_per_s", "launch_s", "overlap_tests_k8_per_s"):
+            self.assertGreater(records[0][name]["median"], 0)
+        # Eighteen planes take more comparisons than eight.
+        self.assertGreater(records[0]["overlap_tests_k8_per_s"]["median"], records[0]["overlap_tests_k18_per_s"]["median"])
+        script = [sys.executable, str(SOURCE / "tests/validate_records.py"), str(out)]
+        self.assertEqual(subprocess.run(script, capture_output=True).returncode, 0)
+        out.write_text(out.read_text().replace('"launch_s":{"median":', '"launch_s":{"median":-', 1))
+        self.assertEqual(subprocess.run(script, capture_output=True).returncode, 1)
+        self.bad("--measure", "devices", "--device", "opencl:0")
+        self.bad("the nearest is", "devices", "--measure", "--device", "opencl:77")
+
     def test_run_records_and_appends(self):
         out = self.work / "run.jsonl"
         arguments = ("run", "plates", "--frames", "20:21", "--algorithm", "chunked,gproximity", "--device", "host,opencl:0",
@@ -180,7 +198,7 @@ class CommandLine(Case):
         out = self.work / "schema.jsonl"
         tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "opencl:0", "--algorithm", "gproximity", "--out", out)
         record = self.records(out)[0]
-        maps, nullable = {"settings", "defines"}, {"failure", "agreement", "commit", "processor", "clocks_mhz", "hardware",
+        maps, nullable = {"settings", "defines"}, {"failure", "agreement", "commit", "processor", "clocks_mhz", "hardware", "device_span_ns",
                                                    "registers", "local_bytes", "spill_bytes"}
         seen = set()
         for path in places(record):

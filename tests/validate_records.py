@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""validate_records.py [FILE.jsonl ...]: checks records against results/record.schema.json; without files, all
-committed ones. Exit 1 names file:line and the place of the first problems."""
+"""validate_records.py [FILE.jsonl ...]: checks records against results/record.schema.json, those of files named
+ceilings*.jsonl against results/ceilings.schema.json; without files, all committed ones. Exit 1 names file:line and the
+place of the first problems."""
 import json
 import pathlib
 import sys
@@ -35,17 +36,22 @@ def problems_in(path, validator):
     return [(n, text) for n, line in enumerate(lines, 1) for text in problems_of(line, validator)], len(lines)
 
 
-def main(names):
-    schema = json.loads((ROOT / "results/record.schema.json").read_text())
+def validator_of(name):
+    path = ROOT / "results" / name
+    schema = json.loads(path.read_text())
     jsonschema.Draft7Validator.check_schema(schema)
-    validator = jsonschema.Draft7Validator(schema)
+    return jsonschema.Draft7Validator(schema, resolver=jsonschema.RefResolver(path.as_uri(), schema))
+
+
+def main(names):
+    records, ceilings = validator_of("record.schema.json"), validator_of("ceilings.schema.json")
     files = [pathlib.Path(name) for name in names] or sorted((ROOT / "results").glob("**/*.jsonl"))
     if not files:
         print("no records are committed yet")
         return 0
     total, found = 0, []
     for path in files:
-        problems, count = problems_in(path, validator)
+        problems, count = problems_in(path, ceilings if path.name.startswith("ceilings") else records)
         total += count
         found += [f"{path}:{number}: {text}" for number, text in problems]
     if not found and total == 0:
