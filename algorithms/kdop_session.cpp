@@ -36,7 +36,7 @@ const std::vector<Parameter> common{
      0,
      0,
      "opposing: the paper's most opposing boundary faces"},
-    {"group_size", "64", {}, 1, 1024, "work-items per work-group (1 on host)"},
+    {"group_size", "128", {}, 1, 1024, "work-items per work-group (1 on host)"},
     {"work_items", "2048", {}, 1, 1 << 20, "work-items per compute unit of the kernels that stride"},
     {"pair_capacity", "1048576", {}, 1, word_limit, "candidate pairs there is room for at first"},
     {"contact_capacity", "1048576", {}, 1, word_limit, "contacts there is room for at first"},

@@ -39,6 +39,15 @@
 #define COUNT_LEADING_ZEROS(value) ((uint)clz((uint)(value)))
 #define SQUARE_ROOT(value) sqrt(value)
 #define ABSOLUTE(value) fabs(value)
+#ifdef __NV_CL_C_VERSION // one instruction there; elsewhere the library's care for NaN costs more
+#define MINIMUM(a, b) fmin((a), (b))
+#define MAXIMUM(a, b) fmax((a), (b))
+#else
+#define MINIMUM(a, b) ((a) < (b) ? (a) : (b))
+#define MAXIMUM(a, b) ((a) > (b) ? (a) : (b))
+#endif
+#define UNROLL _Pragma("unroll")
+#define NO_UNROLL _Pragma("unroll 1")
 #define REAL_INFINITY ((real)INFINITY)
 
 #elif defined(__CUDACC__)
@@ -58,6 +67,10 @@
 #define COUNT_LEADING_ZEROS(value) ((uint)__clz((int)(value)))
 #define SQUARE_ROOT(value) sqrt(value)
 #define ABSOLUTE(value) fabs(value)
+#define MINIMUM(a, b) fmin((a), (b))
+#define MAXIMUM(a, b) fmax((a), (b))
+#define UNROLL _Pragma("unroll")
+#define NO_UNROLL _Pragma("unroll 1")
 #define REAL_INFINITY ((real)__int_as_float(0x7f800000))
 typedef unsigned char uchar;
 typedef unsigned int uint;
@@ -83,8 +96,14 @@ typedef unsigned long ulong; // 64 bits where CUDA runs on Linux, as glibc has i
 #define COUNT_LEADING_ZEROS(value) ((uint)__builtin_clz((uint)(value)))
 #define SQUARE_ROOT(value) std::sqrt(value)
 #define ABSOLUTE(value) std::fabs(value)
+#define MINIMUM(a, b) ((a) < (b) ? (a) : (b))
+#define MAXIMUM(a, b) ((a) > (b) ? (a) : (b))
+#define UNROLL
+#define NO_UNROLL
 #define REAL_INFINITY std::numeric_limits<real>::infinity()
 #endif
+
+#define ALIGNED(bytes) __attribute__((aligned(bytes)))
 
 #if PRECISION == 64
 typedef double real;

@@ -14,6 +14,35 @@ namespace {
 /// (4), doubled for good measure.
 constexpr double rounding_steps = 24;
 
+/// apart[j] != 0 for those bodies i + 1 .. end - 1 that some direction tells from body i.
+void mark_apart(const std::vector<std::vector<double>>& along, std::size_t i, std::size_t end,
+                std::vector<std::int64_t>& apart) {
+    std::fill(apart.begin() + static_cast<std::ptrdiff_t>(i),
+              apart.begin() + static_cast<std::ptrdiff_t>(end), 0);
+    for (std::size_t slab = 0; slab < along.size(); slab += 2) {
+        const double lower = along[slab][i];
+        const double upper = along[slab + 1][i];
+        const double* lowers = along[slab].data();
+        const double* uppers = along[slab + 1].data();
+        for (std::size_t j = i + 1; j < end; ++j)
+            apart[j] |=
+                static_cast<std::int64_t>(lowers[j] > upper) | static_cast<std::int64_t>(uppers[j] < lower);
+    }
+}
+
+/// The pairs ordered by a, then b: two passes of a counting sort.
+std::vector<BodyPair> ascending(std::vector<BodyPair> pairs, std::size_t bodies) {
+    std::vector<BodyPair> other(pairs.size());
+    for (const auto key : {&BodyPair::b, &BodyPair::a}) {
+        std::vector<std::size_t> next(bodies + 1);
+        for (const auto& pair : pairs) ++next[pair.*key + 1];
+        std::partial_sum(next.begin(), next.end(), next.begin());
+        for (const auto& pair : pairs) other[next[pair.*key]++] = pair;
+        pairs.swap(other);
+    }
+    return pairs;
+}
+
 } // namespace
 
 Broad::Bound broad_bound(const Settings& settings) {
@@ -98,7 +127,7 @@ std::size_t Broad::sweep_direction(const std::vector<double>& slabs) const {
     return best;
 }
 
-std::vector<BodyPair> Broad::pairs(const Frame& frame) const {
+std::vector<double> Broad::bounds(const Frame& frame) const {
     const auto stride = 2 * directions_.size();
     const auto bodies = static_cast<std::uint32_t>(scene_.bodies.size());
     std::vector<double> slabs(bodies * stride);
@@ -108,30 +137,36 @@ std::vector<BodyPair> Broad::pairs(const Frame& frame) const {
         else
             bound_rigid(shapes_[scene_.bodies[body].mesh], frame.poses[body], &slabs[body * stride]);
     }
+    return slabs;
+}
+
+std::vector<BodyPair> Broad::pairs(const Frame& frame) const {
+    const auto slabs = bounds(frame);
+    const auto stride = 2 * directions_.size();
+    const auto bodies = scene_.bodies.size();
     const auto sweep = 2 * sweep_direction(slabs);
     std::vector<std::uint32_t> order(bodies);
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(),
               [&](auto a, auto b) { return slabs[a * stride + sweep] < slabs[b * stride + sweep]; });
-    const auto apart = [&](std::uint32_t a, std::uint32_t b) {
-        for (std::size_t i = 0; i < stride; i += 2)
-            if (slabs[a * stride + i] > slabs[b * stride + i + 1]
-                || slabs[b * stride + i] > slabs[a * stride + i + 1])
-                return true;
-        return false;
-    };
+    std::vector<std::vector<double>> along(stride, std::vector<double>(bodies)); // by slab, in sweep order
+    for (std::size_t slab = 0; slab < stride; ++slab)
+        for (std::size_t i = 0; i < bodies; ++i) along[slab][i] = slabs[order[i] * stride + slab];
     std::vector<BodyPair> pairs;
-    for (std::uint32_t i = 0; i < bodies; ++i) {
-        const auto a = order[i];
-        for (std::uint32_t j = i + 1; j < bodies; ++j) {
-            const auto b = order[j];
-            if (slabs[b * stride + sweep] > slabs[a * stride + sweep + 1]) break;
-            if (scene_.bodies[a].fixed && scene_.bodies[b].fixed) continue;
-            if (!apart(a, b)) pairs.push_back({std::min(a, b), std::max(a, b)});
+    std::vector<std::int64_t> apart(bodies); // as wide as a slab, so that the compiler can use vectors
+    for (std::size_t i = 0; i < bodies; ++i) {
+        const auto& starts = along[sweep];
+        const auto end =
+            static_cast<std::size_t>(std::upper_bound(starts.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                                                      starts.end(), along[sweep + 1][i])
+                                     - starts.begin());
+        mark_apart(along, i, end, apart);
+        for (std::size_t j = i + 1; j < end; ++j) {
+            const auto [a, b] = std::minmax(order[i], order[j]);
+            if (apart[j] == 0 && !(scene_.bodies[a].fixed && scene_.bodies[b].fixed)) pairs.push_back({a, b});
         }
     }
-    std::sort(pairs.begin(), pairs.end());
-    return pairs;
+    return ascending(pairs, bodies);
 }
 
 } // namespace tandem

@@ -28,6 +28,7 @@ private:
         double reach = 0;  ///< largest distance of a vertex from the mesh's origin
     };
 
+    std::vector<double> bounds(const Frame& frame) const;
     Shape shape_of(const std::vector<Eigen::Vector3d>& vertices) const;
     void bound_rigid(const Shape& shape, const Pose& pose, double* slabs) const;
     void bound_deformed(const std::vector<Eigen::Vector3d>& vertices, double* slabs) const;

@@ -1,34 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The chunked static scheduler (paper, sections 3.2 and 3.3): pairs of chunks are the seeds; every work-item
-// walks seed after seed, a fixed stride apart, with a stack of its own in local memory and simultaneous
-// descent.
+// The chunked static scheduler (paper, sections 3.2 and 3.3): pairs of chunks are the seeds, and which
+// work-items walk them is fixed beforehand.
 #include "backends/portable.h"
-#include "algorithms/pairs.clh"
+#include "algorithms/chunked/walk.clh"
 
-#ifndef SEED_THRESHOLD
-#define SEED_THRESHOLD 10000000
-#endif
 #ifndef ROOT_TEST
 #define ROOT_TEST 1
 #endif
-
-// Every expansion pops one node pair and pushes at most four, and a walk expands at most LEAF_BITS deep.
-#define STACK_DEPTH (3 * LEAF_BITS + 1)
-#define SEED_WORDS                                                                                           \
-    3 // body pair, chunk of a, chunk of b: seeds handed down from super chunks, or made by the host
-
-// The level a pair of bodies is seeded at: climb from level 0 while both have a higher one and the count of
-// chunk pairs is above the threshold (section 3.2; Algorithm 4 as printed runs the other way).
-DEVICE uint seed_level(GLOBAL const uint* a, GLOBAL const uint* b, GLOBAL const uint* levels) {
-    uint level = 0;
-    while (level + 1u < a[BODY_LEVEL_COUNT] && level + 1u < b[BODY_LEVEL_COUNT]) {
-        const ulong chunks_a = levels[(ulong)(a[BODY_LEVELS] + level) * LEVEL_WORDS + LEVEL_CHUNKS];
-        const ulong chunks_b = levels[(ulong)(b[BODY_LEVELS] + level) * LEVEL_WORDS + LEVEL_CHUNKS];
-        if (chunks_a * chunks_b <= (ulong)SEED_THRESHOLD) break;
-        ++level;
-    }
-    return level;
-}
 
 // seeds[level * (pair_count + 1) + pair] = number of chunk pairs that body pair starts with at that level.
 KERNEL void count_seeds(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
@@ -75,79 +53,41 @@ KERNEL void scan_seeds(GLOBAL ulong* seeds, uint pair_count) {
     }
 }
 
-// The pair whose seeds include number `seed`: the last one that starts at or before it.
-DEVICE uint pair_of_seed(GLOBAL const ulong* starts, uint pair_count, ulong seed) {
-    uint low = 0;
-    uint high = pair_count;
-    while (low + 1u < high) {
-        const uint middle = low + (high - low) / 2u;
-        if (starts[middle] <= seed)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-// A walk in progress: two chunks, and where their items lead.
-typedef struct {
-    Chunk a, b;
-    uint pair, first_a, first_b; // first item of each chunk
-} Walk;
-
-DEVICE Walk start_walk(GLOBAL const uint* bodies, GLOBAL const uint* levels, GLOBAL const uint* pairs,
-                       uint level, uint pair, uint chunk_a, uint chunk_b) {
-    GLOBAL const uint* a = bodies + (ulong)pairs[2u * pair] * BODY_WORDS;
-    GLOBAL const uint* b = bodies + (ulong)pairs[2u * pair + 1u] * BODY_WORDS;
-    Walk walk;
-    walk.pair = pair;
-    walk.first_a = chunk_a * CHUNK_ITEMS;
-    walk.first_b = chunk_b * CHUNK_ITEMS;
-    walk.a = chunk_at(a[BODY_NODES], levels + (ulong)(a[BODY_LEVELS] + level) * LEVEL_WORDS, chunk_a);
-    walk.b = chunk_at(b[BODY_NODES], levels + (ulong)(b[BODY_LEVELS] + level) * LEVEL_WORDS, chunk_b);
-    return walk;
-}
-
-// Walk number `seed` of this launch: those of the level's own table first, then those handed down from above.
-DEVICE Walk walk_of_seed(GLOBAL const uint* bodies, GLOBAL const uint* levels, GLOBAL const uint* pairs,
-                         uint pair_count, GLOBAL const ulong* starts, ulong own, GLOBAL const uint* handed,
-                         uint level, ulong seed) {
+// Walk number `seed` of this launch: those of the level's own table first, then the handed ones.
+DEVICE Walk walk_of_seed(const Job* job, uint pair_count, GLOBAL const ulong* starts, ulong own, uint near,
+                         GLOBAL const uint* handed, ulong seed) {
     if (seed >= own) {
         GLOBAL const uint* row = handed + (seed - own) * SEED_WORDS;
-        return start_walk(bodies, levels, pairs, level, row[0], row[1], row[2]);
+        return start_walk(job->bodies, job->levels, job->pairs, job->level, row[0], row[1], row[2]);
     }
-    const uint pair = pair_of_seed(starts, pair_count, seed);
-    GLOBAL const uint* b = bodies + (ulong)pairs[2u * pair + 1u] * BODY_WORDS;
-    const ulong chunks_b = levels[(ulong)(b[BODY_LEVELS] + level) * LEVEL_WORDS + LEVEL_CHUNKS];
-    const ulong rest = seed - starts[pair];
-    return start_walk(bodies, levels, pairs, level, pair, (uint)(rest / chunks_b), (uint)(rest % chunks_b));
+    const uint pair = pair_from(starts, near, pair_count, seed);
+    return walk_in_pair(job->bodies, job->levels, job->pairs, job->level, pair, seed - starts[pair]);
 }
 
-// Hands a pair of chunks down to the level below.
-DEVICE void hand_down(GLOBAL uint* status, uint level, GLOBAL uint* below, uint capacity, uint pair, uint a,
-                      uint b) {
-    const uint index = counter_add(status + STATUS_LEVELS + 2u * (level - 1u), 1u);
-    if (index < capacity) {
-        GLOBAL uint* row = below + (ulong)index * SEED_WORDS;
-        row[0] = pair;
-        row[1] = a;
-        row[2] = b;
-    }
+// How many seeds a launch has: the level's own and the handed ones.
+DEVICE ulong seed_total(ulong own, GLOBAL const uint* status, uint level, uint handed_capacity) {
+    const uint above = status[STATUS_LEVELS + 2u * level];
+    return own + (above < handed_capacity ? above : handed_capacity);
 }
 
-// One launch walks the seeds of one level. `seeds` holds the starts of that level's own seeds; `handed` the
-// seeds from the level above (or the host's), `below` takes those for the level below. Node pairs on the
-// stack overlap.
+// Every expansion pops one node pair and pushes at most four, and a walk expands at most LEAF_BITS deep.
+#define STACK_DEPTH (3 * LEAF_BITS + 1)
+
+// Schedule `item`, the paper's: every work-item walks seed after seed, a fixed stride apart, each to its end,
+// with a stack of its own. One launch takes the seeds of one level: `seeds` holds the starts of that level's
+// own ones.
 KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
                      GLOBAL const uint* ids, GLOBAL const uint* pairs, uint pair_count, uint level,
                      GLOBAL const ulong* seeds, GLOBAL const uint* handed, uint handed_capacity,
                      GLOBAL uint* below, uint below_capacity, GLOBAL uint* found, uint capacity,
                      GLOBAL uint* status) {
     LOCAL_ARRAY(uint, stacks, STACK_DEPTH * GROUP_SIZE);
+    LOCAL uint* stack = stacks + LOCAL_ID;
+    const Job job = {nodes, bodies,         levels, ids,      pairs, level,
+                     below, below_capacity, found,  capacity, status};
     GLOBAL const ulong* starts = seeds + (ulong)level * (pair_count + 1u);
     const ulong own = starts[pair_count];
-    const uint above = status[STATUS_LEVELS + 2u * level];
-    const ulong total = own + (above < handed_capacity ? above : handed_capacity);
+    const ulong total = seed_total(own, status, level, handed_capacity);
     ulong seed = GLOBAL_ID;
     uint top = 0;
     Walk walk = {{0u, 0u}, {0u, 0u}, 0u, 0u, 0u};
@@ -155,41 +95,114 @@ KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL
     while (top != 0u || seed < total) {
         uint first_a = 1u;
         uint first_b = 1u;
-        uint last_a = 1u;
-        uint last_b = 1u;
+        uint inner_a = 0u;
+        uint inner_b = 0u;
         if (top == 0u) {
-            walk = walk_of_seed(bodies, levels, pairs, pair_count, starts, own, handed, level, seed);
+            const uint near = seed < own ? pair_between(starts, 0u, pair_count, seed) : 0u;
+            walk = walk_of_seed(&job, pair_count, starts, own, near, handed, seed);
             seed += GLOBAL_COUNT;
             if (COUNT_WORK) tally.seeds += 1;
         } else {
-            --top;
-            const uint node_a = stacks[top * GROUP_SIZE + LOCAL_ID] >> 16;
-            const uint node_b = stacks[top * GROUP_SIZE + LOCAL_ID] & 0xffffu;
-            const uint leaf_a = is_leaf(node_a, walk.a.items) ? 0u : 1u;
-            const uint leaf_b = is_leaf(node_b, walk.b.items) ? 0u : 1u;
-            first_a = node_a << leaf_a;
-            last_a = first_a + leaf_a;
-            first_b = node_b << leaf_b;
-            last_b = first_b + leaf_b;
+            const uint pair = stack[--top * GROUP_SIZE];
+            inner_a = is_leaf(pair >> 16, walk.a.items) ? 0u : 1u;
+            inner_b = is_leaf(pair & 0xffffu, walk.b.items) ? 0u : 1u;
+            first_a = pair >> 16 << inner_a;
+            first_b = (pair & 0xffffu) << inner_b;
         }
-        for (uint a = first_a; a <= last_a; ++a) {
-            for (uint b = first_b; b <= last_b; ++b) {
+        for (uint a = first_a; a <= first_a + inner_a; ++a) {
+            for (uint b = first_b; b <= first_b + inner_b; ++b) {
                 if (COUNT_WORK) tally.tests += 1;
                 if (!overlap(node_at(nodes, walk.a.base + a), node_at(nodes, walk.b.base + b))) continue;
-                if (!is_leaf(a, walk.a.items) || !is_leaf(b, walk.b.items)) {
-                    stacks[top * GROUP_SIZE + LOCAL_ID] = a << 16 | b;
-                    ++top;
-                    continue;
-                }
-                const uint item_a = walk.first_a + leaf_item(a, walk.a.items);
-                const uint item_b = walk.first_b + leaf_item(b, walk.b.items);
-                if (level == 0u)
-                    emit(&tally, status, found, capacity, bodies, ids, pairs[2u * walk.pair],
-                         pairs[2u * walk.pair + 1u], item_a, item_b);
+                if (is_leaf(a, walk.a.items) && is_leaf(b, walk.b.items))
+                    settle(&job, &walk, a, b, &tally);
                 else
-                    hand_down(status, level, below, below_capacity, walk.pair, item_a, item_b);
+                    stack[top++ * GROUP_SIZE] = a << 16 | b;
             }
         }
     }
+    flush(&tally, status);
+}
+
+// A work-group's stack: rows of body pair, chunk of a, chunk of b, node pair. Seeds are looked at a batch at
+// a time, while there are fewer rows than work-items; SHARED_RESERVE is what the walk of one row can add.
+#define ROW_WORDS 4
+#define BATCH (8 * GROUP_SIZE)
+#define SHARED_RESERVE (3 * LEAF_BITS + 1)
+#define SHARED_ROWS (GROUP_SIZE + BATCH + GROUP_SIZE + SHARED_RESERVE)
+
+// Word by word, so that neighbouring work-items use different banks.
+DEVICE void push_row(LOCAL uint* rows, uint count, LOCAL uint* pushed, uint pair, uint chunk_a, uint chunk_b,
+                     uint nodes) {
+    LOCAL uint* row = rows + count + LOCAL_ATOMIC_ADD(pushed, 1u);
+    row[0] = pair;
+    row[SHARED_ROWS] = chunk_a;
+    row[2 * SHARED_ROWS] = chunk_b;
+    row[3 * SHARED_ROWS] = nodes;
+}
+
+// How many rows the group expands at once. Each adds three at most. Without room for that it is one alone,
+// whose walk down to its end the reserve has room for.
+DEVICE uint rows_to_take(uint count) {
+    const uint room = ((uint)(SHARED_ROWS - SHARED_RESERVE) - count) / 3u;
+    uint taken = count < (uint)GROUP_SIZE ? count : (uint)GROUP_SIZE;
+    if (count >= (uint)(SHARED_ROWS - SHARED_RESERVE)) return 1u;
+    taken = taken < room ? taken : room;
+    return taken == 0u && count != 0u ? 1u : taken;
+}
+
+// Schedule `group`: batches of seeds are dealt to work-groups, a fixed stride apart. A group tests the roots
+// of a batch, which few seeds survive, and expands what is left from a stack that its work-items share, so
+// that all of them have work however unlike the walks are.
+KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
+                               GLOBAL const uint* ids, GLOBAL const uint* pairs, uint pair_count, uint level,
+                               GLOBAL const ulong* seeds, GLOBAL const uint* handed, uint handed_capacity,
+                               GLOBAL uint* below, uint below_capacity, GLOBAL uint* found, uint capacity,
+                               GLOBAL uint* status) {
+    LOCAL_ARRAY(uint, rows, SHARED_ROWS * ROW_WORDS);
+    LOCAL_ARRAY(uint, pushed,
+                3); // rows pushed in this turn, and in the one before, which slow work-items may
+    // still read; the third is made ready for the next
+    const Job job = {nodes, bodies,         levels, ids,      pairs, level,
+                     below, below_capacity, found,  capacity, status};
+    GLOBAL const ulong* starts = seeds + (ulong)level * (pair_count + 1u);
+    const ulong own = starts[pair_count];
+    const ulong total = seed_total(own, status, level, handed_capacity);
+    ulong start = (ulong)GROUP_ID * BATCH;
+    uint count = 0;
+    uint turn = 0;
+    Tally tally = empty_tally();
+    if (LOCAL_ID == 0u) pushed[0] = 0u;
+    BARRIER;
+    do {
+        const int collecting = count < (uint)GROUP_SIZE && start < total;
+        const uint taken = collecting ? 0u : rows_to_take(count);
+        uint row[ROW_WORDS];
+        count -= taken;
+        if (LOCAL_ID < taken)
+            for (int i = 0; i < ROW_WORDS; ++i) row[i] = rows[i * SHARED_ROWS + count + LOCAL_ID];
+        if (LOCAL_ID == 0u) pushed[(turn + 1u) % 3u] = 0u;
+        BARRIER;
+        if (collecting) {
+            const uint near = start < own ? pair_between(starts, 0u, pair_count, start) : 0u;
+            for (ulong seed = start + LOCAL_ID; seed < start + BATCH && seed < total; seed += GROUP_SIZE) {
+                const Walk walk = walk_of_seed(&job, pair_count, starts, own, near, handed, seed);
+                if (COUNT_WORK) tally.seeds += 1;
+                if (COUNT_WORK) tally.tests += 1;
+                if (roots_overlap(&job, &walk))
+                    push_row(rows, count, pushed + turn, walk.pair, walk.first_a / CHUNK_ITEMS,
+                             walk.first_b / CHUNK_ITEMS, 1u << 16 | 1u);
+            }
+            start += (ulong)GROUP_COUNT * BATCH;
+        } else if (LOCAL_ID < taken) {
+            const Walk walk = start_walk(bodies, levels, pairs, level, row[0], row[1], row[2]);
+            const Children children = expand(&job, &walk, row[3], &tally);
+            for (uint i = 0; i < 4u; ++i)
+                if (((children.left >> i) & 1u) != 0u)
+                    push_row(rows, count, pushed + turn, row[0], row[1], row[2], child_pair(&children, i));
+        }
+        BARRIER;
+        count += pushed[turn];
+        turn = (turn + 1u) % 3u;
+    } while (count != 0u || start < total);
     flush(&tally, status);
 }

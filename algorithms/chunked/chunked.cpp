@@ -25,6 +25,13 @@ const std::vector<Parameter> own{
      1,
      std::int64_t{1} << 31,
      "chunk pairs per body pair above which seeding climbs a level"},
+    {"schedule",
+     "group",
+     {"group", "item"},
+     0,
+     0,
+     "who walks: a work-group the seeds of its batches that overlap, or, as the paper's code, a work-item "
+     "every seed a stride apart"},
     {"root_test",
      "yes",
      {"yes", "no"},
@@ -43,7 +50,11 @@ const std::vector<Preset> all_presets{
     {"resident", "everything resident, one wait per frame", {}},
     {"published",
      "the paper: k = 8, 8000-byte chunks, everything converted and transferred in every frame",
-     {{"k", "8"}, {"residency", "published"}, {"root_test", "no"}}},
+     {{"k", "8"},
+      {"residency", "published"},
+      {"schedule", "item"},
+      {"group_size", "64"},
+      {"root_test", "no"}}},
 };
 
 std::uint32_t leaves_of(const Settings& settings) {
@@ -98,7 +109,8 @@ void ChunkedSession::do_compile(const Defines& common) {
     const auto& source = kernel_source("algorithms/chunked/chunked.cl");
     count_kernel_ = device().compile(source, "count_seeds", defines);
     scan_kernel_ = device().compile(source, "scan_seeds", defines);
-    traverse_kernel_ = device().compile(source, "traverse", defines);
+    traverse_kernel_ = device().compile(
+        source, settings().at("schedule") == "group" ? "traverse_in_groups" : "traverse", defines);
 }
 
 /// The rule of seed_level in chunked.cl, for the host.

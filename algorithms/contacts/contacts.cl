@@ -24,11 +24,6 @@ DEVICE uint stored(GLOBAL const uint* counter, uint capacity) {
     return counter[1] != 0u || counter[0] > capacity ? capacity : counter[0];
 }
 
-DEVICE void load_corners(GLOBAL const uint* body, GLOBAL const real* pose, GLOBAL const uint* tetrahedra,
-                         GLOBAL const real* vertices, uint item, Point* corner) {
-    for (uint i = 0; i < 4u; ++i) corner[i] = corner_at(body, pose, tetrahedra, vertices, item, i);
-}
-
 // Negative zero becomes positive: equal contacts then have equal bits.
 DEVICE void write_contact(const Encounter* pair, Point normal, Point at, real depth, GLOBAL real* value) {
     const Point p = over(at, pair->scale);
@@ -49,15 +44,15 @@ DEVICE void append_contacts(const Encounter* pair, int face, uint index, const S
     real depth;
     ulong kept = 0;
     uint count = 0;
-    for (int feature = 0; feature < FEATURES; ++feature) {
-        if (!contact_at(pair, &support, feature, &p, &depth)) continue;
-        kept |= (ulong)1 << feature;
+    for (ulong rest = features_of(pair); rest != 0; rest &= rest - 1) {
+        if (!contact_at(pair, &support, lowest(rest), &p, &depth)) continue;
+        kept |= rest & (~rest + 1);
         ++count;
     }
     if (count == 0u) return;
     ulong slot = counter_add(sink->status + STATUS_CONTACTS, count);
-    for (int feature = 0; feature < FEATURES && slot < sink->capacity; ++feature) {
-        if (((kept >> feature) & 1u) == 0u) continue;
+    for (ulong rest = kept; rest != 0 && slot < sink->capacity; rest &= rest - 1) {
+        const int feature = lowest(rest);
         contact_at(pair, &support, feature, &p, &depth);
         sink->ids[slot * CONTACT_WORDS] = index;
         sink->ids[slot * CONTACT_WORDS + 1] = (uint)feature;
@@ -66,40 +61,135 @@ DEVICE void append_contacts(const Encounter* pair, int face, uint index, const S
     }
 }
 
+// What a launch reads.
+typedef struct {
+    GLOBAL const uint* found;
+    GLOBAL const uint* bodies;
+    GLOBAL const real* poses;
+    GLOBAL const uint* tetrahedra;
+    GLOBAL const real* vertices;
+    GLOBAL const uchar* boundary;
+} Candidates;
+
+DEVICE void load_pair(const Candidates* all, uint index, Point* a, Point* b) {
+    GLOBAL const uint* row = all->found + (ulong)index * PAIR_WORDS;
+    load_corners(all->bodies, all->poses, all->tetrahedra, all->vertices, row[0], row[2], a);
+    load_corners(all->bodies, all->poses, all->tetrahedra, all->vertices, row[1], row[3], b);
+}
+
+DEVICE uint boundary_of(const Candidates* all, uint body, uint item) {
+    return all->boundary[all->bodies[(ulong)body * BODY_WORDS + BODY_TETRAHEDRA] + item];
+}
+
+// What became of a pair.
+#define DEGENERATE 0
+#define REJECTED 1
+#define INNER 2 // no contacts for want of boundary faces
+#define UNDECIDED 3
+
+DEVICE int try_normals(const Candidates* all, uint index) {
+    Point a[4];
+    Point b[4];
+    Point normal[4];
+    Encounter pair;
+    load_pair(all, index, a, b);
+    if (!meet(a, b, &pair) || !find_normals(a, normal)) return DEGENERATE;
+    const int apart = normals_separate(&pair, normal);
+    if (!find_normals(b, normal)) return DEGENERATE;
+    return apart || normals_separate(&pair, normal) ? REJECTED : UNDECIDED;
+}
+
+// Without boundary faces on both sides the rule has no normal (opposing_face) and nothing is left to do.
+DEVICE int try_edges(const Candidates* all, uint index) {
+    GLOBAL const uint* row = all->found + (ulong)index * PAIR_WORDS;
+    Point a[4];
+    Point b[4];
+    Encounter pair;
+    load_pair(all, index, a, b);
+    meet(a, b, &pair);
+    if (edges_separate(&pair)) return REJECTED;
+    return boundary_of(all, row[0], row[2]) == 0u || boundary_of(all, row[1], row[3]) == 0u ? INNER
+                                                                                            : UNDECIDED;
+}
+
+DEVICE void make_contacts(const Candidates* all, uint index, const Sink* sink) {
+    GLOBAL const uint* row = all->found + (ulong)index * PAIR_WORDS;
+    Point a[4];
+    Point b[4];
+    Encounter pair;
+    load_pair(all, index, a, b);
+    meet(a, b, &pair);
+    find_normals(a, pair.solid[0].normal);
+    find_normals(b, pair.solid[1].normal);
+    NO_UNROLL for (int i = 0; i < 8; ++i) pair.solid[i / 4].normal[i % 4] =
+        unit(pair.solid[i / 4].normal[i % 4]);
+    const int face = opposing_face(&pair, boundary_of(all, row[0], row[2]), boundary_of(all, row[1], row[3]));
+    append_contacts(&pair, face, index, sink);
+}
+
+// A work-group's pairs that wait for the next step, so that work-items which step together all have work.
+#define WAITING (2 * GROUP_SIZE)
+
+DEVICE void put(LOCAL uint* queue, uint index) {
+    const uint slot = LOCAL_ATOMIC_ADD(queue + WAITING, 1u);
+    queue[slot] = index;
+}
+
+// How many are taken, from the end: a full group's worth, or, when no more will come, all.
+DEVICE uint taken(uint held, int last) {
+    if (held >= (uint)GROUP_SIZE) return GROUP_SIZE;
+    return last ? held : 0u;
+}
+
+// Three steps, each for the pairs that the one before could not settle.
 KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_capacity,
                               GLOBAL const uint* bodies, GLOBAL const real* poses,
                               GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
                               GLOBAL const uchar* boundary, GLOBAL uint* contact_ids,
                               GLOBAL real* contact_values, uint contact_capacity, GLOBAL uint* status) {
-    Sink sink;
-    sink.ids = contact_ids;
-    sink.values = contact_values;
-    sink.status = status;
-    sink.capacity = contact_capacity;
+    LOCAL_ARRAY(uint, for_edges, WAITING + 1);
+    LOCAL_ARRAY(uint, for_contacts, WAITING + 1);
+    const Candidates all = {found, bodies, poses, tetrahedra, vertices, boundary};
+    const Sink sink = {contact_ids, contact_values, status, contact_capacity};
     uint degenerate = 0;
     uint rejected = 0;
+    uint waiting = 0;
+    int last = 0;
     const ulong count = stored(status + STATUS_PAIRS, pair_capacity);
-    for (ulong i = (ulong)first + GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
-        GLOBAL const uint* row = found + i * PAIR_WORDS;
-        GLOBAL const uint* body_a = bodies + (ulong)row[0] * BODY_WORDS;
-        GLOBAL const uint* body_b = bodies + (ulong)row[1] * BODY_WORDS;
-        Point a[4];
-        Point b[4];
-        load_corners(body_a, poses + (ulong)row[0] * 12, tetrahedra, vertices, row[2], a);
-        load_corners(body_b, poses + (ulong)row[1] * 12, tetrahedra, vertices, row[3], b);
-        Encounter pair;
-        if (!meet(a, b, &pair)) {
-            ++degenerate;
-        } else if (are_separated(&pair)) {
-            ++rejected;
-        } else {
-            const int face = opposing_face(&pair, boundary[body_a[BODY_TETRAHEDRA] + row[2]],
-                                           boundary[body_b[BODY_TETRAHEDRA] + row[3]]);
-            if (face == NO_FACE) continue;
-            measure(&pair);
-            append_contacts(&pair, face, (uint)i, &sink);
+    ulong start = (ulong)first + GROUP_ID * (uint)GROUP_SIZE;
+    if (LOCAL_ID == 0u) for_edges[WAITING] = for_contacts[WAITING] = 0u;
+    BARRIER;
+    do {
+        last = start >= count;
+        if (start + LOCAL_ID < count) {
+            const uint index = (uint)(start + LOCAL_ID);
+            const int state = try_normals(&all, index);
+            degenerate += state == DEGENERATE ? 1u : 0u;
+            rejected += state == REJECTED ? 1u : 0u;
+            if (state == UNDECIDED) put(for_edges, index);
         }
-    }
+        start += GLOBAL_COUNT;
+        BARRIER;
+        const uint edges = for_edges[WAITING];
+        const uint edges_left = edges - taken(edges, last);
+        BARRIER;
+        if (LOCAL_ID < edges - edges_left) {
+            const uint index = for_edges[edges_left + LOCAL_ID];
+            const int state = try_edges(&all, index);
+            rejected += state == REJECTED ? 1u : 0u;
+            if (state == UNDECIDED) put(for_contacts, index);
+        }
+        if (LOCAL_ID == 0u) for_edges[WAITING] = edges_left;
+        BARRIER;
+        const uint contacts = for_contacts[WAITING];
+        const uint contacts_left = contacts - taken(contacts, last && edges_left == 0u);
+        BARRIER;
+        if (LOCAL_ID < contacts - contacts_left)
+            make_contacts(&all, for_contacts[contacts_left + LOCAL_ID], &sink);
+        if (LOCAL_ID == 0u) for_contacts[WAITING] = contacts_left;
+        waiting = edges_left + contacts_left;
+        BARRIER;
+    } while (!last || waiting != 0u);
     if (degenerate != 0u) counter_add(status + STATUS_DEGENERATE, degenerate);
     if (rejected != 0u) counter_add(status + STATUS_REJECTED, rejected);
 }

@@ -78,7 +78,7 @@ struct Tetrahedron {
     }
 };
 
-/// Outward unit normals, or nothing when the volume could be zero.
+/// Outward normals of any length, or nothing when the volume could be zero.
 template<class Real>
 std::optional<Corners<Real>> outward_normals(const Corners<Real>& world) {
     Vector<Real> extent;
@@ -98,14 +98,22 @@ std::optional<Corners<Real>> outward_normals(const Corners<Real>& world) {
     for (unsigned face = 0; face < 4; ++face) {
         const auto& [first, second, third] = face_corners[face];
         Vector<Real> normal = cross(corners[second] - corners[first], corners[third] - corners[first]);
-        const Real longest = largest(normal);
-        if (longest == 0) return std::nullopt;
-        normal = normal / longest;
-        normal = normal / std::sqrt(dot(normal, normal));
+        if (largest(normal) == 0) return std::nullopt;
         const bool inward = face % 2 == 0 ? determinant < 0 : determinant > 0;
         normals[face] = inward ? normal * Real(-1) : normal;
     }
     return normals;
+}
+
+template<class Real>
+Vector<Real> unit(const Vector<Real>& a) {
+    const auto shorter = a / largest(a);
+    return shorter / std::sqrt(dot(shorter, shorter));
+}
+
+template<class Real>
+Real taxicab(const Vector<Real>& a) {
+    return std::abs(a[0]) + std::abs(a[1]) + std::abs(a[2]);
 }
 
 /// One pair, its contacts in the making.
@@ -133,15 +141,15 @@ public:
         const auto normals_a = outward_normals(a);
         const auto normals_b = outward_normals(b);
         if (!normals_a || !normals_b) return false;
-        solids_[0].normals = *normals_a;
-        solids_[1].normals = *normals_b;
+        axes_ = {*normals_a, *normals_b};
+        for (unsigned i = 0; i < 8; ++i) solids_[i / 4].normals[i % 4] = unit(axes_[i / 4][i % 4]);
         return true;
     }
 
     bool separated() const {
-        for (const auto& solid : solids_)
-            for (const auto& normal : solid.normals)
-                if (separated_along(normal)) return true;
+        for (const auto& axes : axes_)
+            for (const auto& axis : axes)
+                if (separated_along(largest(axis) < shortest ? axis * lengthen : axis)) return true;
         for (const auto& [i, j] : edge_ends)
             for (const auto& [k, l] : edge_ends) {
                 const auto& a = solids_[0].corners;
@@ -171,8 +179,8 @@ private:
     Real tolerance() const { return 32 * unit_roundoff<Real> * size_; }
 
     bool separated_along(const Vector<Real>& axis) const {
-        const Real norm = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
-        if (norm < std::ldexp(Real(1), -96)) return false;
+        const Real norm = taxicab(axis);
+        if (norm < shortest) return false;
         Vector<Real> along[4];
         for (unsigned i = 0; i < 4; ++i)
             along[i] = {dot(axis, solids_[0].corners[i]), dot(axis, solids_[1].corners[i]), 0};
@@ -225,7 +233,12 @@ private:
                           a.normals[face] + no_negative_zero, depth / scale_ + Real(0)});
     }
 
+    static inline const Real shortest = std::ldexp(Real(1), -96); ///< axis that is tried
+    static inline const Real lengthen =
+        std::ldexp(Real(1), std::numeric_limits<Real>::digits == 24 ? 64 : 978);
+
     std::array<Tetrahedron<Real>, 2> solids_;
+    std::array<Corners<Real>, 2> axes_; ///< the normals before they are made unit vectors
     Vector<Real> origin_{};
     Real size_ = 0;
     Real scale_ = 1;

@@ -4,17 +4,17 @@
 #include "backends/portable.h"
 #include "algorithms/kdop/node.clh"
 
-// Work-items take neighbouring words, and UNROLL rounds of the grid at once, so that enough reads are in
+// Work-items take neighbouring words, and IN_FLIGHT rounds of the grid at once, so that enough reads are in
 // flight.
-#define UNROLL 8
+#define IN_FLIGHT 8
 
-// words = a multiple of the work-items times UNROLL.
+// words = a multiple of the work-items times IN_FLIGHT.
 KERNEL void copy_words(GLOBAL const ulong* from, GLOBAL ulong* to, ulong words) {
     const ulong stride = GLOBAL_COUNT;
-    for (ulong i = GLOBAL_ID; i < words; i += stride * UNROLL) {
-        ulong held[UNROLL];
-        for (int j = 0; j < UNROLL; ++j) held[j] = from[i + (ulong)j * stride];
-        for (int j = 0; j < UNROLL; ++j) to[i + (ulong)j * stride] = held[j];
+    for (ulong i = GLOBAL_ID; i < words; i += stride * IN_FLIGHT) {
+        ulong held[IN_FLIGHT];
+        for (int j = 0; j < IN_FLIGHT; ++j) held[j] = from[i + (ulong)j * stride];
+        for (int j = 0; j < IN_FLIGHT; ++j) to[i + (ulong)j * stride] = held[j];
     }
 }
 
@@ -23,10 +23,10 @@ KERNEL void read_words(GLOBAL const ulong* from, GLOBAL ulong* out, ulong words,
     const ulong stride = GLOBAL_COUNT;
     ulong sum = 0;
     for (uint round = 0; round < rounds; ++round) {
-        for (ulong i = GLOBAL_ID; i < words; i += stride * UNROLL) {
-            ulong held[UNROLL];
-            for (int j = 0; j < UNROLL; ++j) held[j] = from[i + (ulong)j * stride];
-            for (int j = 0; j < UNROLL; ++j) sum = sum * 3u + held[j] + round;
+        for (ulong i = GLOBAL_ID; i < words; i += stride * IN_FLIGHT) {
+            ulong held[IN_FLIGHT];
+            for (int j = 0; j < IN_FLIGHT; ++j) held[j] = from[i + (ulong)j * stride];
+            for (int j = 0; j < IN_FLIGHT; ++j) sum = sum * 3u + held[j] + round;
         }
     }
     if (sum == 0x123456789abcdefUL) out[0] = sum;
@@ -45,15 +45,9 @@ KERNEL void test_overlaps(GLOBAL const real* nodes, GLOBAL uint* counts, uint ro
     for (int i = 0; i < K; ++i) b[i] = nodes[K + i] + (real)(GLOBAL_ID & 7u);
     uint found = 0u;
     for (uint round = 0; round < rounds; ++round) {
-#ifdef __CUDACC__
-#pragma unroll
-#endif
-        for (int turn = 0; turn < SLABS; ++turn) {
+        UNROLL for (int turn = 0; turn < SLABS; ++turn) {
             int apart = 0;
-#ifdef __CUDACC__
-#pragma unroll
-#endif
-            for (int axis = 0; axis < SLABS; ++axis) {
+            UNROLL for (int axis = 0; axis < SLABS; ++axis) {
                 const int other = (axis + turn) % SLABS;
                 apart |= (a[axis] > b[other + SLABS]) | (b[other] > a[axis + SLABS]);
             }

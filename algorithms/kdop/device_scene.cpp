@@ -5,7 +5,9 @@
 #include "algorithms/sources.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
+#include <numeric>
 
 namespace tandem {
 
@@ -15,10 +17,21 @@ constexpr std::uint32_t body_words = 8;
 constexpr std::uint32_t level_words = 4;
 constexpr std::uint32_t job_words = 3;
 constexpr std::uint32_t in_world_flag = 1;
-constexpr std::uint32_t strip = 5; ///< STRIP of refit.cl
+constexpr std::uint32_t strip = 5;             ///< depths of a strip below its root, at most
+constexpr std::uint32_t most_refitting = 64;   ///< work-items of a group: more wait longer for each other
+constexpr std::uint32_t most_top_items = 1024; ///< of a level that one work-group refits
+constexpr std::uint64_t tile_bytes = 32 << 10; ///< local memory that every device has (OpenCL 1.2, 4.2)
 
 std::uint64_t groups_for(std::uint64_t items, std::uint64_t per_group) {
     return (items + per_group - 1) / per_group;
+}
+
+/// TILE_NODES of refit.cl: for every work-item two leaves (IN_PAIRS there) or one, but one strip at least and
+/// no more than fits.
+std::uint32_t tile_nodes(const Geometry& geometry, std::uint32_t group_size) {
+    const auto node = static_cast<std::uint64_t>(geometry.k + 2) * real_bytes(geometry) + 8;
+    const auto wanted = std::max(2u << strip, std::bit_floor((geometry.k <= 8 ? 4 : 2) * group_size));
+    return std::min(wanted, static_cast<std::uint32_t>(std::bit_floor(tile_bytes / node)));
 }
 
 } // namespace
@@ -30,6 +43,7 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const Geometry& geo
       geometry_(geometry),
       leaves_(leaves),
       group_size_(group_size),
+      refit_group_(std::min(group_size, most_refitting)),
       residency_(residency) {
     for (const auto& mesh : scene.meshes) {
         meshes_.push_back(ordered(mesh));
@@ -37,11 +51,12 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const Geometry& geo
     }
     lay_out();
     plan_strips();
-    auto defines = geometry_defines(geometry, group_size);
+    auto defines = geometry_defines(geometry, refit_group_);
     const auto& source = kernel_source("algorithms/kdop/refit.cl");
     defines["LEAF_BITS"] = std::to_string(ceil_log2(leaves));
+    defines["TILE_NODES"] = std::to_string(tile_nodes(geometry, refit_group_));
     strips_kernel_ = device.compile(source, "refit_strips", defines);
-    roots_kernel_ = device.compile(source, "refit_roots", defines);
+    tops_kernel_ = device.compile(source, "refit_tops", defines);
     if (residency == Residency::published)
         transform_kernel_ = device.compile(source, "transform_vertices", defines);
     upload_static();
@@ -89,11 +104,14 @@ void DeviceScene::lay_out() {
         throw DeviceError("scene: more than 2^32 nodes, vertices or tetrahedra; leave bodies out");
 }
 
-/// Level by level, each from its deepest nodes up, in strips of at most `strip` + 1 depths.
+/// Level by level, each from its deepest nodes up, in strips of at most `strip` + 1 depths. The small levels
+/// above them are left to refit_tops.
 void DeviceScene::plan_strips() {
-    std::size_t level_count = 0;
-    for (const auto& levels : mesh_levels_) level_count = std::max(level_count, levels.size());
-    for (std::uint32_t level = 0; level < level_count; ++level) {
+    const auto is_small = [&](const std::vector<Level>& levels) {
+        return first_top_level_ >= levels.size() || levels[first_top_level_].items <= most_top_items;
+    };
+    while (!std::all_of(mesh_levels_.begin(), mesh_levels_.end(), is_small)) ++first_top_level_;
+    for (std::uint32_t level = 0; level < first_top_level_; ++level) {
         std::uint32_t deepest = 0;
         for (const auto& levels : mesh_levels_)
             if (level < levels.size())
@@ -155,6 +173,12 @@ void DeviceScene::upload_static() {
     put(bodies_, bytes_of(body_rows_), "bodies");
     put(levels_, bytes_of(level_rows_), "levels");
     put(job_table_, bytes_of(jobs_), "refit jobs");
+    std::vector<std::uint32_t> order(scene_.bodies.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto moving = [&](std::uint32_t body) { return !scene_.bodies[body].fixed; };
+    moving_bodies_ =
+        static_cast<std::uint32_t>(std::stable_partition(order.begin(), order.end(), moving) - order.begin());
+    put(body_order_, bytes_of(order), "bodies to refit");
     const auto real = real_bytes(geometry_);
     nodes_ = device_.allocate(slots_ * static_cast<std::uint64_t>(geometry_.k) * real, "nodes");
     poses_ = device_.allocate(scene_.bodies.size() * 12 * real, "poses");
@@ -198,20 +222,18 @@ void DeviceScene::upload_deformed(const Frame& frame) {
 
 void DeviceScene::refit(bool all) {
     const StageScope scope(device_, Stage::refit);
-    const std::uint32_t per_group = std::max(1u, group_size_ >> strip);
     for (const auto& s : strips_) {
+        const auto per_group = tile_nodes(geometry_, refit_group_) >> (s.height + 1);
         const auto jobs = all ? s.jobs : s.dynamic_jobs;
+        if (jobs == 0) continue;
         const std::array<Argument, 11> arguments{nodes_,      bodies_,   levels_,    poses_,
                                                  tetrahedra_, vertices_, job_table_, s.first_job,
                                                  jobs,        s.level,   s.height};
-        device_.launch(strips_kernel_, {groups_for(jobs, per_group), group_size_}, arguments);
+        device_.launch(strips_kernel_, {groups_for(jobs, per_group), refit_group_}, arguments);
     }
-    const std::array<Argument, 4> arguments{nodes_, bodies_, levels_, body_count()};
-    device_.launch(
-        roots_kernel_,
-        {groups_for(std::uint64_t{body_count()} * static_cast<std::uint64_t>(geometry_.k / 2), group_size_),
-         group_size_},
-        arguments);
+    const std::array<Argument, 5> arguments{nodes_, bodies_, levels_, body_order_, first_top_level_};
+    const auto bodies = all ? body_count() : moving_bodies_;
+    if (bodies > 0) device_.launch(tops_kernel_, {bodies, refit_group_}, arguments);
 }
 
 void DeviceScene::update(const Frame& frame) {

@@ -82,6 +82,7 @@ private:
     Geometry geometry_;
     std::uint32_t leaves_;
     std::uint32_t group_size_;
+    std::uint32_t refit_group_;
     Residency residency_;
     std::vector<OrderedMesh> meshes_;
     std::vector<std::vector<Level>> mesh_levels_;
@@ -89,13 +90,15 @@ private:
     std::vector<std::uint32_t> level_rows_;
     std::vector<std::uint32_t> jobs_;
     std::vector<Strip> strips_;
+    std::uint32_t first_top_level_ = 1; ///< the first level that refit_tops does
+    std::uint32_t moving_bodies_ = 0;   ///< how many in body_order_ are not fixed; they come first
     std::uint64_t slots_ = 0;
     std::uint64_t vertex_total_ = 0;
     std::uint64_t tetrahedron_total_ = 0;
     bool fresh_ = true; ///< no frame yet: fixed bodies need their first refit
-    Buffer nodes_, bodies_, levels_, tetrahedra_, ids_, boundary_, vertices_, poses_, job_table_;
+    Buffer nodes_, bodies_, levels_, tetrahedra_, ids_, boundary_, vertices_, poses_, job_table_, body_order_;
     Buffer local_vertices_, vertex_bodies_; ///< published: vertices before the transform, and whose they are
-    Kernel strips_kernel_, roots_kernel_, transform_kernel_;
+    Kernel strips_kernel_, tops_kernel_, transform_kernel_;
 };
 
 } // namespace tandem

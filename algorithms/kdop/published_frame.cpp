@@ -65,7 +65,7 @@ void DeviceScene::update_published(const Frame& frame) {
             const auto count = static_cast<std::uint32_t>(vertex_total_);
             const std::array<Argument, 5> arguments{local_vertices_, vertices_, vertex_bodies_, poses_,
                                                     count};
-            device_.launch(transform_kernel_, {(count + group_size_ - 1) / group_size_, group_size_},
+            device_.launch(transform_kernel_, {(count + refit_group_ - 1) / refit_group_, refit_group_},
                            arguments);
         }
         download(vertices_, vertices);

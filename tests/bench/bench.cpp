@@ -34,12 +34,12 @@ void transfer(benchmark::State& state, Device& device, bool up) {
     state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations()) * state.range(0));
 }
 
-/// A kernel that does next to nothing, and the wait for it.
+/// A kernel that does nothing, and the wait for it.
 void launch_latency(benchmark::State& state, Device& device) {
-    const auto kernel = device.compile(kernel_source("algorithms/kdop/refit.cl"), "refit_roots",
+    const auto kernel = device.compile(kernel_source("algorithms/kdop/ceilings.cl"), "do_nothing",
                                        geometry_defines({}, group_size(device)));
     const auto empty = device.allocate(64, "empty");
-    const std::array<Argument, 4> arguments{empty, empty, empty, 0u};
+    const std::array<Argument, 1> arguments{empty};
     device.launch(kernel, {1, group_size(device)}, arguments);
     device.finish();
     for ([[maybe_unused]] auto _ : state) {

@@ -39,6 +39,7 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
         axes.push_back(of("seed_threshold", {"1", "40", "1e7"}));
         axes.push_back(of("seed_capacity", {"1", "65536"}));
         axes.push_back(of("root_test", {"yes", "no"}));
+        axes.push_back(of("schedule", {"group", "item"}));
     }
     if (traversal.name() == "gproximity") {
         axes.push_back(of("groups", {"8", "13"}));

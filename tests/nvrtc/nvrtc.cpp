@@ -126,8 +126,9 @@ TEST(Nvrtc, EveryProgramOfThePlanForHopper) {
                nvrtc()->version());
 }
 
-/// Registers and spills of the float defaults, where speed is decided; the budget leaves a multiprocessor of
-/// sm_90 half of its 2048 work-items (64 registers each), contacts a quarter.
+/// Registers and spills of the float defaults, where speed is decided. The budget leaves a multiprocessor of
+/// sm_90 half of its 2048 work-items (64 registers each); a third for the walk that holds nodes in registers,
+/// whose rows in local memory leave room for no more; a quarter for contacts.
 TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
     const auto programs = defaults();
     if (!can_compile(programs)) return;
@@ -140,7 +141,8 @@ TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
                        use.spill_bytes,
                        defines.contains("PRECISION") && defines.at("PRECISION") == "64" ? " (double)" : "");
             if (defines.contains("PRECISION") && defines.at("PRECISION") == "64") continue;
-            EXPECT_LE(use.registers, name == "generate_contacts" ? 128 : 64) << name;
+            const int budget = name == "generate_contacts" ? 128 : name == "traverse_in_groups" ? 96 : 64;
+            EXPECT_LE(use.registers, budget) << name;
             EXPECT_EQ(use.spill_bytes, 0) << name;
         }
     }
