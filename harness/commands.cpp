@@ -70,6 +70,8 @@ int profile(const Job& job, std::size_t times) {
             for (const auto& frame : job.range.frames) walk.run(frame);
             cell.device->finish();
         }
+        fmt::print("{}: replayed frames {}:{} {} times; nothing measured or recorded\n", describe(cell),
+                   job.range.first, job.range.last, times);
     }
     return 0;
 }

@@ -490,6 +490,11 @@ class Repaired(Case):
     def test_records_go_into_a_pipe(self):
         self.assertEqual(self.cell("--out", "/dev/stdout")[0], 0)
 
+    def test_a_profile_says_that_nothing_was_measured(self):
+        status, out, errors = self.cell("--profile", "3")
+        self.assertEqual((status, errors), (0, []))
+        self.assertIn("on host: replayed frames 0:0 3 times; nothing measured or recorded", out)
+
     def test_a_negative_profile_is_refused(self):
         self.assertEqual(self.cell("--profile", "-1", timeout=3)[0], 2)
 
