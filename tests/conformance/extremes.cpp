@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// Scenes where everything touches and nothing overlaps, and where everything overlaps: what random crowds
+// hardly ever have.
+#include "tests/support/cells.h"
+#include "tests/support/scenes.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+Scene still(Mesh mesh, std::vector<Pose> poses) {
+    Scene scene;
+    scene.name = scene.key = mesh.name;
+    scene.meshes = {std::move(mesh)};
+    for (std::size_t i = 0; i < poses.size(); ++i) scene.bodies.push_back({});
+    scene.frame_count = 1;
+    scene.frame = [poses](std::size_t) {
+        Frame frame;
+        frame.poses = poses;
+        frame.deformed.resize(poses.size());
+        return frame;
+    };
+    scene.digest = digest_of(scene);
+    return scene;
+}
+
+/// Two boxes side by side, every number exact in float: their faces touch.
+Scene touching() {
+    Random random(1);
+    auto mesh = shaken_box(2, random);
+    for (auto& v : mesh.vertices) v = (v * 2).array().round() / 2; // the lattice again
+    complete_mesh(mesh, "touching");
+    mesh.name = "touching";
+    Pose beside;
+    beside.translation = {1, 0, 0};
+    return still(mesh, {Pose{}, beside});
+}
+
+constexpr std::uint32_t crossing = 128;
+
+/// Tetrahedra of one size around one point, so that each overlaps each.
+Scene all_overlapping() {
+    Random random(2);
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < crossing; ++i) {
+        const auto rotation = random.rotation();
+        for (const auto& corner : {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(1, -1, -1),
+                                   Eigen::Vector3d(-1, 1, -1), Eigen::Vector3d(-1, -1, 1)})
+            mesh.vertices.emplace_back(rotation * corner);
+        mesh.tetrahedra.push_back({4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3});
+    }
+    complete_mesh(mesh, "overlapping");
+    mesh.name = "overlapping";
+    return still(mesh, std::vector<Pose>(3));
+}
+
+/// Every algorithm, every schedule, groups of several sizes, on every device.
+void expect_everywhere(const Scene& scene, std::uint64_t at_least) {
+    const auto frame = scene.frame(0);
+    const auto expected = reference(scene, frame, {}, false, Method::brute_force);
+    EXPECT_GE(expected.digest.count, at_least);
+    std::uint64_t cells = 0;
+    for (const auto& backend : discover()) {
+        for (const auto& on : backend.devices) {
+            for (const std::string group : {"1", "8", "64"}) {
+                for (const auto* traversal : algorithms()) {
+                    std::vector<Settings> all{{{"group_size", group}, {"work_items", "64"}}};
+                    if (traversal->name() == "chunked") {
+                        all.push_back(all.front());
+                        all.back()["schedule"] = "item";
+                        for (auto& settings : all) settings["leaves"] = "32";
+                    }
+                    for (const auto& given : all) {
+                        SCOPED_TRACE(
+                            fmt::format("{} on {}:{}", traversal->name(), on->info().id, text(given)));
+                        const std::array devices{on.get()};
+                        const auto session = traversal->prepare(
+                            devices, scene, resolve(traversal->parameters(), {}, given, traversal->name()));
+                        const auto result = session->run(frame, all_pairs(scene));
+                        EXPECT_EQ(session->digest(result), expected.digest);
+                        on->finish();
+                        ++cells;
+                    }
+                }
+            }
+        }
+    }
+    EXPECT_GE(cells, 18u);
+    fmt::print("{} candidate pairs in each of {} cells\n", expected.digest.count, cells);
+}
+
+TEST(Extremes, TouchingOverlaps) { expect_everywhere(touching(), 48); }
+
+TEST(Extremes, EverythingOverlaps) { expect_everywhere(all_overlapping(), 3ull * crossing * crossing); }
+
+} // namespace
+} // namespace tandem
