@@ -7,16 +7,16 @@ namespace {
 
 /// One pass over all rows in order; the largest change of an impulse.
 double sweep(Problem& problem, double scale) {
-    double residual = 0;
+    double most = 0;
     for (auto& row : problem.rows) {
         row.previous = row.impulse;
         row.impulse = proximal(row, problem.velocity(row), scale);
         const Eigen::Vector3d change = row.impulse - row.previous;
         if (change == Eigen::Vector3d::Zero()) continue;
         problem.push(row, world(row, change));
-        residual = std::max(residual, change.cwiseAbs().maxCoeff());
+        most = std::max(most, change.cwiseAbs().maxCoeff());
     }
-    return residual;
+    return most;
 }
 
 void undo(Problem& problem, std::vector<Node>& accepted) {
@@ -32,16 +32,16 @@ SolveReport gauss_seidel(Problem& problem, const SolverSettings& settings) {
     Convergence convergence(settings);
     SolveReport report;
     auto accepted = problem.nodes;
-    for (; report.iterations < settings.iterations; ++report.iterations) {
-        report.residual = sweep(problem, convergence.scale());
-        const auto verdict = convergence.judge(report.residual);
-        if (verdict == Convergence::Verdict::diverged) {
+    while (report.iterations < settings.iterations) {
+        const auto verdict = convergence.judge(sweep(problem, convergence.scale()));
+        ++report.iterations;
+        if (verdict == Convergence::Verdict::converged) break;
+        if (verdict == Convergence::Verdict::diverged)
             undo(problem, accepted);
-            continue;
-        }
-        if (verdict == Convergence::Verdict::converged) return {report.iterations + 1, report.residual};
-        accepted = problem.nodes;
+        else
+            accepted = problem.nodes;
     }
+    report.residual = convergence.residual();
     return report;
 }
 

@@ -63,12 +63,12 @@ public:
           convergence_(settings),
           touches_(gather(problem)),
           free_(problem.nodes),
-          residuals_(threads),
+          changes_(threads),
           barrier_(threads) {}
 
     SolveReport run() {
         std::vector<std::thread> others;
-        for (std::size_t i = 1; i < residuals_.size(); ++i) others.emplace_back([this, i] { work(i); });
+        for (std::size_t i = 1; i < changes_.size(); ++i) others.emplace_back([this, i] { work(i); });
         work(0);
         for (auto& thread : others) thread.join();
         return report_;
@@ -80,14 +80,14 @@ private:
     };
 
     Part part(std::size_t count, std::size_t thread) const {
-        return {count * thread / residuals_.size(), count * (thread + 1) / residuals_.size()};
+        return {count * thread / changes_.size(), count * (thread + 1) / changes_.size()};
     }
 
     void work(std::size_t thread) {
         move_nodes(thread);
         barrier_.arrive_and_wait();
         while (report_.iterations < settings_.iterations && !done_) {
-            residuals_[thread] = update_rows(thread);
+            changes_[thread] = update_rows(thread);
             barrier_.arrive_and_wait();
             if (thread == 0) judge();
             barrier_.arrive_and_wait();
@@ -100,19 +100,19 @@ private:
 
     double update_rows(std::size_t thread) {
         const auto mine = part(problem_.rows.size(), thread);
-        double residual = 0;
+        double change = 0;
         for (auto i = mine.begin; i < mine.end; ++i) {
             auto& row = problem_.rows[i];
             row.previous = row.impulse;
             row.impulse = proximal(row, problem_.velocity(row), convergence_.scale());
-            residual = std::max(residual, (row.impulse - row.previous).cwiseAbs().maxCoeff());
+            change = std::max(change, (row.impulse - row.previous).cwiseAbs().maxCoeff());
         }
-        return residual;
+        return change;
     }
 
     void judge() {
-        report_.residual = *std::max_element(residuals_.begin(), residuals_.end());
-        const auto verdict = convergence_.judge(report_.residual);
+        const auto verdict = convergence_.judge(*std::max_element(changes_.begin(), changes_.end()));
+        report_.residual = convergence_.residual();
         ++report_.iterations;
         done_ = verdict == Convergence::Verdict::converged;
         diverged_ = verdict == Convergence::Verdict::diverged;
@@ -147,7 +147,7 @@ private:
     Convergence convergence_;
     Touches touches_;
     std::vector<Node> free_;
-    std::vector<double> residuals_; ///< one a thread
+    std::vector<double> changes_; ///< one a thread
     std::barrier<> barrier_;
     SolveReport report_;
     bool done_ = false, diverged_ = false;

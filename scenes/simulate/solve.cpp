@@ -30,14 +30,20 @@ Eigen::Vector3d proximal(const ContactRow& row, const Eigen::Vector3d& velocity,
     return result;
 }
 
-Convergence::Verdict Convergence::judge(double residual) {
-    if (residual <= settings_.absolute_tolerance) return Verdict::converged;
-    if (std::fabs(residual - last_) < settings_.relative_tolerance * last_) return Verdict::converged;
-    if (residual > last_) {
+Convergence::Verdict Convergence::judge(double change) {
+    const double before = residual_;
+    residual_ = change / scale_;
+    if (residual_ <= settings_.absolute_tolerance
+        || std::fabs(residual_ - before) < settings_.relative_tolerance * before)
+        return Verdict::converged;
+    if (change > allowed_) {
         scale_ *= reduction;
+        residual_ = before;
         return Verdict::diverged;
     }
-    last_ = residual;
+    const double grown = std::min(1.0, scale_ / reduction);
+    allowed_ = change * (grown / scale_);
+    scale_ = grown;
     return Verdict::go_on;
 }
 

@@ -3,12 +3,14 @@
 
 #include "scenes/simulate/problem.h"
 
+#include <limits>
+
 namespace tandem::simulate {
 
 /// How a solver ended.
 struct SolveReport {
     std::size_t iterations = 0;
-    double residual = 0; ///< N s: largest change of an impulse in the last pass
+    double residual = 0; ///< N s: largest change of an impulse in the last pass at full r-factors
 };
 
 /// Solves for the rows' impulses from those they have, and brings nodes' velocities to match. The proximal
@@ -24,18 +26,23 @@ SolveReport solve(Problem& problem, const SolverSettings& settings, unsigned thr
 /// `scale`.
 Eigen::Vector3d proximal(const ContactRow& row, const Eigen::Vector3d& velocity, double scale);
 
-/// Says after every pass what to do next.
+/// Says after every pass what to do next. A pass that changes impulses by more than the one before diverges:
+/// r-factors are reduced, and grow back with every pass that does not. The residual is the change divided by
+/// the reduction, so that small steps are not taken for convergence.
 class Convergence {
 public:
     enum class Verdict { go_on, converged, diverged };
 
     explicit Convergence(const SolverSettings& settings) : settings_(settings) {}
-    Verdict judge(double residual);
-    double scale() const { return scale_; }
+    /// `change`: the largest of an impulse in this pass.
+    Verdict judge(double change);
+    double scale() const { return scale_; } ///< of the r-factors in the next pass
+    double residual() const { return residual_; }
 
 private:
     const SolverSettings& settings_;
-    double last_ = std::numeric_limits<double>::max();
+    double residual_ = std::numeric_limits<double>::max();
+    double allowed_ = std::numeric_limits<double>::max();
     double scale_ = 1;
 };
 
