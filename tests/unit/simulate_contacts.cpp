@@ -35,7 +35,7 @@ TEST_P(Resting, BoxStaysWhereItIs) {
     Simulation simulation(scene);
     const auto detect = detector(scene);
     for (int i = 0; i < 500; ++i) simulation.step(detect);
-    const auto& pose = simulation.frame().poses[1];
+    const auto pose = simulation.frame().poses[1];
     EXPECT_LT((pose.translation - world.start.poses[1].translation).norm(), 1e-3);
     EXPECT_LT(pose.rotation.vec().norm(), 1e-3);
 }
@@ -111,7 +111,7 @@ TEST(SimulateContacts, PillarStands) {
     Simulation simulation(scene);
     const auto detect = detector(scene);
     for (int i = 0; i < 200; ++i) simulation.step(detect);
-    const auto& pose = simulation.frame().poses[5];
+    const auto pose = simulation.frame().poses[5];
     EXPECT_LT((pose.translation - world.start.poses[5].translation).norm(), 0.01);
 }
 
