@@ -105,6 +105,7 @@ TEST(SimulateContacts, BounceCanBeSwitchedOff) {
 
 TEST(SimulateContacts, PillarStands) {
     auto world = exact_world({0.65, 0.7});
+    world.dynamics.solver.iterations = 300;
     add_ground(world);
     for (int i = 0; i < 5; ++i) world.add(box({1, 1, 1}), at(0, 0.5 - 1e-4 + (1 - 1e-4) * i, 0));
     const auto& scene = world.finish();
@@ -118,6 +119,7 @@ TEST(SimulateContacts, PillarStands) {
 /// Half a ring of seven wedges on a fixed ground; the outermost two stand on it.
 World arch(bool keystone) {
     auto world = exact_world({0.65, 0});
+    world.dynamics.solver.iterations = 300;
     add_ground(world);
     constexpr int stones = 7;
     const double inner = 2, outer = 3, sunk = 1e-4;

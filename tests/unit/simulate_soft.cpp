@@ -153,8 +153,6 @@ TEST(SimulateSoftSteps, AdaptiveStepIsHalvedAndDoubled) {
     EXPECT_EQ(detections, 3 + 2 * 4u); // one full and two half steps, and two more for each halving
     for (int i = 1; i < 300; ++i) lengths.push_back(simulation.step(count).length);
     EXPECT_EQ(lengths.front(), 0.002); // halved four times,
-    EXPECT_EQ(detections,
-              3 * 300 + 2 * (4 + 3)); // three detections a step and two for each time it was halved
     const auto longer = std::find(lengths.begin(), lengths.end(), 0.004);
     ASSERT_NE(longer, lengths.end());
     for (std::size_t i = 1; i < lengths.size(); ++i) // doubled after ten passes at the least
