@@ -37,7 +37,7 @@ struct Motion {
 
 Motion starting_motion(const Model& model);
 
-/// Positions after `time` (s) at constant velocities.
+/// Positions after `time` (s) of free motion: velocities and momenta stay.
 void drift(const Model& model, Motion& motion, double time);
 
 /// Velocities after `time` (s) of gravity, damping and elastic forces at the present positions.
