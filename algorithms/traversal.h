@@ -4,29 +4,14 @@
 #include "algorithms/kdop/device_scene.h"
 #include "algorithms/settings.h"
 #include "backends/device.h"
+#include "scenes/contact.h"
 #include "scenes/scene.h"
 
-#include <compare>
 #include <memory>
 #include <optional>
 #include <span>
 
 namespace tandem {
-
-/// Two tetrahedra whose leaf k-DOPs overlap, numbered in input order; body_a < body_b.
-struct Pair {
-    std::uint32_t body_a = 0, tet_a = 0, body_b = 0, tet_b = 0;
-
-    auto operator<=>(const Pair&) const = default;
-};
-
-/// A contact between a pair: point and normal (out of body a) in world coordinates, depth < 0 inside.
-struct ContactPoint {
-    Pair pair;
-    std::uint32_t feature = 0;
-    std::array<double, 3> point{}, normal{};
-    double depth = 0;
-};
 
 /// Order-free digest of a set: its 64-bit count and two wrapping sums of a fixed mix of its elements.
 struct Digest {

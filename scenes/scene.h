@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "scenes/dynamics.h"
 #include "scenes/mesh.h"
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string_view>
 
@@ -30,7 +32,7 @@ struct Frame {
     std::vector<std::vector<Eigen::Vector3d>> deformed; ///< one per body; empty for rigid bodies
 };
 
-/// Meshes, bodies and their motion. Immutable once made.
+/// Meshes, bodies and their motion. Immutable once made. A scene with dynamics has one frame, its start.
 struct Scene {
     std::string name; ///< "plates"
     std::string key;  ///< name and every parameter: "pile:bodies=64,density=0.2,..."
@@ -38,8 +40,9 @@ struct Scene {
     std::vector<Mesh> meshes;
     std::vector<Body> bodies;
     std::size_t frame_count = 1;
-    std::function<Frame(std::size_t)> frame; ///< frame(i) for i < frame_count; pure
-    std::uint64_t digest = 0;                ///< of meshes, bodies and motion; equal on every machine
+    std::function<Frame(std::size_t)> frame;  ///< frame(i) for i < frame_count; pure
+    std::shared_ptr<const Dynamics> dynamics; ///< null: the motion is scripted, frames are known beforehand
+    std::uint64_t digest = 0;                 ///< of meshes, bodies and motion; equal on every machine
 };
 
 /// A named parameter of a scene with its default, for listings.

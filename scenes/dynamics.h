@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tandem {
+
+/// What two materials do where they touch.
+struct Surface {
+    double friction = 0;    ///< Coulomb's coefficient
+    double restitution = 0; ///< Newton's coefficient, 0..1
+};
+
+/// Densities by material, surfaces by pair of materials.
+struct Materials {
+    std::vector<std::string> names;
+    std::vector<double> densities; ///< kg/m^3
+    std::vector<Surface> surfaces; ///< names.size() squared, symmetric, row by row
+
+    const Surface& surface(std::uint32_t a, std::uint32_t b) const { return surfaces[a * names.size() + b]; }
+};
+
+/// How a deformable body resists.
+struct Elastic {
+    enum class Law { corotational, saint_venant_kirchhoff };
+
+    Law law = Law::corotational;
+    double young = 0;   ///< Pa
+    double poisson = 0; ///< below 0.5
+    /// Damping force per unit of velocity and volume (kg/(s m^3)), of an element's consistent matrix.
+    double damping = 0;
+    std::vector<std::uint32_t> pinned; ///< vertices that do not move
+};
+
+/// How one body starts and what it is made of.
+struct BodyDynamics {
+    std::uint32_t material = 0;
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero(); ///< m/s, of the centre of mass
+    Eigen::Vector3d spin = Eigen::Vector3d::Zero();     ///< rad/s, in world axes
+    std::int32_t elastic = -1; ///< index into Dynamics::elastics of a deformable body
+};
+
+/// The proximal contact solver (Erleben 2017).
+struct SolverSettings {
+    enum class Method { gauss_seidel, jacobi };
+
+    Method method = Method::gauss_seidel;
+    std::size_t iterations = 150;
+    double absolute_tolerance = 0.01;
+    double relative_tolerance = 0.01;
+    bool warm_start = false; ///< from the last step's forces at the same features
+};
+
+/// What a step does beside solving for contact forces.
+struct StepSettings {
+    double step = 0.01;            ///< s
+    bool pre_stabilize = false;    ///< velocities that lessen penetration
+    bool post_stabilize = false;   ///< positions corrected after the step
+    bool bounce = true;            ///< Newton's restitution
+    double linear_damping = 0.01;  ///< 1/s
+    double angular_damping = 0.01; ///< 1/s
+    /// Deformables: the step is halved until the difference to two half steps is below this (m), and doubled
+    /// after ten steps that passed at once; 0 keeps `step`.
+    double adaptive_tolerance = 0;
+    double least_step = 1e-5; ///< s
+    bool couple_contacts =
+        true; ///< deformables: contacts push; false only counts them, as the paper's code did
+};
+
+/// Which of the contacts found reach the solver.
+struct ReductionSettings {
+    /// Contacts of a body pair closer than this times the smaller body's size are one.
+    double distance = 1e-6;
+    /// At most so many of a body pair, chosen to span the contact region; 0 keeps all.
+    std::size_t per_pair = 0;
+};
+
+/// What moves the bodies of a scene; its frame 0 is where they start.
+struct Dynamics {
+    Materials materials;
+    std::vector<Elastic> elastics;
+    std::vector<BodyDynamics> bodies; ///< one a body of the scene
+    Eigen::Vector3d gravity = {0, -9.82, 0};
+    StepSettings stepping;
+    SolverSettings solver;
+    ReductionSettings reduction;
+    std::size_t steps = 500; ///< of a whole run
+};
+
+} // namespace tandem
