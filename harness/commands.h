@@ -39,6 +39,7 @@ struct ExportOptions {
     std::string scene;
     std::vector<std::string> meshes, poses; ///< as of RunOptions
     std::string frames;                     ///< "FIRST:LAST" or "N"; empty: all
+    std::size_t every = 1;                  ///< leave out frames between every so many
     std::string vtu, glb;                   ///< a folder and a file; one of them at least
     bool contacts = false;                  ///< beside the .vtu, found on `device`
     std::string device = "host";

@@ -70,15 +70,15 @@ void make_folder(const std::string& folder) {
                                      error ? error.message() : "a file has this name"));
 }
 
-std::size_t export_vtu(const ExportOptions& options, const Scene& scene, std::size_t first,
-                       std::size_t last) {
+std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
+                       std::span<const std::size_t> frames) {
     std::optional<Contacts> finder;
     if (options.contacts) finder.emplace(options.device, scene);
     make_folder(options.vtu);
     const auto chunks = chunks_of(scene);
     std::vector<TimedFile> bodies, contacts;
     std::size_t found = 0;
-    for (auto i = first; i <= last; ++i) {
+    for (const auto i : frames) {
         const auto frame = scene.frame(i);
         const double time = scene.time ? scene.time(i) : static_cast<double>(i);
         bodies.push_back({time, fmt::format("bodies_{:06}.vtu", i)});
@@ -103,13 +103,16 @@ int export_command(const ExportOptions& options) {
         throw InputError("--contacts goes with --vtu FOLDER; a .glb has surfaces only");
     const auto scene = open_scene(options);
     const auto [first, last] = named_frames(options.frames, scene);
+    std::vector<std::size_t> frames;
+    for (auto i = first; i <= last; i += options.every) frames.push_back(i);
+    const auto told = fmt::format("{} of frames {}:{} of {}", frames.size(), first, last, scene.key);
     if (!options.glb.empty()) {
-        write_glb(options.glb, scene, first, last);
-        fmt::print("{}: frames {}:{} of {}\n", options.glb, first, last, scene.key);
+        write_glb(options.glb, scene, frames);
+        fmt::print("{}: {}\n", options.glb, told);
     }
     if (options.vtu.empty()) return 0;
-    const auto found = export_vtu(options, scene, first, last);
-    fmt::print("{}/bodies.pvd: frames {}:{} of {}\n", options.vtu, first, last, scene.key);
+    const auto found = export_vtu(options, scene, frames);
+    fmt::print("{}/bodies.pvd: {}\n", options.vtu, told);
     if (options.contacts) fmt::print("{}/contacts.pvd: {} contacts\n", options.vtu, found);
     return 0;
 }

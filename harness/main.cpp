@@ -55,6 +55,8 @@ void add_export_options(CLI::App& app, tandem::ExportOptions& options) {
         ->expected(1)
         ->take_all();
     app.add_option("--frames", options.frames, "FIRST:LAST, both inclusive; all when left out");
+    app.add_option("--every", options.every, "every so many of these frames only")
+        ->check(CLI::Range(1, 1000000));
     app.add_option("--vtu", options.vtu, "into this folder for ParaView: tetrahedra of every frame");
     app.add_option("--glb", options.glb, "into this file for viewers: surfaces, moved by an animation");
     auto* contacts = app.add_flag("--contacts", options.contacts, "contacts of every frame beside the .vtu");

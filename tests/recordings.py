@@ -136,7 +136,15 @@ class Recordings(Case):
         self.assertEqual((status, errors), (0, []), text)
         self.assertEqual(sorted(os.listdir(folder)), ["bodies.pvd", "bodies_000000.vtu"])
 
+    def test_export_of_every_third(self):
+        folder = self.work / "third"
+        status, text, errors = tandem("export", "plates", "--frames", "1:8", "--every", 3, "--vtu", folder)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual(sorted(os.listdir(folder)), ["bodies.pvd", *(f"bodies_00000{i}.vtu" for i in (1, 4, 7))])
+        self.assertIn("3 of frames 1:8 of plates", text)
+
     def test_bad_exports(self):
+        self.bad("--every", "export", "plates", "--every", 0, "--glb", self.work / "x.glb")
         self.bad("--vtu FOLDER, --glb FILE", "export", "plates")
         self.bad("--contacts goes with --vtu", "export", "plates", "--glb", self.work / "x.glb", "--contacts")
         self.bad("--device", "export", "plates", "--vtu", self.work / "x", "--device", "host")

@@ -2,12 +2,10 @@
 #include "scenes/export/glb.h"
 
 #include "scenes/error.h"
-#include "scenes/export/glb_file.h"
+#include "scenes/export/glb_animation.h"
 #include "scenes/export/world.h"
 
-#include <algorithm>
 #include <fmt/format.h>
-#include <functional>
 #include <limits>
 #include <map>
 
@@ -29,51 +27,9 @@ constexpr std::array<std::array<double, 3>, 7> colours{{{0.79, 0.35, 0.0},
                                                         {0.6, 0.19, 0.38},
                                                         {0.35, 0.35, 0.35}}};
 
-void append(std::vector<float>& out, const Eigen::Vector3d& v) {
-    for (const double x : v) out.push_back(static_cast<float>(x));
-}
-
-/// The keys of one rigid body over the frames.
-struct Track {
-    std::vector<float> translations, rotations;
-    Eigen::Quaterniond last = Eigen::Quaterniond::Identity();
-
-    /// q and -q turn alike; neighbours of equal sign keep viewers from turning the long way round.
-    void add(const Pose& pose) {
-        append(translations, pose.translation);
-        if (last.coeffs().dot(pose.rotation.coeffs()) < 0)
-            last.coeffs() = -pose.rotation.coeffs();
-        else
-            last = pose.rotation;
-        append(rotations, last.vec());
-        rotations.push_back(static_cast<float>(last.w()));
-    }
-};
-
 Json primitive(GlbFile& file, const Surface& surface, const std::vector<Eigen::Vector3d>& vertices) {
-    std::vector<float> points;
-    for (const auto vertex : surface.vertices) append(points, vertices[vertex]);
-    const auto positions = file.floats(points, 3, true);
+    const auto positions = file.floats(exporting::points_of(surface, vertices), 3, true);
     return {{"attributes", {{"POSITION", positions}}}, {"indices", file.indices(surface.triangles)}};
-}
-
-void add_channel(Json& animation, std::size_t times, std::size_t values, std::size_t node, const char* path) {
-    animation["channels"].push_back(
-        {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
-    animation["samplers"].push_back({{"input", times}, {"output", values}, {"interpolation", "LINEAR"}});
-}
-
-/// Seconds of frames first..last from the first on. glTF wants them to grow from key to key, which times
-/// close together may not do in float.
-std::vector<float> key_times(const Scene& scene, std::size_t first, std::size_t last) {
-    std::vector<float> own, even;
-    for (auto i = first; i <= last; ++i) {
-        constexpr double frames_per_second = 25;
-        even.push_back(static_cast<float>(static_cast<double>(i - first) / frames_per_second));
-        if (scene.time) own.push_back(static_cast<float>(scene.time(i) - scene.time(first)));
-    }
-    const bool grows = std::adjacent_find(own.begin(), own.end(), std::greater_equal<>()) == own.end();
-    return scene.time && grows ? own : even;
 }
 
 /// Makes the nodes of a scene in a file.
@@ -83,7 +39,6 @@ public:
 
     void add_materials();
     void add_nodes(const Frame& frame);
-    void add_animation(std::size_t first, std::size_t last);
 
 private:
     std::size_t mesh_of(const Frame& frame, std::size_t body);
@@ -138,36 +93,23 @@ void Builder::add_nodes(const Frame& frame) {
     file_.json()["scene"] = 0;
 }
 
-void Builder::add_animation(std::size_t first, std::size_t last) {
-    std::vector<Track> tracks(scene_.bodies.size());
-    for (auto i = first; i <= last; ++i) {
-        const auto frame = scene_.frame(i);
-        for (std::size_t body = 0; body < tracks.size(); ++body)
-            if (!scene_.bodies[body].fixed && !scene_.bodies[body].deformable)
-                tracks[body].add(frame.poses[body]);
-    }
-    const auto times = file_.floats(key_times(scene_, first, last), 1);
-    Json animation = {{"channels", Json::array()}, {"samplers", Json::array()}};
-    for (std::size_t body = 0; body < tracks.size(); ++body) {
-        if (tracks[body].translations.empty()) continue;
-        add_channel(animation, times, file_.floats(tracks[body].translations, 3), body, "translation");
-        add_channel(animation, times, file_.floats(tracks[body].rotations, 4), body, "rotation");
-    }
-    if (!animation["channels"].empty()) file_.add("animations", std::move(animation));
-}
-
 } // namespace
 
-void write_glb(const std::string& path, const Scene& scene, std::size_t first, std::size_t last) {
+void write_glb(const std::string& path, const Scene& scene, std::span<const std::size_t> frames) {
+    constexpr auto most = std::numeric_limits<std::uint32_t>::max();
+    const auto check = [&](std::uint64_t bytes) {
+        if (bytes > most)
+            throw InputError(fmt::format("{}: would have {} bytes, glTF ends at {}; export fewer frames",
+                                         path, bytes, most));
+    };
+    check(exporting::animation_bytes(scene, frames.size()));
     GlbFile file;
     Builder builder(file, scene);
     builder.add_materials();
-    builder.add_nodes(scene.frame(first));
-    if (last > first) builder.add_animation(first, last);
+    builder.add_nodes(scene.frame(frames[0]));
+    if (frames.size() > 1) exporting::add_animation(file, scene, frames);
     const auto bytes = file.finish();
-    if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
-        throw InputError(fmt::format("{}: would have {} bytes, glTF ends at 4 GiB; export fewer frames", path,
-                                     bytes.size()));
+    check(bytes.size());
     exporting::write_file(path, bytes);
 }
 

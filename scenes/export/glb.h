@@ -5,10 +5,10 @@
 
 namespace tandem {
 
-/// Writes frames first..last of a scene as a binary glTF file: boundary surfaces, one for all bodies with the
-/// same mesh; rigid bodies move by an animation with one key a frame, in the scene's times or at 25 frames a
-/// second. Deformable bodies stand as in frame `first`. Throws InputError, also when the file would pass
-/// glTF's 4 GiB.
-void write_glb(const std::string& path, const Scene& scene, std::size_t first, std::size_t last);
+/// Writes frames of a scene as a binary glTF file: boundary surfaces, one for all rigid bodies with the same
+/// mesh, and an animation with a key for each of `frames` (ascending, one at least), at the scene's times or
+/// 25 a second. Rigid bodies move as nodes, deformable ones by a morph target a frame. Throws InputError,
+/// also when the file would pass glTF's 4 GiB.
+void write_glb(const std::string& path, const Scene& scene, std::span<const std::size_t> frames);
 
 } // namespace tandem

@@ -53,6 +53,14 @@ Surface surface_of(const Mesh& mesh) {
     return surface;
 }
 
+std::vector<float> points_of(const Surface& surface, const std::vector<Eigen::Vector3d>& vertices) {
+    std::vector<float> points;
+    points.reserve(surface.vertices.size() * 3);
+    for (const auto vertex : surface.vertices)
+        for (const double x : vertices[vertex]) points.push_back(static_cast<float>(x));
+    return points;
+}
+
 void write_file(const std::string& path, std::string_view bytes) {
     recording::File(path, recording::File::Mode::replace).write(0, bytes);
 }

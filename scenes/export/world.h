@@ -16,6 +16,9 @@ struct Surface {
 
 Surface surface_of(const Mesh& mesh);
 
+/// x, y, z of a surface's vertices, where `vertices` are those of its mesh.
+std::vector<float> points_of(const Surface& surface, const std::vector<Eigen::Vector3d>& vertices);
+
 /// Makes or replaces a file; throws InputError.
 void write_file(const std::string& path, std::string_view bytes);
 

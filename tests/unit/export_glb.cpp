@@ -94,7 +94,9 @@ double volume_in(const Parsed& glb, const Json& primitive) {
 class ExportGlb : public FolderTest {
 protected:
     Parsed exported(const Scene& scene, std::size_t first, std::size_t last) const {
-        write_glb(path("s.glb"), scene, first, last);
+        std::vector<std::size_t> frames;
+        for (auto i = first; i <= last; ++i) frames.push_back(i);
+        write_glb(path("s.glb"), scene, frames);
         return Parsed(bytes_of(path("s.glb")));
     }
 };
@@ -175,6 +177,40 @@ TEST_F(ExportGlb, PosesBecomeAnAnimation) {
     }
 }
 
+TEST_F(ExportGlb, DeformableBodiesMorph) {
+    const auto scene = crowd(5, 3, 3);
+    write_glb(path("s.glb"), scene, std::vector<std::size_t>{1, 0, 1});
+    const Parsed glb(bytes_of(path("s.glb")));
+    const auto& mesh = glb.json["meshes"][glb.json["nodes"][1]["mesh"].get<std::size_t>()];
+    const auto& primitive = mesh["primitives"][0];
+    EXPECT_EQ(mesh["weights"], (std::vector<double>{0, 0}));
+    ASSERT_EQ(primitive["targets"].size(), 2u);
+    const auto first = glb.numbers<float>(primitive["attributes"]["POSITION"]);
+    const auto surface = exporting::surface_of(scene.meshes[1]);
+    for (std::size_t target = 0; target < 2; ++target) {
+        const std::size_t accessor = primitive["targets"][target]["POSITION"];
+        expect_bounds(glb, accessor);
+        const auto moved = glb.numbers<float>(accessor);
+        const auto expected = exporting::points_of(surface, scene.frame(target).deformed[1]);
+        ASSERT_EQ(moved.size(), expected.size());
+        for (std::size_t i = 0; i < moved.size(); ++i) EXPECT_NEAR(first[i] + moved[i], expected[i], 1e-6);
+    }
+    // One channel for the deformable body, two for the rigid one, none for the fixed one.
+    const auto& animation = glb.json["animations"][0];
+    ASSERT_EQ(animation["channels"].size(), 3u);
+    EXPECT_EQ(animation["channels"][0]["target"], (Json{{"node", 1}, {"path", "weights"}}));
+    EXPECT_EQ(glb.numbers<float>(animation["samplers"][0]["output"]), (std::vector<float>{0, 0, 1, 0, 0, 1}));
+    EXPECT_EQ(animation["channels"][2]["target"]["node"], 2);
+}
+
+TEST_F(ExportGlb, TooManyFramesAreRefusedBeforeAnyIsMade) {
+    auto scene = crowd(5, 3, 3);
+    scene.frame = [](std::size_t) -> Frame { throw std::logic_error("asked for a frame"); };
+    const std::vector<std::size_t> frames(40000);
+    EXPECT_THAT(failure_of([&] { write_glb(path("s.glb"), scene, frames); }),
+                HasSubstr("bytes, glTF ends at 4294967295; export fewer frames"));
+}
+
 TEST_F(ExportGlb, TimesAreTheScenes) {
     auto scene = make_scene("pile:bodies=2,frames=4");
     const auto times = [&] {
@@ -185,7 +221,7 @@ TEST_F(ExportGlb, TimesAreTheScenes) {
     EXPECT_EQ(times(), (std::vector<float>{0, 1.5f, 4}));
     scene.time = [](std::size_t) { return 1.0; };
     EXPECT_EQ(times(), (std::vector<float>{0, 0.04f, 0.08f}));
-    EXPECT_THAT(failure_of([&] { write_glb(path("no/s.glb"), scene, 0, 0); }),
+    EXPECT_THAT(failure_of([&] { write_glb(path("no/s.glb"), scene, std::vector<std::size_t>{0}); }),
                 HasSubstr("cannot be written"));
 }
 
