@@ -44,7 +44,7 @@ std::vector<T> array_of(const std::string& file, const std::string& name) {
         bytes += part;
     }
     std::vector<T> values(bytes.size() / sizeof(T));
-    std::memcpy(values.data(), bytes.data(), bytes.size());
+    bytes.copy(reinterpret_cast<char*>(values.data()), bytes.size());
     return values;
 }
 
