@@ -84,7 +84,10 @@ double volume_in(const Parsed& glb, const Json& primitive) {
     const auto corners = glb.numbers<std::uint32_t>(primitive["indices"]);
     const auto point = [&](std::size_t i) {
         EXPECT_LT(corners[i] * 3 + 2, points.size());
-        return Eigen::Map<const Eigen::Vector3f>(points.data() + corners[i] * 3).cast<double>().eval();
+        // A shift: faces through the origin would count for nothing.
+        return (Eigen::Map<const Eigen::Vector3f>(points.data() + corners[i] * 3).cast<double>()
+                + Eigen::Vector3d(1, 2, 3))
+            .eval();
     };
     double sum = 0;
     for (std::size_t i = 0; i < corners.size(); i += 3) sum += point(i).cross(point(i + 1)).dot(point(i + 2));
