@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands.h"
 
-#include "algorithms/broad/broad.h"
 #include "harness/dumps.h"
 #include "harness/inputs.h"
 #include "harness/progress.h"
 #include "harness/record.h"
 #include "harness/table.h"
+#include "harness/walk.h"
 #include "scenes/error.h"
 
 #include <algorithm>
@@ -39,21 +39,9 @@ Job open_job(const RunOptions& options, const Request& request) {
     return job;
 }
 
-/// A session with the broad phase that its settings ask for.
-struct Walk {
-    explicit Walk(const Cell& cell, const Job& job)
-        : session(cell.algorithm->prepare(std::array{cell.device}, job.scene, cell.settings)),
-          broad(job.scene, geometry_of(session->settings()), broad_bound(session->settings())) {}
-
-    FrameResult run(const Frame& frame) { return session->run(frame, broad.pairs(frame)); }
-
-    std::unique_ptr<Session> session;
-    Broad broad;
-};
-
 void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts) {
     if (!pairs && !contacts) return;
-    Walk walk(cell, job);
+    Walk walk(cell, job.scene);
     for (std::size_t i = 0; i < job.range.frames.size(); ++i) {
         const auto result = walk.run(job.range.frames[i]);
         if (pairs) pairs.pairs(job.range.first + i, walk.session->download(result));
@@ -65,7 +53,7 @@ void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts)
 /// Replays the frames and does nothing else, so that a profiler sees only the algorithm.
 int profile(const Job& job, std::size_t times) {
     for (const auto& cell : job.cells) {
-        Walk walk(cell, job);
+        Walk walk(cell, job.scene);
         for (std::size_t i = 0; i < times; ++i) {
             for (const auto& frame : job.range.frames) walk.run(frame);
             cell.device->finish();

@@ -34,9 +34,21 @@ struct DevicesOptions {
     std::vector<std::string> require;
 };
 
+/// Options of `tandem export`.
+struct ExportOptions {
+    std::string scene;
+    std::vector<std::string> meshes, poses; ///< as of RunOptions
+    std::string frames;                     ///< "FIRST:LAST" or "N"; empty: all
+    std::size_t every = 1;                  ///< leave out frames between every so many
+    std::string vtu, glb;                   ///< a folder and a file; one of them at least
+    bool contacts = false;                  ///< beside the .vtu, found on `device`
+    std::string device = "host";
+};
+
 /// Each returns the exit code: 0 ok, 1 a check failed, 3 a device failed. Bad use throws InputError.
 int run_command(const RunOptions& options);
 int check_command(const RunOptions& options);
+int export_command(const ExportOptions& options);
 int devices_command(const DevicesOptions& options);
 int scenes_command(bool json);
 int algorithms_command(bool json);

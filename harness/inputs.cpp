@@ -56,13 +56,18 @@ Scene open_scene(const RunOptions& options) {
 }
 
 FrameRange open_frames(const RunOptions& options, const Scene& scene) {
-    if (options.frames.empty()) return make_frames(scene, 0, scene.frame_count - 1);
-    const auto colon = options.frames.find(':');
-    const auto text = std::string_view(options.frames);
-    const auto first = parse_number(text.substr(0, colon), options.frames);
-    const auto last =
-        colon == std::string::npos ? first : parse_number(text.substr(colon + 1), options.frames);
+    const auto [first, last] = named_frames(options.frames, scene);
     return make_frames(scene, first, last);
+}
+
+std::pair<std::size_t, std::size_t> named_frames(const std::string& frames, const Scene& scene) {
+    if (frames.empty()) return {0, scene.frame_count - 1};
+    const auto colon = frames.find(':');
+    const auto text = std::string_view(frames);
+    const auto first = parse_number(text.substr(0, colon), frames);
+    const auto last = colon == std::string::npos ? first : parse_number(text.substr(colon + 1), frames);
+    check_frames(scene, first, last);
+    return {first, last};
 }
 
 void check_required(const std::vector<BackendReport>& backends, const std::vector<std::string>& require) {

@@ -12,6 +12,9 @@ Scene open_scene(const RunOptions& options);
 /// The frames that the options name; throws InputError when the scene has no such frames.
 FrameRange open_frames(const RunOptions& options, const Scene& scene);
 
+/// The first and the last frame of "FIRST:LAST" or "N", all when empty; throws InputError as open_frames.
+std::pair<std::size_t, std::size_t> named_frames(const std::string& frames, const Scene& scene);
+
 /// Throws InputError for each name that is no backend with devices and no device.
 void check_required(const std::vector<BackendReport>& backends, const std::vector<std::string>& require);
 

@@ -24,7 +24,8 @@ parse_sets(const std::vector<std::string>& texts) {
 }
 
 void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string>& sets) {
-    app.add_option("scene", options.scene, "NAME, NAME:par=value,... or a scene description (.json)");
+    app.add_option("scene", options.scene,
+                   "NAME, NAME:par=value,..., a scene description (.json) or a recording (.frames)");
     app.add_option("--mesh", options.meshes, "a scene of mesh files instead")->expected(1)->take_all();
     app.add_option("--pose", options.poses, "\"tx ty tz qw qx qy qz\", one per --mesh, in order")
         ->expected(1)
@@ -45,6 +46,22 @@ void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string
     app.add_option("--require", options.require, "devices or backends whose absence is a failure")
         ->delimiter(',');
     app.add_flag("--quiet", options.quiet, "no progress line");
+}
+
+void add_export_options(CLI::App& app, tandem::ExportOptions& options) {
+    app.add_option("scene", options.scene, "NAME, NAME:par=value,..., a scene description or a recording");
+    app.add_option("--mesh", options.meshes, "a scene of mesh files instead")->expected(1)->take_all();
+    app.add_option("--pose", options.poses, "\"tx ty tz qw qx qy qz\", one per --mesh, in order")
+        ->expected(1)
+        ->take_all();
+    app.add_option("--frames", options.frames, "FIRST:LAST, both inclusive; all when left out");
+    app.add_option("--every", options.every, "every so many of these frames only")
+        ->check(CLI::Range(1, 1000000));
+    app.add_option("--vtu", options.vtu, "into this folder for ParaView: tetrahedra of every frame");
+    app.add_option("--glb", options.glb, "into this file for viewers: surfaces, moved by an animation");
+    auto* contacts = app.add_flag("--contacts", options.contacts, "contacts of every frame beside the .vtu");
+    app.add_option("--device", options.device, "the device that finds them; host when left out")
+        ->needs(contacts);
 }
 
 int dispatch(int argc, char** argv) {
@@ -70,6 +87,9 @@ int dispatch(int argc, char** argv) {
     auto* check_app =
         app.add_subcommand("check", "device x algorithm agreement matrix; exit 1 on any difference");
     add_run_options(*check_app, check, check_sets);
+    tandem::ExportOptions exported;
+    auto* export_app = app.add_subcommand("export", "frames as files for ParaView and other viewers");
+    add_export_options(*export_app, exported);
     auto* devices_app = app.add_subcommand("devices", "what there is, or why there is not");
     devices_app->add_option("--require", devices.require, "devices or backends whose absence is a failure")
         ->delimiter(',');
@@ -93,6 +113,7 @@ int dispatch(int argc, char** argv) {
     check.request.sets = parse_sets(check_sets);
     if (*run_app) return tandem::run_command(run);
     if (*check_app) return tandem::check_command(check);
+    if (*export_app) return tandem::export_command(exported);
     if (*devices_app) {
         devices.json = json;
         return tandem::devices_command(devices);

@@ -16,7 +16,10 @@ struct FrameRange {
     std::vector<Frame> frames;
 };
 
-/// Throws InputError when the scene has no such frames.
+/// Throws InputError when the scene has no such frames, which says why.
+void check_frames(const Scene& scene, std::size_t first, std::size_t last);
+
+/// The frames, once checked.
 FrameRange make_frames(const Scene& scene, std::size_t first, std::size_t last);
 
 /// Answers of the reference per frame, computed once for each geometry.

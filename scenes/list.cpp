@@ -2,6 +2,7 @@
 #include "scenes/digest.h"
 #include "scenes/error.h"
 #include "scenes/parameters.h"
+#include "scenes/recording/recording.h"
 
 #include <algorithm>
 #include <charconv>
@@ -71,6 +72,7 @@ std::span<const SceneKind> scene_kinds() {
 
 Scene make_scene(std::string_view specification) {
     if (specification.ends_with(".json")) return load_description(std::string(specification));
+    if (specification.ends_with(".frames")) return load_recording(std::string(specification));
     const auto name = specification.substr(0, specification.find(':'));
     std::vector<std::string> names;
     for (const auto& kind : scene_kinds()) {

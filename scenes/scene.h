@@ -42,7 +42,9 @@ struct Scene {
     std::size_t frame_count = 1;
     std::function<Frame(std::size_t)> frame;  ///< frame(i) for i < frame_count; pure
     std::shared_ptr<const Dynamics> dynamics; ///< null: the motion is scripted, frames are known beforehand
-    std::uint64_t digest = 0;                 ///< of meshes, bodies and motion; equal on every machine
+    std::function<double(std::size_t)> time;  ///< s at frame i; null: frames have no times
+    std::string end;          ///< why there are no more frames, one line; empty: there never were
+    std::uint64_t digest = 0; ///< of meshes, bodies and motion; equal on every machine
 };
 
 /// A named parameter of a scene with its default, for listings.
@@ -60,7 +62,8 @@ struct SceneKind {
 
 std::span<const SceneKind> scene_kinds();
 
-/// "NAME", "NAME:par=value,par=value" or the path of a scene description (.json). Throws InputError.
+/// "NAME", "NAME:par=value,par=value", or the path of a scene description (.json) or of a recording
+/// (.frames). Throws InputError.
 Scene make_scene(std::string_view specification);
 
 /// One body per mesh file; poses[i] belongs to files[i], missing ones are the identity.

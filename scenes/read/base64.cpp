@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/read/base64.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -41,6 +42,20 @@ std::optional<std::string> decode_base64(std::string_view text, std::size_t limi
     }
     if (bytes.size() > limit) bytes.resize(limit);
     return bytes;
+}
+
+std::string encode_base64(std::string_view bytes) {
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t group = 0;
+        const auto filled = std::min<std::size_t>(3, bytes.size() - i);
+        for (std::size_t j = 0; j < filled; ++j)
+            group |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i + j])) << (16 - 8 * j);
+        for (std::size_t j = 0; j < 4; ++j)
+            text.push_back(j <= filled ? alphabet[group >> (18 - 6 * j) & 63] : '=');
+    }
+    return text;
 }
 
 } // namespace tandem::read

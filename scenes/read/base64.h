@@ -11,4 +11,7 @@ namespace tandem::read {
 /// groups: VTK encodes headers on their own. Empty when the text is not base64.
 std::optional<std::string> decode_base64(std::string_view text, std::size_t limit);
 
+/// The base64 text of `bytes`, padded, without line ends.
+std::string encode_base64(std::string_view bytes);
+
 } // namespace tandem::read

@@ -114,15 +114,16 @@ std::string VtuData::inflate(const Block& block) const {
     const auto data = head(block, stored);
     const auto whole = header_value(header, 1), last = header_value(header, 2);
     constexpr std::uint64_t best_ratio = 1032; // of deflate, by zlib's technical notes
-    if (whole > best_ratio * data.size()
-        || parts > best_ratio * data.size() / std::max<std::uint64_t>(whole, 1))
+    const auto most = best_ratio * data.size();
+    const auto end = last != 0 ? std::min(last, whole) : whole;
+    if (end > most || (parts > 1 && whole > most / (parts - 1)))
         xml_.fail(block.tag, fmt::format("{} bytes cannot hold {} parts of {}", data.size(), parts, whole),
                   "copy or export the file again");
     std::string result;
     std::size_t at = header.size();
     for (std::size_t i = 0; i < parts; ++i) {
         const auto size = header_value(header, 3 + i);
-        const auto bytes = i + 1 == parts && last != 0 ? std::min(last, whole) : whole;
+        const auto bytes = i + 1 == parts ? end : whole;
         const auto begin = result.size();
         result.resize(begin + bytes);
         uLongf got = bytes;

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/kdop/tree.h"
+#include "harness/inputs.h"
+#include "harness/walk.h"
+#include "scenes/error.h"
+#include "scenes/export/glb.h"
+#include "scenes/export/vtk.h"
+
+#include <filesystem>
+#include <fmt/format.h>
+#include <optional>
+
+namespace tandem {
+
+namespace {
+
+Scene open_scene(const ExportOptions& options) {
+    RunOptions run;
+    run.scene = options.scene;
+    run.meshes = options.meshes;
+    run.poses = options.poses;
+    return open_scene(run);
+}
+
+/// The chunk over each tetrahedron, numbered from 0 in each body, of the tree with the paper's 32 leaves.
+CellNumbers chunks_of(const Scene& scene) {
+    constexpr std::uint32_t leaves = 32;
+    std::vector<std::vector<std::uint32_t>> by_mesh;
+    for (const auto& mesh : scene.meshes) {
+        const auto order = morton_order(mesh);
+        auto& chunks = by_mesh.emplace_back(order.size());
+        for (std::uint32_t i = 0; i < order.size(); ++i) chunks[order[i]] = i / leaves;
+    }
+    CellNumbers numbers{"chunk", {}};
+    for (const auto& body : scene.bodies)
+        numbers.values.insert(numbers.values.end(), by_mesh[body.mesh].begin(), by_mesh[body.mesh].end());
+    return numbers;
+}
+
+/// Finds the contacts of one frame after the other.
+class Contacts {
+public:
+    Contacts(const std::string& device, const Scene& scene) : scene_(scene), backends_(discover()) {
+        Request request;
+        request.algorithms = {"chunked"};
+        request.devices = {device};
+        cell_ = plan(request, choose_devices(backends_, request.devices)).front();
+        walk_.emplace(cell_, scene);
+    }
+
+    std::vector<ContactPoint> of(const Frame& frame) {
+        check_coordinates({&cell_, 1}, scene_, {0, 0, {frame}});
+        auto contacts = walk_->session->download_contacts(walk_->run(frame));
+        cell_.device->finish();
+        return contacts;
+    }
+
+private:
+    const Scene& scene_;
+    std::vector<BackendReport> backends_;
+    Cell cell_;
+    std::optional<Walk> walk_;
+};
+
+void make_folder(const std::string& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (!std::filesystem::is_directory(folder))
+        throw InputError(fmt::format("{}: cannot be made a folder ({}); choose another", folder,
+                                     error ? error.message() : "a file has this name"));
+}
+
+std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
+                       std::span<const std::size_t> frames) {
+    std::optional<Contacts> finder;
+    if (options.contacts) finder.emplace(options.device, scene);
+    make_folder(options.vtu);
+    const auto chunks = chunks_of(scene);
+    std::vector<TimedFile> bodies, contacts;
+    std::size_t found = 0;
+    for (const auto i : frames) {
+        const auto frame = scene.frame(i);
+        const double time = scene.time ? scene.time(i) : static_cast<double>(i);
+        bodies.push_back({time, fmt::format("bodies_{:06}.vtu", i)});
+        write_vtu(options.vtu + "/" + bodies.back().file, scene, frame, {&chunks, 1});
+        if (!finder) continue;
+        const auto points = finder->of(frame);
+        found += points.size();
+        contacts.push_back({time, fmt::format("contacts_{:06}.vtp", i)});
+        write_contacts_vtp(options.vtu + "/" + contacts.back().file, points);
+    }
+    write_pvd(options.vtu + "/bodies.pvd", bodies);
+    if (finder) write_pvd(options.vtu + "/contacts.pvd", contacts);
+    return found;
+}
+
+} // namespace
+
+int export_command(const ExportOptions& options) {
+    if (options.vtu.empty() && options.glb.empty())
+        throw InputError("nothing to export to; give --vtu FOLDER, --glb FILE or both");
+    if (options.contacts && options.vtu.empty())
+        throw InputError("--contacts goes with --vtu FOLDER; a .glb has surfaces only");
+    const auto scene = open_scene(options);
+    const auto [first, last] = named_frames(options.frames, scene);
+    std::vector<std::size_t> frames;
+    for (auto i = first; i <= last; i += options.every) frames.push_back(i);
+    const auto told = fmt::format("{} of frames {}:{} of {}", frames.size(), first, last, scene.key);
+    if (!options.glb.empty()) {
+        write_glb(options.glb, scene, frames);
+        fmt::print("{}: {}\n", options.glb, told);
+    }
+    if (options.vtu.empty()) return 0;
+    const auto found = export_vtu(options, scene, frames);
+    fmt::print("{}/bodies.pvd: {}\n", options.vtu, told);
+    if (options.contacts) fmt::print("{}/contacts.pvd: {} contacts\n", options.vtu, found);
+    return 0;
+}
+
+} // namespace tandem

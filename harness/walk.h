@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/broad/broad.h"
+#include "harness/plan.h"
+
+#include <array>
+
+namespace tandem {
+
+/// A session with the broad phase that its settings ask for; `scene` must outlive it.
+struct Walk {
+    Walk(const Cell& cell, const Scene& scene)
+        : session(cell.algorithm->prepare(std::array{cell.device}, scene, cell.settings)),
+          broad(scene, geometry_of(session->settings()), broad_bound(session->settings())) {}
+
+    FrameResult run(const Frame& frame) { return session->run(frame, broad.pairs(frame)); }
+
+    std::unique_ptr<Session> session;
+    Broad broad;
+};
+
+} // namespace tandem

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/export/glb.h"
+
+#include "scenes/error.h"
+#include "scenes/export/glb_animation.h"
+#include "scenes/export/world.h"
+
+#include <fmt/format.h>
+#include <limits>
+#include <map>
+
+namespace tandem {
+
+namespace {
+
+using exporting::GlbFile;
+using exporting::Surface;
+using Json = nlohmann::json;
+
+/// Colours of bodies in turn (linear RGB), tellable apart by the colour-blind (after Okabe and Ito 2008); the
+/// last is for fixed bodies.
+constexpr std::array<std::array<double, 3>, 7> colours{{{0.79, 0.35, 0.0},
+                                                        {0.09, 0.46, 0.81},
+                                                        {0.0, 0.34, 0.17},
+                                                        {0.87, 0.77, 0.05},
+                                                        {0.67, 0.11, 0.0},
+                                                        {0.6, 0.19, 0.38},
+                                                        {0.35, 0.35, 0.35}}};
+
+Json primitive(GlbFile& file, const Surface& surface, const std::vector<Eigen::Vector3d>& vertices) {
+    const auto positions = file.floats(exporting::points_of(surface, vertices), 3, true);
+    return {{"attributes", {{"POSITION", positions}}}, {"indices", file.indices(surface.triangles)}};
+}
+
+/// Makes the nodes of a scene in a file.
+class Builder {
+public:
+    Builder(GlbFile& file, const Scene& scene) : file_(file), scene_(scene) {}
+
+    void add_materials();
+    void add_nodes(const Frame& frame);
+
+private:
+    std::size_t mesh_of(const Frame& frame, std::size_t body);
+    std::size_t colour_of(std::size_t body) const {
+        return scene_.bodies[body].fixed ? colours.size() - 1 : body % (colours.size() - 1);
+    }
+
+    GlbFile& file_;
+    const Scene& scene_;
+    std::map<std::uint32_t, Json> primitives_;                            ///< by mesh of rigid bodies
+    std::map<std::pair<std::uint32_t, std::size_t>, std::size_t> meshes_; ///< by mesh and colour
+};
+
+void Builder::add_materials() {
+    for (const auto& [r, g, b] : colours)
+        file_.add(
+            "materials",
+            {{"doubleSided", true},
+             {"pbrMetallicRoughness",
+              {{"baseColorFactor", {r, g, b, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}}});
+}
+
+std::size_t Builder::mesh_of(const Frame& frame, std::size_t body) {
+    const auto index = scene_.bodies[body].mesh;
+    const auto& mesh = scene_.meshes[index];
+    const auto colour = colour_of(body);
+    const auto add = [&](Json primitives) {
+        primitives["material"] = colour;
+        return file_.add("meshes", {{"name", mesh.name}, {"primitives", Json::array({primitives})}});
+    };
+    if (scene_.bodies[body].deformable)
+        return add(primitive(file_, exporting::surface_of(mesh), frame.deformed[body]));
+    if (!primitives_.contains(index))
+        primitives_[index] = primitive(file_, exporting::surface_of(mesh), mesh.vertices);
+    const auto key = std::pair(index, colour);
+    if (!meshes_.contains(key)) meshes_[key] = add(primitives_[index]);
+    return meshes_[key];
+}
+
+void Builder::add_nodes(const Frame& frame) {
+    Json all = Json::array();
+    for (std::size_t body = 0; body < scene_.bodies.size(); ++body) {
+        Json node = {{"name", fmt::format("body {}", body)}, {"mesh", mesh_of(frame, body)}};
+        if (!scene_.bodies[body].deformable) {
+            const auto& [q, t] = frame.poses[body];
+            node["translation"] = {t.x(), t.y(), t.z()};
+            node["rotation"] = {q.x(), q.y(), q.z(), q.w()};
+        }
+        all.push_back(file_.add("nodes", std::move(node)));
+    }
+    file_.add("scenes", {{"name", scene_.key}, {"nodes", all}});
+    file_.json()["scene"] = 0;
+}
+
+} // namespace
+
+void write_glb(const std::string& path, const Scene& scene, std::span<const std::size_t> frames) {
+    constexpr auto most = std::numeric_limits<std::uint32_t>::max();
+    const auto check = [&](std::uint64_t bytes) {
+        if (bytes > most)
+            throw InputError(fmt::format("{}: would have {} bytes, glTF ends at {}; export fewer frames",
+                                         path, bytes, most));
+    };
+    check(exporting::animation_bytes(scene, frames.size()));
+    GlbFile file;
+    Builder builder(file, scene);
+    builder.add_materials();
+    builder.add_nodes(scene.frame(frames[0]));
+    if (frames.size() > 1) exporting::add_animation(file, scene, frames);
+    const auto bytes = file.finish();
+    check(bytes.size());
+    exporting::write_file(path, bytes);
+}
+
+} // namespace tandem

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/export/glb_animation.h"
+
+#include "scenes/export/world.h"
+
+#include <algorithm>
+#include <functional>
+
+namespace tandem::exporting {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// The keys of one rigid body.
+struct Track {
+    std::vector<float> translations, rotations;
+    Eigen::Quaterniond last = Eigen::Quaterniond::Identity();
+
+    /// q and -q turn alike; neighbours of equal sign keep viewers from turning the long way round.
+    void add(const Pose& pose) {
+        last.coeffs() =
+            last.coeffs().dot(pose.rotation.coeffs()) < 0 ? -pose.rotation.coeffs() : pose.rotation.coeffs();
+        for (const double x : pose.translation) translations.push_back(static_cast<float>(x));
+        for (const double x : last.coeffs()) rotations.push_back(static_cast<float>(x));
+    }
+};
+
+/// The surface of one deformable body, which moves by what a target adds to each of its first points.
+struct Morph {
+    Surface surface;
+    std::vector<float> first;
+    Json targets = Json::array();
+
+    void add(GlbFile& file, const std::vector<Eigen::Vector3d>& vertices) {
+        auto points = points_of(surface, vertices);
+        if (first.empty()) {
+            first = std::move(points);
+            return;
+        }
+        for (std::size_t i = 0; i < points.size(); ++i) points[i] -= first[i];
+        targets.push_back({{"POSITION", file.floats(points, 3)}});
+    }
+};
+
+/// Seconds of the frames since the first. glTF wants them to grow from key to key, which times close together
+/// may not do in float.
+std::vector<float> key_times(const Scene& scene, std::span<const std::size_t> frames) {
+    std::vector<float> own, even;
+    for (const auto i : frames) {
+        constexpr float frames_per_second = 25;
+        even.push_back(static_cast<float>(even.size()) / frames_per_second);
+        if (scene.time) own.push_back(static_cast<float>(scene.time(i) - scene.time(frames[0])));
+    }
+    const bool grows = std::adjacent_find(own.begin(), own.end(), std::greater_equal<>()) == own.end();
+    return scene.time && grows ? own : even;
+}
+
+/// A row a key: the first has no target, each further one the next target alone.
+std::vector<float> key_weights(std::size_t keys) {
+    std::vector<float> weights(keys * (keys - 1));
+    for (std::size_t key = 1; key < keys; ++key) weights[key * (keys - 1) + key - 1] = 1;
+    return weights;
+}
+
+/// Adds channels to an animation whose keys are at the times of one accessor.
+struct Channels {
+    std::size_t times;
+    Json animation = {{"channels", Json::array()}, {"samplers", Json::array()}};
+
+    void add(std::size_t values, std::size_t node, const char* path) {
+        animation["channels"].push_back(
+            {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
+        animation["samplers"].push_back({{"input", times}, {"output", values}, {"interpolation", "LINEAR"}});
+    }
+};
+
+void add_targets(Json& json, std::size_t node, const Morph& morph) {
+    auto& mesh = json["meshes"][json["nodes"][node]["mesh"].get<std::size_t>()];
+    mesh["weights"] = std::vector<double>(morph.targets.size(), 0.0);
+    mesh["primitives"][0]["targets"] = morph.targets;
+}
+
+} // namespace
+
+void add_animation(GlbFile& file, const Scene& scene, std::span<const std::size_t> frames) {
+    std::vector<Track> tracks(scene.bodies.size());
+    std::vector<Morph> morphs(scene.bodies.size());
+    bool deforms = false;
+    for (std::size_t body = 0; body < morphs.size(); ++body) {
+        if (!scene.bodies[body].deformable) continue;
+        morphs[body].surface = surface_of(scene.meshes[scene.bodies[body].mesh]);
+        deforms = true;
+    }
+    for (const auto i : frames) {
+        const auto frame = scene.frame(i);
+        for (std::size_t body = 0; body < tracks.size(); ++body) {
+            if (scene.bodies[body].deformable)
+                morphs[body].add(file, frame.deformed[body]);
+            else if (!scene.bodies[body].fixed)
+                tracks[body].add(frame.poses[body]);
+        }
+    }
+    Channels channels{file.floats(key_times(scene, frames), 1)};
+    const auto weights = deforms ? file.floats(key_weights(frames.size()), 1) : 0;
+    for (std::size_t body = 0; body < tracks.size(); ++body) {
+        if (scene.bodies[body].deformable) {
+            add_targets(file.json(), body, morphs[body]);
+            channels.add(weights, body, "weights");
+        } else if (!scene.bodies[body].fixed) {
+            channels.add(file.floats(tracks[body].translations, 3), body, "translation");
+            channels.add(file.floats(tracks[body].rotations, 4), body, "rotation");
+        }
+    }
+    if (!channels.animation["channels"].empty()) file.add("animations", std::move(channels.animation));
+}
+
+std::uint64_t animation_bytes(const Scene& scene, std::size_t frames) {
+    std::uint64_t a_frame = 0;
+    bool deforms = false;
+    for (const auto& body : scene.bodies) {
+        if (body.deformable)
+            a_frame += surface_of(scene.meshes[body.mesh]).vertices.size() * 3 * sizeof(float);
+        else if (!body.fixed)
+            a_frame += 7 * sizeof(float);
+        deforms = deforms || body.deformable;
+    }
+    return frames * (a_frame + (deforms ? frames * sizeof(float) : 0));
+}
+
+} // namespace tandem::exporting

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/recording/file.h"
+
+#include "scenes/error.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace tandem::recording {
+
+namespace {
+
+int flags_of(File::Mode mode) {
+    switch (mode) {
+    case File::Mode::read:
+        return O_RDONLY | O_CLOEXEC;
+    case File::Mode::create:
+        return O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC;
+    case File::Mode::update:
+        return O_RDWR | O_CLOEXEC;
+    case File::Mode::replace:
+        break;
+    }
+    return O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC;
+}
+
+/// Makes a rename last: it is a change of the folder. Some file systems cannot sync a folder; they rename in
+/// order.
+void sync_folder_of(const std::string& path) {
+    const auto parent = std::filesystem::path(path).parent_path();
+    const int folder = open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder < 0) return;
+    fsync(folder);
+    close(folder);
+}
+
+} // namespace
+
+File::File(const std::string& path, Mode mode) : path_(path), descriptor_(-1) {
+    constexpr mode_t everyone = 0666; // less the umask
+    descriptor_ = open(path.c_str(), flags_of(mode), everyone);
+    if (descriptor_ < 0 && errno == EEXIST)
+        throw InputError(
+            fmt::format("{}: exists and is not overwritten; resume it or choose another file", path));
+    if (descriptor_ < 0) fail(mode == Mode::read ? "cannot be read" : "cannot be written");
+    struct stat facts {};
+    if (fstat(descriptor_, &facts) == 0 && S_ISREG(facts.st_mode)
+        && (mode == Mode::read || flock(descriptor_, LOCK_EX | LOCK_NB) == 0))
+        return;
+    close(std::exchange(descriptor_, -1));
+    throw InputError(fmt::format("{}: {}", path,
+                                 S_ISREG(facts.st_mode) ? "another process writes it; wait for its end"
+                                                        : "is no file; choose another"));
+}
+
+File::~File() {
+    if (descriptor_ >= 0) close(descriptor_);
+}
+
+void File::fail(std::string_view what) const {
+    throw InputError(fmt::format("{}: {} ({})", path_, what, std::strerror(errno)));
+}
+
+std::uint64_t File::size() const {
+    struct stat facts {};
+    if (fstat(descriptor_, &facts) != 0) fail("cannot be read");
+    return static_cast<std::uint64_t>(facts.st_size);
+}
+
+std::string File::read(std::uint64_t offset, std::size_t bytes) const {
+    std::string result(bytes, '\0');
+    std::size_t got = 0;
+    while (got < bytes) {
+        const auto n = pread(descriptor_, result.data() + got, bytes - got, static_cast<off_t>(offset + got));
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) fail("reading failed");
+        if (n == 0) throw InputError(fmt::format("{}: became shorter while it was read", path_));
+        got += static_cast<std::size_t>(n);
+    }
+    return result;
+}
+
+void File::write(std::uint64_t offset, std::string_view bytes) {
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+        const auto n =
+            pwrite(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) fail("writing failed");
+        done += static_cast<std::size_t>(n);
+    }
+}
+
+void File::truncate(std::uint64_t size) {
+    if (ftruncate(descriptor_, static_cast<off_t>(size)) != 0) fail("cannot be shortened");
+}
+
+void File::sync() {
+    if (fsync(descriptor_) != 0) fail("writing failed");
+}
+
+std::string read_whole(const std::string& path) {
+    const File file(path, File::Mode::read);
+    return file.read(0, file.size());
+}
+
+void replace_whole(const std::string& path, std::string_view bytes) {
+    const auto partial = path + ".partial";
+    File file(partial, File::Mode::replace);
+    file.write(0, bytes);
+    file.sync();
+    if (std::rename(partial.c_str(), path.c_str()) != 0)
+        throw InputError(fmt::format("{}: cannot be replaced ({})", path, std::strerror(errno)));
+    sync_folder_of(path);
+}
+
+void remove_if_there(const std::string& path) {
+    if (std::remove(path.c_str()) != 0 && errno != ENOENT)
+        throw InputError(fmt::format("{}: cannot be deleted ({})", path, std::strerror(errno)));
+}
+
+} // namespace tandem::recording

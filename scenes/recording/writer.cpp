@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/recording/writer.h"
+
+#include "scenes/error.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+/// What tells a recording's header from the one to go on with, for a message.
+std::string difference(const RecordingHeader& found, const RecordingHeader& wanted) {
+    if (found.scene_digest != wanted.scene_digest || found.bodies != wanted.bodies)
+        return fmt::format("is of scene {} with digest {:016x}, not of {} with {:016x}", found.specification,
+                           found.scene_digest, wanted.specification, wanted.scene_digest);
+    if (found.seconds_per_frame != wanted.seconds_per_frame)
+        return fmt::format("has a frame every {} s, not every {} s", found.seconds_per_frame,
+                           wanted.seconds_per_frame);
+    return fmt::format("names its scene {}, not {}", found.specification, wanted.specification);
+}
+
+/// A kill while the header was written leaves a part of it.
+bool is_part_of(const recording::File& file, const std::string& header) {
+    const auto size = file.size();
+    return size < header.size() && header.starts_with(file.read(0, size));
+}
+
+} // namespace
+
+RecordingHeader recording_of(const std::string& specification, const Scene& scene, double seconds_per_frame) {
+    if (specification.empty() || specification.ends_with(".frames"))
+        throw InputError(fmt::format(
+            "scene {} cannot be recorded; name a scene of 'tandem scenes' or a description", scene.name));
+    if (!(seconds_per_frame >= 0 && std::isfinite(seconds_per_frame)))
+        throw InputError(fmt::format("{} s a frame are impossible; give 0 or more", seconds_per_frame));
+    // A description is found by its path; the key of any other scene holds its defaults as they are today.
+    const bool described = specification.ends_with(".json");
+    return {described ? specification : scene.key, scene.digest, seconds_per_frame, recorded_bodies(scene)};
+}
+
+RecordingWriter::RecordingWriter(recording::File file, const RecordingHeader& header)
+    : file_(std::move(file)),
+      header_(header),
+      header_bytes_(recording::encode(header).size()),
+      frame_bytes_(recording::frame_bytes(header)) {}
+
+RecordingWriter RecordingWriter::create(const std::string& path, const RecordingHeader& header) {
+    RecordingWriter writer(recording::File(path, recording::File::Mode::create), header);
+    // A checkpoint of a recording that was here before must not be resumed with this one.
+    recording::remove_if_there(checkpoint_path(path));
+    writer.file_.write(0, recording::encode(header));
+    return writer;
+}
+
+RecordingWriter RecordingWriter::resume(const std::string& path, const RecordingHeader& header) {
+    RecordingWriter writer(recording::File(path, recording::File::Mode::update), header);
+    // A kill while the header was written; an older recording's checkpoint can be left then as well.
+    if (const auto bytes = recording::encode(header); is_part_of(writer.file_, bytes)) {
+        recording::remove_if_there(checkpoint_path(path));
+        writer.file_.write(0, bytes);
+    }
+    const auto found = recording::read_header(writer.file_).first;
+    if (found != header)
+        throw InputError(fmt::format("{}: {}; resume it as it was begun or choose another file", path,
+                                     difference(found, header)));
+    const auto rest = writer.file_.size() - writer.header_bytes_;
+    auto& whole = writer.frames_;
+    whole = rest / writer.frame_bytes_;
+    // After a crash of the machine the file can have its length before it has its bytes.
+    while (
+        whole > 0
+        && !recording::matches(writer.file_.read(writer.offset(whole - 1), writer.frame_bytes_), whole - 1))
+        --whole;
+    return writer;
+}
+
+std::optional<Checkpoint> RecordingWriter::restore() {
+    auto checkpoint = read_checkpoint(path(), header_.scene_digest);
+    if (!checkpoint && frames_ > 0)
+        throw InputError(fmt::format("{}: is not there, so {} with its {} frames cannot go on; restore it or "
+                                     "record to another file",
+                                     checkpoint_path(path()), path(), frames_));
+    if (!checkpoint) return std::nullopt;
+    if (checkpoint->frames > frames_)
+        throw InputError(
+            fmt::format("{}: has {} frames, its checkpoint {}; restore the recording or record to "
+                        "another file",
+                        path(), frames_, checkpoint->frames));
+    cut_to(checkpoint->frames);
+    return checkpoint;
+}
+
+void RecordingWriter::append(std::uint64_t step, double time, const Frame& frame) {
+    const auto bytes = recording::encode(header_, frames_, step, time, frame, path());
+    cut_to(frames_); // a crash, or a full disk, can have left a part of a frame
+    file_.write(offset(frames_), bytes);
+    ++frames_;
+}
+
+void RecordingWriter::checkpoint(std::uint64_t steps_done, std::span<const std::byte> state) {
+    file_.sync();
+    write_checkpoint(path(), header_.scene_digest, steps_done, frames_, state);
+}
+
+std::uint64_t RecordingWriter::offset(std::size_t number) const {
+    return header_bytes_ + number * frame_bytes_;
+}
+
+void RecordingWriter::cut_to(std::size_t frames) {
+    file_.truncate(offset(frames));
+    frames_ = frames;
+}
+
+} // namespace tandem

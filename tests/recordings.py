@@ -1,0 +1,162 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""recordings.py PROGRAM SOURCE: recordings and exports as a user meets them. The recordings are written here, by what
+scenes/recording/README.md says of their bytes."""
+import math
+import os
+import re
+import struct
+import sys
+import unittest
+import xml.etree.ElementTree
+import zlib
+
+from command_line import SOURCE, Case, tandem
+
+PILE = "pile:bodies=4,frames=30"
+
+
+def sealed(data, start=0):
+    return data + struct.pack("<I", zlib.crc32(data, start))
+
+
+def recording(key, digest, kinds, frames, version=1):
+    """The bytes of a recording of rigid (0) and fixed (1) bodies; frames hold (time, [pose of each rigid body])."""
+    text = key.encode()
+    header = b"\x89TDMFR\r\n" + struct.pack("<IIQdII", version, 44 + len(text) + 8 * len(kinds), digest, 0.01, len(kinds), len(text))
+    header += text + b"".join(struct.pack("<II", kind, 0) for kind in kinds)
+    parts = [sealed(header)]
+    for number, (time, poses) in enumerate(frames):
+        body = struct.pack("<Qd", number, time) + b"".join(struct.pack("<7f", *pose) for pose in poses)
+        parts.append(sealed(body, zlib.crc32(struct.pack("<Q", number))))
+    return b"".join(parts)
+
+
+def turn_about_y(angle):
+    return math.cos(angle / 2), 0, math.sin(angle / 2), 0
+
+
+class Recordings(Case):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        line = tandem("run", PILE, "--profile", 1, "--device", "host", "--algorithm", "chunked", "--frames", "0")[1].splitlines()[0]
+        cls.key, digest = re.match(r"scene (\S+): .* digest ([0-9a-f]{16})$", line).groups()
+        cls.digest = int(digest, 16)
+        cls.frames = [(0.01 * i, [(0.1 * b + 0.01 * i, 0, 0, *turn_about_y(0.1 * i)) for b in range(4)]) for i in range(10)]
+        cls.whole = recording(cls.key, cls.digest, [0] * 4, cls.frames)
+        cls.size = 16 + 4 * 28 + 4
+
+    def file(self, name, data):
+        path = self.work / name
+        path.write_bytes(data)
+        return path
+
+    def pairs_of_poses(self, poses):
+        """Candidate pairs of the pile's bodies when the poses are given on the command line, as single precision has them."""
+        for end in ("node", "ele"):
+            (self.work / f"jack.{end}").write_bytes((SOURCE / f"scenes/meshes/jack.{end}").read_bytes())
+        arguments = []
+        for pose in poses:
+            numbers = struct.unpack("<7f", struct.pack("<7f", *pose))
+            arguments += ["--mesh", self.work / "jack.ele", "--pose", " ".join(map(repr, numbers))]
+        out = self.work / "poses.jsonl"
+        status, text, errors = tandem("run", *arguments, "--device", "host", "--repeat", 1, "--algorithm", "chunked", "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        return self.records(out)[0]["work"]["candidate_pairs"][0]
+
+    def test_a_recording_is_a_scene(self):
+        file, out = self.file("four.frames", self.whole), self.work / "four.jsonl"
+        status, text, errors = tandem("run", file, "--frames", "2:5", "--device", "host", "--repeat", 1, "--algorithm", "chunked", "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        record = self.records(out)[0]
+        self.assertEqual(record["scene"]["name"], "four")
+        self.assertRegex(record["scene"]["key"], r"^recording:four,frames=10,digest=[0-9a-f]{16},of=" + re.escape(self.key) + "$")
+        self.assertNotEqual(int(record["scene"]["digest"], 16), self.digest)
+        self.assertTrue(all(count > 1000 for count in record["work"]["candidate_pairs"]))
+        self.assertEqual(len(record["work"]["candidate_pairs"]), 4)
+        self.assertEqual(record["work"]["candidate_pairs"][1], self.pairs_of_poses(self.frames[3][1]))
+        status, text, errors = tandem("check", file, "--frames", "3", "--device", "host", "--algorithm", "chunked")
+        self.assertEqual((status, errors), (0, []), text)
+
+    def test_damage_is_told(self):
+        cut = self.file("cut.frames", self.whole[:-1])
+        self.assertEqual(tandem("run", cut, "--profile", 1, "--device", "host", "--algorithm", "chunked")[0], 0)
+        self.bad(["frames 3:9", f"{cut}: frame 9 is cut off; frames 0:8 are whole"], "run", cut, "--frames", "3:9")
+        file = self.file("whole.frames", self.whole)
+        self.bad(["frames 3:12", f"{file}: there is no frame 10; frames 0:9 are whole"], "check", file, "--frames", "3:12")
+        flipped = bytearray(self.whole)
+        flipped[-7 * self.size - 9] ^= 4
+        file = self.file("flipped.frames", flipped)
+        self.bad(f"{file}: frame 2 does not match its checksum", "run", file)
+        self.bad(f"{file}: frame 2 does not match its checksum", "export", file, "--glb", self.work / "f.glb")
+        self.assertEqual(tandem("run", file, "--frames", "3:9", "--profile", 1, "--device", "host", "--algorithm", "chunked")[0], 0)
+        for name, data, said in (("version", recording(self.key, self.digest, [0] * 4, [], 2), "has version 2 of the format, this program reads version 1"),
+                                 ("digest", recording(self.key, self.digest ^ 1, [0] * 4, self.frames), "was recorded of a scene with digest"),
+                                 ("kinds", recording(self.key, self.digest, [0, 0, 1, 0], self.frames), "was recorded of a scene with digest"),
+                                 ("text", recording("pyle", self.digest, [0] * 4, self.frames), "cannot be made again: unknown scene 'pyle'"),
+                                 ("gone", recording("gone.json", self.digest, [0] * 4, self.frames), "gone.json: cannot be read"),
+                                 ("itself", recording("x.frames", self.digest, [0] * 4, self.frames), "is a recording itself"),
+                                 ("none", recording(self.key, self.digest, [0] * 4, []), "no frame is whole"),
+                                 ("header", self.whole[:50], "is cut off in its header"),
+                                 ("noise", b"frame,body_a\n0,1\n", "is no recording of frames")):
+            file = self.file(f"{name}.frames", data)
+            self.bad([f"tandem: {file}: ", said], "run", file)
+        self.bad("absent.frames: cannot be read (No such file", "run", self.work / "absent.frames")
+
+    def test_export(self):
+        file, folder, glb = self.file("out.frames", self.whole), self.work / "out", self.work / "out.glb"
+        status, text, errors = tandem("export", file, "--frames", "2:4", "--vtu", folder, "--glb", glb, "--contacts")
+        self.assertEqual((status, errors), (0, []), text)
+        names = sorted(os.listdir(folder))
+        self.assertEqual(names, ["bodies.pvd", *(f"bodies_00000{i}.vtu" for i in (2, 3, 4)), "contacts.pvd",
+                                 *(f"contacts_00000{i}.vtp" for i in (2, 3, 4))])
+        for name in names:
+            xml.etree.ElementTree.parse(folder / name)
+        sets = xml.etree.ElementTree.parse(folder / "bodies.pvd").getroot().findall("Collection/DataSet")
+        self.assertEqual([(float(s.get("timestep")), s.get("file")) for s in sets],
+                         [(0.01 * i, f"bodies_00000{i}.vtu") for i in (2, 3, 4)])
+        arrays = {a.get("Name") for a in xml.etree.ElementTree.parse(folder / "bodies_000002.vtu").iter("DataArray")}
+        self.assertLessEqual({"body", "tetrahedron", "chunk"}, arrays)
+        counted = sum(int(xml.etree.ElementTree.parse(folder / f"contacts_00000{i}.vtp").find(".//Piece").get("NumberOfPoints"))
+                      for i in (2, 3, 4))
+        dump = self.work / "out.csv"
+        tandem("run", file, "--frames", "2:4", "--device", "host", "--algorithm", "chunked", "--repeat", 1, "--dump-contacts", dump)
+        self.assertEqual(counted, len(dump.read_text().splitlines()) - 1)
+        self.assertGreater(counted, 100)
+        # What was exported is a mesh that can be read again.
+        status, text, errors = tandem("run", "--mesh", folder / "bodies_000002.vtu", "--profile", 1, "--device", "host", "--algorithm", "chunked")
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual(glb.read_bytes()[:8], b"glTF\x02\0\0\0")
+        self.assertEqual(struct.unpack("<I", glb.read_bytes()[8:12])[0], glb.stat().st_size)
+
+    def test_export_of_meshes(self):
+        folder = self.work / "meshes"
+        status, text, errors = tandem("export", "--mesh", self.good, "--mesh", self.good, "--pose", "1 0 0 1 0 0 0", "--vtu", folder)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual(sorted(os.listdir(folder)), ["bodies.pvd", "bodies_000000.vtu"])
+
+    def test_export_of_every_third(self):
+        folder = self.work / "third"
+        status, text, errors = tandem("export", "plates", "--frames", "1:8", "--every", 3, "--vtu", folder)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual(sorted(os.listdir(folder)), ["bodies.pvd", *(f"bodies_00000{i}.vtu" for i in (1, 4, 7))])
+        self.assertIn("3 of frames 1:8 of plates", text)
+
+    def test_bad_exports(self):
+        self.bad("--every", "export", "plates", "--every", 0, "--glb", self.work / "x.glb")
+        self.bad("--vtu FOLDER, --glb FILE", "export", "plates")
+        self.bad("--contacts goes with --vtu", "export", "plates", "--glb", self.work / "x.glb", "--contacts")
+        self.bad("--device", "export", "plates", "--vtu", self.work / "x", "--device", "host")
+        self.bad("the nearest is 'opencl:0'", "export", "plates", "--vtu", self.work / "x", "--contacts", "--device", "opencl:7")
+        self.bad("the nearest is 'plates'", "export", "plats", "--vtu", self.work / "x")
+        self.bad("no scene", "export", "--vtu", self.work / "x")
+        self.bad("frames 3:900", "export", "plates", "--frames", "3:900", "--glb", self.work / "x.glb")
+        self.bad("--frames x", "export", "plates", "--frames", "x", "--glb", self.work / "x.glb")
+        self.bad("cannot be written", "export", "plates", "--frames", "0", "--glb", self.work / "no/x.glb")
+        self.bad("cannot be made a folder", "export", "plates", "--frames", "0", "--vtu", self.good)
+        self.assertFalse((self.work / "x").exists() or (self.work / "x.glb").exists())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)

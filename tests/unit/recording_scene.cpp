@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "harness/sampler.h"
+#include "tests/support/folder.h"
+#include "tests/support/recordings.h"
+
+#include <gmock/gmock.h>
+
+namespace tandem {
+
+namespace {
+
+using namespace testing_support;
+using testing::HasSubstr;
+using testing::MatchesRegex;
+
+class RecordingScene : public FolderTest {
+protected:
+    /// Frames of a pile, each from the pile's frame `first` and on.
+    static void record(const std::string& file, const std::string& specification, std::size_t first,
+                       std::size_t frames) {
+        const auto scene = make_scene(specification);
+        auto writer = RecordingWriter::create(file, recording_of(specification, scene, 0.25));
+        for (std::size_t i = 0; i < frames; ++i)
+            writer.append(i, 0.25 * static_cast<double>(i), scene.frame(first + i));
+    }
+    std::string description(const std::string& position) const {
+        write_bytes(path("two.json"), R"({"frames": 4, "meshes": {"j": {"builtin": "jack"}}, "bodies": [
+            {"mesh": "j", "fixed": true, "position": )"
+                                          + position + R"(}, {"mesh": "j", "spin": [0, 0, 1, 0.1]}]})");
+        return path("two.json");
+    }
+
+    std::string file_ = path("drift.frames");
+};
+
+TEST_F(RecordingScene, HasTheRecordedFrames) {
+    record(file_, "pile:bodies=3,frames=9", 2, 5);
+    const auto pile = make_scene("pile:bodies=3,frames=9");
+    const auto scene = make_scene(file_);
+    EXPECT_EQ(scene.name, "drift");
+    EXPECT_THAT(scene.key,
+                MatchesRegex("recording:drift,frames=5,digest=[0-9a-f]+,of=pile:bodies=3,.*frames=9.*"));
+    ASSERT_EQ(scene.frame_count, 5u);
+    ASSERT_EQ(scene.bodies.size(), 3u);
+    EXPECT_EQ(scene.meshes[0].tetrahedra, pile.meshes[0].tetrahedra);
+    for (std::size_t i = 0; i < 5; ++i)
+        for (std::size_t b = 0; b < 3; ++b) {
+            const auto got = scene.frame(i).poses[b], expected = pile.frame(2 + i).poses[b];
+            EXPECT_EQ(got.translation, expected.translation.cast<float>().cast<double>());
+            EXPECT_LT(got.rotation.angularDistance(expected.rotation), 1e-6);
+        }
+    EXPECT_EQ(scene.time(3), 0.75);
+    EXPECT_FALSE(scene.dynamics);
+    EXPECT_EQ(failure_of([&] { scene.frame(5); }), file_ + ": there is no frame 5; frames 0:4 are whole");
+    EXPECT_EQ(failure_of([&] { make_frames(scene, 3, 5); }),
+              "frames 3:5 are impossible; " + file_ + ": there is no frame 5; frames 0:4 are whole");
+}
+
+TEST_F(RecordingScene, ItsDigestIsOfEveryFrame) {
+    record(file_, "pile:bodies=3,frames=9", 0, 5);
+    const auto digest = make_scene(file_).digest;
+    EXPECT_NE(digest, make_scene("pile:bodies=3,frames=9").digest);
+    record(path("same.frames"), "pile:bodies=3,frames=9", 0, 5);
+    EXPECT_EQ(make_scene(path("same.frames")).digest, digest);
+    // The first and the last frame are those of the first recording; one between is another.
+    const auto scene = make_scene("pile:bodies=3,frames=9");
+    auto writer = RecordingWriter::create(path("other.frames"), recording_of(scene.key, scene, 0.25));
+    for (const std::size_t i : {0, 1, 3, 3, 4})
+        writer.append(i, 0.25 * static_cast<double>(i), scene.frame(i));
+    EXPECT_NE(make_scene(path("other.frames")).digest, digest);
+}
+
+TEST_F(RecordingScene, OfADescription) {
+    record(file_, description("[0, 0, 0.1]"), 0, 3);
+    const auto scene = make_scene(file_);
+    EXPECT_EQ(scene.frame(2).poses[0].translation.z(), 0.1); // fixed: not through float
+    description("[0, 0, 0.2]");
+    EXPECT_THAT(
+        failure_of([&] { make_scene(file_); }),
+        MatchesRegex(".*drift.frames: was recorded of a scene with digest [0-9a-f]+, but .*two.json has "
+                     "[0-9a-f]+ now; restore that scene or record again"));
+    std::filesystem::remove(path("two.json"));
+    EXPECT_THAT(failure_of([&] { make_scene(file_); }),
+                MatchesRegex(".*drift.frames: its scene cannot be made again: .*two.json: cannot be read.*"));
+}
+
+TEST_F(RecordingScene, NotOfARecording) {
+    record(file_, "pile:bodies=3,frames=9", 0, 1);
+    auto header = Recording(file_).header();
+    header.specification = path("itself.frames");
+    RecordingWriter::create(path("itself.frames"), header);
+    EXPECT_THAT(failure_of([&] { make_scene(path("itself.frames")); }), HasSubstr("is a recording itself"));
+    header.specification = "pile:bodies=3,frames=9";
+    header.bodies[1].kind = RecordedKind::fixed;
+    RecordingWriter::create(path("kinds.frames"), header);
+    EXPECT_THAT(failure_of([&] { make_scene(path("kinds.frames")); }), HasSubstr("was recorded of a scene"));
+    header = Recording(file_).header();
+    RecordingWriter::create(path("none.frames"), header);
+    EXPECT_EQ(failure_of([&] { make_scene(path("none.frames")); }),
+              path("none.frames") + ": there is no frame 0; no frame is whole");
+}
+
+TEST_F(RecordingScene, ASceneThatIsSimulatedSaysSo) {
+    auto scene = make_scene("pile:bodies=3,frames=1");
+    scene.dynamics = std::make_shared<const Dynamics>();
+    EXPECT_EQ(failure_of([&] { make_frames(scene, 0, 4); }),
+              "frames 0:4 are impossible; scene pile moves by simulation and has its start only, frame 0: "
+              "record it "
+              "with 'tandem simulate pile -o FILE.frames' and name FILE.frames");
+    EXPECT_EQ(failure_of([&] { make_frames(scene, 4, 2); }),
+              "frames 4:2 are impossible; scene pile has frames 0:0");
+    EXPECT_EQ(make_frames(scene, 0, 0).frames.size(), 1u);
+}
+
+} // namespace
+
+} // namespace tandem
