@@ -95,7 +95,7 @@ SceneKind pile_kind() {
             "rigid bodies of one mesh at random poses in a box, drifting and spinning slowly; no forces, "
             "bodies overlap",
             {{"bodies", "64", "how many"},
-             {"mesh", "jack", "glass, jack, plate, or a mesh file"},
+             {"mesh", "jack", "a built-in mesh or a mesh file"},
              {"density", "0.2", "sum of the bodies' volumes over the volume of the box"},
              {"seed", "1", "of the poses"},
              {"frames", "8", "steps"},
