@@ -96,9 +96,9 @@ TEST(ScenesOverlap, Tetrahedra) {
     EXPECT_FALSE(overlap(unit_corner, moved(unit_corner, {0.9, 0, 0}), 0.2)) << "less than the slack";
     EXPECT_FALSE(overlap(unit_corner, moved(unit_corner, {1, 0, 0}), 1e-9)) << "touching";
     EXPECT_FALSE(overlap(unit_corner, moved(unit_corner, {0.4, 0.4, 0.4}), 1e-9)) << "boxes overlap";
-    // Edges that pass each other: only a cross product of edges separates them.
-    const Corners3 low = {{{-1, 0, 0}, {1, 0, 0}, {0, 0.2, -1}, {0, -0.2, -1}}};
-    const Corners3 high = {{{0, -1, 0.05}, {0, 1, 0.05}, {0.2, 0, 1}, {-0.2, 0, 1}}};
+    // Edges that pass each other: only the cross product of one of each separates them.
+    const Corners3 low = {{{-1, 0, 0}, {1, 0, 0}, {0, 0.2, -1}, {0, -0.2, -1.3}}};
+    const Corners3 high = {{{0, -1, 0.05}, {0, 1, 0.05}, {0.2, 0, 1}, {-0.2, 0, 1.3}}};
     EXPECT_FALSE(overlap(low, high, 1e-9));
     EXPECT_TRUE(overlap(low, moved(high, {0, 0, -0.1}), 1e-9));
 }
