@@ -78,6 +78,24 @@ int measure_devices(const std::vector<BackendReport>& backends, const DevicesOpt
     return 0;
 }
 
+void print_scene(const SceneKind& kind, const Scene& scene) {
+    fmt::print("{}: {}\n", kind.name, kind.models);
+    fmt::print("  {}\n", scene.dynamics
+                             ? fmt::format("{} steps of {} s by simulation; its frame is the start",
+                                           scene.dynamics->steps, scene.dynamics->stepping.step)
+                             : fmt::format("{} frames by script", scene.frame_count));
+    for (const auto& p : kind.parameters) fmt::print("    {:<12} {:<12} {}\n", p.name, p.value, p.help);
+}
+
+/// The first columns of the paper's Table 1, for the defaults.
+void print_scene_table(const Json& scenes) {
+    fmt::print("\n{:<10} {:>7} {:>10} {:>11}\n", "scene", "bodies", "vertices", "tetrahedra");
+    for (const auto& row : scenes)
+        fmt::print("{:<10} {:>7} {:>10} {:>11}\n", row["name"].get<std::string>(),
+                   row["bodies"].get<std::size_t>(), row["vertices"].get<std::size_t>(),
+                   row["tetrahedra"].get<std::size_t>());
+}
+
 } // namespace
 
 int devices_command(const DevicesOptions& options) {
@@ -111,14 +129,21 @@ int scenes_command(bool json) {
     for (const auto& kind : scene_kinds()) {
         Json parameters = Json::object();
         for (const auto& p : kind.parameters) parameters[p.name] = {{"default", p.value}, {"help", p.help}};
-        all.push_back({{"name", kind.name}, {"models", kind.models}, {"parameters", parameters}});
-        if (json) continue;
         const auto scene = make_scene(kind.name);
-        fmt::print("{}: {}\n  {} bodies, {} vertices, {} tetrahedra, {} frames\n", kind.name, kind.models,
-                   scene.bodies.size(), vertex_count(scene), tetrahedron_count(scene), scene.frame_count);
-        for (const auto& p : kind.parameters) fmt::print("    {:<10} {:<12} {}\n", p.name, p.value, p.help);
+        all.push_back({{"name", kind.name},
+                       {"models", kind.models},
+                       {"parameters", parameters},
+                       {"bodies", scene.bodies.size()},
+                       {"vertices", vertex_count(scene)},
+                       {"tetrahedra", tetrahedron_count(scene)},
+                       {"frames", scene.frame_count},
+                       {"steps", scene.dynamics ? Json(scene.dynamics->steps) : Json(nullptr)}});
+        if (!json) print_scene(kind, scene);
     }
-    if (json) fmt::print("{}\n", all.dump(2));
+    if (json)
+        fmt::print("{}\n", all.dump(2));
+    else
+        print_scene_table(all);
     return 0;
 }
 

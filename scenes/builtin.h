@@ -8,7 +8,7 @@
 
 namespace tandem {
 
-/// Names of the meshes that are part of the program: glass, jack, plate.
+/// Names of the meshes that are part of the program (scenes/meshes), in ascending order.
 std::span<const std::string> built_in_names();
 
 /// One of them; throws InputError that names the nearest.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/builtin.h"
+#include "scenes/describe_dynamics.h"
 #include "scenes/digest.h"
 #include "scenes/error.h"
 #include "scenes/motion.h"
 #include "scenes/parameters.h"
+#include "scenes/shapes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,56 +13,12 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 
 namespace tandem {
 
 namespace {
 
-using Json = nlohmann::json;
-
-/// A place in the description, for messages: "file.json: /bodies/3/pose: ".
-struct Place {
-    std::string file;
-    std::string pointer;
-
-    Place operator/(std::string_view name) const { return {file, fmt::format("{}/{}", pointer, name)}; }
-    Place operator/(std::size_t index) const { return {file, fmt::format("{}/{}", pointer, index)}; }
-    std::string text() const { return pointer.empty() ? file : fmt::format("{}: {}", file, pointer); }
-    [[noreturn]] void fail(std::string_view what) const {
-        throw InputError(fmt::format("{}: {}", text(), what));
-    }
-};
-
-void check_names(const Json& object, const Place& place, const std::vector<std::string>& allowed) {
-    if (!object.is_object()) place.fail("must be an object");
-    for (const auto& [name, value] : object.items())
-        if (std::find(allowed.begin(), allowed.end(), name) == allowed.end())
-            place.fail(unknown("name", name, allowed));
-}
-
-double number(const Json& json, const Place& place) {
-    if (!json.is_number() || !std::isfinite(json.get<double>())) place.fail("must be a finite number");
-    return json.get<double>();
-}
-
-std::string text(const Json& json, const Place& place) {
-    if (!json.is_string()) place.fail("must be a string");
-    return json.get<std::string>();
-}
-
-template<std::size_t N>
-std::array<double, N> numbers(const Json& json, const Place& place) {
-    if (!json.is_array() || json.size() != N) place.fail(fmt::format("must be {} numbers", N));
-    std::array<double, N> values{};
-    for (std::size_t i = 0; i < N; ++i) values[i] = number(json[i], place / i);
-    return values;
-}
-
-Eigen::Vector3d vector(const Json& json, const Place& place) {
-    const auto v = numbers<3>(json, place);
-    return {v[0], v[1], v[2]};
-}
+using namespace description;
 
 Eigen::Quaterniond quaternion(double w, double x, double y, double z, const Place& place) {
     if (!(w * w + x * x + y * y + z * z > 0)) place.fail("must not be the zero quaternion");
@@ -82,22 +40,27 @@ struct Motion {
     }
 };
 
-Mesh read_one(const Json& json, const Place& place, const std::filesystem::path& folder) {
-    check_names(json, place, {"builtin", "file", "scale"});
-    if (json.contains("builtin") == json.contains("file")) place.fail("must name either a builtin or a file");
-    Mesh mesh;
-    if (json.contains("builtin")) {
-        const auto name = text(json["builtin"], place / "builtin");
-        const auto names = built_in_names();
-        if (std::find(names.begin(), names.end(), name) == names.end())
-            (place / "builtin").fail(unknown("mesh", name, names));
-        mesh = built_in_mesh(name);
-    } else {
-        mesh = read_mesh((folder / text(json["file"], place / "file")).string());
+Mesh read_source(const Json& json, const Place& place, const std::filesystem::path& folder) {
+    if (json.contains("file")) return read_mesh((folder / text(json["file"], place / "file")).string());
+    if (json.contains("box")) {
+        const auto size = vector(json["box"], place / "box");
+        if (!(size.minCoeff() > 0)) (place / "box").fail("must have sides above 0");
+        return box(size);
     }
+    const auto name = text(json["builtin"], place / "builtin");
+    const auto names = built_in_names();
+    if (std::find(names.begin(), names.end(), name) == names.end())
+        (place / "builtin").fail(unknown("mesh", name, names));
+    return built_in_mesh(name);
+}
+
+Mesh read_one(const Json& json, const Place& place, const std::filesystem::path& folder) {
+    check_names(json, place, {"builtin", "file", "box", "scale"});
+    if (json.contains("builtin") + json.contains("file") + json.contains("box") != 1)
+        place.fail("must name one builtin, file or box");
+    auto mesh = read_source(json, place, folder);
     if (!json.contains("scale")) return mesh;
-    const double scale = number(json["scale"], place / "scale");
-    if (!(scale > 0)) (place / "scale").fail("must be above 0");
+    const double scale = positive(json["scale"], place / "scale");
     for (auto& v : mesh.vertices) v *= scale;
     complete_mesh(mesh, place.text());
     return mesh;
@@ -132,14 +95,10 @@ Motion read_motion(const Json& json, const Place& place, std::size_t frames) {
     return motion;
 }
 
-bool flag(const Json& json, const char* name, const Place& place) {
-    if (!json.contains(name)) return false;
-    if (!json[name].is_boolean()) (place / name).fail("must be true or false");
-    return json[name].get<bool>();
-}
-
 Body read_body(const Json& json, const Place& place, const std::map<std::string, std::uint32_t>& meshes) {
-    check_names(json, place, {"mesh", "fixed", "position", "rotation", "velocity", "spin", "poses"});
+    check_names(
+        json, place,
+        {"mesh", "fixed", "position", "rotation", "velocity", "spin", "poses", "material", "elastic"});
     if (!json.contains("mesh")) place.fail("has no mesh");
     const auto name = text(json["mesh"], place / "mesh");
     std::vector<std::string> names;
@@ -174,28 +133,14 @@ Frame frame_of(const std::vector<Motion>& motions, std::size_t index) {
     return frame;
 }
 
-} // namespace
-
-Scene load_description(const std::string& path) {
-    const auto json = parse(path);
-    const Place root{path, {}};
-    check_names(json, root, {"name", "units", "frames", "meshes", "bodies"});
-    Scene scene;
-    scene.name = json.contains("name") ? text(json["name"], root / "name")
-                                       : std::filesystem::path(path).stem().string();
-    if (json.contains("units")) scene.units = text(json["units"], root / "units");
-    if (json.contains("frames")) {
-        const auto frames = number(json["frames"], root / "frames");
-        if (!(frames >= 1 && frames <= 1e7) || frames != std::floor(frames))
-            (root / "frames").fail("must be an integer from 1 to 1e7");
-        scene.frame_count = static_cast<std::size_t>(frames);
-    }
+/// Meshes and bodies into the scene; returns how the bodies move.
+std::vector<Motion> read_bodies(const Json& json, const Place& root, Scene& scene) {
     std::map<std::string, std::uint32_t> meshes;
     if (!json.contains("meshes") || !json["meshes"].is_object()) root.fail("has no meshes");
     for (const auto& [name, value] : json["meshes"].items()) {
         meshes[name] = static_cast<std::uint32_t>(scene.meshes.size());
         scene.meshes.push_back(
-            read_one(value, root / "meshes" / name, std::filesystem::path(path).parent_path()));
+            read_one(value, root / "meshes" / name, std::filesystem::path(root.file).parent_path()));
     }
     if (!json.contains("bodies") || !json["bodies"].is_array() || json["bodies"].empty())
         root.fail("has no bodies");
@@ -204,9 +149,33 @@ Scene load_description(const std::string& path) {
         scene.bodies.push_back(read_body(json["bodies"][i], root / "bodies" / i, meshes));
         motions.push_back(read_motion(json["bodies"][i], root / "bodies" / i, scene.frame_count));
     }
-    scene.frame = [motions = std::move(motions)](std::size_t index) { return frame_of(motions, index); };
+    return motions;
+}
+
+} // namespace
+
+Scene load_description(const std::string& path) {
+    const auto json = parse(path);
+    const Place root{path, {}};
+    check_names(json, root, {"name", "units", "frames", "meshes", "bodies", "dynamics"});
+    Scene scene;
+    scene.name = json.contains("name") ? text(json["name"], root / "name")
+                                       : std::filesystem::path(path).stem().string();
+    if (json.contains("units")) scene.units = text(json["units"], root / "units");
+    if (json.contains("frames"))
+        scene.frame_count = static_cast<std::size_t>(whole(json["frames"], root / "frames", 1, 1e7));
+    const auto motions = read_bodies(json, root, scene);
     scene.key = fmt::format("{}:frames={},bodies={:016x}", scene.name, scene.frame_count,
                             digest_of(json["bodies"].dump()));
+    if (json.contains("dynamics")) {
+        Frame start = frame_of(motions, 0);
+        scene.dynamics = read_dynamics(json, root, scene, start);
+        scene.frame = [start = std::move(start)](std::size_t) { return start; };
+        scene.key += fmt::format(",dynamics={:016x}", digest_of(json["dynamics"].dump()));
+    } else {
+        refuse_dynamics(json, root);
+        scene.frame = [motions](std::size_t index) { return frame_of(motions, index); };
+    }
     scene.digest = digest_of(scene);
     return scene;
 }

@@ -3,6 +3,7 @@
 #include "scenes/error.h"
 #include "scenes/parameters.h"
 #include "scenes/recording/recording.h"
+#include "scenes/refine.h"
 
 #include <algorithm>
 #include <charconv>
@@ -66,7 +67,9 @@ std::vector<SceneParameter> with_values(const SceneKind& kind, std::string_view 
 } // namespace
 
 std::span<const SceneKind> scene_kinds() {
-    static const std::vector<SceneKind> kinds{plates_kind(), pile_kind()};
+    static const std::vector<SceneKind> kinds{plates_kind(),    pile_kind(),   glasses_kind(), funnel_kind(),
+                                              colosseum_kind(), tower_kind(),  meteor_kind(),  jacks_kind(),
+                                              chalk_kind(),     temple_kind(), arch_kind(),    block_kind()};
     return kinds;
 }
 
@@ -104,10 +107,20 @@ const std::string& text_parameter(std::span<const SceneParameter> parameters, st
     return parameter(parameters, name).value;
 }
 
+SceneParameter refine_parameter() {
+    return {"refine", "0", fmt::format("times each tetrahedron becomes eight, 0..{}", most_refinement)};
+}
+
+std::uint64_t refine_value(std::span<const SceneParameter> parameters) {
+    return integer_parameter(parameters, "refine", 0, most_refinement);
+}
+
 std::string key_of(std::string_view name, std::span<const SceneParameter> parameters) {
     std::string key(name);
-    for (const auto& p : parameters)
+    for (const auto& p : parameters) {
+        if (p.name == "refine" && p.value.find_first_not_of('0') == std::string::npos) continue;
         key += fmt::format("{}{}={}", key.size() == name.size() ? ':' : ',', p.name, p.value);
+    }
     return key;
 }
 

@@ -63,17 +63,22 @@ void complete_mesh(Mesh& mesh, const std::string& source) {
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
         if (!mesh.vertices[v].allFinite())
             throw InputError(fmt::format("{}: vertex {} is not finite; repair the mesh", source, v));
-    mesh.inverted = mesh.degenerate = 0;
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
         for (const auto vertex : mesh.tetrahedra[t])
             if (vertex >= mesh.vertices.size())
                 throw InputError(fmt::format("{}: tetrahedron {} names vertex {} of {}; repair the mesh",
                                              source, t, vertex, mesh.vertices.size()));
-        const double det = determinant(mesh, mesh.tetrahedra[t]);
+    count_flawed(mesh);
+    flag_boundary(mesh);
+}
+
+void count_flawed(Mesh& mesh) {
+    mesh.inverted = mesh.degenerate = 0;
+    for (const auto& t : mesh.tetrahedra) {
+        const double det = determinant(mesh, t);
         mesh.inverted += det < 0 ? 1 : 0;
         mesh.degenerate += det == 0 ? 1 : 0;
     }
-    flag_boundary(mesh);
 }
 
 double volume(const Mesh& mesh) {

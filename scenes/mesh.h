@@ -27,6 +27,9 @@ struct Mesh {
 /// degenerate. Volume signs come from det[b-a, c-a, d-a] in double.
 void complete_mesh(Mesh& mesh, const std::string& source);
 
+/// Counts inverted and degenerate tetrahedra; indices must be in range.
+void count_flawed(Mesh& mesh);
+
 /// Reads a tetrahedral mesh; the format is told by content and suffix: Gmsh .msh 2.2 and 4.1 (ASCII and
 /// binary), Medit .mesh, TetGen .node/.ele (either file names the pair), legacy .vtk and .vtu. Returns a
 /// completed mesh; throws InputError with file:line.

@@ -4,6 +4,7 @@
 #include "scenes/motion.h"
 #include "scenes/parameters.h"
 #include "scenes/random.h"
+#include "scenes/refine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,6 +75,7 @@ Scene make(std::span<const SceneParameter> parameters) {
     scene.bodies.assign(bodies, Body{});
     const auto [middle, radius] = ball_of(scene.meshes.front());
     const double side = cube_root(static_cast<double>(bodies) * volume(scene.meshes.front()) / density);
+    scene.meshes.front() = refined(scene.meshes.front(), refine_value(parameters));
     Random random(integer_parameter(parameters, "seed", 0, ~std::uint64_t{0}));
     std::vector<Mover> movers(bodies);
     for (auto& m : movers) {
@@ -95,11 +97,12 @@ SceneKind pile_kind() {
             "rigid bodies of one mesh at random poses in a box, drifting and spinning slowly; no forces, "
             "bodies overlap",
             {{"bodies", "64", "how many"},
-             {"mesh", "jack", "glass, jack, plate, or a mesh file"},
+             {"mesh", "jack", "a built-in mesh or a mesh file"},
              {"density", "0.2", "sum of the bodies' volumes over the volume of the box"},
              {"seed", "1", "of the poses"},
              {"frames", "8", "steps"},
-             {"far", "0", "adds this to all coordinates"}},
+             {"far", "0", "adds this to all coordinates"},
+             refine_parameter()},
             make};
 }
 

@@ -2,6 +2,7 @@
 #include "scenes/builtin.h"
 #include "scenes/parameters.h"
 #include "scenes/random.h"
+#include "scenes/refine.h"
 
 namespace tandem {
 
@@ -48,7 +49,7 @@ Scene make(std::span<const SceneParameter> parameters) {
     const auto count = integer_parameter(parameters, "count", 1, 100000);
     const double angle = real_parameter(parameters, "angle", -4, 4);
     scene.frame_count = integer_parameter(parameters, "frames", 1, 1000000);
-    scene.meshes.push_back(built_in_mesh("plate"));
+    scene.meshes.push_back(refined(built_in_mesh("plate"), refine_value(parameters)));
     scene.bodies.assign(count, Body{.mesh = 0, .fixed = false, .deformable = true});
     scene.frame = [rest = scene.meshes.front().vertices, count, angle](std::size_t step) {
         return twisted(rest, count, angle, step);
@@ -65,7 +66,8 @@ SceneKind plates_kind() {
             "each other",
             {{"count", "3", "plates"},
              {"angle", "0.3", "turn of each plate against the one below, radians"},
-             {"frames", "500", "steps of 0.01 s"}},
+             {"frames", "500", "steps of 0.01 s"},
+             refine_parameter()},
             make};
 }
 

@@ -125,9 +125,9 @@ class Case(unittest.TestCase):
 
 class CommandLine(Case):
     def test_listings(self):
-        keys = {"devices": {"backend", "reason", "devices"}, "scenes": {"name", "models", "parameters"},
+        keys = {"devices": {"backend", "reason", "devices"}, "scenes": {"name", "models", "parameters", "bodies", "vertices", "tetrahedra"},
                 "algorithms": {"name", "summary", "parameters", "presets"}}
-        for name, words in (("devices", ["host", "opencl:0"]), ("scenes", ["plates", "pile", "density"]),
+        for name, words in (("devices", ["host", "opencl:0"]), ("scenes", ["plates", "pile", "density", "glasses", "1729", "14793", "16140"]),
                             ("algorithms", ["chunked", "gproximity", "unc2010", "seed_threshold"])):
             status, out, errors = tandem(name)
             self.assertEqual((status, errors), (0, []))

@@ -119,6 +119,160 @@ TEST_F(ScenesDescription, DigestSeesEveryFrame) {
     EXPECT_NE(digest("[0, 0, 0, 1, 0, 0, 0]"), digest("[9, 0, 0, 1, 0, 0, 0]"));
 }
 
+/// A stone over a ground, with these further names of the dynamics, the bodies and the stone.
+std::string dynamic_scene(const std::string& dynamics, const std::string& bodies = "",
+                          const std::string& stone = "") {
+    return R"({"meshes": {"g": {"box": [10, 1, 10]}, "s": {"builtin": "jack", "scale": 2}},
+        "dynamics": {"materials": {"stone": 2000, "earth": 5500}, "surfaces": [
+            {"a": "earth", "b": "stone", "friction": 0.75, "restitution": 0.3}])"
+           + dynamics + R"(},
+        "bodies": [{"mesh": "g", "fixed": true, "material": "earth"},
+                   {"mesh": "s", "position": [0, 3, 0], "material": "stone")"
+           + stone + "}" + bodies + "]}";
+}
+
+TEST_F(ScenesDescription, DynamicsAreRead) {
+    const auto scene = load(dynamic_scene(
+        R"(, "gravity": [0, -1.6, 0], "step": 0.005, "steps": 7,
+           "solver": {"method": "jacobi", "iterations": 20, "absolute_tolerance": 0.5, "relative_tolerance": 0.25, "warm_start": true},
+           "stepping": {"pre_stabilize": true, "post_stabilize": true, "bounce": false, "linear_damping": 0.125,
+                        "angular_damping": 0.25, "adaptive_tolerance": 0.001, "least_step": 0.0001, "couple_contacts": false},
+           "reduction": {"distance": 0.001, "per_pair": 4})",
+        "", R"(, "velocity": [1, 2, 3], "spin": [0, 0, 2, 1.5])"));
+    EXPECT_EQ(scene.frame_count, 1u);
+    ASSERT_NE(scene.dynamics, nullptr);
+    const auto& d = *scene.dynamics;
+    EXPECT_EQ(d.gravity, Eigen::Vector3d(0, -1.6, 0));
+    EXPECT_EQ(d.steps, 7u);
+    ASSERT_THAT(d.materials.names, testing::ElementsAre("earth", "stone"));
+    EXPECT_THAT(d.materials.densities, testing::ElementsAre(5500, 2000));
+    EXPECT_EQ(d.materials.surface(0, 1).friction, 0.75);
+    EXPECT_EQ(d.materials.surface(1, 0).restitution, 0.3);
+    ASSERT_EQ(d.bodies.size(), 2u);
+    EXPECT_EQ(d.bodies[0].material, 0u);
+    EXPECT_EQ(d.bodies[1].material, 1u);
+    EXPECT_EQ(d.bodies[1].velocity, Eigen::Vector3d(1, 2, 3));
+    EXPECT_EQ(d.bodies[1].spin, Eigen::Vector3d(0, 0, 1.5));
+    EXPECT_EQ(d.solver.method, SolverSettings::Method::jacobi);
+    EXPECT_EQ(d.solver.iterations, 20u);
+    EXPECT_EQ(d.solver.absolute_tolerance, 0.5);
+    EXPECT_EQ(d.solver.relative_tolerance, 0.25);
+    EXPECT_TRUE(d.solver.warm_start);
+    EXPECT_EQ(d.stepping.step, 0.005);
+    EXPECT_TRUE(d.stepping.pre_stabilize && d.stepping.post_stabilize && !d.stepping.bounce);
+    EXPECT_EQ(d.stepping.linear_damping, 0.125);
+    EXPECT_EQ(d.stepping.angular_damping, 0.25);
+    EXPECT_EQ(d.stepping.adaptive_tolerance, 0.001);
+    EXPECT_EQ(d.stepping.least_step, 0.0001);
+    EXPECT_FALSE(d.stepping.couple_contacts);
+    EXPECT_EQ(d.reduction.distance, 0.001);
+    EXPECT_EQ(d.reduction.per_pair, 4u);
+    EXPECT_EQ(scene.frame(0).poses[1].translation, Eigen::Vector3d(0, 3, 0));
+    EXPECT_NE(load(dynamic_scene(R"(, "steps": 7)")).digest, load(dynamic_scene(R"(, "steps": 8)")).digest);
+    const auto plain = load(dynamic_scene(""));
+    EXPECT_EQ(plain.dynamics->solver.iterations, 150u);
+    EXPECT_EQ(plain.dynamics->gravity, Eigen::Vector3d(0, -9.82, 0));
+}
+
+TEST_F(ScenesDescription, ElasticBodiesAreDeformable) {
+    const auto scene = load(dynamic_scene("", "", R"(, "rotation": [0, 1, 0, 0],
+            "elastic": {"law": "saint_venant_kirchhoff", "young": 1e4, "poisson": 0.3, "damping": 0.1, "pinned": [0, 5]})"));
+    EXPECT_TRUE(scene.bodies[1].deformable);
+    const auto& d = *scene.dynamics;
+    EXPECT_EQ(d.bodies[1].elastic, 0);
+    EXPECT_EQ(d.bodies[0].elastic, -1);
+    ASSERT_EQ(d.elastics.size(), 1u);
+    EXPECT_EQ(d.elastics[0].law, Elastic::Law::saint_venant_kirchhoff);
+    EXPECT_THAT(d.elastics[0].pinned, testing::ElementsAre(0, 5));
+    const auto frame = scene.frame(0);
+    const auto& rest = scene.meshes[scene.bodies[1].mesh].vertices;
+    ASSERT_EQ(frame.deformed[1].size(), rest.size());
+    EXPECT_EQ(frame.deformed[1][9], Eigen::Vector3d(rest[9].x(), 3 - rest[9].y(), -rest[9].z()));
+    EXPECT_TRUE(frame.poses[1].translation.isZero());
+}
+
+TEST_F(ScenesDescription, ErrorsOfDynamicsNameThePath) {
+    const auto dynamics = [&](const std::string& names) { return failure(dynamic_scene(", " + names)); };
+    const auto body = [&](const std::string& names) { return failure(dynamic_scene("", ", " + names)); };
+    const auto stone = [&](const std::string& names) { return failure(dynamic_scene("", "", ", " + names)); };
+    EXPECT_THAT(dynamics(R"("step": 0)"), HasSubstr("scene.json: /dynamics/step: must be above 0"));
+    EXPECT_THAT(dynamics(R"("stepp": 1)"),
+                HasSubstr("/dynamics: unknown name 'stepp'; the nearest is 'step'"));
+    EXPECT_THAT(dynamics(R"("steps": 0)"), HasSubstr("/dynamics/steps: must be an integer from 1"));
+    EXPECT_THAT(dynamics(R"("gravity": 9.82)"), HasSubstr("/dynamics/gravity: must be 3 numbers"));
+    EXPECT_THAT(dynamics(R"("solver": {"method": "jacoby"})"),
+                HasSubstr("/dynamics/solver/method: unknown method 'jacoby'; the nearest is 'jacobi'"));
+    EXPECT_THAT(dynamics(R"("solver": {"iterations": 1.5})"), HasSubstr("/dynamics/solver/iterations: "));
+    EXPECT_THAT(dynamics(R"("stepping": {"linear_damping": -1})"),
+                HasSubstr("/dynamics/stepping/linear_damping: must be from 0 to"));
+    EXPECT_THAT(dynamics(R"("stepping": {"bounce": 1})"), HasSubstr("/bounce: must be true or false"));
+    EXPECT_THAT(dynamics(R"("reduction": {"per_pair": -1})"), HasSubstr("/dynamics/reduction/per_pair: "));
+    EXPECT_THAT(body(R"({"mesh": "g", "fixed": true, "material": "earth", "position": [9, 0.5, 0]})"),
+                HasSubstr("/bodies/2: overlaps body 0, and both are fixed; move one"));
+    EXPECT_EQ(body(R"({"mesh": "g", "fixed": true, "material": "earth", "position": [10, 0.5, 0]})"),
+              "no error")
+        << "touching";
+    EXPECT_EQ(failure(dynamic_scene(
+                  R"(, "gravity": [0, 0, 0])",
+                  R"(, {"mesh": "g", "fixed": true, "material": "earth", "position": [0, 3, 0]})")),
+              "no error")
+        << "a moving body may overlap";
+    EXPECT_THAT(body(R"({"mesh": "g", "fixed": true})"), HasSubstr("/bodies/2: has no material"));
+    EXPECT_THAT(body(R"({"mesh": "k", "material": "earth"})"), HasSubstr("/bodies/2/mesh: unknown mesh 'k'"));
+    EXPECT_THAT(body(R"({"mesh": "s", "material": "iron"})"),
+                HasSubstr("/bodies/2/material: unknown material 'iron'; the nearest is"));
+    EXPECT_THAT(body(R"({"mesh": "s", "material": "stone"})"),
+                HasSubstr("/dynamics/surfaces: has no entry for stone and stone"));
+    EXPECT_THAT(stone(R"("poses": [[0,0,0,1,0,0,0]])"), HasSubstr("is replaced by poses"));
+    EXPECT_THAT(body(R"({"mesh": "s", "material": "earth", "poses": [[0, 0, 0, 1, 0, 0, 0]]})"),
+                HasSubstr("/bodies/2/poses: has no use"));
+    EXPECT_THAT(stone(R"("elastic": {"young": 1, "poisson": 0.5})"),
+                HasSubstr("/bodies/1/elastic/poisson: must be from 0 to 0.499"));
+    EXPECT_THAT(stone(R"("elastic": {"poisson": 0.3})"), HasSubstr("/bodies/1/elastic: has no young"));
+    EXPECT_THAT(stone(R"("elastic": {"young": 1, "poisson": 0.3, "pinned": [800]})"),
+                HasSubstr("/bodies/1/elastic/pinned/0: must be an integer from 0 to 799"));
+    EXPECT_THAT(stone(R"("elastic": {"young": 1, "poisson": 0.3}, "spin": [0, 0, 1, 1])"),
+                HasSubstr("/bodies/1/spin: cannot be given"));
+}
+
+TEST_F(ScenesDescription, ErrorsOfMaterialsNameThePath) {
+    const auto materials = [&](const std::string& text) {
+        return failure(R"({"meshes": {"j": {"builtin": "jack"}}, "bodies": [{"mesh": "j"}], "dynamics": {)"
+                       + text + "}}");
+    };
+    EXPECT_EQ(materials(R"("materials": {"stone": 1})"), "no error")
+        << "the only material is that of all bodies";
+    EXPECT_THAT(materials(""), HasSubstr("/dynamics: has no materials"));
+    EXPECT_THAT(materials(R"("materials": {"stone": 0})"),
+                HasSubstr("/dynamics/materials/stone: must be above 0"));
+    const auto surfaces = [&](const std::string& text) {
+        return materials(R"("materials": {"s": 1}, "surfaces": [{"a": "s", "b": "s", )" + text + "]");
+    };
+    EXPECT_THAT(surfaces(R"("friction": -1, "restitution": 0})"),
+                HasSubstr("/dynamics/surfaces/0/friction: must be from 0 to"));
+    EXPECT_THAT(surfaces(R"("friction": 1, "restitution": 1.5})"),
+                HasSubstr("/dynamics/surfaces/0/restitution: must be from 0 to 1"));
+    EXPECT_THAT(surfaces(R"("friction": 1})"), HasSubstr("/dynamics/surfaces/0: has no restitution"));
+    EXPECT_THAT(
+        surfaces(
+            R"("friction": 1, "restitution": 0}, {"a": "s", "b": "s", "friction": 1, "restitution": 0})"),
+        HasSubstr("/dynamics/surfaces/1: names a pair of materials that has a surface already"));
+    EXPECT_THAT(
+        surfaces(
+            R"("friction": 1, "restitution": 0}, {"a": "s", "b": "t", "friction": 1, "restitution": 0})"),
+        HasSubstr("/dynamics/surfaces/1/b: unknown material 't'"));
+    EXPECT_THAT(failure(R"({"frames": 2, "meshes": {"j": {"builtin": "jack"}}, "bodies": [{"mesh": "j"}],
+                            "dynamics": {"materials": {"s": 1}}})"),
+                HasSubstr("/frames: must be 1 or left out"));
+    EXPECT_THAT(body_failure(R"("material": "s")"),
+                HasSubstr("/bodies/0/material: needs a scene with dynamics"));
+    EXPECT_THAT(failure(R"({"meshes": {"b": {"box": [1, 0, 1]}}, "bodies": [{"mesh": "b"}]})"),
+                HasSubstr("/meshes/b/box: must have sides above 0"));
+    EXPECT_THAT(
+        failure(R"({"meshes": {"b": {"box": [1, 1, 1], "builtin": "jack"}}, "bodies": [{"mesh": "b"}]})"),
+        HasSubstr("/meshes/b: must name one builtin, file or box"));
+}
+
 TEST_F(ScenesDescription, AdHocScenesTakePosesInOrder) {
     const auto path = write("one.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 0\n1 0 0 0\n"
                                         "0 1 0 0\n0 0 1 0\nTetrahedra 1\n1 2 3 4 0\nEnd\n");

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/describe_dynamics.h"
+
+#include "scenes/describe_settings.h"
+#include "scenes/error.h"
+#include "scenes/motion.h"
+#include "scenes/overlap.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tandem::description {
+
+namespace {
+
+/// Materials, and which pairs of them have a surface.
+struct Known {
+    Materials materials;
+    std::vector<bool> given;
+};
+
+Known read_materials(const Json& json, const Place& place) {
+    Known known;
+    auto& [names, densities, surfaces] = known.materials;
+    if (!json.contains("materials") || !json["materials"].is_object() || json["materials"].empty())
+        place.fail("has no materials");
+    for (const auto& [name, density] : json["materials"].items()) {
+        names.push_back(name);
+        densities.push_back(positive(density, place / "materials" / name));
+    }
+    surfaces.resize(names.size() * names.size());
+    known.given.resize(surfaces.size());
+    if (!json.contains("surfaces")) return known;
+    if (!json["surfaces"].is_array()) (place / "surfaces").fail("must be an array");
+    for (std::size_t i = 0; i < json["surfaces"].size(); ++i) {
+        const auto& entry = json["surfaces"][i];
+        const auto at = place / "surfaces" / i;
+        check_names(entry, at, {"a", "b", "friction", "restitution"});
+        for (const auto* name : {"a", "b", "friction", "restitution"})
+            if (!entry.contains(name)) at.fail(fmt::format("has no {}", name));
+        const auto a = choice(entry["a"], at / "a", "material", names);
+        const auto b = choice(entry["b"], at / "b", "material", names);
+        if (known.given[a * names.size() + b])
+            at.fail("names a pair of materials that has a surface already");
+        const Surface surface{number(entry["friction"], at / "friction", 0, largest),
+                              number(entry["restitution"], at / "restitution", 0, 1)};
+        for (const auto pair : {a * names.size() + b, b * names.size() + a}) {
+            surfaces[pair] = surface;
+            known.given[pair] = true;
+        }
+    }
+    return known;
+}
+
+Elastic read_elastic(const Json& json, const Place& place, const Mesh& mesh) {
+    check_names(json, place, {"law", "young", "poisson", "damping", "pinned"});
+    for (const auto* name : {"young", "poisson"})
+        if (!json.contains(name)) place.fail(fmt::format("has no {}", name));
+    Elastic elastic;
+    if (json.contains("law"))
+        elastic.law = static_cast<Elastic::Law>(
+            choice(json["law"], place / "law", "law", {"corotational", "saint_venant_kirchhoff"}));
+    elastic.young = positive(json["young"], place / "young");
+    elastic.poisson = number(json["poisson"], place / "poisson", 0, 0.499);
+    if (json.contains("damping")) elastic.damping = number(json["damping"], place / "damping", 0, largest);
+    if (!json.contains("pinned")) return elastic;
+    if (!json["pinned"].is_array()) (place / "pinned").fail("must be an array of vertices");
+    const auto last = static_cast<double>(mesh.vertices.size() - 1);
+    for (std::size_t i = 0; i < json["pinned"].size(); ++i)
+        elastic.pinned.push_back(
+            static_cast<std::uint32_t>(whole(json["pinned"][i], place / "pinned" / i, 0, last)));
+    return elastic;
+}
+
+/// World vertices of a body at its start, after which its pose is the identity.
+void deform(const Mesh& mesh, Pose& pose, std::vector<Eigen::Vector3d>& vertices) {
+    for (const auto& v : mesh.vertices) vertices.push_back(rotated(pose.rotation, v) + pose.translation);
+    pose = {};
+}
+
+BodyDynamics read_body(const Json& json, const Place& place, const Materials& materials) {
+    BodyDynamics body;
+    if (json.contains("poses")) (place / "poses").fail("has no use in a scene with dynamics; leave it out");
+    if (json.contains("material"))
+        body.material = static_cast<std::uint32_t>(
+            choice(json["material"], place / "material", "material", materials.names));
+    else if (materials.names.size() > 1)
+        place.fail("has no material");
+    if (json.contains("velocity")) body.velocity = vector(json["velocity"], place / "velocity");
+    if (!json.contains("spin")) return body;
+    const auto spin = numbers<4>(json["spin"], place / "spin");
+    const Eigen::Vector3d axis(spin[0], spin[1], spin[2]);
+    body.spin = axis * (spin[3] / std::sqrt((spin[0] * spin[0] + spin[1] * spin[1]) + spin[2] * spin[2]));
+    return body;
+}
+
+/// Every two materials that can meet, of bodies not both fixed, need a surface.
+void check_surfaces(const Known& known, const Scene& scene, const std::vector<BodyDynamics>& bodies,
+                    const Place& place) {
+    const auto& names = known.materials.names;
+    std::vector<std::size_t> moving(names.size());
+    std::vector<std::size_t> all(names.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        ++all[bodies[i].material];
+        if (!scene.bodies[i].fixed) ++moving[bodies[i].material];
+    }
+    for (std::size_t a = 0; a < names.size(); ++a)
+        for (std::size_t b = 0; b < names.size(); ++b) {
+            const bool meet = moving[a] > 0 && all[b] > (a == b ? 1u : 0u);
+            if (meet && !known.given[a * names.size() + b])
+                (place / "surfaces").fail(fmt::format("has no entry for {} and {}", names[a], names[b]));
+        }
+}
+
+/// Materials and elasticity of all bodies.
+void read_bodies(const Json& json, const Place& place, Scene& scene, Frame& start, Dynamics& dynamics) {
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+        const auto& entry = json[i];
+        dynamics.bodies.push_back(read_body(entry, place / i, dynamics.materials));
+        if (!entry.contains("elastic")) continue;
+        if (scene.bodies[i].fixed) (place / i / "elastic").fail("has no use for a fixed body; leave one out");
+        if (entry.contains("spin")) (place / i / "spin").fail("cannot be given to an elastic body");
+        const auto& mesh = scene.meshes[scene.bodies[i].mesh];
+        dynamics.bodies.back().elastic = static_cast<std::int32_t>(dynamics.elastics.size());
+        dynamics.elastics.push_back(read_elastic(entry["elastic"], place / i / "elastic", mesh));
+        scene.bodies[i].deformable = true;
+        deform(mesh, start.poses[i], start.deformed[i]);
+    }
+}
+
+} // namespace
+
+std::shared_ptr<const Dynamics> read_dynamics(const Json& json, const Place& root, Scene& scene,
+                                              Frame& start) {
+    const auto& entry = json["dynamics"];
+    const auto place = root / "dynamics";
+    check_names(entry, place,
+                {"gravity", "step", "steps", "materials", "surfaces", "solver", "stepping", "reduction"});
+    if (scene.frame_count != 1)
+        (root / "frames").fail("must be 1 or left out in a scene with dynamics; steps stand in /dynamics");
+    auto dynamics = std::make_shared<Dynamics>();
+    const auto known = read_materials(entry, place);
+    dynamics->materials = known.materials;
+    read_settings(entry, place, *dynamics);
+    read_bodies(json["bodies"], root / "bodies", scene, start, *dynamics);
+    check_surfaces(known, scene, dynamics->bodies, place);
+    if (const auto found = first_overlap(scene, start, true))
+        (root / "bodies" / (*found)[1])
+            .fail(fmt::format("overlaps body {}, and both are fixed; move one", (*found)[0]));
+    return dynamics;
+}
+
+void refuse_dynamics(const Json& json, const Place& root) {
+    for (std::size_t i = 0; i < json["bodies"].size(); ++i)
+        for (const auto* name : {"material", "elastic"})
+            if (json["bodies"][i].contains(name))
+                (root / "bodies" / i / name).fail("needs a scene with dynamics");
+}
+
+} // namespace tandem::description

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/refine.h"
+
+#include "scenes/error.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <limits>
+#include <span>
+#include <string_view>
+
+namespace tandem {
+
+namespace {
+
+constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
+
+/// Points of a tetrahedron: corners 0..3, then the middles of these edges.
+constexpr std::array<std::array<std::uint32_t, 2>, 6> edges = {
+    {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+enum Point : std::uint8_t { p0, p1, p2, p3, m01, m02, m03, m12, m13, m23 };
+
+/// Bey's children; the sixth and the eighth have two corners swapped, 0 and 2, so that all are oriented as
+/// their parent is. That swap leaves their own inner edge where Bey has it.
+constexpr std::array<std::array<Point, 4>, 8> children = {{{p0, m01, m02, m03},
+                                                           {m01, p1, m12, m13},
+                                                           {m02, m12, p2, m23},
+                                                           {m03, m13, m23, p3},
+                                                           {m01, m02, m03, m13},
+                                                           {m12, m02, m01, m13},
+                                                           {m02, m03, m13, m23},
+                                                           {m13, m12, m02, m23}}};
+
+/// Bit i: the point lies in the face opposite corner i.
+constexpr unsigned faces_of(Point point) {
+    if (point < m01) return 0b1111u & ~(1u << point);
+    const auto& edge = edges[point - m01];
+    return 0b1111u & ~(1u << edge[0]) & ~(1u << edge[1]);
+}
+
+/// Boundary flags of a child: its faces that lie in boundary faces of its parent.
+std::uint8_t child_boundary(const std::array<Point, 4>& child, unsigned parent) {
+    unsigned flags = 0;
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+        unsigned shared = parent;
+        for (std::size_t i = 0; i < 4; ++i)
+            if (i != corner) shared &= faces_of(child[i]);
+        if (shared != 0) flags |= 1u << corner;
+    }
+    return static_cast<std::uint8_t>(flags);
+}
+
+std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
+    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+}
+
+/// Every edge once, in ascending order.
+std::vector<std::uint64_t> edges_of(const Mesh& mesh) {
+    std::vector<std::uint64_t> keys;
+    keys.reserve(mesh.tetrahedra.size() * edges.size());
+    for (const auto& t : mesh.tetrahedra)
+        for (const auto& [a, b] : edges) keys.push_back(key_of(t[a], t[b]));
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    keys.shrink_to_fit();
+    return keys;
+}
+
+void check_count(std::size_t count, std::string_view what, const std::string& name) {
+    if (count > most)
+        throw InputError(
+            fmt::format("mesh {} would have {} {} after refinement, more than 32-bit numbers tell apart; "
+                        "refine less",
+                        name, count, what));
+}
+
+/// Numbers of the ten points of a tetrahedron in the refined mesh.
+std::array<std::uint32_t, 10> points_of(const Tetrahedron& t, std::span<const std::uint64_t> keys,
+                                        std::size_t corners) {
+    std::array<std::uint32_t, 10> numbers{t[0], t[1], t[2], t[3]};
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const auto found = std::lower_bound(keys.begin(), keys.end(), key_of(t[edges[e][0]], t[edges[e][1]]));
+        numbers[4 + e] = static_cast<std::uint32_t>(corners + static_cast<std::size_t>(found - keys.begin()));
+    }
+    return numbers;
+}
+
+Mesh refined_once(const Mesh& mesh) {
+    const auto keys = edges_of(mesh);
+    check_count(mesh.vertices.size() + keys.size(), "vertices", mesh.name);
+    Mesh fine{.name = mesh.name, .vertices = {}, .tetrahedra = {}, .boundary = {}};
+    fine.vertices.reserve(mesh.vertices.size() + keys.size());
+    fine.vertices = mesh.vertices;
+    for (const auto key : keys)
+        fine.vertices.push_back(0.5 * (mesh.vertices[key >> 32] + mesh.vertices[key & most]));
+    fine.tetrahedra.reserve(mesh.tetrahedra.size() * children.size());
+    fine.boundary.reserve(mesh.tetrahedra.size() * children.size());
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+        const auto numbers = points_of(mesh.tetrahedra[t], keys, mesh.vertices.size());
+        for (const auto& child : children) {
+            fine.tetrahedra.push_back(
+                {numbers[child[0]], numbers[child[1]], numbers[child[2]], numbers[child[3]]});
+            fine.boundary.push_back(child_boundary(child, mesh.boundary[t]));
+        }
+    }
+    return fine;
+}
+
+} // namespace
+
+Mesh refined(const Mesh& mesh, std::uint64_t levels) {
+    if (levels > most_refinement)
+        throw InputError(
+            fmt::format("refinement by {} levels; give a number from 0 to {}", levels, most_refinement));
+    check_count(mesh.tetrahedra.size() << 3 * levels, "tetrahedra", mesh.name);
+    Mesh fine = mesh;
+    for (std::uint64_t level = 0; level < levels; ++level) fine = refined_once(fine);
+    if (levels > 0) count_flawed(fine);
+    return fine;
+}
+
+} // namespace tandem
