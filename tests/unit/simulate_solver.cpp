@@ -100,6 +100,7 @@ TEST(SimulateSolverConvergence, UndoesAndReducesOnGrowthAndRecovers) {
     EXPECT_DOUBLE_EQ(convergence.scale(), 0.9);
     EXPECT_DOUBLE_EQ(convergence.residual(), 1); // that of the pass which stands
     EXPECT_EQ(convergence.judge(0.9), go_on);
+    EXPECT_DOUBLE_EQ(convergence.residual(), 1); // at full r-factors
     EXPECT_DOUBLE_EQ(convergence.scale(), 1);
     EXPECT_EQ(convergence.judge(0.001), converged);
 }
@@ -110,6 +111,77 @@ TEST(SimulateSolverConvergence, RelativeToleranceStopsAtStagnation) {
     EXPECT_EQ(convergence.judge(1), Convergence::Verdict::go_on);
     EXPECT_EQ(convergence.judge(0.95), Convergence::Verdict::go_on);
     EXPECT_EQ(convergence.judge(0.945), Convergence::Verdict::converged);
+}
+
+TEST(SimulateSolverFactors, AreWhatUnitImpulsesDo) {
+    Problem problem;
+    problem.nodes.resize(2);
+    for (auto& node : problem.nodes) {
+        node.inverse_mass = 0.5;
+        node.inverse_inertia = Eigen::Vector3d(1, 2, 3).asDiagonal();
+    }
+    problem.rows = {row_between({0.3, -0.5, 0.2}, {-0.1, 0.4, 0.7}, 0.5)};
+    set_factors(problem, false);
+    const auto row = problem.rows[0];
+    problem.push(row, row.normal);
+    EXPECT_NEAR(dot(row.normal, problem.velocity(row)), 1 / row.factor_normal, 1e-14);
+    EXPECT_NEAR(dot(row.tangent, problem.velocity(row)), row.mixed_tangent, 1e-14);
+    EXPECT_NEAR(dot(row.binormal, problem.velocity(row)), row.mixed_binormal, 1e-14);
+    EXPECT_GT(std::fabs(row.mixed_tangent), 0.01);
+    EXPECT_GT(std::fabs(row.mixed_binormal), 0.01);
+}
+
+TEST_P(SimulateSolver, RecoversFromFactorsThatAreTooLarge) {
+    Problem problem;
+    problem.nodes.resize(2);
+    problem.nodes[1] = {.velocity = {1, -2, 0.5},
+                        .spin = {0.2, 0, -0.1},
+                        .inverse_mass = 0.5,
+                        .inverse_inertia = Eigen::Vector3d(1, 2, 3).asDiagonal()};
+    for (const double x : {-0.5, 0.5})
+        for (const double z : {-0.5, 0.5}) problem.rows.push_back(row_between({0, 0, 0}, {x, -0.5, z}, 0.2));
+    const auto free = problem.nodes;
+    const bool split = GetParam() == SolverSettings::Method::jacobi;
+    set_factors(problem, split);
+    for (auto& row : problem.rows) {
+        row.factor_normal *= 5;
+        row.factor_tangent *= 5;
+    }
+    if (split)
+        jacobi(problem, exact(GetParam()), 1);
+    else
+        gauss_seidel(problem, exact(GetParam()));
+    Eigen::Vector3d pushed = Eigen::Vector3d::Zero();
+    for (const auto& row : problem.rows) {
+        pushed += simulate::world(row, row.impulse);
+        EXPECT_NEAR(dot(row.normal, problem.velocity(row)), 0, 1e-6);
+    }
+    EXPECT_LT(length(free[1].velocity + 0.5 * pushed - problem.nodes[1].velocity), 1e-9);
+}
+
+TEST(SimulateSolverAttachments, HoldThePointOfContact) {
+    World world;
+    world.add(box({1, 1, 1}), at(0, 0, 0));
+    Elastic elastic;
+    elastic.young = 1000;
+    auto mesh = beam({1, 1, 1}, {1, 1, 1});
+    for (auto& v : mesh.vertices) v += Eigen::Vector3d(0.2, 0.49, 0.1);
+    world.add_soft(std::move(mesh), elastic);
+    const auto& scene = world.finish();
+    const auto model = make_model(scene);
+    const auto motion = starting_motion(model);
+    std::vector<ContactPoint> contacts;
+    detector(scene)(frame_of(model, motion), contacts);
+    const auto problem = make_problem(model, motion, motion, contacts);
+    ASSERT_GT(problem.rows.size(), 3u);
+    for (std::size_t i = 0; i < problem.rows.size(); ++i) {
+        const auto& attachment = problem.attachments[problem.rows[i].b.index];
+        Eigen::Vector3d held = Eigen::Vector3d::Zero();
+        for (std::size_t corner = 0; corner < 4; ++corner)
+            held += attachment.weights[corner] * motion.soft[1].positions[attachment.nodes[corner] - 2];
+        const auto& point = contacts[problem.sources[i]].point;
+        EXPECT_LT(length(held - Eigen::Vector3d(point[0], point[1], point[2])), 1e-9);
+    }
 }
 
 TEST(SimulateSolverConvergence, AfterDivergenceVelocitiesStillMatchImpulses) {
