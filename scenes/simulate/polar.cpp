@@ -20,7 +20,7 @@ bool newton(Eigen::Matrix3d& r) {
         const Eigen::Matrix3d next = 0.5 * (r + adjugate(r).transpose() / det);
         const double change = squared_norm(next - r);
         r = next;
-        if (change < 1e-20) return true;
+        if (change < 1e-16) return true; // the error is of the order of the change squared
     }
     return false;
 }

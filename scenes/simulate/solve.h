@@ -27,8 +27,9 @@ SolveReport solve(Problem& problem, const SolverSettings& settings, unsigned thr
 Eigen::Vector3d proximal(const ContactRow& row, const Eigen::Vector3d& velocity, double scale);
 
 /// Says after every pass what to do next. A pass that changes impulses by more than the one before diverges:
-/// r-factors are reduced, and grow back with every pass that does not. The residual is the change divided by
-/// the reduction, so that small steps are not taken for convergence.
+/// r-factors are reduced, and grow back with every pass that does not (waiting longer was measured: stacks
+/// converge slower). The residual is the change divided by the reduction, so that small steps are not taken
+/// for convergence.
 class Convergence {
 public:
     enum class Verdict { go_on, converged, diverged };

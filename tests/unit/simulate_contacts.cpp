@@ -103,6 +103,33 @@ TEST(SimulateContacts, BounceCanBeSwitchedOff) {
     EXPECT_NEAR(simulation.step(detector(scene)).kinetic, 0, 1e-6);
 }
 
+/// Penetration and kinetic energy of a box put 0.05 of its size into the ground, step by step.
+std::vector<StepReport> sunk(bool pre, bool post) {
+    auto world = exact_world({0.5, 0});
+    world.dynamics.stepping.pre_stabilize = pre;
+    world.dynamics.stepping.post_stabilize = post;
+    add_ground(world);
+    world.add(box({1, 1, 1}), at(0, 0.45, 0));
+    const auto& scene = world.finish();
+    Simulation simulation(scene);
+    const auto detect = detector(scene);
+    std::vector<StepReport> reports;
+    for (int i = 0; i < 60; ++i) reports.push_back(simulation.step(detect));
+    return reports;
+}
+
+TEST(SimulateContacts, StabilisationTakesPenetrationAway) {
+    const auto none = sunk(false, false);
+    EXPECT_NEAR(none.back().deepest, 0.05, 1e-4);
+    for (const bool pre : {false, true}) {
+        const auto reports = sunk(pre, !pre);
+        EXPECT_LT(reports.back().deepest, 0.002);
+        EXPECT_GT(reports[1].deepest, 0.039);   // a hundredth of the size at most in one step
+        EXPECT_EQ(reports[1].kinetic > 1, pre); // positions are corrected without velocity
+        EXPECT_LT(reports.back().kinetic, 1);
+    }
+}
+
 TEST(SimulateContacts, PillarStands) {
     auto world = exact_world({0.65, 0.7});
     world.dynamics.solver.iterations = 300;

@@ -114,11 +114,13 @@ TEST(SimulateSoftContacts, CollisionsKeepMomentum) {
     World world({0.3, 0.5});
     world.dynamics.gravity.setZero();
     world.dynamics.stepping.step = 1e-3;
+    world.dynamics.stepping.linear_damping = 0;
     BodyDynamics moves;
     moves.velocity = {2, 0.3, 0};
     moves.spin = {0, 0, 1};
     world.add_soft(beam({1, 0.5, 0.5}, {2, 1, 1}), rubber(), moves);
     world.add_soft(moved(beam({1, 0.5, 0.5}, {2, 1, 1}), {1.05, 0.1, 0.1}), rubber());
+    world.add(box({1, 0.5, 0.5}), at(2.6, 0.3, 0.3));
     const auto& scene = world.finish();
     Simulation simulation(scene);
     const auto detect = detector(scene);
@@ -133,6 +135,10 @@ TEST(SimulateSoftContacts, CollisionsKeepMomentum) {
         for (const auto& t : scene.meshes[body].tetrahedra)
             for (const auto v : t)
                 momentum += corner * (end.deformed[body][v] - simulation.midway().deformed[body][v]) / 5e-4;
+    const Eigen::Vector3d rigid =
+        2000 * 0.25 * (end.poses[2].translation - simulation.midway().poses[2].translation) / 5e-4;
+    EXPECT_GT(rigid.norm(), 10);
+    momentum += rigid;
     const Eigen::Vector3d expected = 2000 * 0.25 * moves.velocity;
     EXPECT_LT((momentum - expected).norm(), 1e-6 * expected.norm());
 }
@@ -151,7 +157,11 @@ TEST(SimulateSoftSteps, AdaptiveStepIsHalvedAndDoubled) {
     std::vector<double> lengths;
     lengths.push_back(simulation.step(count).length);
     EXPECT_EQ(detections, 3 + 2 * 4u); // one full and two half steps, and two more for each halving
-    for (int i = 1; i < 300; ++i) lengths.push_back(simulation.step(count).length);
+    for (int i = 1; i < 11; ++i) lengths.push_back(simulation.step(count).length);
+    EXPECT_EQ(detections, 11 + 10 * 3u);
+    lengths.push_back(simulation.step(count).length);
+    EXPECT_EQ(detections, 11 + 10 * 3 + 5u); // ten passes: twice the step was tried, and refused
+    for (int i = 12; i < 300; ++i) lengths.push_back(simulation.step(count).length);
     EXPECT_EQ(lengths.front(), 0.002); // halved four times,
     const auto longer = std::find(lengths.begin(), lengths.end(), 0.004);
     ASSERT_NE(longer, lengths.end());
@@ -160,6 +170,25 @@ TEST(SimulateSoftSteps, AdaptiveStepIsHalvedAndDoubled) {
             ASSERT_GE(i, 10u);
             for (std::size_t j = i - 10; j + 1 < i; ++j) EXPECT_EQ(lengths[j], lengths[i - 1]);
         }
+}
+
+TEST(SimulateSoftSteps, RestoredRunDoublesAtTheSameStep) {
+    auto world = cantilever(Law::corotational);
+    world.dynamics.elastics[0].damping = 20000;
+    world.dynamics.stepping.step = 0.032;
+    world.dynamics.stepping.adaptive_tolerance = 1e-6;
+    const auto& scene = world.finish();
+    Simulation whole(scene), continued(scene);
+    for (int i = 0; i < 60; ++i) whole.step(no_contacts);
+    continued.restore(whole.state());
+    bool doubled = false;
+    for (int i = 0; i < 30; ++i) {
+        const double length = whole.step(no_contacts).length;
+        EXPECT_EQ(continued.step(no_contacts).length, length);
+        doubled = doubled || length > 0.002;
+    }
+    EXPECT_TRUE(doubled);
+    EXPECT_EQ(continued.state(), whole.state());
 }
 
 TEST(SimulateSoftSteps, LeastStepIsTheLeast) {
