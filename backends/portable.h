@@ -13,6 +13,24 @@
 #define PRECISION 32
 #endif
 
+// A team is a part of a work-group that waits for its own work-items only: a warp where the compiler has a
+// barrier for one, elsewhere the whole group.
+#if (defined(__CUDACC__) || defined(__NV_CL_C_VERSION)) && GROUP_SIZE % 32 == 0
+#define TEAM_SIZE 32
+#else
+#define TEAM_SIZE GROUP_SIZE
+#endif
+#define TEAM_COUNT (GROUP_SIZE / TEAM_SIZE)
+#define TEAM_ID (LOCAL_ID / TEAM_SIZE)
+#define TEAM_LANE (LOCAL_ID % TEAM_SIZE)
+#if TEAM_SIZE == GROUP_SIZE
+#define TEAM_BARRIER BARRIER
+#elif defined(__CUDACC__)
+#define TEAM_BARRIER __syncwarp()
+#else
+#define TEAM_BARRIER asm volatile("bar.warp.sync 0xffffffff;" ::: "memory")
+#endif
+
 #if defined(__OPENCL_C_VERSION__)
 #pragma OPENCL FP_CONTRACT OFF
 #if PRECISION == 64

@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::uint32_t body_words = 8;
 constexpr std::uint32_t level_words = 4;
-constexpr std::uint32_t job_words = 3;
+constexpr std::uint32_t job_words = 8;
 constexpr std::uint32_t in_world_flag = 1;
 constexpr std::uint32_t strip = 5;             ///< depths of a strip below its root, at most
-constexpr std::uint32_t most_refitting = 64;   ///< work-items of a group: more wait longer for each other
+constexpr std::uint32_t most_refitting = 128;  ///< work-items of a group: of more, too few groups fit
 constexpr std::uint32_t most_top_items = 1024; ///< of a level that one work-group refits
 constexpr std::uint64_t tile_bytes = 32 << 10; ///< local memory that every device has (OpenCL 1.2, 4.2)
 
@@ -32,6 +32,11 @@ std::uint32_t tile_nodes(const Geometry& geometry, std::uint32_t group_size) {
     const auto node = static_cast<std::uint64_t>(geometry.k + 2) * real_bytes(geometry) + 8;
     const auto wanted = std::max(2u << strip, std::bit_floor((geometry.k <= 8 ? 4 : 2) * group_size));
     return std::min(wanted, static_cast<std::uint32_t>(std::bit_floor(tile_bytes / node)));
+}
+
+/// Strips that a work-group takes: as many as its tile has room for, but no more than refit.cl's MOST_STRIPS.
+std::uint32_t strips_of_group(std::uint32_t tile, std::uint32_t height) {
+    return std::min(tile >> (height + 1), tile / 16);
 }
 
 } // namespace
@@ -133,10 +138,13 @@ void DeviceScene::plan_strip(std::uint32_t level, bool fixed, std::uint32_t top)
     for (std::uint32_t body = 0; body < scene_.bodies.size(); ++body) {
         const auto& levels = mesh_levels_[scene_.bodies[body].mesh];
         if (scene_.bodies[body].fixed != fixed || level >= levels.size()) continue;
+        const auto* row = &body_rows_[body * body_words];
         for (std::uint32_t chunk = 0; chunk < levels[level].chunks; ++chunk) {
-            const auto items = std::min(leaves_, levels[level].items - chunk * leaves_);
+            const auto first = chunk * leaves_;
+            const auto items = std::min(leaves_, levels[level].items - first);
+            const auto base = row[2] + levels[level].slot + 2 * first;
             for (std::uint32_t root = 1u << top; root < std::min(2u << top, 2 * items); ++root) {
-                jobs_.insert(jobs_.end(), {body, chunk, root});
+                jobs_.insert(jobs_.end(), {base, items, root, body, first, row[0], row[1], row[6]});
                 ++strips_.back().jobs;
             }
         }
@@ -223,7 +231,7 @@ void DeviceScene::upload_deformed(const Frame& frame) {
 void DeviceScene::refit(bool all) {
     const StageScope scope(device_, Stage::refit);
     for (const auto& s : strips_) {
-        const auto per_group = tile_nodes(geometry_, refit_group_) >> (s.height + 1);
+        const auto per_group = strips_of_group(tile_nodes(geometry_, refit_group_), s.height);
         const auto jobs = all ? s.jobs : s.dynamic_jobs;
         if (jobs == 0) continue;
         const std::array<Argument, 11> arguments{nodes_,      bodies_,   levels_,    poses_,

@@ -1,28 +1,43 @@
 // SPDX-License-Identifier: MIT
 // Transform and refit, fused and level-synchronous. A launch takes strips: subtrees of at most `height` + 1
-// depths below a given root. A work-group makes the nodes of its strips bottom up in local memory and writes
-// them out once, neighbouring work-items to neighbouring words, so that device memory sees each node once and
-// in whole sectors. Leaves read vertices through the pose, so that rigid bodies keep no transformed vertices;
-// inner nodes are the exact min/max of their children.
+// depths below a given root. A team of work-items makes the nodes of its strips bottom up in local memory and
+// writes them out once, neighbouring work-items to neighbouring words, so that device memory sees each node
+// once and in whole sectors. Leaves read vertices through the pose, so that rigid bodies keep no transformed
+// vertices; inner nodes are the exact min/max of their children.
 #include "backends/portable.h"
 #include "algorithms/kdop/body.clh"
 
-// Nodes a work-group has room for: a power of two, at least those of one strip.
+// Nodes a work-group has room for: a power of two, at least those of one strip for each of its teams.
 #ifndef TILE_NODES
 #define TILE_NODES 128
 #endif
 
-#define NODE_STRIDE (K + 1) // odd: work-items that write a node each hit different banks
-// Strips lie one word further apart than their nodes take, so that they do not hit the same banks either.
+// Nodes are moved in units as wide as their alignment allows. Those of neighbouring work-items lie an odd
+// number of units apart, so that they hit different banks; strips lie one unit further apart than they must.
+#if K % 4 == 0 && PRECISION == 32
+#define UNIT_REALS 4
+typedef RealRow Unit;
+#else
+#define UNIT_REALS 2
+typedef RealPair Unit;
+#endif
+#define NODE_UNITS (K / UNIT_REALS)
+#define NODE_STRIDE (NODE_UNITS | 1)
 #define HEAP(tile, strip, height) ((tile) + (strip) * (((2u << (height)) * NODE_STRIDE) + 1u))
-#define JOB_WORDS 3 // body, chunk, heap index of the strip's root
+#define TEAM_NODES (TILE_NODES / TEAM_COUNT)
+#define MOST_STRIPS (TEAM_NODES / 16) // of a team: room for strips of fewer nodes would be taken from these
+#define TEAM_TILE (TEAM_NODES * NODE_STRIDE + MOST_STRIPS)
 
-// A strip's row in local memory: slot of heap index 0, items of the chunk (0: no strip), root, job.
-#define STRIP_WORDS 4
-#define STRIP_BASE 0
-#define STRIP_ITEMS 1
-#define STRIP_ROOT 2
-#define STRIP_JOB 3
+// A job is a strip: all that its leaves need to know, so that one load starts them.
+#define JOB_WORDS 8
+#define JOB_BASE 0  // slot of heap index 0
+#define JOB_ITEMS 1 // of the chunk
+#define JOB_ROOT 2  // heap index of the strip's root
+#define JOB_BODY 3
+#define JOB_FIRST 4      // the chunk's first item
+#define JOB_TETRAHEDRA 5 // first of the body's tetrahedra
+#define JOB_VERTICES 6   // first of its vertices
+#define JOB_FLAGS 7      // as BODY_FLAGS
 
 // What a launch knows.
 typedef struct {
@@ -36,27 +51,19 @@ typedef struct {
     uint level, height;
 } Refit;
 
-DEVICE GLOBAL const uint* level_row(const Refit* refit, uint body, uint level) {
-    return refit->levels + (ulong)(refit->bodies[body * BODY_WORDS + BODY_LEVELS] + level) * LEVEL_WORDS;
-}
-
-DEVICE void load_strip(const Refit* refit, uint job, uint job_count, LOCAL uint* strip) {
-    strip[STRIP_ITEMS] = 0u;
-    strip[STRIP_ROOT] = 1u;
-    if (job >= job_count) return;
-    GLOBAL const uint* row = refit->jobs + (ulong)job * JOB_WORDS;
-    const Chunk chunk = chunk_at(refit->bodies[row[0] * BODY_WORDS + BODY_NODES],
-                                 level_row(refit, row[0], refit->level), row[1]);
-    strip[STRIP_BASE] = chunk.base;
-    strip[STRIP_ITEMS] = chunk.items;
-    strip[STRIP_ROOT] = row[2];
-    strip[STRIP_JOB] = job;
+// Row `job` of the launch; a row without items past the last one.
+DEVICE void load_job(const Refit* refit, uint word, uint job, uint job_count, LOCAL uint* strip) {
+    if (job < job_count)
+        strip[word] = refit->jobs[(ulong)job * JOB_WORDS + word];
+    else
+        strip[word] = word == JOB_ROOT ? 1u : 0u;
 }
 
 // Negative zero becomes positive: equal slabs then have equal bits.
-DEVICE void bound_tetrahedron(const Refit* refit, uint body, uint item, real* node) {
+DEVICE void bound_tetrahedron(const Refit* refit, LOCAL const uint* strip, uint item, real* node) {
     Point corner[4];
-    load_corners(refit->bodies, refit->poses, refit->tetrahedra, refit->vertices, body, item, corner);
+    load_corners_of(refit->poses, refit->tetrahedra, refit->vertices, strip[JOB_BODY],
+                    strip[JOB_TETRAHEDRA] + item, strip[JOB_VERTICES], strip[JOB_FLAGS], corner);
     for (int axis = 0; axis < SLABS; ++axis) {
         node[axis] = REAL_INFINITY;
         node[axis + SLABS] = -REAL_INFINITY;
@@ -65,35 +72,60 @@ DEVICE void bound_tetrahedron(const Refit* refit, uint body, uint item, real* no
     for (int word = 0; word < K; ++word) node[word] = node[word] + (real)0;
 }
 
-// The node over two.
-#define MERGE(node, a, b)                                                                                    \
-    for (int axis = 0; axis < SLABS; ++axis) {                                                               \
-        (node)[axis] = MINIMUM((a)[axis], (b)[axis]);                                                        \
-        (node)[axis + SLABS] = MAXIMUM((a)[axis + SLABS], (b)[axis + SLABS]);                                \
-    }
+// The word of a node over two.
+#define MERGED(word, a, b) ((word) < SLABS ? MINIMUM(a, b) : MAXIMUM(a, b))
+
+DEVICE Unit unit_of(const real* values) {
+    Unit unit;
+    unit.x = values[0];
+    unit.y = values[1];
+#if UNIT_REALS == 4
+    unit.z = values[2];
+    unit.w = values[3];
+#endif
+    return unit;
+}
+
+DEVICE Unit merged_unit(int word, Unit a, Unit b) {
+    Unit unit;
+    unit.x = MERGED(word, a.x, b.x);
+    unit.y = MERGED(word + 1, a.y, b.y);
+#if UNIT_REALS == 4
+    unit.z = MERGED(word + 2, a.z, b.z);
+    unit.w = MERGED(word + 3, a.w, b.w);
+#endif
+    return unit;
+}
+
+DEVICE void store_node(const real* values, LOCAL Unit* node) {
+    UNROLL for (int i = 0; i < NODE_UNITS; ++i) node[i] = unit_of(values + i * UNIT_REALS);
+}
+
+DEVICE void merge_nodes(LOCAL const Unit* a, LOCAL const Unit* b, LOCAL Unit* node) {
+    UNROLL for (int i = 0; i < NODE_UNITS; ++i) node[i] = merged_unit(i * UNIT_REALS, a[i], b[i]);
+}
 
 // A leaf of level 0 is over a tetrahedron, one of a higher level is the root of a chunk below.
 DEVICE void make_leaf(const Refit* refit, LOCAL const uint* strip, uint node, real* values) {
-    GLOBAL const uint* job = refit->jobs + (ulong)strip[STRIP_JOB] * JOB_WORDS;
-    const uint item = job[1] * CHUNK_ITEMS + leaf_item(node, strip[STRIP_ITEMS]);
+    const uint item = strip[JOB_FIRST] + leaf_item(node, strip[JOB_ITEMS]);
     if (refit->level == 0u) {
-        bound_tetrahedron(refit, job[0], item, values);
+        bound_tetrahedron(refit, strip, item, values);
         return;
     }
-    const Chunk below = chunk_at(refit->bodies[job[0] * BODY_WORDS + BODY_NODES],
-                                 level_row(refit, job[0], refit->level - 1u), item);
-    GLOBAL const real* from = node_at(refit->nodes, below.base + 1u);
+    GLOBAL const uint* body = refit->bodies + (ulong)strip[JOB_BODY] * BODY_WORDS;
+    GLOBAL const uint* level = refit->levels + (ulong)(body[BODY_LEVELS] + refit->level - 1u) * LEVEL_WORDS;
+    GLOBAL const real* from = node_at(refit->nodes, chunk_at(body[BODY_NODES], level, item).base + 1u);
     for (int word = 0; word < K; ++word) values[word] = from[word];
 }
 
 // A node of the deepest depth: a leaf, or one over nodes of an earlier launch.
 DEVICE void make_deepest(const Refit* refit, LOCAL const uint* strip, uint node, real* values) {
-    if (is_leaf(node, strip[STRIP_ITEMS])) {
+    if (is_leaf(node, strip[JOB_ITEMS])) {
         make_leaf(refit, strip, node, values);
         return;
     }
-    GLOBAL const real* child = node_at(refit->nodes, strip[STRIP_BASE] + 2u * node);
-    MERGE(values, child, child + K)
+    GLOBAL const real* child = node_at(refit->nodes, strip[JOB_BASE] + 2u * node);
+    for (int word = 0; word < K; ++word) values[word] = MERGED(word, child[word], child[word + K]);
 }
 
 // Small nodes are made in pairs; of larger ones a work-item makes one, as the tile of two would leave room
@@ -101,16 +133,16 @@ DEVICE void make_deepest(const Refit* refit, LOCAL const uint* strip, uint node,
 #define IN_PAIRS (K <= 8)
 
 // The two lowest depths: a work-item makes two siblings and merges them before they leave its registers.
-DEVICE void make_pairs(const Refit* refit, LOCAL const uint* strips, uint strip_count, LOCAL real* tile) {
+DEVICE void make_pairs(const Refit* refit, LOCAL const uint* strips, uint strip_count, LOCAL Unit* tile) {
     const uint depth = refit->height - 1u;
-    for (uint i = LOCAL_ID; i < strip_count << depth; i += GROUP_SIZE) {
-        LOCAL const uint* strip = strips + (i >> depth) * STRIP_WORDS;
-        LOCAL real* heap = HEAP(tile, i >> depth, refit->height);
+    for (uint i = TEAM_LANE; i < strip_count << depth; i += TEAM_SIZE) {
+        LOCAL const uint* strip = strips + (i >> depth) * JOB_WORDS;
+        LOCAL Unit* heap = HEAP(tile, i >> depth, refit->height);
         const uint in_depth = i & ((1u << depth) - 1u);
-        const uint node = (strip[STRIP_ROOT] << depth) + in_depth;
+        const uint node = (strip[JOB_ROOT] << depth) + in_depth;
         const uint place = (1u << depth) + in_depth;
-        if (node >= 2u * strip[STRIP_ITEMS]) continue;
-        const uint inner = is_leaf(node, strip[STRIP_ITEMS]) ? 0u : 1u;
+        if (node >= 2u * strip[JOB_ITEMS]) continue;
+        const uint inner = is_leaf(node, strip[JOB_ITEMS]) ? 0u : 1u;
         real both[K];
         for (int axis = 0; axis < SLABS; ++axis) {
             both[axis] = REAL_INFINITY;
@@ -119,80 +151,82 @@ DEVICE void make_pairs(const Refit* refit, LOCAL const uint* strips, uint strip_
         NO_UNROLL for (uint child = 0; child <= inner; ++child) {
             real values[K];
             make_deepest(refit, strip, (node << inner) + child, values);
-            for (int word = 0; word < K; ++word)
-                heap[((place << inner) + child) * NODE_STRIDE + word] = values[word];
-            MERGE(both, both, values)
+            store_node(values, heap + ((place << inner) + child) * NODE_STRIDE);
+            for (int word = 0; word < K; ++word) both[word] = MERGED(word, both[word], values[word]);
         }
-        for (int word = 0; word < K; ++word) heap[place * NODE_STRIDE + word] = both[word];
+        store_node(both, heap + place * NODE_STRIDE);
     }
 }
 
 // A depth above those, or the only one.
 DEVICE void make_depth(const Refit* refit, LOCAL const uint* strips, uint strip_count, uint depth,
-                       LOCAL real* tile) {
-    for (uint i = LOCAL_ID; i < strip_count << depth; i += GROUP_SIZE) {
-        LOCAL const uint* strip = strips + (i >> depth) * STRIP_WORDS;
-        LOCAL real* heap = HEAP(tile, i >> depth, refit->height);
+                       LOCAL Unit* tile) {
+    for (uint i = TEAM_LANE; i < strip_count << depth; i += TEAM_SIZE) {
+        LOCAL const uint* strip = strips + (i >> depth) * JOB_WORDS;
+        LOCAL Unit* heap = HEAP(tile, i >> depth, refit->height);
         const uint in_depth = i & ((1u << depth) - 1u);
-        const uint node = (strip[STRIP_ROOT] << depth) + in_depth;
+        const uint node = (strip[JOB_ROOT] << depth) + in_depth;
         const uint place = (1u << depth) + in_depth;
-        if (node >= 2u * strip[STRIP_ITEMS]) continue;
-        if (depth == refit->height || is_leaf(node, strip[STRIP_ITEMS])) {
+        if (node >= 2u * strip[JOB_ITEMS]) continue;
+        if (depth == refit->height || is_leaf(node, strip[JOB_ITEMS])) {
             real values[K];
             make_deepest(refit, strip, node, values);
-            for (int word = 0; word < K; ++word) heap[place * NODE_STRIDE + word] = values[word];
+            store_node(values, heap + place * NODE_STRIDE);
         } else {
-            MERGE(heap + place * NODE_STRIDE, heap + 2u * place * NODE_STRIDE,
-                  heap + (2u * place + 1u) * NODE_STRIDE)
+            merge_nodes(heap + 2u * place * NODE_STRIDE, heap + (2u * place + 1u) * NODE_STRIDE,
+                        heap + place * NODE_STRIDE);
         }
     }
 }
 
-// `count` nodes that lie one after the other here and there. A work-item's words are a whole number of nodes
-// apart, so that padding is skipped without a division.
-#define RUN_ITEMS (GROUP_SIZE / K * K)
-
-DEVICE void write_run(LOCAL const real* from, GLOBAL real* to, uint count) {
-#if GROUP_SIZE < K
-    for (uint i = LOCAL_ID; i < count * K; i += GROUP_SIZE) to[i] = from[i + i / K];
-#else
-    if (LOCAL_ID >= (uint)RUN_ITEMS) return;
-    LOCAL const real* word = from + LOCAL_ID + LOCAL_ID / K;
-    for (uint i = LOCAL_ID; i < count * K; i += RUN_ITEMS) {
-        to[i] = *word;
-        word += RUN_ITEMS + RUN_ITEMS / K; // NODE_STRIDE is one more than K
+// `count` nodes that lie one after the other here and there, a unit a work-item. `part` is the unit of a node
+// that it is at: behind the last one there may be padding to skip.
+DEVICE void write_run(LOCAL const Unit* from, GLOBAL real* to, uint count) {
+    uint part = TEAM_LANE % NODE_UNITS;
+    from += TEAM_LANE / NODE_UNITS * NODE_STRIDE + part;
+    for (uint i = TEAM_LANE; i < count * NODE_UNITS; i += TEAM_SIZE) {
+        ((GLOBAL Unit*)to)[i] = *from;
+        from += TEAM_SIZE / NODE_UNITS * NODE_STRIDE + TEAM_SIZE % NODE_UNITS;
+        part += TEAM_SIZE % NODE_UNITS;
+        if (NODE_STRIDE != NODE_UNITS && part >= (uint)NODE_UNITS) {
+            part -= NODE_UNITS;
+            from += NODE_STRIDE - NODE_UNITS;
+        }
     }
-#endif
 }
 
 // All of a chunk is one run of nodes; a part of it is a run for each depth.
-DEVICE void write_strip(const Refit* refit, LOCAL const uint* strip, LOCAL const real* heap) {
-    const uint end = 2u * strip[STRIP_ITEMS];
-    const uint root = strip[STRIP_ROOT];
+DEVICE void write_strip(const Refit* refit, LOCAL const uint* strip, LOCAL const Unit* heap) {
+    const uint end = 2u * strip[JOB_ITEMS];
+    const uint root = strip[JOB_ROOT];
     for (uint depth = 0; depth <= refit->height; ++depth) {
         const uint first = root << depth;
         if (first >= end) return;
         const uint most = root == 1u ? (2u << refit->height) - 1u : 1u << depth;
-        write_run(heap + (1u << depth) * NODE_STRIDE, refit->nodes + (ulong)(strip[STRIP_BASE] + first) * K,
+        write_run(heap + (1u << depth) * NODE_STRIDE, refit->nodes + (ulong)(strip[JOB_BASE] + first) * K,
                   end - first < most ? end - first : most);
         if (root == 1u) return;
     }
 }
 
-// `first_job`, `job_count`: the strips of this launch; a work-group takes TILE_NODES / 2^(height + 1) of
-// them.
+// `first_job`, `job_count`: the strips of this launch; a team takes TEAM_NODES / 2^(height + 1)
+// of them, but MOST_STRIPS at most.
 KERNEL void refit_strips(GLOBAL real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
                          GLOBAL const real* poses, GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
                          GLOBAL const uint* jobs, uint first_job, uint job_count, uint level, uint height) {
-    LOCAL_ARRAY(real, tile, TILE_NODES * NODE_STRIDE + TILE_NODES / 2);
-    LOCAL_ARRAY(uint, strips, TILE_NODES / 2 * STRIP_WORDS);
+    LOCAL_ARRAY(Unit, tiles, TEAM_COUNT * TEAM_TILE);
+    LOCAL_ARRAY(uint, rows, TEAM_COUNT * MOST_STRIPS * JOB_WORDS);
     const Refit refit = {
         nodes, bodies, levels, poses, tetrahedra, vertices, jobs + (ulong)first_job * JOB_WORDS,
         level, height};
-    const uint strip_count = (uint)TILE_NODES >> (height + 1u);
-    for (uint i = LOCAL_ID; i < strip_count; i += GROUP_SIZE)
-        load_strip(&refit, GROUP_ID * strip_count + i, job_count, strips + i * STRIP_WORDS);
-    BARRIER;
+    LOCAL Unit* tile = tiles + TEAM_ID * TEAM_TILE;
+    LOCAL uint* strips = rows + TEAM_ID * (MOST_STRIPS * JOB_WORDS);
+    const uint fitting = (uint)TEAM_NODES >> (height + 1u);
+    const uint strip_count = fitting < MOST_STRIPS ? fitting : MOST_STRIPS;
+    const uint first = (GROUP_ID * TEAM_COUNT + TEAM_ID) * strip_count;
+    for (uint i = TEAM_LANE; i < strip_count * JOB_WORDS; i += TEAM_SIZE)
+        load_job(&refit, i % JOB_WORDS, first + i / JOB_WORDS, job_count, strips + i / JOB_WORDS * JOB_WORDS);
+    TEAM_BARRIER;
     // One loop for all depths: PoCL 3.1 gets barriers wrong in a loop that might not run at all.
     for (uint up = 0; up <= height; ++up) {
         if (!IN_PAIRS)
@@ -201,10 +235,9 @@ KERNEL void refit_strips(GLOBAL real* nodes, GLOBAL const uint* bodies, GLOBAL c
             make_pairs(&refit, strips, strip_count, tile);
         else if (up > 1u || height == 0u)
             make_depth(&refit, strips, strip_count, height - up, tile);
-        BARRIER;
+        TEAM_BARRIER;
     }
-    for (uint i = 0; i < strip_count; ++i)
-        write_strip(&refit, strips + i * STRIP_WORDS, HEAP(tile, i, height));
+    for (uint i = 0; i < strip_count; ++i) write_strip(&refit, strips + i * JOB_WORDS, HEAP(tile, i, height));
 }
 
 // The leaves of a level above 0, a word a work-item.

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/simulate/solve.h"
+
+namespace tandem::simulate {
+
+namespace {
+
+/// One pass over all rows in order; the largest change of an impulse.
+double sweep(Problem& problem, double scale) {
+    double most = 0;
+    for (auto& row : problem.rows) {
+        row.previous = row.impulse;
+        row.impulse = proximal(row, problem.velocity(row), scale);
+        const Eigen::Vector3d change = row.impulse - row.previous;
+        if (change == Eigen::Vector3d::Zero()) continue;
+        problem.push(row, world(row, change));
+        most = std::max(most, change.cwiseAbs().maxCoeff());
+    }
+    return most;
+}
+
+void undo(Problem& problem, std::vector<Node>& accepted) {
+    problem.nodes = accepted;
+    for (auto& row : problem.rows) row.impulse = row.previous;
+}
+
+} // namespace
+
+SolveReport gauss_seidel(Problem& problem, const SolverSettings& settings) {
+    for (const auto& row : problem.rows)
+        if (row.impulse != Eigen::Vector3d::Zero()) problem.push(row, world(row, row.impulse));
+    Convergence convergence(settings);
+    SolveReport report;
+    auto accepted = problem.nodes;
+    while (report.iterations < settings.iterations) {
+        const auto verdict = convergence.judge(sweep(problem, convergence.scale()));
+        ++report.iterations;
+        if (verdict == Convergence::Verdict::converged) break;
+        if (verdict == Convergence::Verdict::diverged)
+            undo(problem, accepted);
+        else
+            accepted = problem.nodes;
+    }
+    report.residual = convergence.residual();
+    return report;
+}
+
+} // namespace tandem::simulate

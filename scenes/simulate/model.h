@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "scenes/scene.h"
+#include "scenes/simulate/elastic.h"
+#include "scenes/simulate/mass.h"
+
+namespace tandem::simulate {
+
+enum class Kind { fixed, rigid, soft };
+
+/// What never changes about a body.
+struct BodyModel {
+    Kind kind = Kind::fixed;
+    std::uint32_t material = 0;
+    double size = 0;                                           ///< m, longest edge of the mesh's box
+    MassProperties mass;                                       ///< rigid
+    Eigen::Matrix3d inverse_inertia = Eigen::Matrix3d::Zero(); ///< rigid, in mesh axes
+    ElasticMesh elastic;                                       ///< soft
+};
+
+/// A scene with dynamics, checked and prepared.
+struct Model {
+    const Scene* scene = nullptr;
+    const Dynamics* dynamics = nullptr;
+    std::vector<BodyModel> bodies;
+    Frame start;
+    double highest_energy = 0; ///< J; the motion has diverged when kinetic + potential + elastic exceed it
+
+    const Surface& surface(std::uint32_t a, std::uint32_t b) const {
+        return dynamics->materials.surface(bodies[a].material, bodies[b].material);
+    }
+};
+
+/// Throws InputError when the scene's dynamics are impossible; names what and which body. `highest_energy` is
+/// left to the caller.
+Model make_model(const Scene& scene);
+
+} // namespace tandem::simulate

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/simulate/stabilize.h"
+
+#include "scenes/simulate/algebra.h"
+#include "scenes/simulate/rotation.h"
+#include "scenes/simulate/solve.h"
+
+#include <algorithm>
+
+namespace tandem::simulate {
+
+namespace {
+
+void move_by(const Model& model, const Problem& problem, double time, Motion& motion) {
+    auto vertex = model.bodies.size();
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+        const auto& node = problem.nodes[i];
+        for (auto& position : motion.soft[i].positions) position += time * problem.nodes[vertex++].velocity;
+        if (model.bodies[i].kind != Kind::rigid) continue;
+        motion.rigid[i].centre += time * node.velocity;
+        motion.rigid[i].rotation = turned(motion.rigid[i].rotation, time * node.spin);
+    }
+}
+
+} // namespace
+
+double pair_size(const Model& model, const Pair& pair) {
+    const auto& a = model.bodies[pair.body_a];
+    const auto& b = model.bodies[pair.body_b];
+    if (a.kind == Kind::fixed) return b.size;
+    if (b.kind == Kind::fixed) return a.size;
+    return std::min(a.size, b.size);
+}
+
+double separation_bias(double depth, double size, double time) {
+    if (!(depth < -tolerated_gap * size)) return 0;
+    return -std::min(gap_reduction * -depth, greatest_correction * size) / time;
+}
+
+void correct_positions(const Model& model, Problem problem, std::span<const ContactPoint> contacts,
+                       double half, Motion& motion) {
+    for (std::size_t i = 0; i < problem.rows.size(); ++i) {
+        auto& row = problem.rows[i];
+        const auto& contact = contacts[problem.sources[i]];
+        const double depth = contact.depth + half * dot(row.normal, problem.velocity(row));
+        row.bias = separation_bias(depth, pair_size(model, contact.pair), 2 * half);
+        row.friction = 0;
+        row.impulse.setZero();
+    }
+    for (auto& node : problem.nodes) node.velocity = node.spin = Eigen::Vector3d::Zero();
+    solve(problem, model.dynamics->solver, 1);
+    move_by(model, problem, 2 * half, motion);
+}
+
+} // namespace tandem::simulate

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/simulate/step.h"
+
+#include "scenes/error.h"
+#include "scenes/simulate/algebra.h"
+#include "scenes/simulate/reduce.h"
+#include "scenes/simulate/solve.h"
+#include "scenes/simulate/stabilize.h"
+
+#include <chrono>
+#include <cmath>
+#include <fmt/format.h>
+#include <thread>
+
+namespace tandem::simulate {
+
+namespace {
+
+class Stopwatch {
+public:
+    /// Nanoseconds since the last lap, added to `total`.
+    void lap(std::int64_t& total) {
+        const auto now = std::chrono::steady_clock::now();
+        total += std::chrono::duration_cast<std::chrono::nanoseconds>(now - last_).count();
+        last_ = now;
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+bool sound(const Model& model, const ContactPoint& contact) {
+    const auto exists = [&](std::uint32_t body, std::uint32_t tet) {
+        return body < model.bodies.size()
+               && tet < model.scene->meshes[model.scene->bodies[body].mesh].tetrahedra.size();
+    };
+    double squared = 0;
+    bool finite = std::isfinite(contact.depth);
+    for (std::size_t i = 0; i < 3; ++i) {
+        squared += contact.normal[i] * contact.normal[i];
+        finite = finite && std::isfinite(contact.point[i]);
+    }
+    return finite && std::fabs(squared - 1) < 1e-3 && exists(contact.pair.body_a, contact.pair.tet_a)
+           && exists(contact.pair.body_b, contact.pair.tet_b);
+}
+
+std::vector<ContactPoint> reduce(const Model& model, std::span<const ContactPoint> contacts) {
+    std::vector<double> sizes;
+    for (const auto& body : model.bodies) sizes.push_back(body.size);
+    return reduce_contacts(contacts, sizes, model.dynamics->reduction);
+}
+
+double deepest(std::span<const ContactPoint> contacts) {
+    double depth = 0;
+    for (const auto& contact : contacts) depth = std::max(depth, -contact.depth);
+    return depth;
+}
+
+/// Rows with everything that the solver starts from; `motion` gets the velocities without contacts.
+Problem assemble(const Model& model, const Motion& from, std::span<const ContactPoint> kept, double length,
+                 Motion& motion) {
+    const auto before = motion;
+    kick(model, motion, length);
+    auto problem = make_problem(model, before, motion, kept);
+    if (model.dynamics->stepping.pre_stabilize)
+        for (std::size_t i = 0; i < problem.rows.size(); ++i) {
+            const auto& contact = kept[problem.sources[i]];
+            problem.rows[i].bias += separation_bias(contact.depth, pair_size(model, contact.pair), length);
+        }
+    if (model.dynamics->solver.warm_start && from.length > 0)
+        reuse_impulses(from.impulses, length / from.length, kept, problem);
+    return problem;
+}
+
+} // namespace
+
+void check_contacts(const Model& model, std::span<const ContactPoint> contacts, std::size_t step) {
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const auto& c = contacts[i];
+        if (!sound(model, c))
+            throw InputError(fmt::format(
+                "step {}: contact {} (body {} tetrahedron {}, body {} tetrahedron {}) is impossible: bodies "
+                "and "
+                "tetrahedra must exist, point and depth {:.3g} be finite, the normal be of length 1",
+                step, i, c.pair.body_a, c.pair.tet_a, c.pair.body_b, c.pair.tet_b, c.depth));
+        if (i > 0 && std::pair(c.pair, c.feature) < std::pair(contacts[i - 1].pair, contacts[i - 1].feature))
+            throw InputError(
+                fmt::format("step {}: contact {} is out of order: sort by pair and feature", step, i));
+    }
+}
+
+Outcome advance(const Model& model, const Motion& from, double length, std::size_t step,
+                const Detect& detect) {
+    Outcome outcome{from, {}, {}};
+    auto& [motion, midway, report] = outcome;
+    report.length = length;
+    Stopwatch watch;
+    drift(model, motion, length / 2);
+    midway = frame_of(model, motion);
+    watch.lap(report.move_ns);
+
+    std::vector<ContactPoint> found;
+    detect(midway, found);
+    check_contacts(model, found, step);
+    watch.lap(report.detect_ns);
+    const auto kept = reduce(model, found);
+    report.found = found.size();
+    report.kept = kept.size();
+    report.deepest = deepest(kept);
+    watch.lap(report.reduce_ns);
+
+    auto problem = assemble(model, from, kept, length, motion);
+    watch.lap(report.assemble_ns);
+    const auto solved =
+        solve(problem, model.dynamics->solver, std::max(1u, std::thread::hardware_concurrency()));
+    report.iterations = solved.iterations;
+    report.residual = solved.residual;
+    watch.lap(report.solve_ns);
+
+    add_impulses(model, problem, motion);
+    motion.length = length;
+    if (model.dynamics->solver.warm_start) motion.impulses = keep_impulses(problem, kept);
+    drift(model, motion, length / 2);
+    if (model.dynamics->stepping.post_stabilize)
+        correct_positions(model, std::move(problem), kept, length / 2, motion);
+    watch.lap(report.move_ns);
+    return outcome;
+}
+
+} // namespace tandem::simulate

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/simulate/algebra.h"
+#include "scenes/simulate/solve.h"
+#include "tests/unit/simulate_support.h"
+
+#include <gtest/gtest.h>
+
+namespace tandem::simulate {
+
+namespace {
+
+using namespace test;
+
+SolverSettings exact(SolverSettings::Method method) {
+    return {.method = method, .iterations = 5000, .absolute_tolerance = 1e-10, .relative_tolerance = 0};
+}
+
+/// Stacks of boxes, each with a contact at touching faces; more rows than one thread takes.
+World stacks(int count, int height) {
+    World world({0.5, 0.2});
+    world.add(box({100, 1, 100}), at(0, -0.5, 0), true);
+    for (int x = 0; x < count; ++x)
+        for (int y = 0; y < height; ++y)
+            world.add(box({1, 1, 1}), at(-40 + 2.0 * x + 0.02 * y, 0.4999 + 0.9999 * y, 0.03 * y));
+    return world;
+}
+
+/// Row by hand between node 0 and node 1, at arms.
+ContactRow row_between(const Eigen::Vector3d& arm_a, const Eigen::Vector3d& arm_b, double friction) {
+    ContactRow row;
+    row.normal = {0, 1, 0};
+    const auto across = tangents(row.normal);
+    row.tangent = across[0];
+    row.binormal = across[1];
+    row.arm_a = arm_a;
+    row.arm_b = arm_b;
+    row.friction = friction;
+    row.a = {0, false};
+    row.b = {1, false};
+    return row;
+}
+
+class SimulateSolver : public testing::TestWithParam<SolverSettings::Method> {};
+
+TEST_P(SimulateSolver, CentralImpactSticksOrSlips) {
+    for (const double friction : {0.1, 10.0}) {
+        Problem problem;
+        problem.nodes.resize(2);
+        problem.nodes[1] = {.velocity = {3, -2, 0}, .inverse_mass = 0.5};
+        problem.rows = {row_between({0, 0, 0}, {0, 0, 0}, friction)};
+        solve(problem, exact(GetParam()), 1);
+        EXPECT_NEAR(problem.rows[0].impulse.x(), 4, 1e-8); // 2 kg stopped from 2 m/s
+        EXPECT_NEAR(problem.nodes[1].velocity.y(), 0, 1e-8);
+        EXPECT_NEAR(problem.nodes[1].velocity.x(), friction < 1 ? 3 - 0.5 * 0.1 * 4 : 0, 1e-8);
+    }
+}
+
+TEST_P(SimulateSolver, SolutionObeysTheContactLaws) {
+    auto world = stacks(2, 2);
+    for (std::size_t i = 1; i < world.dynamics.bodies.size(); ++i)
+        world.dynamics.bodies[i].velocity = {1, 0, 0.3};
+    const auto& scene = world.finish();
+    const auto model = make_model(scene);
+    const auto motion = starting_motion(model);
+    std::vector<ContactPoint> contacts;
+    detector(scene)(frame_of(model, motion), contacts);
+    auto free = motion;
+    kick(model, free, 0.01);
+    auto problem = make_problem(model, motion, free, contacts);
+    solve(problem, exact(GetParam()), 1);
+    double largest = 0;
+    for (const auto& row : problem.rows) {
+        const auto velocity = problem.velocity(row);
+        const double gap = dot(row.normal, velocity) + row.bias;
+        EXPECT_GT(gap, -1e-6);
+        EXPECT_GE(row.impulse.x(), 0);
+        EXPECT_LT(row.impulse.x() * gap, 1e-5);
+        const Eigen::Vector3d slide = velocity - dot(row.normal, velocity) * row.normal;
+        const Eigen::Vector3d friction = row.impulse.y() * row.tangent + row.impulse.z() * row.binormal;
+        EXPECT_LE(length(friction), row.friction * row.impulse.x() * (1 + 1e-9) + 1e-9);
+        if (length(slide) > 1e-3 && row.impulse.x() > 1e-3) {
+            EXPECT_NEAR(length(friction), row.friction * row.impulse.x(), 1e-3);
+            EXPECT_LT(dot(friction, slide), 0);
+        }
+        largest = std::max(largest, row.impulse.x());
+    }
+    EXPECT_GT(largest, 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, SimulateSolver,
+                         testing::Values(SolverSettings::Method::gauss_seidel,
+                                         SolverSettings::Method::jacobi));
+
+TEST(SimulateSolverConvergence, UndoesAndReducesOnGrowthAndRecovers) {
+    const SolverSettings settings{.absolute_tolerance = 0.001, .relative_tolerance = 0};
+    Convergence convergence(settings);
+    using enum Convergence::Verdict;
+    EXPECT_EQ(convergence.judge(1), go_on);
+    EXPECT_EQ(convergence.judge(2), diverged);
+    EXPECT_DOUBLE_EQ(convergence.scale(), 0.9);
+    EXPECT_DOUBLE_EQ(convergence.residual(), 1); // that of the pass which stands
+    EXPECT_EQ(convergence.judge(0.9), go_on);
+    EXPECT_DOUBLE_EQ(convergence.scale(), 1);
+    EXPECT_EQ(convergence.judge(0.001), converged);
+}
+
+TEST(SimulateSolverConvergence, RelativeToleranceStopsAtStagnation) {
+    const SolverSettings settings{.absolute_tolerance = 0, .relative_tolerance = 0.01};
+    Convergence convergence(settings);
+    EXPECT_EQ(convergence.judge(1), Convergence::Verdict::go_on);
+    EXPECT_EQ(convergence.judge(0.95), Convergence::Verdict::go_on);
+    EXPECT_EQ(convergence.judge(0.945), Convergence::Verdict::converged);
+}
+
+TEST(SimulateSolverConvergence, AfterDivergenceVelocitiesStillMatchImpulses) {
+    auto world = stacks(1, 6);
+    const auto& scene = world.finish();
+    const auto model = make_model(scene);
+    const auto motion = starting_motion(model);
+    std::vector<ContactPoint> contacts;
+    detector(scene)(frame_of(model, motion), contacts);
+    auto free = motion;
+    kick(model, free, 0.01);
+    for (std::size_t iterations = 1; iterations < 40; ++iterations) {
+        auto problem = make_problem(model, motion, free, contacts);
+        solve(problem, {.iterations = iterations, .absolute_tolerance = 0, .relative_tolerance = 0}, 1);
+        auto end = free;
+        add_impulses(model, problem, end);
+        for (std::size_t i = 1; i < scene.bodies.size(); ++i)
+            ASSERT_LT(length(end.rigid[i].velocity - problem.nodes[i].velocity), 1e-12) << iterations;
+    }
+}
+
+TEST(SimulateSolverThreads, JacobiHasTheSameBitsOnAnyNumber) {
+    auto world = stacks(16, 5);
+    const auto& scene = world.finish();
+    const auto model = make_model(scene);
+    const auto motion = starting_motion(model);
+    std::vector<ContactPoint> contacts;
+    detector(scene)(frame_of(model, motion), contacts);
+    ASSERT_GT(contacts.size(), 5000u);
+    auto free = motion;
+    kick(model, free, 0.01);
+    std::vector<Problem> solved;
+    for (const unsigned threads : {1u, 2u, 5u}) {
+        solved.push_back(make_problem(model, motion, free, contacts));
+        solve(solved.back(), {.method = SolverSettings::Method::jacobi, .iterations = 50}, threads);
+    }
+    for (std::size_t i = 0; i < solved[0].rows.size(); ++i) {
+        ASSERT_EQ(solved[0].rows[i].impulse, solved[1].rows[i].impulse);
+        ASSERT_EQ(solved[0].rows[i].impulse, solved[2].rows[i].impulse);
+    }
+    for (std::size_t i = 0; i < solved[0].nodes.size(); ++i)
+        ASSERT_EQ(solved[0].nodes[i].spin, solved[2].nodes[i].spin);
+}
+
+} // namespace
+
+} // namespace tandem::simulate
