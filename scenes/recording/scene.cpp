@@ -48,8 +48,9 @@ Scene load_recording(const std::string& path) {
     if (recording->frames() == 0) throw InputError(recording->end());
     scene.name = std::filesystem::path(path).stem().string();
     scene.digest = digest_of(*recording);
+    // Of the scene's own key: the text in the header can be a path, which is no one's business.
     scene.key = fmt::format("recording:{},frames={},digest={:016x},of={}", scene.name, recording->frames(),
-                            scene.digest, recording->header().specification);
+                            scene.digest, scene.key);
     scene.frame_count = recording->frames();
     scene.dynamics = nullptr;
     scene.end = recording->end();

@@ -76,7 +76,10 @@ TEST_F(RecordingResume, AnIncompleteTailGoesWithTheNextFrame) {
     auto holes = whole.substr(0, second);
     holes.resize(Recording(path("whole.frames")).offset(4));
     write_bytes(file_, holes);
-    EXPECT_EQ(RecordingWriter::resume(file_, small_.header).frames(), 2u);
+    auto writer = RecordingWriter::resume(file_, small_.header);
+    EXPECT_EQ(writer.frames(), 2u);
+    small_.append(writer, 2, 3);
+    EXPECT_EQ(bytes_of(file_), whole.substr(0, Recording(path("whole.frames")).offset(3)));
 }
 
 TEST_F(RecordingResume, AKillInTheHeaderStartsAnew) {

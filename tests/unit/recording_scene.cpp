@@ -74,6 +74,8 @@ TEST_F(RecordingScene, OfADescription) {
     record(file_, description("[0, 0, 0.1]"), 0, 3);
     const auto scene = make_scene(file_);
     EXPECT_EQ(scene.frame(2).poses[0].translation.z(), 0.1); // fixed: not through float
+    EXPECT_THAT(scene.key,
+                MatchesRegex("recording:drift,frames=3,digest=[0-9a-f]+,of=two:frames=4,bodies=[0-9a-f]+"));
     description("[0, 0, 0.2]");
     EXPECT_THAT(
         failure_of([&] { make_scene(file_); }),
