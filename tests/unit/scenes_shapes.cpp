@@ -117,6 +117,8 @@ TEST(ScenesOverlap, Bodies) {
     EXPECT_EQ(first_overlap(scene, frame, true), (Found{{0, 2}}));
     frame.poses[0].translation = {2.4, 0, 0};
     EXPECT_EQ(first_overlap(scene, frame, true), std::nullopt) << "touching";
+    frame.poses = {{.translation = {0.2, 0, 0}}, {.translation = {1, 0, 0}}, {.translation = {1.5, 0, 0}}};
+    EXPECT_EQ(first_overlap(scene, frame), (Found{{0, 1}})) << "not the last, 1 and 2";
 }
 
 } // namespace
