@@ -75,10 +75,13 @@ std::vector<Eigen::Vector3d> block(std::size_t bodies, double pitch, double bott
     while (side < 10 && 2 * side * side * side < bodies) ++side;
     const double middle = 0.5 * static_cast<double>(side - 1);
     std::vector<Eigen::Vector3d> centres;
-    for (std::size_t i = 0; i < bodies; ++i)
+    for (std::size_t i = 0; i < bodies; ++i) {
+        const std::size_t layer = i / (side * side);
+        const std::size_t row = i / side % side;
         centres.emplace_back(pitch * (static_cast<double>(i % side) - middle),
-                             bottom + pitch * (static_cast<double>(i / (side * side)) + 0.5),
-                             pitch * (static_cast<double>(i / side % side) - middle));
+                             bottom + pitch * (static_cast<double>(layer) + 0.5),
+                             pitch * (static_cast<double>(row) - middle));
+    }
     return centres;
 }
 

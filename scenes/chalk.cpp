@@ -52,14 +52,16 @@ Scene make(std::span<const SceneParameter> parameters) {
     std::size_t side = 1;
     while (side * side * side < bodies) ++side;
     const double width = pitch * static_cast<double>(side);
-    const double filled = pitch * static_cast<double>((bodies + side * side - 1) / (side * side));
+    const std::size_t layers = (bodies + side * side - 1) / (side * side);
+    const double filled = pitch * static_cast<double>(layers);
     add_box_of_walls(assembly, width, filled + 3 * wall);
     std::vector<std::uint32_t> grains;
     for (std::size_t i = 1; i <= shapes; ++i)
         grains.push_back(assembly.add_mesh(built_in_mesh(fmt::format("grain{}", i))));
     const auto place = [&](std::size_t n) { return pitch * (static_cast<double>(n) + 0.5); };
     for (std::size_t i = 0; i < bodies; ++i) {
-        const Eigen::Vector3d centre(place(i % side) - 0.5 * width, place(i / (side * side)),
+        const std::size_t layer = i / (side * side);
+        const Eigen::Vector3d centre(place(i % side) - 0.5 * width, place(layer),
                                      place(i / side % side) - 0.5 * width);
         assembly.add(grains[i % shapes], {.pose = {random.rotation(), centre}, .material = grain});
     }
