@@ -45,9 +45,24 @@ struct ExportOptions {
     std::string device = "host";
 };
 
+/// Options of `tandem simulate`.
+struct SimulateOptions {
+    std::string scene;
+    std::string recording;  ///< -o: the file of recorded frames; empty: none
+    std::string record;     ///< append one line a step and one for the run
+    std::size_t steps = 0;  ///< 0: those of the scene
+    std::size_t every = 10; ///< steps from checkpoint to checkpoint
+    bool resume = false;
+    std::vector<std::string> dynamics; ///< NAME=VALUE over the scene's
+    Request request;                   ///< how contacts are found: one cell
+    std::vector<std::string> require;
+    bool quiet = false;
+};
+
 /// Each returns the exit code: 0 ok, 1 a check failed, 3 a device failed. Bad use throws InputError.
 int run_command(const RunOptions& options);
 int check_command(const RunOptions& options);
+int simulate_command(const SimulateOptions& options);
 int export_command(const ExportOptions& options);
 int devices_command(const DevicesOptions& options);
 int scenes_command(bool json);

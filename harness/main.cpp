@@ -9,6 +9,7 @@ namespace {
 
 using tandem::InputError;
 using tandem::RunOptions;
+using tandem::SimulateOptions;
 
 /// --set NAME=V1,V2 pairs, in order.
 std::vector<std::pair<std::string, std::vector<std::string>>>
@@ -64,6 +65,30 @@ void add_export_options(CLI::App& app, tandem::ExportOptions& options) {
         ->needs(contacts);
 }
 
+void add_simulate_options(CLI::App& app, SimulateOptions& options, std::vector<std::string>& sets) {
+    app.add_option("scene", options.scene,
+                   "NAME, NAME:par=value,... or a scene description with dynamics (.json)");
+    app.add_option("-o,--output", options.recording, "record frames in this file, FILE.frames");
+    app.add_option("--steps", options.steps, "steps in all; those of the scene when left out")
+        ->check(CLI::Range(std::size_t{1}, std::size_t{100000000}));
+    app.add_option("--record", options.record,
+                   "append a line a step with its times and one for the run to this JSON-lines file");
+    app.add_flag("--resume", options.resume, "go on with the recording from its last checkpoint");
+    app.add_option("--checkpoint", options.every, "steps from one checkpoint to the next")
+        ->check(CLI::Range(std::size_t{1}, std::size_t{100000000}));
+    app.add_option("--dynamics", options.dynamics,
+                   "NAME=VALUE: a setting of the motion (see 'tandem scenes')")
+        ->expected(1)
+        ->take_all();
+    app.add_option("--algorithm", options.request.algorithms, "that finds contacts; chunked when left out");
+    app.add_option("--preset", options.request.presets, "of it (see 'tandem algorithms')");
+    app.add_option("--device", options.request.devices, "where contacts are found; opencl:0 when left out");
+    app.add_option("--set", sets, "NAME=VALUE: a setting of the algorithm")->expected(1)->take_all();
+    app.add_option("--require", options.require, "devices or backends whose absence is a failure")
+        ->delimiter(',');
+    app.add_flag("--quiet", options.quiet, "no progress line");
+}
+
 int dispatch(int argc, char** argv) {
     CLI::App app{"tandem: ways of walking bounding-volume hierarchies in tandem, measured and checked"};
     app.require_subcommand(1);
@@ -87,6 +112,10 @@ int dispatch(int argc, char** argv) {
     auto* check_app =
         app.add_subcommand("check", "device x algorithm agreement matrix; exit 1 on any difference");
     add_run_options(*check_app, check, check_sets);
+    SimulateOptions simulate;
+    std::vector<std::string> simulate_sets;
+    auto* simulate_app = app.add_subcommand("simulate", "move a scene with dynamics; record its frames");
+    add_simulate_options(*simulate_app, simulate, simulate_sets);
     tandem::ExportOptions exported;
     auto* export_app = app.add_subcommand("export", "frames as files for ParaView and other viewers");
     add_export_options(*export_app, exported);
@@ -113,6 +142,8 @@ int dispatch(int argc, char** argv) {
     check.request.sets = parse_sets(check_sets);
     if (*run_app) return tandem::run_command(run);
     if (*check_app) return tandem::check_command(check);
+    simulate.request.sets = parse_sets(simulate_sets);
+    if (*simulate_app) return tandem::simulate_command(simulate);
     if (*export_app) return tandem::export_command(exported);
     if (*devices_app) {
         devices.json = json;

@@ -72,7 +72,9 @@ Json stages_json(const Measurement& m) {
     return json;
 }
 
-Json scene_json(const Scene& scene) {
+} // namespace
+
+Json record_scene(const Scene& scene) {
     std::size_t inverted = 0;
     std::size_t degenerate = 0;
     for (const auto& body : scene.bodies) {
@@ -89,8 +91,6 @@ Json scene_json(const Scene& scene) {
             {"inverted", inverted},
             {"degenerate", degenerate}};
 }
-
-} // namespace
 
 Json record_device(const DeviceInfo& info) {
     return {{"id", info.id},
@@ -181,7 +181,7 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["algorithm"] = cell.algorithm->name();
     json["preset"] = cell.preset;
     json["settings"] = settings;
-    json["scene"] = scene_json(scene);
+    json["scene"] = record_scene(scene);
     json["frames"] = {{"first", range.first}, {"last", range.last}};
     json["devices"] = Json::array({record_device(cell.device->info())});
     const bool measured = failure.empty();

@@ -12,7 +12,8 @@ namespace tandem {
 nlohmann::ordered_json make_record(const Cell& cell, const Scene& scene, const FrameRange& range,
                                    const Measurement& measurement, const std::string& failure);
 
-/// The parts of a record that say where it was made.
+/// The parts of a record that say of what, where and with what it was made.
+nlohmann::ordered_json record_scene(const Scene& scene);
 nlohmann::ordered_json record_device(const DeviceInfo& info);
 nlohmann::ordered_json record_environment();
 

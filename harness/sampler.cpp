@@ -25,20 +25,6 @@ void add(Digest& sum, const Digest& term) {
     sum.b += term.b;
 }
 
-std::array<StageSample, stage_names.size()> by_stage(const Trace& trace) {
-    std::array<StageSample, stage_names.size()> samples{};
-    for (const auto& event : trace.events) {
-        auto& sample = samples[static_cast<std::size_t>(event.stage)];
-        sample.host_ns += event.host_ns;
-        sample.device_ns += std::max<std::int64_t>(event.device_ns, 0);
-        sample.launches += event.command == Command::launch ? 1 : 0;
-        sample.waits += event.blocked ? 1 : 0;
-        const bool moves = event.command == Command::upload || event.command == Command::download;
-        sample.bytes += moves ? event.bytes : 0;
-    }
-    return samples;
-}
-
 /// Device time from the begin of the first command to the end of the last; -1 when a command has no times.
 std::int64_t device_span(const Trace& trace) {
     std::int64_t first = std::numeric_limits<std::int64_t>::max();
@@ -203,6 +189,20 @@ void Sampler::count() {
 }
 
 } // namespace
+
+StageSamples by_stage(const Trace& trace) {
+    StageSamples samples{};
+    for (const auto& event : trace.events) {
+        auto& sample = samples[static_cast<std::size_t>(event.stage)];
+        sample.host_ns += event.host_ns;
+        sample.device_ns += std::max<std::int64_t>(event.device_ns, 0);
+        sample.launches += event.command == Command::launch ? 1 : 0;
+        sample.waits += event.blocked ? 1 : 0;
+        const bool moves = event.command == Command::upload || event.command == Command::download;
+        sample.bytes += moves ? event.bytes : 0;
+    }
+    return samples;
+}
 
 void check_frames(const Scene& scene, std::size_t first, std::size_t last) {
     if (first <= last && last < scene.frame_count) return;

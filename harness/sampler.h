@@ -42,6 +42,12 @@ struct StageSample {
     std::uint64_t launches = 0, waits = 0, bytes = 0;
 };
 
+/// By stage, as in stage_names.
+using StageSamples = std::array<StageSample, stage_names.size()>;
+
+/// The sums of what ran; device times that were not measured count as 0.
+StageSamples by_stage(const Trace& trace);
+
 /// The cell's answers against the reference.
 struct Agreement {
     std::uint64_t frames = 0; ///< compared
@@ -57,8 +63,8 @@ struct Agreement {
 struct Measurement {
     Settings settings;                               ///< as the device took them
     std::vector<std::vector<std::int64_t>> total_ns; ///< [repeat][frame], nothing but the span timed
-    std::vector<std::array<StageSample, stage_names.size()>> stages; ///< [frame] of the breakdown run
-    std::vector<std::int64_t> breakdown_ns;                          ///< [frame] span of the breakdown run
+    std::vector<StageSamples> stages;                ///< [frame] of the breakdown run
+    std::vector<std::int64_t> breakdown_ns;          ///< [frame] span of the breakdown run
     std::vector<std::int64_t> device_span_ns; ///< [frame] first begin to last end; empty when not known
     std::vector<std::uint64_t> body_pairs, candidate_pairs, contacts; ///< [frame]
     std::uint64_t degenerate = 0, rejected = 0, retries = 0;

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """validate_records.py [FILE.jsonl ...]: checks records against results/record.schema.json, those of files named
-ceilings*.jsonl against results/ceilings.schema.json; without files, all committed ones. Exit 1 names file:line and the
-place of the first problems."""
+ceilings*.jsonl against results/ceilings.schema.json and simulation*.jsonl against results/simulation.schema.json;
+without files, all committed ones. Exit 1 names file:line and the place of the first problems."""
 import json
 import pathlib
 import sys
@@ -59,14 +59,15 @@ def validator_of(name):
 
 
 def main(names):
-    records, ceilings = validator_of("record.schema.json"), validator_of("ceilings.schema.json")
+    validators = {kind: validator_of(kind + ".schema.json") for kind in ("record", "ceilings", "simulation")}
     files = [pathlib.Path(name) for name in names] or sorted((ROOT / "results").glob("**/*.jsonl"))
     if not files:
         print("no records are committed yet")
         return 0
     total, found = 0, []
     for path in files:
-        problems, count = problems_in(path, ceilings if path.name.startswith("ceilings") else records)
+        kind = next((kind for kind in validators if path.name.startswith(kind)), "record")
+        problems, count = problems_in(path, validators[kind])
         total += count
         found += [f"{path}:{number}: {text}" for number, text in problems]
     if not found and total == 0:

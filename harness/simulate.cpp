@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+#include "harness/simulate.h"
+
+#include "harness/commands.h"
+#include "harness/inputs.h"
+#include "harness/progress.h"
+#include "harness/record.h"
+#include "scenes/digest.h"
+#include "scenes/dynamics_settings.h"
+#include "scenes/error.h"
+#include "scenes/recording/writer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tandem {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::int64_t since(Clock::time_point begin) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
+}
+
+Scene open_scene(const SimulateOptions& options) {
+    if (options.scene.empty()) throw InputError("no scene; name one, see 'tandem scenes'");
+    auto scene = make_scene(options.scene);
+    if (!scene.dynamics)
+        throw InputError(fmt::format("scene {} has no dynamics, its motion is scripted; measure it with "
+                                     "'tandem run'",
+                                     scene.key));
+    auto dynamics = *scene.dynamics;
+    for (const auto& assignment : options.dynamics) set_dynamics(dynamics, assignment);
+    scene.dynamics = std::make_shared<const Dynamics>(std::move(dynamics));
+    return scene;
+}
+
+Cell only_cell(const SimulateOptions& options, const std::vector<BackendReport>& backends) {
+    auto request = options.request;
+    if (request.algorithms.empty()) request.algorithms = {"chunked"};
+    if (request.devices.empty()) request.devices = {"opencl:0"};
+    const auto cells = plan(request, choose_devices(backends, request.devices));
+    if (cells.size() != 1)
+        throw InputError(fmt::format("a simulation takes one algorithm, preset, device and value of each "
+                                     "setting; this asks for {} cells",
+                                     cells.size()));
+    if (cells.front().settings.at("output") != "pairs" || cells.front().settings.at("contact_rule") == "none")
+        throw InputError("a simulation needs contacts; leave out output and contact_rule");
+    return cells.front();
+}
+
+/// The recording of a run, if there is to be one, with the state that goes into its checkpoints: that of the
+/// simulation behind a digest of its settings, so that nothing goes on with other settings.
+class Journal {
+public:
+    Journal(const SimulateOptions& options, const Scene& scene) : settings_(describe(*scene.dynamics)) {
+        if (options.recording.empty()) {
+            if (options.resume) throw InputError("--resume goes with -o FILE, the recording to go on with");
+            return;
+        }
+        const auto header = recording_of(options.scene, scene, scene.dynamics->stepping.step);
+        writer_.emplace(options.resume ? RecordingWriter::resume(options.recording, header)
+                                       : RecordingWriter::create(options.recording, header));
+    }
+
+    /// Brings the simulation to the last checkpoint.
+    void restore(Simulation& simulation) {
+        if (!writer_) return;
+        const auto checkpoint = writer_->restore();
+        if (!checkpoint) {
+            save(simulation);
+            return;
+        }
+        const auto own = digest_of(settings_);
+        if (checkpoint->state.size() < sizeof own
+            || std::memcmp(checkpoint->state.data(), &own, sizeof own) != 0)
+            throw InputError(
+                fmt::format("{}: was simulated with other dynamics than {}; resume it with those "
+                            "it was begun with",
+                            writer_->path(), settings_));
+        simulation.restore(std::span(checkpoint->state).subspan(sizeof own));
+    }
+
+    void append(const StepReport& report, const Frame& frame) {
+        if (writer_) writer_->append(report.step, report.time, frame);
+    }
+
+    void save(const Simulation& simulation) {
+        if (!writer_) return;
+        const auto own = digest_of(settings_);
+        std::vector<std::byte> state(sizeof own);
+        std::memcpy(state.data(), &own, sizeof own);
+        const auto rest = simulation.state();
+        state.insert(state.end(), rest.begin(), rest.end());
+        writer_->checkpoint(simulation.steps_done(), state);
+    }
+
+    std::size_t frames() const { return writer_ ? writer_->frames() : 0; }
+
+private:
+    std::string settings_;
+    std::optional<RecordingWriter> writer_;
+};
+
+/// Steps until `last` are done; totals and records get each as it ends.
+void run_steps(const SimulateOptions& options, std::size_t last, Simulation& simulation,
+               ContactFinder& finder, Journal& journal, RecordFile& file, RunTotals& totals) {
+    const Progress progress(options.quiet);
+    const auto detect = [&](const Frame& frame, std::vector<ContactPoint>& contacts) {
+        finder.find(frame, contacts);
+    };
+    while (simulation.steps_done() < last) {
+        const auto begin = Clock::now();
+        const auto report = simulation.step(detect);
+        const auto wall = since(begin);
+        const auto search = finder.take();
+        totals.add(report, search, wall);
+        journal.append(report, simulation.midway());
+        file.append(step_record(report, search, wall));
+        const auto done = simulation.steps_done();
+        if (done % options.every == 0 || done == last) journal.save(simulation);
+        progress.show(fmt::format("step {} of {}: {} contacts, {} kept, {:.1f} ms", done, last, report.found,
+                                  report.kept, static_cast<double>(wall) * 1e-6));
+    }
+}
+
+} // namespace
+
+ContactFinder::ContactFinder(const Cell& cell, const Scene& scene, bool timed)
+    : device_(*cell.device), walk_(cell, scene) {
+    device_.set_clocks(timed ? Clocks::on : Clocks::off);
+    device_.finish();
+}
+
+void ContactFinder::find(const Frame& frame, std::vector<ContactPoint>& contacts) {
+    auto begin = Clock::now();
+    const auto pairs = walk_.broad.pairs(frame);
+    search_.broad_ns += since(begin);
+    search_.body_pairs += pairs.size();
+    begin = Clock::now();
+    const auto result = walk_.session->run(frame, pairs);
+    contacts = walk_.session->download_contacts(result);
+    search_.narrow_ns += since(begin);
+    search_.candidate_pairs += result.count;
+    const auto stages = by_stage(device_.finish());
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+        auto& sum = search_.stages[i];
+        sum.device_ns += stages[i].device_ns;
+        sum.host_ns += stages[i].host_ns;
+        sum.launches += stages[i].launches;
+        sum.waits += stages[i].waits;
+        sum.bytes += stages[i].bytes;
+    }
+}
+
+Search ContactFinder::take() { return std::exchange(search_, {}); }
+
+int simulate_command(const SimulateOptions& options) {
+    const auto scene = open_scene(options);
+    const auto backends = discover();
+    check_required(backends, options.require);
+    const auto cell = only_cell(options, backends);
+    check_coordinates({&cell, 1}, scene, {0, 0, {scene.frame(0)}});
+    Simulation simulation(scene);
+    Journal journal(options, scene);
+    journal.restore(simulation);
+    RecordFile file(options.record);
+    const auto last = options.steps > 0 ? options.steps : scene.dynamics->steps;
+    fmt::print("scene {}: {} bodies, {} vertices, {} tetrahedra; {}\n", scene.key, scene.bodies.size(),
+               vertex_count(scene), tetrahedron_count(scene), describe(cell));
+    if (simulation.steps_done() > 0) fmt::print("goes on after step {}\n", simulation.steps_done());
+    RunTotals totals;
+    try {
+        ContactFinder finder(cell, scene, !options.record.empty());
+        run_steps(options, last, simulation, finder, journal, file, totals);
+    } catch (const std::exception& error) {
+        file.append(run_record(cell, scene, totals, error.what()));
+        throw;
+    }
+    file.append(run_record(cell, scene, totals, {}));
+    fmt::print("{}", run_table(totals));
+    if (!options.recording.empty())
+        fmt::print("{}: {} frames; measure them with 'tandem run {}'\n", options.recording, journal.frames(),
+                   options.recording);
+    return 0;
+}
+
+} // namespace tandem

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/sampler.h"
+#include "harness/walk.h"
+#include "scenes/simulate/simulation.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace tandem {
+
+/// One search for contacts: what was found and host nanoseconds it took.
+struct Search {
+    std::uint64_t body_pairs = 0, candidate_pairs = 0;
+    std::int64_t broad_ns = 0;  ///< body pairs on the host
+    std::int64_t narrow_ns = 0; ///< transform to contacts, with all transfers and waits
+    StageSamples stages{};      ///< with device times only where they are measured
+};
+
+/// Finds the contacts of frames with one cell. `timed`: with device times of every stage, which cost some
+/// time themselves.
+class ContactFinder {
+public:
+    ContactFinder(const Cell& cell, const Scene& scene, bool timed);
+
+    /// A Detect; what it did is added to search() until that is taken.
+    void find(const Frame& frame, std::vector<ContactPoint>& contacts);
+    /// What was done since the last call: all searches of one step.
+    Search take();
+
+private:
+    Device& device_;
+    Walk walk_;
+    Search search_;
+};
+
+/// Sums over the steps of a run.
+struct RunTotals {
+    std::size_t first = 0, steps = 0; ///< of this process, which may have gone on from a checkpoint
+    std::int64_t wall_ns = 0, initialize_ns = 0, broad_ns = 0, narrow_ns = 0;
+    std::int64_t reduce_ns = 0, assemble_ns = 0, solve_ns = 0, move_ns = 0;
+    std::vector<std::size_t> found, kept; ///< by step
+    double deepest = 0;
+    StepReport last;
+
+    /// `wall_ns`: of the whole step, searches included.
+    void add(const StepReport& report, const Search& search, std::int64_t wall_ns);
+};
+
+/// Lines of results/simulation.schema.json: of one step, and of a run once it has ended, with `failure` when
+/// it did not reach its last step.
+nlohmann::ordered_json step_record(const StepReport& report, const Search& search, std::int64_t wall_ns);
+nlohmann::ordered_json run_record(const Cell& cell, const Scene& scene, const RunTotals& totals,
+                                  const std::string& failure);
+
+/// The paper's Table 3 for this run, contacts and energies.
+std::string run_table(const RunTotals& totals);
+
+} // namespace tandem

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "scenes/dynamics.h"
+
+#include <span>
+#include <string_view>
+
+namespace tandem {
+
+/// A setting of a simulation that can be given by name, whatever the scene.
+struct DynamicsSetting {
+    std::string_view name, help;
+    std::string (*value)(const Dynamics&);
+    void (*set)(Dynamics&, std::string_view name, std::string_view text); ///< throws InputError
+};
+
+std::span<const DynamicsSetting> dynamics_settings();
+
+/// Writes "NAME=VALUE" over `dynamics`; throws InputError that names the nearest name or the allowed values.
+void set_dynamics(Dynamics& dynamics, std::string_view assignment);
+
+/// "step=0.01,method=gauss_seidel,..." of every setting: equal texts, equal motion.
+std::string describe(const Dynamics& dynamics);
+
+} // namespace tandem
