@@ -53,7 +53,7 @@ struct SolverSettings {
     std::size_t iterations = 150;
     double absolute_tolerance = 0.01;
     double relative_tolerance = 0; ///< 0: the absolute one alone
-    bool warm_start = true; ///< from the last step's forces at the same features
+    bool warm_start = true;        ///< from the last step's forces at the same features
 };
 
 /// What a step does beside solving for contact forces.
