@@ -3,6 +3,7 @@
 #include "harness/commands.h"
 #include "harness/inputs.h"
 #include "harness/record.h"
+#include "scenes/dynamics_settings.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -96,6 +97,22 @@ void print_scene_table(const Json& scenes) {
                    row["tetrahedra"].get<std::size_t>());
 }
 
+/// The settings of a scene's motion with its own values; null when its motion is scripted.
+Json dynamics_json(const Scene& scene) {
+    if (!scene.dynamics) return nullptr;
+    Json json = Json::object();
+    for (const auto& setting : dynamics_settings())
+        json[std::string(setting.name)] = {{"default", setting.value(*scene.dynamics)},
+                                           {"help", setting.help}};
+    return json;
+}
+
+void print_dynamics() {
+    fmt::print("\nmotion by simulation, --dynamics NAME=VALUE; a scene may have other defaults (--json)\n");
+    for (const auto& setting : dynamics_settings())
+        fmt::print("    {:<20} {:<13} {}\n", setting.name, setting.value(Dynamics{}), setting.help);
+}
+
 } // namespace
 
 int devices_command(const DevicesOptions& options) {
@@ -137,13 +154,16 @@ int scenes_command(bool json) {
                        {"vertices", vertex_count(scene)},
                        {"tetrahedra", tetrahedron_count(scene)},
                        {"frames", scene.frame_count},
-                       {"steps", scene.dynamics ? Json(scene.dynamics->steps) : Json(nullptr)}});
+                       {"steps", scene.dynamics ? Json(scene.dynamics->steps) : Json(nullptr)},
+                       {"dynamics", dynamics_json(scene)}});
         if (!json) print_scene(kind, scene);
     }
-    if (json)
+    if (json) {
         fmt::print("{}\n", all.dump(2));
-    else
-        print_scene_table(all);
+        return 0;
+    }
+    print_scene_table(all);
+    print_dynamics();
     return 0;
 }
 

@@ -182,7 +182,7 @@ int simulate_command(const SimulateOptions& options) {
         throw;
     }
     file.append(run_record(cell, scene, totals, {}));
-    fmt::print("{}", run_table(totals));
+    fmt::print("{}", run_table(totals, !options.record.empty()));
     if (!options.recording.empty())
         fmt::print("{}: {} frames; measure them with 'tandem run {}'\n", options.recording, journal.frames(),
                    options.recording);

@@ -53,7 +53,8 @@ nlohmann::ordered_json step_record(const StepReport& report, const Search& searc
 nlohmann::ordered_json run_record(const Cell& cell, const Scene& scene, const RunTotals& totals,
                                   const std::string& failure);
 
-/// The paper's Table 3 for this run, contacts and energies.
-std::string run_table(const RunTotals& totals);
+/// The paper's Table 3 for this run, contacts and energies; initialization only when device times were
+/// measured.
+std::string run_table(const RunTotals& totals, bool timed);
 
 } // namespace tandem

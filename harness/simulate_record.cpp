@@ -123,20 +123,21 @@ Json run_record(const Cell& cell, const Scene& scene, const RunTotals& t, const 
     return json;
 }
 
-std::string run_table(const RunTotals& t) {
+std::string run_table(const RunTotals& t, bool timed) {
     const auto other =
         t.wall_ns - t.broad_ns - t.narrow_ns - t.reduce_ns - t.assemble_ns - t.solve_ns - t.move_ns;
     const std::pair<const char*, std::int64_t> rows[] = {
         {"initialization (transform, refit)", t.initialize_ns},
         {"broad phase", t.broad_ns},
-        {"narrow phase without initialization", t.narrow_ns - t.initialize_ns},
+        {timed ? "narrow phase without initialization" : "initialization and narrow phase",
+         t.narrow_ns - t.initialize_ns},
         {"contact reduction", t.reduce_ns},
         {"assembly", t.assemble_ns},
         {"solver", t.solve_ns},
         {"motion", t.move_ns},
         {"other", other}};
     auto text = fmt::format("{} steps in {:.3f} s\n", t.steps, static_cast<double>(t.wall_ns) * 1e-9);
-    for (const auto& [name, ns] : rows)
+    for (const auto& [name, ns] : std::span(rows).subspan(timed ? 0 : 1))
         text += fmt::format("  {:<36} {:>10.3f} s {:>6.2f} %\n", name, static_cast<double>(ns) * 1e-9,
                             t.wall_ns == 0 ? 0.0
                                            : 100 * static_cast<double>(ns) / static_cast<double>(t.wall_ns));

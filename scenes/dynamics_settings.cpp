@@ -29,80 +29,72 @@ bool flag(std::string_view name, std::string_view text) {
     return text == "1";
 }
 
-/// What a setting of type T reads and writes of the member that `Get` returns.
-template<auto Get, int least_exponent, int most_exponent>
-DynamicsSetting real(std::string_view name, std::string_view help) {
-    static constexpr auto power = [](int exponent) {
-        double value = exponent < -300 ? 0.0 : 1.0;
-        for (int i = 0; i < exponent; ++i) value *= 10;
-        for (int i = 0; i > exponent && value > 0; --i) value /= 10;
-        return value;
-    };
-    return {name, help, [](const Dynamics& d) { return fmt::format("{}", Get(const_cast<Dynamics&>(d))); },
-            [](Dynamics& d, std::string_view own, std::string_view text) {
-                Get(d) = number(own, text, power(least_exponent), power(most_exponent));
-            }};
+// Each takes a function that returns the setting's place in (const) dynamics.
+
+template<class Field>
+DynamicsSetting real(std::string_view name, Field field, double least, double most, std::string_view help) {
+    return {name, help, [=](const Dynamics& d) { return fmt::format("{}", field(d)); },
+            [=](Dynamics& d, std::string_view text) { field(d) = number(name, text, least, most); }};
 }
 
-template<auto Get>
-DynamicsSetting whole(std::string_view name, std::string_view help) {
-    return {name, help, [](const Dynamics& d) { return fmt::format("{}", Get(const_cast<Dynamics&>(d))); },
-            [](Dynamics& d, std::string_view own, std::string_view text) {
-                Get(d) = number<std::size_t>(own, text, 0, 1000000);
-            }};
+template<class Field>
+DynamicsSetting whole(std::string_view name, Field field, std::size_t least, std::string_view help) {
+    constexpr std::size_t most = 1000000000;
+    return {name, help, [=](const Dynamics& d) { return fmt::format("{}", field(d)); },
+            [=](Dynamics& d, std::string_view text) { field(d) = number(name, text, least, most); }};
 }
 
-template<auto Get>
-DynamicsSetting toggle(std::string_view name, std::string_view help) {
-    return {name, help,
-            [](const Dynamics& d) { return std::string(Get(const_cast<Dynamics&>(d)) ? "1" : "0"); },
-            [](Dynamics& d, std::string_view own, std::string_view text) { Get(d) = flag(own, text); }};
+template<class Field>
+DynamicsSetting toggle(std::string_view name, Field field, std::string_view help) {
+    return {name, help, [=](const Dynamics& d) { return std::string(field(d) ? "1" : "0"); },
+            [=](Dynamics& d, std::string_view text) { field(d) = flag(name, text); }};
 }
 
 DynamicsSetting method() {
-    return {"method", "of the contact solver: gauss_seidel, or jacobi on all cores",
-            [](const Dynamics& d) {
-                return std::string(d.solver.method == SolverSettings::Method::jacobi ? "jacobi"
-                                                                                     : "gauss_seidel");
-            },
-            [](Dynamics& d, std::string_view, std::string_view text) {
-                if (text != "jacobi" && text != "gauss_seidel")
-                    throw InputError(
-                        fmt::format("dynamics method={} is impossible; give gauss_seidel or jacobi", text));
-                d.solver.method =
-                    text == "jacobi" ? SolverSettings::Method::jacobi : SolverSettings::Method::gauss_seidel;
-            }};
+    using Method = SolverSettings::Method;
+    const auto value = [](const Dynamics& d) {
+        return std::string(d.solver.method == Method::jacobi ? "jacobi" : "gauss_seidel");
+    };
+    const auto set = [](Dynamics& d, std::string_view text) {
+        if (text != "jacobi" && text != "gauss_seidel")
+            throw InputError(
+                fmt::format("dynamics method={} is impossible; give gauss_seidel or jacobi", text));
+        d.solver.method = text == "jacobi" ? Method::jacobi : Method::gauss_seidel;
+    };
+    return {"method", "of the contact solver: gauss_seidel, or jacobi on all cores", value, set};
 }
 
 #define FIELD(path)                                                                                          \
-    [](Dynamics & d) -> auto& { return d.path; }
-constexpr int zero = -999;
+    [](auto& d) -> auto& { return d.path; }
+
+std::vector<DynamicsSetting> make_settings() {
+    return {
+        real("step", FIELD(stepping.step), 1e-9, 10, "time step, s"),
+        method(),
+        whole("iterations", FIELD(solver.iterations), 1, "of the contact solver, at most"),
+        real("absolute_tolerance", FIELD(solver.absolute_tolerance), 0, 1e9, "where it stops, N s"),
+        real("relative_tolerance", FIELD(solver.relative_tolerance), 0, 1,
+             "where it stops, relative change; 0: never"),
+        toggle("warm_start", FIELD(solver.warm_start), "start from the last step's forces at equal features"),
+        toggle("pre_stabilize", FIELD(stepping.pre_stabilize), "velocities that lessen penetration"),
+        toggle("post_stabilize", FIELD(stepping.post_stabilize), "positions corrected after the step"),
+        toggle("bounce", FIELD(stepping.bounce), "Newton's restitution"),
+        real("linear_damping", FIELD(stepping.linear_damping), 0, 1e6, "of rigid bodies, 1/s"),
+        real("angular_damping", FIELD(stepping.angular_damping), 0, 1e6, "of rigid bodies, 1/s"),
+        real("adaptive_tolerance", FIELD(stepping.adaptive_tolerance), 0, 1e6,
+             "of deformables' steps, m; 0 keeps the step"),
+        real("least_step", FIELD(stepping.least_step), 1e-12, 10, "of adaptive steps, s"),
+        toggle("couple_contacts", FIELD(stepping.couple_contacts), "contacts push deformables"),
+        real("merge_distance", FIELD(reduction.distance), 0, 1,
+             "contacts of a body pair closer than this times the smaller body's size are one"),
+        whole("per_pair", FIELD(reduction.per_pair), 0, "contacts of a body pair kept at most; 0: all"),
+    };
+}
 
 } // namespace
 
 std::span<const DynamicsSetting> dynamics_settings() {
-    static const std::vector<DynamicsSetting> settings{
-        real<FIELD(stepping.step), -9, 1>("step", "time step, s"),
-        method(),
-        whole<FIELD(solver.iterations)>("iterations", "of the contact solver, at most"),
-        real<FIELD(solver.absolute_tolerance), zero, 9>("absolute_tolerance", "where it stops, N s"),
-        real<FIELD(solver.relative_tolerance), zero, 0>("relative_tolerance",
-                                                        "where it stops, relative change"),
-        toggle<FIELD(solver.warm_start)>("warm_start",
-                                         "start from the last step's forces at the same features"),
-        toggle<FIELD(stepping.pre_stabilize)>("pre_stabilize", "velocities that lessen penetration"),
-        toggle<FIELD(stepping.post_stabilize)>("post_stabilize", "positions corrected after the step"),
-        toggle<FIELD(stepping.bounce)>("bounce", "Newton's restitution"),
-        real<FIELD(stepping.linear_damping), zero, 6>("linear_damping", "1/s"),
-        real<FIELD(stepping.angular_damping), zero, 6>("angular_damping", "1/s"),
-        real<FIELD(stepping.adaptive_tolerance), zero, 6>("adaptive_tolerance",
-                                                          "of deformables' steps, m; 0 keeps the step"),
-        real<FIELD(stepping.least_step), -12, 1>("least_step", "of adaptive steps, s"),
-        toggle<FIELD(stepping.couple_contacts)>("couple_contacts", "contacts push deformables"),
-        real<FIELD(reduction.distance), zero, 0>("merge_distance", "contacts of a body pair closer than this "
-                                                                   "times the smaller body's size are one"),
-        whole<FIELD(reduction.per_pair)>("per_pair", "contacts of a body pair kept at most; 0: all"),
-    };
+    static const auto settings = make_settings();
     return settings;
 }
 
@@ -115,7 +107,7 @@ void set_dynamics(Dynamics& dynamics, std::string_view assignment) {
         if (setting.name != name) continue;
         if (equals == std::string_view::npos)
             throw InputError(fmt::format("dynamics {} has no value; write {}=VALUE", name, name));
-        setting.set(dynamics, name, assignment.substr(equals + 1));
+        setting.set(dynamics, assignment.substr(equals + 1));
         return;
     }
     throw InputError(unknown("setting of dynamics", name, names));

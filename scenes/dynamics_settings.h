@@ -3,6 +3,7 @@
 
 #include "scenes/dynamics.h"
 
+#include <functional>
 #include <span>
 #include <string_view>
 
@@ -11,8 +12,8 @@ namespace tandem {
 /// A setting of a simulation that can be given by name, whatever the scene.
 struct DynamicsSetting {
     std::string_view name, help;
-    std::string (*value)(const Dynamics&);
-    void (*set)(Dynamics&, std::string_view name, std::string_view text); ///< throws InputError
+    std::function<std::string(const Dynamics&)> value;
+    std::function<void(Dynamics&, std::string_view text)> set; ///< throws InputError
 };
 
 std::span<const DynamicsSetting> dynamics_settings();

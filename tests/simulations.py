@@ -1,0 +1,156 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""simulations.py PROGRAM SOURCE: 'tandem simulate' as a user meets it: recordings that are the same on every device and after
+a kill, the lines it records, motions with known ends, and every bad use."""
+import json
+import os
+import signal
+import struct
+import subprocess
+import sys
+import time
+import unittest
+
+import jsonschema
+
+from command_line import PROGRAM, SOURCE, Case, tandem
+from validate_records import validator_of
+
+ARCH = "arch:segments=2"
+
+
+def poses(path, bodies):
+    """[frame][moving body] of the seven floats of a recording of rigid bodies, `bodies` of which move."""
+    data = path.read_bytes()
+    header, size = struct.unpack_from("<I", data, 12)[0], 16 + 28 * bodies + 4
+    frames = (len(data) - header) // size
+    return [[struct.unpack_from("<7f", data, header + f * size + 16 + 28 * b) for b in range(bodies)] for f in range(frames)]
+
+
+class Simulations(Case):
+    def simulate(self, scene, *arguments, code=0):
+        status, text, errors = tandem("simulate", scene, "--device", "host", *arguments)
+        self.assertEqual((status, errors if code == 0 else []), (code, []), (text, errors))
+        return text
+
+    def lines(self, path):
+        lines = [json.loads(line) for line in path.read_text().splitlines()]
+        validator = validator_of("simulation.schema.json")
+        for line in lines:
+            self.assertEqual([e.message for e in validator.iter_errors(line)], [])
+        return [line for line in lines if line["kind"] == "step"], [line for line in lines if line["kind"] == "run"]
+
+    def test_equal_frames_on_every_device(self):
+        files = []
+        for device, algorithm in (("host", "chunked"), ("opencl:0", "chunked"), ("opencl:0", "gproximity")):
+            files.append(self.work / f"{device}-{algorithm}.frames")
+            status, text, errors = tandem("simulate", ARCH, "--steps", 30, "-o", files[-1], "--device", device, "--algorithm", algorithm)
+            self.assertEqual((status, errors), (0, []), text)
+            self.assertIn("30 frames", text)
+        self.assertEqual(len({file.read_bytes() for file in files}), 1)
+        status, text, errors = tandem("check", files[0], "--frames", "28:29", "--device", "host,opencl:0", "--preset", "all")
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertIn("all agree with the reference", text)
+
+    def test_lines_of_a_run(self):
+        record = self.work / "simulation.jsonl"
+        text = self.simulate(ARCH, "--steps", 12, "--record", record)
+        steps, runs = self.lines(record)
+        self.assertEqual([line["step"] for line in steps], list(range(12)))
+        self.assertEqual(len(runs), 1)
+        self.assertEqual((runs[0]["status"], runs[0]["steps"], runs[0]["first_step"]), ("ok", 12, 0))
+        self.assertGreater(min(line["contacts_found"] for line in steps), 100)
+        self.assertTrue(all(line["contacts_kept"] <= line["contacts_found"] for line in steps))
+        for part in ("broad", "narrow", "reduce", "assemble", "solve", "move"):
+            self.assertEqual(runs[0]["host_ns"][part], sum(line["host_ns"][part] for line in steps))
+        self.assertEqual(runs[0]["host_ns"]["total"], sum(line["host_ns"]["step"] for line in steps))
+        self.assertGreater(steps[3]["stages"]["contact"]["launches"], 0)
+        self.assertIn("12 steps in", text)
+        self.assertEqual(runs[0]["dynamics"]["warm_start"], "1")
+
+    def test_killed_at_any_moment(self):
+        whole, broken = self.work / "whole.frames", self.work / "broken.frames"
+        arguments = ["simulate", ARCH, "--steps", "60", "--device", "host", "--checkpoint", "7", "--quiet"]
+        self.assertEqual(tandem(*arguments, "-o", whole)[0], 0)
+        kills = 0
+        for wait in (0.15, 0.3, 0.5, 0.8):
+            resume = ["--resume"] if broken.exists() else []
+            process = subprocess.Popen([PROGRAM, *arguments, "-o", broken, *resume], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(wait)
+            process.send_signal(signal.SIGKILL)
+            kills += process.wait() == -signal.SIGKILL
+            if process.returncode == 0:
+                break
+        self.assertGreater(kills, 0)
+        status, text, errors = tandem(*arguments, "-o", broken, *(["--resume"] if broken.exists() else []))
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual(broken.read_bytes(), whole.read_bytes())
+        status, text, errors = tandem(*arguments, "-o", broken, "--resume")
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertIn("goes on after step 60", text)
+        self.assertEqual(broken.read_bytes(), whole.read_bytes())
+        self.bad("was simulated with other dynamics", "simulate", ARCH, "--device", "host", "-o", broken, "--resume", "--dynamics", "iterations=10")
+        self.bad("broken.frames", "simulate", ARCH, "--device", "host", "-o", broken)
+        self.bad("broken.frames", "simulate", "arch", "--device", "host", "-o", broken, "--resume")
+        self.assertEqual(broken.read_bytes(), whole.read_bytes())
+
+    def test_sliding_block_stops_where_it_must(self):
+        file = self.work / "block.frames"
+        self.simulate("block:speed=2,friction=0.5", "--steps", 150, "-o", file)
+        start, end = (poses(file, 1)[i][0][0] for i in (0, -1))
+        start -= 0.5 * 0.01 * 2  # half a step before the first frame
+        self.assertAlmostEqual(end - start, 2 * 2 / (2 * 0.5 * 9.82), delta=0.02 * 0.407)
+
+    def test_block_at_rest_stays(self):
+        file = self.work / "rest.frames"
+        self.simulate("block", "--steps", 500, "-o", file)
+        frames = poses(file, 1)
+        drift = max(abs(a - b) for frame in frames for a, b in zip(frame[0][:3], frames[0][0][:3]))
+        self.assertEqual(len(frames), 500)
+        self.assertLess(drift, 1e-3)
+
+    def test_arch_stands_and_falls(self):
+        def lost(scene):
+            record = self.work / "simulation-arch.jsonl"
+            record.unlink(missing_ok=True)
+            self.simulate(scene, "--steps", 150, "--record", record)
+            steps, _ = self.lines(record)
+            return 1 - steps[-1]["energy_j"]["potential"] / steps[0]["energy_j"]["potential"]
+        self.assertLess(lost("arch"), 1e-3)
+        self.assertGreater(lost("arch:keystone=0"), 0.05)
+
+    def test_divergence_is_told(self):
+        record, file = self.work / "simulation-bad.jsonl", self.work / "bad.frames"
+        self.bad(["step ", "body ", "J"], "simulate", "tower:segments=1,slices=3", "--device", "host", "--steps", 200, "-o", file,
+                 "--record", record, "--dynamics", "adaptive_tolerance=0", "--dynamics", "step=0.1")
+        steps, runs = self.lines(record)
+        self.assertEqual((runs[0]["status"], runs[0]["steps"]), ("failed", len(steps)))
+        self.assertIn("step", runs[0]["failure"])
+        self.assertGreater(len(steps), 0)
+        status, text, errors = tandem("export", file, "--frames", "0", "--glb", self.work / "bad.glb")
+        self.assertEqual((status, errors), (0, []), text)
+
+    def test_bad_use(self):
+        for expected, *arguments in (
+                ("no scene", ),
+                ("scripted; measure it with 'tandem run'", "plates"),
+                ("unknown scene 'arc'; the nearest is 'arch'", "arc"),
+                ("unknown setting of dynamics 'stop'; the nearest is 'step'", "arch", "--dynamics", "stop=1"),
+                ("dynamics step=0 is impossible; give a number from 1e-09 to 10", "arch", "--dynamics", "step=0"),
+                ("dynamics step=-1 is impossible", "arch", "--dynamics", "step=-1"),
+                ("dynamics step=nan is impossible", "arch", "--dynamics", "step=nan"),
+                ("dynamics method=newton is impossible; give gauss_seidel or jacobi", "arch", "--dynamics", "method=newton"),
+                ("dynamics bounce=2 is impossible; give 0 or 1", "arch", "--dynamics", "bounce=2"),
+                ("dynamics step has no value", "arch", "--dynamics", "step"),
+                ("asks for 2 cells", "arch", "--set", "k=8,18"),
+                ("a simulation needs contacts", "arch", "--set", "output=count"),
+                ("--resume goes with -o FILE", "arch", "--resume"),
+                ("absent", "arch", "-o", "/absent/x.frames"),
+                ("absent", "arch", "--record", "/absent/x.jsonl"),
+                ("--steps", "arch", "--steps", "0")):
+            self.bad(expected, "simulate", *arguments, "--device", "host")
+        self.assertEqual(os.path.exists("/absent"), False)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)
