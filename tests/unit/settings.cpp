@@ -30,12 +30,12 @@ TEST(Settings, DefaultsAreThoseOfTheDesign) {
     EXPECT_EQ(settings.at("k"), "18");
     EXPECT_EQ(settings.at("rounding"), "safe");
     EXPECT_EQ(settings.at("precision"), "float");
-    EXPECT_EQ(settings.at("seed_threshold"), "10000000");
+    EXPECT_EQ(settings.at("seed_threshold"), "1000");
     EXPECT_EQ(settings.at("residency"), "resident");
 }
 
 TEST(Settings, IntegersMayBeWrittenWithAnExponent) {
-    EXPECT_EQ(with({{"seed_threshold", "1e3"}}).at("seed_threshold"), "1000");
+    EXPECT_EQ(with({{"seed_threshold", "1e7"}}).at("seed_threshold"), "10000000");
     EXPECT_THAT(message_of([] { with({{"seed_threshold", "1.5"}}); }), HasSubstr("impossible"));
 }
 
