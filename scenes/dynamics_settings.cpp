@@ -64,30 +64,43 @@ DynamicsSetting method() {
     return {"method", "of the contact solver: gauss_seidel, or jacobi on all cores", value, set};
 }
 
-#define FIELD(path)                                                                                          \
-    [](auto& d) -> auto& { return d.path; }
+/// A member of a member of (const) dynamics.
+template<class Part, class Value>
+auto at(Part Dynamics::*part, Value Part::*value) {
+    return [=](auto& dynamics) -> auto& { return dynamics.*part.*value; };
+}
 
 std::vector<DynamicsSetting> make_settings() {
     return {
-        real("step", FIELD(stepping.step), 1e-9, 10, "time step, s"),
+        real("step", at(&Dynamics::stepping, &StepSettings::step), 1e-9, 10, "time step, s"),
         method(),
-        whole("iterations", FIELD(solver.iterations), 1, "of the contact solver, at most"),
-        real("absolute_tolerance", FIELD(solver.absolute_tolerance), 0, 1e9, "where it stops, N s"),
-        real("relative_tolerance", FIELD(solver.relative_tolerance), 0, 1,
+        whole("iterations", at(&Dynamics::solver, &SolverSettings::iterations), 1,
+              "of the contact solver, at most"),
+        real("absolute_tolerance", at(&Dynamics::solver, &SolverSettings::absolute_tolerance), 0, 1e9,
+             "where it stops, N s"),
+        real("relative_tolerance", at(&Dynamics::solver, &SolverSettings::relative_tolerance), 0, 1,
              "where it stops, relative change; 0: never"),
-        toggle("warm_start", FIELD(solver.warm_start), "start from the last step's forces at equal features"),
-        toggle("pre_stabilize", FIELD(stepping.pre_stabilize), "velocities that lessen penetration"),
-        toggle("post_stabilize", FIELD(stepping.post_stabilize), "positions corrected after the step"),
-        toggle("bounce", FIELD(stepping.bounce), "Newton's restitution"),
-        real("linear_damping", FIELD(stepping.linear_damping), 0, 1e6, "of rigid bodies, 1/s"),
-        real("angular_damping", FIELD(stepping.angular_damping), 0, 1e6, "of rigid bodies, 1/s"),
-        real("adaptive_tolerance", FIELD(stepping.adaptive_tolerance), 0, 1e6,
+        toggle("warm_start", at(&Dynamics::solver, &SolverSettings::warm_start),
+               "start from the last step's forces at equal features"),
+        toggle("pre_stabilize", at(&Dynamics::stepping, &StepSettings::pre_stabilize),
+               "velocities that lessen penetration"),
+        toggle("post_stabilize", at(&Dynamics::stepping, &StepSettings::post_stabilize),
+               "positions corrected after the step"),
+        toggle("bounce", at(&Dynamics::stepping, &StepSettings::bounce), "Newton's restitution"),
+        real("linear_damping", at(&Dynamics::stepping, &StepSettings::linear_damping), 0, 1e6,
+             "of rigid bodies, 1/s"),
+        real("angular_damping", at(&Dynamics::stepping, &StepSettings::angular_damping), 0, 1e6,
+             "of rigid bodies, 1/s"),
+        real("adaptive_tolerance", at(&Dynamics::stepping, &StepSettings::adaptive_tolerance), 0, 1e6,
              "of deformables' steps, m; 0 keeps the step"),
-        real("least_step", FIELD(stepping.least_step), 1e-12, 10, "of adaptive steps, s"),
-        toggle("couple_contacts", FIELD(stepping.couple_contacts), "contacts push deformables"),
-        real("merge_distance", FIELD(reduction.distance), 0, 1,
+        real("least_step", at(&Dynamics::stepping, &StepSettings::least_step), 1e-12, 10,
+             "of adaptive steps, s"),
+        toggle("couple_contacts", at(&Dynamics::stepping, &StepSettings::couple_contacts),
+               "contacts push deformables"),
+        real("merge_distance", at(&Dynamics::reduction, &ReductionSettings::distance), 0, 1,
              "contacts of a body pair closer than this times the smaller body's size are one"),
-        whole("per_pair", FIELD(reduction.per_pair), 0, "contacts of a body pair kept at most; 0: all"),
+        whole("per_pair", at(&Dynamics::reduction, &ReductionSettings::per_pair), 0,
+              "contacts of a body pair kept at most; 0: all"),
     };
 }
 
