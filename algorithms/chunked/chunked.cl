@@ -20,7 +20,8 @@ KERNEL void count_seeds(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLO
         const uint own = seed_level(a, b, levels);
         const ulong chunks_a = levels[(ulong)(a[BODY_LEVELS] + own) * LEVEL_WORDS + LEVEL_CHUNKS];
         const ulong chunks_b = levels[(ulong)(b[BODY_LEVELS] + own) * LEVEL_WORDS + LEVEL_CHUNKS];
-        const int apart = ROOT_TEST && !overlap(node_at(nodes, a[BODY_NODES]), node_at(nodes, b[BODY_NODES]));
+        const int apart =
+            ROOT_TEST ? !overlap(node_at(nodes, a[BODY_NODES]), node_at(nodes, b[BODY_NODES])) : 0;
         for (uint level = 0; level < level_count; ++level)
             seeds[(ulong)level * (pair_count + 1u) + pair] = level == own && !apart ? chunks_a * chunks_b : 0;
     }
