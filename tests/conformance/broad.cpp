@@ -46,16 +46,31 @@ Mesh one_tetrahedron() {
     return mesh;
 }
 
-/// A cube of side x side x side cells of one cube each, all of which touch their neighbours and no more.
-Scene lattice(std::uint32_t side) {
-    Random still(1);
-    auto cube = shaken_box(1, still);
+/// From 0 to 1 along each axis.
+Mesh unit_cube() {
+    Random random(1);
+    auto cube = shaken_box(1, random);
     for (auto& v : cube.vertices)
         for (int i = 0; i < 3; ++i) v[i] = v[i] < 0 ? 0 : 1;
+    return cube;
+}
+
+/// side x side x side cubes, all of which touch their neighbours and no more.
+Scene lattice(std::uint32_t side) {
     std::vector<Eigen::Vector3d> places;
     for (std::uint32_t i = 0; i < side * side * side; ++i)
         places.emplace_back(i % side, i / side % side, i / side / side);
-    return still_scene(std::move(cube), {places});
+    return still_scene(unit_cube(), {places});
+}
+
+/// A row of cubes that touch along x, which frame 1 turns round.
+Scene row_of_cubes(std::uint32_t bodies) {
+    std::vector<std::vector<Eigen::Vector3d>> places(2);
+    for (std::uint32_t i = 0; i < bodies; ++i) {
+        places[0].emplace_back(i, 0, 0);
+        places[1].emplace_back(bodies - i, 0, 0);
+    }
+    return still_scene(unit_cube(), places);
 }
 
 /// Single tetrahedra strewn in a cube, somewhere else in each of two frames but for the fixed ones: every
@@ -196,6 +211,21 @@ TEST_P(BroadOnDevice, TouchingOverlaps) {
         // Neighbours by a face, an edge or a corner: ((3 * 5 - 2)^3 - 5^3) / 2.
         EXPECT_EQ(search.expected().size(), 1036u);
         search.expect_right();
+    }
+}
+
+/// Unions of tiles that touch and do no more, from either side.
+TEST_P(BroadOnDevice, TouchingTilesOverlap) {
+    auto& on = device(GetParam());
+    const auto scene = row_of_cubes(100);
+    Search search(on, scene, {}, 32, 100);
+    for (const std::size_t order : {0u, 1u}) {
+        for (const std::size_t frame : {0u, 1u}) {
+            search.sort_by(order);
+            search.go_to(frame);
+            EXPECT_EQ(search.expected().size(), 99u);
+            search.expect_right();
+        }
     }
 }
 
