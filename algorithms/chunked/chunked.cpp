@@ -47,7 +47,7 @@ const std::vector<Parameter> own{
 };
 
 const std::vector<Preset> all_presets{
-    {"resident", "everything resident, one wait per frame", {}},
+    {"resident", "everything resident, body pairs included, one wait per frame", {{"broad", "device"}}},
     {"published",
      "the paper: k = 8, 8000-byte chunks, everything converted and transferred in every frame",
      {{"k", "8"},
