@@ -19,10 +19,11 @@ constexpr std::uint64_t word_limit = std::numeric_limits<std::uint32_t>::max();
 const std::vector<Parameter> common{
     {"broad",
      "sphere",
-     {"sphere", "tight"},
+     {"sphere", "tight", "device"},
      0,
      0,
-     "bounds of the body-pair search: the paper's spheres, or boxes"},
+     "who finds body pairs: the host by the paper's spheres, or by boxes, or the device by root k-DOPs"},
+    {"body_pair_capacity", "65536", {}, 1, word_limit, "broad=device: body pairs there is room for at first"},
     {"residency",
      "resident",
      {"resident", "published"},
@@ -59,9 +60,9 @@ std::uint32_t groups_of(const Settings& settings, const DeviceInfo& info) {
 /// Some room above what was needed: the next frame needs about as much.
 std::uint64_t with_room(std::uint64_t count, std::string_view what) {
     if (count > word_limit)
-        throw DeviceError(fmt::format(
-            "{} {} do not fit into one buffer of at most {}; use output=digest or fewer body pairs", count,
-            what, word_limit));
+        throw DeviceError(
+            fmt::format("{} {} do not fit into one buffer of at most {}; use output=digest or fewer bodies",
+                        count, what, word_limit));
     return std::min(count + count / 8, word_limit);
 }
 
@@ -84,6 +85,9 @@ Settings effective(Settings settings, const DeviceInfo& info) {
     else if (wanted > info.max_group_size)
         throw InputError(fmt::format("setting group_size={} is impossible on {}; it takes at most {}", wanted,
                                      info.id, info.max_group_size));
+    if (settings.at("broad") == "device" && settings.at("residency") == "published")
+        throw InputError("setting broad=device does not go with residency=published, whose bounds are the "
+                         "host's; choose broad=sphere");
     return settings;
 }
 
@@ -100,6 +104,11 @@ KdopSession::KdopSession(Device& device, const Scene& scene, Settings settings, 
                                            : 1);
     digest_kernel_ = device.compile(kernel_source("algorithms/digest.cl"), "digest_pairs",
                                     geometry_defines(scene_.geometry(), scene_.group_size()));
+    if (settings_.at("broad") == "device") {
+        broad_ = std::make_unique<BroadStage>(scene_, scene, groups_);
+        const auto first = static_cast<std::uint64_t>(integer(settings_, "body_pair_capacity"));
+        reserve_body_pairs(std::clamp<std::uint64_t>(broad_->most_pairs(), 1, first));
+    }
     if (output_ == Output::pairs && settings_.at("contact_rule") != "none")
         contact_stage_ = std::make_unique<ContactStage>(
             scene_, static_cast<std::uint64_t>(integer(settings_, "contact_capacity")), groups_);
@@ -110,6 +119,7 @@ Defines KdopSession::defines() const {
     defines["LEAF_BITS"] = std::to_string(ceil_log2(scene_.leaves()));
     defines["OUTPUT"] = std::to_string(static_cast<int>(output_));
     defines["COUNT_WORK"] = counting_ ? "1" : "0";
+    defines["BROAD_ON_DEVICE"] = finds_pairs() ? "1" : "0";
     return defines;
 }
 
@@ -124,28 +134,46 @@ void KdopSession::reserve_pairs(std::uint64_t count) {
     found_ = device_.allocate(count * pair_bytes, "candidate pairs");
 }
 
+void KdopSession::reserve_body_pairs(std::uint64_t count) {
+    pair_room_ = count;
+    pairs_ = {};
+    pairs_ = device_.allocate(count * sizeof(BodyPair), "body pairs");
+}
+
 void KdopSession::upload_pairs(std::span<const BodyPair> pairs) {
-    if (!pairs_ || pairs.size() > pair_room_) {
-        pair_room_ = pairs.size() + pairs.size() / 4;
-        pairs_ = {};
-        pairs_ = device_.allocate(pair_room_ * sizeof(BodyPair), "body pairs");
-    }
+    if (!pairs_ || pairs.size() > pair_room_) reserve_body_pairs(pairs.size() + pairs.size() / 4);
     const StageScope scope(device_, Stage::write);
     device_.upload(pairs_, std::as_bytes(pairs), 0, published_);
 }
 
+void KdopSession::sort_bodies(const Frame& frame) {
+    if (!sorted_) broad_->sort(frame);
+    sorted_ = true;
+}
+
+void KdopSession::launch_frame(std::span<const BodyPair> pairs) {
+    if (broad_) broad_->launch(pairs_, pair_count(pairs), status_);
+    if (pairs.empty() && !broad_) return;
+    do_walk(pairs);
+    if (makes_contacts() && !published_ && !counting_) contact_stage_->launch(found_, 0, capacity_, status_);
+}
+
 FrameResult KdopSession::run(const Frame& frame, std::span<const BodyPair> pairs) {
+    if (broad_ && !pairs.empty())
+        throw InputError("run() was given body pairs, which setting broad=device finds; give none");
     scene_.update(frame);
-    upload_pairs(pairs);
+    if (broad_)
+        sort_bodies(frame);
+    else
+        upload_pairs(pairs);
     for (std::uint64_t retries = 0;; ++retries) {
         clear_status();
         contacts_read_ = 0;
-        if (!pairs.empty()) do_walk(pairs);
-        if (makes_contacts() && !published_ && !counting_ && !pairs.empty())
-            contact_stage_->launch(found_, 0, capacity_, status_);
+        launch_frame(pairs);
         const auto status = read_status();
         if (grow(status)) continue;
         auto result = result_of(status);
+        result.body_pairs = broad_ ? status.counter(STATUS_BODY_PAIRS) : pairs.size();
         result.retries = retries;
         if (published_) sort_contacts(result.contacts);
         return result;
@@ -173,6 +201,11 @@ void KdopSession::set_status(std::size_t word, std::uint64_t value) {
 
 bool KdopSession::grow(const Status& status) {
     bool again = do_grow(status);
+    const auto body_pairs = status.counter(STATUS_BODY_PAIRS);
+    if (broad_ && body_pairs > pair_room_) {
+        reserve_body_pairs(with_room(body_pairs, "body pairs"));
+        again = true;
+    }
     const auto found = status.counter(STATUS_PAIRS);
     if (output_ == Output::pairs && found > capacity_) {
         reserve_pairs(with_room(found, "candidate pairs"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/broad/broad_stage.h"
 #include "algorithms/contacts/contact_stage.h"
 #include "algorithms/traversal.h"
 
@@ -34,7 +35,8 @@ private:
 /// again. A derived class walks.
 class KdopSession : public Session {
 public:
-    void reset() override {}
+    void reset() override { sorted_ = false; }
+    bool finds_pairs() const final { return broad_ != nullptr; }
     FrameResult run(const Frame& frame, std::span<const BodyPair> pairs) final;
     Digest digest(const FrameResult& result) final;
     Digest contact_digest(const FrameResult& result) final;
@@ -47,8 +49,9 @@ public:
 protected:
     KdopSession(Device& device, const Scene& scene, Settings settings, std::uint32_t leaves);
 
-    /// Enqueues (or runs) the walk over body pairs that lie on the device in pairs().
-    virtual void do_walk(std::span<const BodyPair> pairs) = 0;
+    /// Enqueues (or runs) the walk over body pairs that lie on the device in pairs(). `given` is empty when
+    /// the device has found them.
+    virtual void do_walk(std::span<const BodyPair> given) = 0;
     /// Grows own buffers that `status` shows too small; true when the walk has to run again.
     virtual bool do_grow(const Status&) { return false; }
     /// Compiles the walking kernels with defines() and COUNT_WORK as given.
@@ -66,6 +69,10 @@ protected:
 
     const DeviceScene& scene() const { return scene_; }
     const Buffer& pairs() const { return pairs_; }
+    /// What kernels call `pairs` in body_pairs.clh: how many were given, or how many there is room for.
+    std::uint32_t pair_count(std::span<const BodyPair> given) const {
+        return static_cast<std::uint32_t>(broad_ ? pair_room_ : given.size());
+    }
     const Buffer& status() const { return status_; }
     const Buffer& found() const { return found_; }
     std::uint64_t capacity() const { return capacity_; }
@@ -74,7 +81,10 @@ protected:
     Defines defines() const;
 
 private:
+    void reserve_body_pairs(std::uint64_t count);
     void upload_pairs(std::span<const BodyPair> pairs);
+    void sort_bodies(const Frame& frame);
+    void launch_frame(std::span<const BodyPair> pairs);
     bool grow(const Status& status);
     void reserve_pairs(std::uint64_t count);
     void sort_contacts(std::uint64_t count);
@@ -91,9 +101,11 @@ private:
     std::uint64_t pair_room_ = 0;
     std::uint64_t contacts_read_ = 0;
     bool counting_ = false;
+    bool sorted_ = false;                     ///< the broad phase has the bodies in the order of some frame
     std::vector<std::uint32_t> status_words_; ///< as last read, cleared or set
     Buffer pairs_, status_, found_;
     Kernel digest_kernel_;
+    std::unique_ptr<BroadStage> broad_; ///< none when the host finds body pairs
     std::unique_ptr<ContactStage> contact_stage_;
 };
 

@@ -37,6 +37,7 @@ struct FrameResult {
     Buffer pairs; ///< rows of 4 words as pairs.clh lists them; empty unless output = pairs
     std::uint64_t count = 0;
     std::uint64_t capacity = 0;
+    std::uint64_t body_pairs = 0; ///< those given, or found on the device
     std::uint64_t contacts = 0;
     std::uint64_t degenerate = 0; ///< pairs without contacts because a tetrahedron has no volume
     std::uint64_t rejected = 0;   ///< pairs that a separating axis told apart
@@ -53,8 +54,11 @@ public:
 
     /// Forgets what was carried from frame to frame.
     virtual void reset() = 0;
+    /// Whether the session finds the body pairs of a frame itself (broad = device).
+    virtual bool finds_pairs() const = 0;
     /// Finds the candidate pairs of `frame` among `pairs`, and their contacts. Waits until they are known.
-    /// Coordinates must pass check_range (kdop/range.h).
+    /// Coordinates must pass check_range (kdop/range.h). A session that finds_pairs() takes no `pairs` and
+    /// throws InputError when it is given some.
     virtual FrameResult run(const Frame& frame, std::span<const BodyPair> pairs) = 0;
     /// Digests of the last frame's pairs and contacts, summed where they are. Not part of a measured frame.
     virtual Digest digest(const FrameResult& result) = 0;

@@ -52,7 +52,8 @@ public:
         out.prepare_ns = since(begin);
         out.settings = session_->settings();
         geometry_ = geometry_of(out.settings);
-        broad_ = std::make_unique<Broad>(scene, geometry_, broad_bound(out.settings));
+        if (!session_->finds_pairs())
+            broad_ = std::make_unique<Broad>(scene, geometry_, broad_bound(out.settings));
     }
 
     void check(References& references, bool against_reference,
@@ -64,11 +65,10 @@ public:
 private:
     FrameResult run(std::size_t index) {
         std::vector<BodyPair> pairs;
-        {
+        if (broad_) {
             const HostWork work(device_, Stage::broad, "body pairs");
             pairs = broad_->pairs(range_.frames[index]);
         }
-        body_pairs_ = pairs.size();
         return session_->run(range_.frames[index], pairs);
     }
 
@@ -81,7 +81,6 @@ private:
     std::unique_ptr<Session> session_;
     Geometry geometry_;
     std::unique_ptr<Broad> broad_;
-    std::size_t body_pairs_ = 0;
     std::vector<Digest> digests_; ///< [frame] of the checking replay
 };
 
@@ -126,7 +125,7 @@ void Sampler::check(References& references, bool against_reference,
         add(out_.agreement.digest, digest);
         add(out_.agreement.contact_digest, contacts);
         digests_.push_back(digest);
-        out_.body_pairs.push_back(body_pairs_);
+        out_.body_pairs.push_back(result.body_pairs);
         out_.candidate_pairs.push_back(result.count);
         out_.contacts.push_back(result.contacts);
         out_.degenerate += result.degenerate;

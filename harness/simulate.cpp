@@ -138,13 +138,13 @@ ContactFinder::ContactFinder(const Cell& cell, const Scene& scene, bool timed)
 
 void ContactFinder::find(const Frame& frame, std::vector<ContactPoint>& contacts) {
     auto begin = Clock::now();
-    const auto pairs = walk_.broad.pairs(frame);
+    const auto pairs = walk_.broad ? walk_.broad->pairs(frame) : std::vector<BodyPair>{};
     search_.broad_ns += since(begin);
-    search_.body_pairs += pairs.size();
     begin = Clock::now();
     const auto result = walk_.session->run(frame, pairs);
     contacts = walk_.session->download_contacts(result);
     search_.narrow_ns += since(begin);
+    search_.body_pairs += result.body_pairs;
     search_.candidate_pairs += result.count;
     const auto stages = by_stage(device_.finish());
     for (std::size_t i = 0; i < stages.size(); ++i) {

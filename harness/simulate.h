@@ -12,7 +12,7 @@ namespace tandem {
 /// One search for contacts: what was found and host nanoseconds it took.
 struct Search {
     std::uint64_t body_pairs = 0, candidate_pairs = 0;
-    std::int64_t broad_ns = 0;  ///< body pairs on the host
+    std::int64_t broad_ns = 0;  ///< body pairs, where the host finds them
     std::int64_t narrow_ns = 0; ///< transform to contacts, with all transfers and waits
     StageSamples stages{};      ///< with device times only where they are measured
 };

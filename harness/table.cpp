@@ -30,6 +30,11 @@ double host_ms(const Measurement& m, Stage stage) {
     return static_cast<double>(sum_of(m, stage).host_ns) * 1e-6;
 }
 
+/// The device's when it finds the body pairs.
+double broad_ms(const Measurement& m) {
+    return sum_of(m, Stage::broad).launches > 0 ? device_ms(m, Stage::broad) : host_ms(m, Stage::broad);
+}
+
 template<class Member>
 std::uint64_t over_stages(const Measurement& m, Member member) {
     std::uint64_t sum = 0;
@@ -89,7 +94,7 @@ std::string stage_table(std::span<const Row> rows) {
             "{:<{}} {:<9} {:>9.2f} {:>9.2f} {:>8.2f} {:>8.2f} {:>9.2f} {:>9.2f} {:>9.2f} {:>9.2f} {:>9.2f} "
             "{:>8.2f} {:>8.2f} {:>9} {:>6} {:>10} {:>9} {:>10.2f}\n",
             label(*cell), width, cell->device->info().id, device_ms(*m, Stage::transform),
-            device_ms(*m, Stage::refit), host_ms(*m, Stage::broad), device_ms(*m, Stage::seed),
+            device_ms(*m, Stage::refit), broad_ms(*m), device_ms(*m, Stage::seed),
             device_ms(*m, Stage::traverse), device_ms(*m, Stage::balance), device_ms(*m, Stage::contact),
             host_ms(*m, Stage::preprocess), host_ms(*m, Stage::postprocess), device_ms(*m, Stage::read),
             device_ms(*m, Stage::write), over_stages(*m, &StageSample::launches),

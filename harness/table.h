@@ -14,8 +14,8 @@ struct Row {
 };
 
 /// The form of the paper's Table 5: milliseconds per stage over all frames, launches, waits, pairs, contacts.
-/// Kernel and transfer columns are device times, broad, preprocess and postprocess host times, total the
-/// median sample.
+/// Kernel and transfer columns are device times, preprocess and postprocess host times, broad that of whoever
+/// finds the body pairs, total the median sample.
 std::string stage_table(std::span<const Row> rows);
 
 /// The form of the paper's Table 4: how many times longer each gproximity row takes than each chunked row on

@@ -61,7 +61,7 @@ queues=(--algorithm gproximity --set groups=3 --set initial_items=4 --set queue_
         --set balance_group_size=8)
 check "${queues[@]}" --set local_queue=12 --set balance=parallel
 check "${queues[@]}" --set local_queue=12 --set balance=serial
-check "${queues[@]}" --set k=26 --set residency=published --set upload=queues --set full_exit=yes --set refill=no \
+check "${queues[@]}" --set k=26 --set broad=tight --set residency=published --set upload=queues --set full_exit=yes --set refill=no \
   --set local_queue=30 --set batch=2
 "$program" devices | grep -q Oclgrind || { echo "these runs were not on Oclgrind" >&2; exit 1; }
 [ "$cells" -ge 8 ] || { echo "only $cells cells ran" >&2; exit 1; }

@@ -2,6 +2,7 @@
 // The chunked static scheduler (paper, sections 3.2 and 3.3): pairs of chunks are the seeds, and which
 // work-items walk them is fixed beforehand.
 #include "backends/portable.h"
+#include "algorithms/broad/body_pairs.clh"
 #include "algorithms/chunked/walk.clh"
 
 #ifndef ROOT_TEST
@@ -10,14 +11,17 @@
 
 // seeds[level * (pair_count + 1) + pair] = number of chunk pairs that body pair starts with at that level.
 KERNEL void count_seeds(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
-                        GLOBAL const uint* pairs, uint pair_count, uint level_count, GLOBAL ulong* seeds) {
+                        GLOBAL const uint* pairs, uint given_pairs, uint level_count, GLOBAL ulong* seeds,
+                        GLOBAL const uint* status) {
+    const uint pair_count = body_pair_count(given_pairs, status);
     for (uint pair = GLOBAL_ID; pair < pair_count; pair += GLOBAL_COUNT) {
         GLOBAL const uint* a = bodies + (ulong)pairs[2u * pair] * BODY_WORDS;
         GLOBAL const uint* b = bodies + (ulong)pairs[2u * pair + 1u] * BODY_WORDS;
         const uint own = seed_level(a, b, levels);
         const ulong chunks_a = levels[(ulong)(a[BODY_LEVELS] + own) * LEVEL_WORDS + LEVEL_CHUNKS];
         const ulong chunks_b = levels[(ulong)(b[BODY_LEVELS] + own) * LEVEL_WORDS + LEVEL_CHUNKS];
-        const int apart = ROOT_TEST && !overlap(node_at(nodes, a[BODY_NODES]), node_at(nodes, b[BODY_NODES]));
+        const int apart =
+            ROOT_TEST ? !overlap(node_at(nodes, a[BODY_NODES]), node_at(nodes, b[BODY_NODES])) : 0;
         for (uint level = 0; level < level_count; ++level)
             seeds[(ulong)level * (pair_count + 1u) + pair] = level == own && !apart ? chunks_a * chunks_b : 0;
     }
@@ -25,8 +29,9 @@ KERNEL void count_seeds(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLO
 
 // Turns each level's counts into starts, with the total at the end: one work-group a level; each work-item
 // sums a contiguous part, work-item 0 scans the parts.
-KERNEL void scan_seeds(GLOBAL ulong* seeds, uint pair_count) {
+KERNEL void scan_seeds(GLOBAL ulong* seeds, uint given_pairs, GLOBAL const uint* status) {
     LOCAL_ARRAY(ulong, parts, GROUP_SIZE);
+    const uint pair_count = body_pair_count(given_pairs, status);
     GLOBAL ulong* row = seeds + (ulong)GROUP_ID * (pair_count + 1u);
     const uint part = (pair_count + (uint)GROUP_SIZE - 1u) / (uint)GROUP_SIZE;
     const uint first = LOCAL_ID * part < pair_count ? LOCAL_ID * part : pair_count;
@@ -77,7 +82,7 @@ DEVICE ulong seed_total(ulong own, GLOBAL const uint* status, uint level, uint h
 // with a stack of its own. One launch takes the seeds of one level: `seeds` holds the starts of that level's
 // own ones.
 KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
-                     GLOBAL const uint* ids, GLOBAL const uint* pairs, uint pair_count, uint level,
+                     GLOBAL const uint* ids, GLOBAL const uint* pairs, uint given_pairs, uint level,
                      GLOBAL const ulong* seeds, GLOBAL const uint* handed, uint handed_capacity,
                      GLOBAL uint* below, uint below_capacity, GLOBAL uint* found, uint capacity,
                      GLOBAL uint* status) {
@@ -85,6 +90,7 @@ KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL
     LOCAL uint* stack = stacks + LOCAL_ID;
     const Job job = {nodes, bodies,         levels, ids,      pairs, level,
                      below, below_capacity, found,  capacity, status};
+    const uint pair_count = body_pair_count(given_pairs, status);
     GLOBAL const ulong* starts = seeds + (ulong)level * (pair_count + 1u);
     const ulong own = starts[pair_count];
     const ulong total = seed_total(own, status, level, handed_capacity);
@@ -154,7 +160,7 @@ DEVICE uint rows_to_take(uint count) {
 // of a batch, which few seeds survive, and expands what is left from a stack that its work-items share, so
 // that all of them have work however unlike the walks are.
 KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
-                               GLOBAL const uint* ids, GLOBAL const uint* pairs, uint pair_count, uint level,
+                               GLOBAL const uint* ids, GLOBAL const uint* pairs, uint given_pairs, uint level,
                                GLOBAL const ulong* seeds, GLOBAL const uint* handed, uint handed_capacity,
                                GLOBAL uint* below, uint below_capacity, GLOBAL uint* found, uint capacity,
                                GLOBAL uint* status) {
@@ -164,6 +170,7 @@ KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* bodi
     // still read; the third is made ready for the next
     const Job job = {nodes, bodies,         levels, ids,      pairs, level,
                      below, below_capacity, found,  capacity, status};
+    const uint pair_count = body_pair_count(given_pairs, status);
     GLOBAL const ulong* starts = seeds + (ulong)level * (pair_count + 1u);
     const ulong own = starts[pair_count];
     const ulong total = seed_total(own, status, level, handed_capacity);

@@ -47,7 +47,7 @@ const std::vector<Parameter> own{
 };
 
 const std::vector<Preset> all_presets{
-    {"resident", "everything resident, one wait per frame", {}},
+    {"resident", "everything resident, body pairs included, one wait per frame", {{"broad", "device"}}},
     {"published",
      "the paper: k = 8, 8000-byte chunks, everything converted and transferred in every frame",
      {{"k", "8"},
@@ -106,7 +106,8 @@ private:
 void ChunkedSession::do_compile(const Defines& common) {
     auto defines = common;
     defines["SEED_THRESHOLD"] = std::to_string(threshold_);
-    defines["ROOT_TEST"] = settings().at("root_test") == "yes" ? "1" : "0";
+    // Body pairs found on the device have passed the same test.
+    defines["ROOT_TEST"] = settings().at("root_test") == "yes" && !finds_pairs() ? "1" : "0";
     const auto& source = kernel_source("algorithms/chunked/chunked.cl");
     count_kernel_ = device().compile(source, "count_seeds", defines);
     scan_kernel_ = device().compile(source, "scan_seeds", defines);
@@ -162,11 +163,12 @@ void ChunkedSession::seed_on_device(std::uint32_t pair_count) {
     const StageScope scope(device(), Stage::seed);
     reserve_starts(pair_count);
     const auto group = scene().group_size();
-    const std::array<Argument, 7> count{scene().nodes(), scene().bodies(), scene().level_table(),
+    const std::array<Argument, 8> count{scene().nodes(), scene().bodies(), scene().level_table(),
                                         pairs(),         pair_count,       top_level_ + 1,
-                                        starts_};
-    device().launch(count_kernel_, {(pair_count + group - 1) / group, group}, count);
-    const std::array<Argument, 2> scan{starts_, pair_count};
+                                        starts_,         status()};
+    const auto groups_needed = (std::uint64_t{pair_count} + group - 1) / group;
+    device().launch(count_kernel_, {std::min<std::uint64_t>(groups_needed, groups()), group}, count);
+    const std::array<Argument, 3> scan{starts_, pair_count, status()};
     device().launch(scan_kernel_, {top_level_ + 1, group}, scan);
 }
 
@@ -198,7 +200,7 @@ void ChunkedSession::do_walk(std::span<const BodyPair> body_pairs) {
         walk_published(body_pairs);
         return;
     }
-    const auto count = static_cast<std::uint32_t>(body_pairs.size());
+    const auto count = pair_count(body_pairs);
     seed_on_device(count);
     for (std::uint32_t level = top_level_ + 1; level-- > 0;) traverse(level, count);
 }

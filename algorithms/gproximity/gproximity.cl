@@ -4,6 +4,7 @@
 // global memory and works on a local queue loaded from its top; an idle counter ends the launch; balancing
 // evens the queues out.
 #include "backends/portable.h"
+#include "algorithms/broad/body_pairs.clh"
 #include "algorithms/pairs.clh"
 
 #ifndef LOCAL_QUEUE
@@ -50,7 +51,8 @@ DEVICE uint share_of_queue(uint queue, uint total, uint queues) {
 
 // Root pairs of body pairs first..first+count-1, spread evenly over the queues.
 KERNEL void scatter_roots(GLOBAL uint* items, GLOBAL uint* counts, uint queues, uint queue_capacity,
-                          uint first, uint count) {
+                          uint first, uint given_pairs, GLOBAL const uint* status) {
+    const uint count = body_pair_count(given_pairs, status);
     for (uint i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         uint place;
         const uint queue = queue_of_item(i, count, queues, &place);

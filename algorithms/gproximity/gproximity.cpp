@@ -5,6 +5,7 @@
 #include "algorithms/kdop_session.h"
 #include "algorithms/sources.h"
 #include "algorithms/status.clh"
+#include "scenes/error.h"
 
 #include <algorithm>
 #include <bit>
@@ -48,6 +49,7 @@ private:
     void do_report(Work& work) const override;
 
     std::uint64_t queue_bytes() const;
+    std::uint64_t queue_room() const;
     void reserve_queues();
     void seed(std::uint32_t first, std::uint32_t count);
     void upload_whole_queues(std::uint32_t first, std::uint32_t count);
@@ -85,6 +87,11 @@ std::uint64_t GproximitySession::queue_bytes() const {
     return std::uint64_t{sizes_.groups} * sizes_.queue_capacity * item_words * 4;
 }
 
+/// Items that may wait in all queues together.
+std::uint64_t GproximitySession::queue_room() const {
+    return std::uint64_t{sizes_.groups} * (sizes_.queue_capacity - 1);
+}
+
 /// The release took min(largest allocation, a quarter of the memory) for one array (tvcg18.md 2.1).
 void GproximitySession::do_report(Work& work) const {
     const auto& info = scene().device().info();
@@ -101,7 +108,8 @@ void GproximitySession::reserve_queues() {
     }
 }
 
-bool GproximitySession::do_grow(const Status&) {
+bool GproximitySession::do_grow(const Status& status) {
+    if (finds_pairs() && status.counter(STATUS_BODY_PAIRS) > queue_room()) short_of_queue_ = true;
     if (!short_of_queue_) return false;
     short_of_queue_ = false;
     sizes_.queue_capacity *= 2;
@@ -112,8 +120,8 @@ bool GproximitySession::do_grow(const Status&) {
 /// Spreads the roots of body pairs over the queues; the pairs themselves were uploaded with the frame.
 void GproximitySession::seed(std::uint32_t first, std::uint32_t count) {
     const StageScope scope(device(), Stage::seed);
-    const std::array<Argument, 6> arguments{items_[0], counts_, sizes_.groups, sizes_.queue_capacity,
-                                            first,     count};
+    const std::array<Argument, 7> arguments{items_[0], counts_, sizes_.groups, sizes_.queue_capacity,
+                                            first,     count,   status()};
     device().launch(scatter_, {groups(), scene().group_size()}, arguments);
 }
 
@@ -196,7 +204,7 @@ void GproximitySession::read_counts() {
 
 /// Walks one batch to its end; false when the queues are too small for it.
 bool GproximitySession::walk_batch(std::uint32_t first, std::uint32_t count) {
-    if (count > std::uint64_t{sizes_.groups} * (sizes_.queue_capacity - 1)) return false;
+    if (count > queue_room()) return false;
     if (upload_queues_)
         upload_whole_queues(first, count);
     else
@@ -210,14 +218,19 @@ bool GproximitySession::walk_batch(std::uint32_t first, std::uint32_t count) {
             std::swap(items_[0], items_[1]);
             ++balances_;
         }
-        if (left > std::uint64_t{sizes_.groups} * (sizes_.queue_capacity - 1)) return false;
+        if (left > queue_room()) return false;
     }
 }
 
 void GproximitySession::do_walk(std::span<const BodyPair> body_pairs) {
-    const auto total = static_cast<std::uint32_t>(body_pairs.size());
-    const auto batch = sizes_.batch == 0 ? total : sizes_.batch;
     balances_ = 0;
+    if (finds_pairs()) { // as many as fit; do_grow looks whether these were all
+        const auto most = std::min<std::uint64_t>(pair_count(body_pairs), queue_room());
+        short_of_queue_ = !walk_batch(0, static_cast<std::uint32_t>(most));
+        return;
+    }
+    const auto total = pair_count(body_pairs);
+    const auto batch = sizes_.batch == 0 ? total : sizes_.batch;
     std::uint64_t found_before = 0;
     for (std::uint32_t first = 0; first < total; first += batch) {
         if (!walk_batch(first, std::min(batch, total - first))) {
@@ -244,7 +257,12 @@ public:
 private:
     void do_check(const Settings& settings, const DeviceInfo& info) const override {
         const auto fitting = effective(settings, info);
-        queue_sizes(fitting, info, static_cast<std::uint32_t>(integer(fitting, "group_size")));
+        const auto sizes =
+            queue_sizes(fitting, info, static_cast<std::uint32_t>(integer(fitting, "group_size")));
+        if (fitting.at("broad") == "device" && (sizes.batch != 0 || fitting.at("upload") == "queues"))
+            throw InputError(
+                "setting broad=device goes with batch=0 and upload=seeds only: the host makes "
+                "batches and queues, and would have to know the body pairs; choose broad=sphere");
     }
     std::unique_ptr<Session> do_prepare(Device& device, const Scene& scene,
                                         const Settings& settings) const override {

@@ -53,8 +53,8 @@ Settings published(int groups, int local_size, int local_queue, int idle_limit, 
 
 const std::vector<Preset> presets{
     {"fair",
-     "all pairs at once, nothing uploaded but the pairs, refill inside a launch, parallel balance",
-     {}},
+     "all body pairs at once, found on the device, refill inside a launch, parallel balance",
+     {{"broad", "device"}}},
     {"published", "the paper's release with the geometry it had on a K40c",
      published(30, 992, 1023, 664, 1024)},
     {"published-c2075", "the same on a C2075", published(28, 1024, 2047, 686, 1024)},

@@ -37,14 +37,11 @@ std::uint64_t morton_code(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
     return spread(x) << 2 | spread(y) << 1 | spread(z);
 }
 
-std::vector<std::uint32_t> morton_order(const Mesh& mesh) {
-    const auto count = mesh.tetrahedra.size();
-    std::vector<Eigen::Vector3d> centroids(count);
-    std::transform(mesh.tetrahedra.begin(), mesh.tetrahedra.end(), centroids.begin(),
-                   [&](const auto& t) { return centroid(mesh, t); });
+std::vector<std::uint32_t> morton_order(const std::vector<Eigen::Vector3d>& points) {
+    const auto count = points.size();
     Eigen::Vector3d lower = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
     Eigen::Vector3d upper = -lower;
-    for (const auto& c : centroids) {
+    for (const auto& c : points) {
         lower = lower.cwiseMin(c);
         upper = upper.cwiseMax(c);
     }
@@ -52,7 +49,7 @@ std::vector<std::uint32_t> morton_order(const Mesh& mesh) {
     // An extent of zero, or one so small that its inverse overflows, puts everything into one cell.
     const double scale = extent > std::numeric_limits<double>::min() * lattice ? lattice / extent : 0.0;
     std::vector<std::uint64_t> codes(count);
-    std::transform(centroids.begin(), centroids.end(), codes.begin(), [&](const Eigen::Vector3d& c) {
+    std::transform(points.begin(), points.end(), codes.begin(), [&](const Eigen::Vector3d& c) {
         const Eigen::Vector3d offset = c - lower;
         return morton_code(cell(offset.x(), scale), cell(offset.y(), scale), cell(offset.z(), scale));
     });
@@ -60,6 +57,13 @@ std::vector<std::uint32_t> morton_order(const Mesh& mesh) {
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return codes[a] < codes[b]; });
     return order;
+}
+
+std::vector<std::uint32_t> morton_order(const Mesh& mesh) {
+    std::vector<Eigen::Vector3d> centroids(mesh.tetrahedra.size());
+    std::transform(mesh.tetrahedra.begin(), mesh.tetrahedra.end(), centroids.begin(),
+                   [&](const auto& t) { return centroid(mesh, t); });
+    return morton_order(centroids);
 }
 
 std::uint32_t leaves_of_chunk_bytes(std::uint64_t bytes, int k) {

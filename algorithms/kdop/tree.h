@@ -13,9 +13,11 @@ namespace tandem {
 /// of y, 3i of z.
 std::uint64_t morton_code(std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
-/// Positions of the mesh's tetrahedra along the Z-curve of their centroids (paper, section 3.1): order[i] is
-/// the tetrahedron at position i. Ties keep the input order. One cell size for all axes, so that cells are
-/// cubes; a mesh of one point, one tetrahedron or one plane is fine.
+/// Positions of points along the Z-curve: order[i] is the point at position i. Ties keep the input order. One
+/// cell size for all axes, so that cells are cubes; points on one plane or in one place are fine.
+std::vector<std::uint32_t> morton_order(const std::vector<Eigen::Vector3d>& points);
+
+/// The same for the mesh's tetrahedra by their centroids (paper, section 3.1).
 std::vector<std::uint32_t> morton_order(const Mesh& mesh);
 
 /// Tetrahedra per chunk, L of equations (1)-(3): two hierarchies of nodes of 4k + 24 bytes in `bytes`.

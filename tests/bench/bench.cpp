@@ -2,9 +2,11 @@
 // Microbenchmarks of the stages, on every device there is. Iterations are timed by the host around one wait;
 // ratios within one run mean something, times of a processor nothing about a GPU.
 #include "algorithms/broad/broad.h"
+#include "algorithms/broad/broad_stage.h"
 #include "algorithms/contacts/reference.h"
 #include "algorithms/kdop/device_scene.h"
 #include "algorithms/sources.h"
+#include "algorithms/status.clh"
 #include "algorithms/traversal.h"
 #include "backends/registry.h"
 
@@ -82,9 +84,30 @@ void frame(benchmark::State& state, Device& device, const std::string& name, con
         benchmark::Counter(static_cast<double>(found), benchmark::Counter::kIsIterationInvariantRate);
 }
 
-void broad(benchmark::State& state) {
-    const auto scene = make_scene(fmt::format("pile:bodies={},frames=1", state.range(0)));
-    const Broad search(scene, {}, Broad::Bound::sphere);
+/// The device's, after refit: kernels and the wait for them.
+void broad_on_device(benchmark::State& state, Device& device) {
+    const auto scene = make_scene(fmt::format("pile:bodies={},mesh=grain1,frames=1", state.range(0)));
+    DeviceScene on(device, scene, {}, 32, group_size(device), Residency::resident);
+    BroadStage stage(on, scene, 64 * device.info().compute_units);
+    const auto status = device.allocate(STATUS_WORDS * 4, "status");
+    const auto room = static_cast<std::uint32_t>(std::min<std::uint64_t>(stage.most_pairs(), 1 << 22));
+    const auto pairs = device.allocate(std::size_t{room} * sizeof(BodyPair), "body pairs");
+    const auto frame = scene.frame(0);
+    on.update(frame);
+    stage.sort(frame);
+    stage.launch(pairs, room, status);
+    device.finish();
+    for ([[maybe_unused]] auto _ : state) {
+        device.clear(status, STATUS_WORDS * 4);
+        stage.launch(pairs, room, status);
+        device.finish();
+    }
+    state.SetComplexityN(state.range(0));
+}
+
+void broad(benchmark::State& state, Broad::Bound bound) {
+    const auto scene = make_scene(fmt::format("pile:bodies={},mesh=grain1,frames=1", state.range(0)));
+    const Broad search(scene, {}, bound);
     const auto first = scene.frame(0);
     for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(search.pairs(first));
     state.SetComplexityN(state.range(0));
@@ -118,6 +141,10 @@ void register_for(Device& device) {
         ->Arg(100)
         ->Arg(200)
         ->Complexity(benchmark::oN);
+    add("broad, device", [&](auto& state) { broad_on_device(state, device); })
+        ->Arg(200)
+        ->Arg(2000)
+        ->Arg(20000);
     const std::vector<std::pair<std::string, Settings>> variants{
         {"contacts", {}},
         {"no contacts", {{"contact_rule", "none"}}},
@@ -139,7 +166,13 @@ int main(int argc, char** argv) {
     const auto backends = tandem::discover();
     for (const auto& backend : backends)
         for (const auto& device : backend.devices) tandem::register_for(*device);
-    benchmark::RegisterBenchmark("broad", tandem::broad)->Arg(200)->Arg(2000)->Unit(benchmark::kMicrosecond);
+    for (const auto& [name, bound] : {std::pair{"broad, sphere", tandem::Broad::Bound::sphere},
+                                      std::pair{"broad, tight", tandem::Broad::Bound::tight}})
+        benchmark::RegisterBenchmark(name, [bound = bound](auto& state) { tandem::broad(state, bound); })
+            ->Arg(200)
+            ->Arg(2000)
+            ->Arg(20000)
+            ->Unit(benchmark::kMicrosecond);
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     benchmark::RunSpecifiedBenchmarks();

@@ -32,6 +32,8 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
                            of("group_size", {"1", "8", "32", "64"}),
                            of("residency", {"resident", "published"}),
                            of("work_items", {"64", "2048"}),
+                           of("broad", {"sphere", "device"}),
+                           of("body_pair_capacity", {"1", "65536"}),
                            of("pair_capacity", {"1", "100000"}),
                            of("contact_capacity", {"1", "100000"})};
     if (traversal.name() == "chunked") {
@@ -57,6 +59,25 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
     return axes;
 }
 
+/// A row that asks for the device's broad phase and for what does not go with it makes two: without the one
+/// and without the other.
+std::vector<Settings> possible(const std::vector<Settings>& rows) {
+    std::vector<Settings> all;
+    for (const auto& row : rows) {
+        auto possible = row;
+        if (row.at("broad") == "device") {
+            possible["residency"] = "resident";
+            if (row.contains("batch")) possible["batch"] = "0";
+            if (row.contains("upload")) possible["upload"] = "seeds";
+        }
+        all.push_back(possible);
+        if (possible == row) continue;
+        all.push_back(row);
+        all.back()["broad"] = "sphere";
+    }
+    return all;
+}
+
 /// Runs both frames of `scene` and compares pairs, digests and contacts with the reference.
 void expect_right(Device& on, const Traversal& traversal, const Scene& scene, const Settings& given,
                   std::uint64_t& pairs, std::uint64_t& contacts) {
@@ -68,7 +89,7 @@ void expect_right(Device& on, const Traversal& traversal, const Scene& scene, co
     for (std::size_t i = 0; i < scene.frame_count; ++i) {
         const auto frame = scene.frame(i);
         const auto expected = reference(scene, frame, geometry, true, Method::brute_force);
-        const auto result = session->run(frame, all_pairs(scene));
+        const auto result = session->run(frame, all_pairs(scene, *session));
         EXPECT_EQ(session->download(result), expected.pairs);
         EXPECT_EQ(session->digest(result), expected.digest);
         EXPECT_EQ(session->contact_digest(result), expected.contact_digest);
@@ -85,7 +106,7 @@ class Conformance : public testing::TestWithParam<std::string> {};
 void cover(const std::string& device_id, const std::string& algorithm_name, std::uint64_t seed) {
     const auto& traversal = algorithm(algorithm_name);
     auto& on = device(device_id);
-    const auto rows = pairwise(axes_of(traversal));
+    const auto rows = possible(pairwise(axes_of(traversal)));
     std::uint64_t cells = 0;
     for (const auto& row : rows) {
         std::uint64_t pairs = 0;
@@ -136,7 +157,7 @@ TEST_P(Conformance, CountAndDigestModesAgreeWithPairs) {
                 resolve(traversal->parameters(), {}, {{"output", output}}, traversal->name());
             const std::array devices{&on};
             const auto session = traversal->prepare(devices, scene, settings);
-            const auto result = session->run(frame, all_pairs(scene));
+            const auto result = session->run(frame, all_pairs(scene, *session));
             EXPECT_EQ(result.count, expected.digest.count);
             if (output == "digest") {
                 EXPECT_EQ(session->digest(result), expected.digest);
@@ -155,7 +176,7 @@ TEST_P(Conformance, EmptyAnswerIsEmpty) {
         const auto settings = resolve(traversal->parameters(), {}, {}, traversal->name());
         const std::array devices{&on};
         const auto session = traversal->prepare(devices, scene, settings);
-        EXPECT_EQ(session->run(frame, all_pairs(scene)).count, 0u);
+        EXPECT_EQ(session->run(frame, all_pairs(scene, *session)).count, 0u);
         EXPECT_EQ(session->run(frame, {}).count, 0u);
     }
 }
@@ -173,7 +194,7 @@ TEST_P(Conformance, CapacityOfExactlyTheAnswerNeedsNoRetry) {
                                           traversal->name());
             const std::array devices{&on};
             const auto session = traversal->prepare(devices, scene, settings);
-            const auto result = session->run(frame, all_pairs(scene));
+            const auto result = session->run(frame, all_pairs(scene, *session));
             EXPECT_EQ(result.retries > 0, less > 0);
             EXPECT_EQ(session->digest(result), expected.digest);
             EXPECT_EQ(session->contact_digest(result), expected.contact_digest);
@@ -189,10 +210,10 @@ TEST_P(Conformance, TenRunsGiveTheSameSet) {
         const auto settings = resolve(traversal->parameters(), {}, {}, traversal->name());
         const std::array devices{&on};
         const auto session = traversal->prepare(devices, scene, settings);
-        const auto first = session->download(session->run(frame, all_pairs(scene)));
+        const auto first = session->download(session->run(frame, all_pairs(scene, *session)));
         ASSERT_FALSE(first.empty());
         for (int i = 1; i < 10; ++i)
-            EXPECT_EQ(session->download(session->run(frame, all_pairs(scene))), first);
+            EXPECT_EQ(session->download(session->run(frame, all_pairs(scene, *session))), first);
     }
 }
 
@@ -217,12 +238,12 @@ TEST_P(Conformance, GproximityIsForcedThroughEveryMechanism) {
                                       traversal.name());
         const std::array devices{&on};
         const auto session = traversal.prepare(devices, scene, settings);
-        const auto timed = session->run(frame, all_pairs(scene));
+        const auto timed = session->run(frame, all_pairs(scene, *session));
         EXPECT_EQ(session->digest(timed), expected.digest);
         EXPECT_EQ(session->contact_digest(timed), expected.contact_digest);
         EXPECT_GT(timed.retries, 0u);
         session->count_work(true); // the counting build makes no contacts
-        const auto result = session->run(frame, all_pairs(scene));
+        const auto result = session->run(frame, all_pairs(scene, *session));
         EXPECT_EQ(session->digest(result), expected.digest);
         EXPECT_GT(result.work.balances, 0u);
         EXPECT_GT(result.work.refills, 0u);
@@ -243,7 +264,7 @@ TEST_P(Conformance, ResidentChunkedWaitsOnce) {
         const auto session = traversal.prepare(devices, scene, settings);
         for (std::size_t i = 0; i < scene.frame_count; ++i) {
             on.finish();
-            ASSERT_GT(session->run(scene.frame(i), all_pairs(scene)).count, 0u);
+            ASSERT_GT(session->run(scene.frame(i), all_pairs(scene, *session)).count, 0u);
             const auto trace = on.finish();
             EXPECT_EQ(std::count_if(trace.events.begin(), trace.events.end(),
                                     [](const auto& e) { return e.blocked; }),
@@ -252,22 +273,8 @@ TEST_P(Conformance, ResidentChunkedWaitsOnce) {
     }
 }
 
-/// Host and opencl:0, without which the tests fail, and every other device there is.
-std::vector<std::string> device_names() {
-    std::vector<std::string> names{"host", "opencl:0"};
-    for (const auto& backend : discover())
-        for (const auto& found : backend.devices)
-            if (std::find(names.begin(), names.end(), found->info().id) == names.end())
-                names.push_back(found->info().id);
-    return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(Devices, Conformance, testing::ValuesIn(device_names()), [](const auto& test) {
-    std::string name = test.param == "opencl:0" ? "opencl" : test.param;
-    name.erase(std::remove(name.begin(), name.end(), ':'), name.end());
-    name.front() = static_cast<char>(std::toupper(name.front()));
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Devices, Conformance, testing::ValuesIn(device_names()),
+                         [](const auto& test) { return device_label(test.param); });
 
 TEST(Reference, SweepEqualsBruteForce) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {

@@ -19,6 +19,24 @@ inline Device& device(std::string_view id) {
     throw DeviceError("no device " + std::string(id));
 }
 
+/// Host and opencl:0, without which the tests fail, and every other device there is.
+inline std::vector<std::string> device_names() {
+    std::vector<std::string> names{"host", "opencl:0"};
+    for (const auto& backend : discover())
+        for (const auto& found : backend.devices)
+            if (std::find(names.begin(), names.end(), found->info().id) == names.end())
+                names.push_back(found->info().id);
+    return names;
+}
+
+/// What a test over device_names() calls one of them.
+inline std::string device_label(const std::string& device) {
+    std::string name = device == "opencl:0" ? "opencl" : device;
+    name.erase(std::remove(name.begin(), name.end(), ':'), name.end());
+    name.front() = static_cast<char>(std::toupper(name.front()));
+    return name;
+}
+
 /// Values of one setting (or of several at once, written "k=8,axes=coordinate").
 using Axis = std::vector<Settings>;
 
@@ -71,6 +89,11 @@ inline std::vector<BodyPair> all_pairs(const Scene& scene) {
         for (std::uint32_t b = a + 1; b < scene.bodies.size(); ++b)
             if (!scene.bodies[a].fixed || !scene.bodies[b].fixed) pairs.push_back({a, b});
     return pairs;
+}
+
+/// What to give a session that has to look at all of them.
+inline std::vector<BodyPair> all_pairs(const Scene& scene, const Session& session) {
+    return session.finds_pairs() ? std::vector<BodyPair>{} : all_pairs(scene);
 }
 
 inline std::string text(const Settings& settings) {

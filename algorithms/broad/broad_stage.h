@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/kdop/device_scene.h"
+
+namespace tandem {
+
+/// Finds body pairs on the device: all pairs (a < b) whose root k-DOPs, as refit has just left them, overlap,
+/// but those of two fixed bodies. Grids depend on the number of bodies only.
+class BroadStage {
+public:
+    /// Throws InputError for more bodies than pairs of tiles can be numbered for.
+    BroadStage(const DeviceScene& scene, const Scene& bodies, std::uint32_t groups);
+
+    /// Puts the bodies in order of where `frame` has them. Neighbours in space should be neighbours there
+    /// whenever pairs are sought: that decides how fast they are found, never which.
+    void sort(const Frame& frame);
+    /// Enqueues the search. Pairs go to `pairs`, 2 words each, in no order, as far as its `capacity` reaches;
+    /// their number goes to `status`, which has been cleared.
+    void launch(const Buffer& pairs, std::uint32_t capacity, const Buffer& status);
+    /// Of these bodies there are no more pairs than that.
+    std::uint64_t most_pairs() const;
+
+private:
+    std::vector<Eigen::Vector3d> centres(const Frame& frame) const;
+
+    const DeviceScene& scene_;
+    const Scene& bodies_;
+    std::uint32_t groups_, group_size_;
+    std::uint32_t moving_count_ = 0; ///< bodies in the order that are not fixed; they come first
+    std::vector<Eigen::Vector3d> mesh_centres_;
+    Buffer order_, roots_, unions_;
+    Kernel bound_, find_;
+};
+
+} // namespace tandem
