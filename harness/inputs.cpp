@@ -100,6 +100,8 @@ void check_outputs(const RunOptions& options, std::span<const Cell> cells) {
         if (!path->empty() && !paths.insert(std::filesystem::path(*path).lexically_normal()).second)
             throw InputError(fmt::format("{}: named for two outputs; choose another file", *path));
     const bool dumps = !options.dump_pairs.empty() || !options.dump_contacts.empty();
+    if (options.profile > 0 && (dumps || !options.out.empty()))
+        throw InputError("--profile only replays frames; leave out --out and dumps");
     for (const auto& cell : cells) {
         if (dumps && cell.settings.at("output") != "pairs")
             throw InputError("dumps need pairs; leave output out or set output=pairs");

@@ -495,6 +495,13 @@ class Repaired(Case):
         self.assertEqual((status, errors), (0, []))
         self.assertIn("on host: replayed frames 0:0 3 times; nothing measured or recorded", out)
 
+    def test_a_profile_writes_nothing(self):
+        for option in ("--out", "--dump-pairs", "--dump-contacts"):
+            status, _, errors = self.cell("--profile", "1", option, self.work / "profile.x")
+            self.assertEqual((status, len(errors)), (2, 1))
+            self.assertIn("--profile only replays frames", errors[0])
+        self.assertFalse((self.work / "profile.x").exists())
+
     def test_a_negative_profile_is_refused(self):
         self.assertEqual(self.cell("--profile", "-1", timeout=3)[0], 2)
 
