@@ -25,7 +25,7 @@ void set_solver(Dynamics& dynamics) {
                          .bounce = false,
                          .linear_damping = 0.001,
                          .angular_damping = 0.001};
-    dynamics.solver = {.iterations = 1000, .absolute_tolerance = 1e-5, .relative_tolerance = 1e-5};
+    dynamics.solver = {.iterations = 1000, .absolute_tolerance = 1e-5};
     dynamics.steps = 3000;
 }
 
