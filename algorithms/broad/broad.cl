@@ -64,8 +64,9 @@ DEVICE uint overlapping_columns(GLOBAL const RealPair* roots, uint position, LOC
     RealPair own[SLABS];
     uint hits = 0;
     UNROLL for (int axis = 0; axis < SLABS; ++axis) own[axis] = roots[(ulong)position * SLABS + axis];
-    for (uint column = 0; column < count; ++column)
+    NO_UNROLL for (uint column = 0; column < count; ++column) {
         if (volumes_overlap(own, columns + column * SLABS)) hits |= 1u << column;
+    }
     return position < first ? hits : hits & 0xfffffffeu << (position - first);
 }
 
@@ -123,8 +124,11 @@ KERNEL void find_body_pairs(GLOBAL const RealPair* roots, GLOBAL const RealPair*
                 moving_count - rows_from < BROAD_TILE ? moving_count : rows_from + BROAD_TILE;
             uint row = rows_from + LOCAL_ID;
             uint rows_done = rows_from;
-            for (uint j = LOCAL_ID; j < column_count * SLABS; j += GROUP_SIZE)
-                columns[j] = roots[(ulong)from * SLABS + j];
+            NO_UNROLL for (uint c = LOCAL_ID; c < column_count; c += GROUP_SIZE) {
+                UNROLL for (int axis = 0; axis < SLABS; ++axis) {
+                    columns[c * SLABS + axis] = roots[(ulong)(from + c) * SLABS + axis];
+                }
+            }
             do {
                 if (LOCAL_ID == 0u) shared[FOUND] = 0u;
                 BARRIER;

@@ -32,8 +32,8 @@ Eigen::Vector3d centre_of(const std::vector<Eigen::Vector3d>& vertices) {
 BroadStage::BroadStage(const DeviceScene& scene, const Scene& bodies, std::uint32_t groups)
     : scene_(scene),
       bodies_(bodies),
-      groups_(groups),
-      group_size_(std::min<std::uint32_t>(scene.group_size(), BROAD_TILE)) {
+      group_size_(std::min<std::uint32_t>(scene.group_size(), BROAD_TILE)),
+      groups_(groups * (scene.group_size() / group_size_)) {
     const auto count = scene.body_count();
     if (bodies.bodies.size() > most_bodies)
         throw InputError(fmt::format("setting broad=device takes at most {} bodies and the scene has {}; "

@@ -9,7 +9,8 @@ namespace tandem {
 /// but those of two fixed bodies. Grids depend on the number of bodies only.
 class BroadStage {
 public:
-    /// Throws InputError for more bodies than pairs of tiles can be numbered for.
+    /// `groups`: of scene.group_size() work-items, as many as run well at once. Throws InputError for more
+    /// bodies than pairs of tiles can be numbered for.
     BroadStage(const DeviceScene& scene, const Scene& bodies, std::uint32_t groups);
 
     /// Puts the bodies in order of where `frame` has them. Neighbours in space should be neighbours there
@@ -26,7 +27,7 @@ private:
 
     const DeviceScene& scene_;
     const Scene& bodies_;
-    std::uint32_t groups_, group_size_;
+    std::uint32_t group_size_, groups_;
     std::uint32_t moving_count_ = 0; ///< bodies in the order that are not fixed; they come first
     std::vector<Eigen::Vector3d> mesh_centres_;
     Buffer order_, roots_, unions_;

@@ -22,8 +22,9 @@ KERNEL void count_seeds(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLO
         const ulong chunks_b = levels[(ulong)(b[BODY_LEVELS] + own) * LEVEL_WORDS + LEVEL_CHUNKS];
         const int apart =
             ROOT_TEST ? !overlap(node_at(nodes, a[BODY_NODES]), node_at(nodes, b[BODY_NODES])) : 0;
+        const ulong walks = apart ? 0 : chunks_a * chunks_b;
         for (uint level = 0; level < level_count; ++level)
-            seeds[(ulong)level * (pair_count + 1u) + pair] = level == own && !apart ? chunks_a * chunks_b : 0;
+            seeds[(ulong)level * (pair_count + 1u) + pair] = level == own ? walks : 0;
     }
 }
 

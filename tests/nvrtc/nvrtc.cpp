@@ -52,7 +52,7 @@ Programs plan() {
         for (const std::string k : {"6", "8", "8c", "14", "18", "26"})
             for (const std::string precision : {"float", "double"})
                 for (const std::string rounding : {"nearest", "safe"})
-                    prepare(device, *traversal, {},
+                    prepare(device, *traversal, traversal->presets().front().values,
                             {{"k", k.substr(0, k.find('c'))},
                              {"axes", k == "8c" ? "coordinate" : "standard"},
                              {"precision", precision},
@@ -68,7 +68,7 @@ Programs defaults() {
     CompilingDevice device;
     for (const auto* traversal : algorithms())
         for (const std::string precision : {"float", "double"})
-            prepare(device, *traversal, {}, {{"precision", precision}});
+            prepare(device, *traversal, traversal->presets().front().values, {{"precision", precision}});
     return device.asked();
 }
 
