@@ -171,9 +171,9 @@ KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* bodi
     // still read; the third is made ready for the next
     const Job job = {nodes, bodies,         levels, ids,      pairs, level,
                      below, below_capacity, found,  capacity, status};
-    const uint pair_count = body_pair_count(given_pairs, status);
-    GLOBAL const ulong* starts = seeds + (ulong)level * (pair_count + 1u);
-    const ulong own = starts[pair_count];
+    const uint all_pairs = body_pair_count(given_pairs, status);
+    GLOBAL const ulong* starts = seeds + (ulong)level * (all_pairs + 1u);
+    const ulong own = starts[all_pairs];
     const ulong total = seed_total(own, status, level, handed_capacity);
     ulong start = (ulong)GROUP_ID * BATCH;
     uint count = 0;
@@ -191,6 +191,7 @@ KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* bodi
         if (LOCAL_ID == 0u) pushed[(turn + 1u) % 3u] = 0u;
         BARRIER;
         if (collecting) {
+            const uint pair_count = body_pair_count(given_pairs, status); // again, for want of registers
             const uint near = start < own ? pair_between(starts, 0u, pair_count, start) : 0u;
             for (ulong seed = start + LOCAL_ID; seed < start + BATCH && seed < total; seed += GROUP_SIZE) {
                 const Walk walk = walk_of_seed(&job, pair_count, starts, own, near, handed, seed);
