@@ -102,7 +102,7 @@ TEST(OracleFrame, ErrorsOfCandidates) {
 }
 
 TEST(OracleFrame, ReportsProgress) {
-    const auto scene = crowd(5, 30, 2);
+    const auto scene = crowd(5, 60, 2);
     double last = 0;
     std::uint64_t decided = 0;
     const auto truth =
