@@ -15,7 +15,7 @@ struct Filtered {
 
 /// Semi-static filter. Signs are those of 3 x 3 determinants of differences of coordinates, n . d with n a
 /// cross product: 8 roundings at most along any path, so the error is below gamma_8 (Higham 2002, 3.1) times
-/// the sum of the terms' magnitudes, the permanent of Shewchuk's orient3d bound (1997, section 4.2). That
+/// the sum of the terms' magnitudes, the permanent of Shewchuk's orient3d bound (1997). That
 /// sum is at most |n|_1, taken with magnitudes, times the largest difference; 12 u covers gamma_8 = 8 u and
 /// the roundings of the bound itself, and 2^-700 all underflow as long as differences are below 2^300.
 /// Coordinates must be finite; larger ones are left undecided.
