@@ -14,6 +14,9 @@
 #include <fmt/format.h>
 
 namespace tandem {
+
+void register_oracle();
+
 namespace {
 
 const Scene& jacks() {
@@ -173,6 +176,7 @@ int main(int argc, char** argv) {
             ->Arg(2000)
             ->Arg(20000)
             ->Unit(benchmark::kMicrosecond);
+    tandem::register_oracle();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     benchmark::RunSpecifiedBenchmarks();

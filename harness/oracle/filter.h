@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/oracle/decision.h"
+#include "harness/oracle/facets.h"
+
+namespace tandem::oracle {
+
+/// What double arithmetic could certify.
+struct Filtered {
+    bool disjoint = false;        ///< certain
+    FacetSet unsure = all_facets; ///< facets not certain to have a negative gap; none: overlapping
+    bool volume[2]{false, false}; ///< certain that the tetrahedron has some
+};
+
+/// Semi-static filter. Signs are those of 3 x 3 determinants of differences of coordinates, n . d with n a
+/// cross product: 8 roundings at most along any path, so the error is below gamma_8 (Higham 2002, 3.1) times
+/// the sum of the terms' magnitudes, the permanent of Shewchuk's orient3d bound (1997). That
+/// sum is at most |n|_1, taken with magnitudes, times the largest difference; 12 u covers gamma_8 = 8 u and
+/// the roundings of the bound itself, and 2^-700 all underflow as long as differences are below 2^300.
+/// Coordinates must be finite; larger ones are left undecided.
+Filtered filter(const TetraCorners& a, const TetraCorners& b);
+
+} // namespace tandem::oracle

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/kdop/kdop_settings.h"
+#include "harness/oracle/decision.h"
+#include "scenes/contact.h"
+#include "scenes/scene.h"
+
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace tandem {
+
+/// Which tetrahedra of a frame meet, exactly. The vertices are the cell's: moved in its precision by
+/// world_vertices, then taken as they are. Worth keeping: it is the same for all cells of one precision.
+struct FrameTruth {
+    std::vector<Pair> touching, overlapping; ///< sorted
+    /// (body, tetrahedron) with a coordinate that is not finite, sorted; they are in no pair above.
+    std::vector<std::array<std::uint32_t, 2>> invalid;
+    DecisionCounts decisions; ///< of the pairs whose boxes meet
+};
+
+/// Called on the calling thread, now and then; `share` of the work done, in 0..1.
+using Report = std::function<void(double share, std::uint64_t decided)>;
+
+/// Decides every pair of tetrahedra of different bodies (not both fixed) on all cores. A pair it does not
+/// list does not meet: pairs are left out only where boxes, found without rounding, are apart.
+FrameTruth frame_truth(const Scene& scene, const Frame& frame, Precision precision,
+                       const Report& report = {});
+
+/// The same decision for a list of pairs, in its order.
+std::vector<Decision> decide_pairs(const Scene& scene, const Frame& frame, Precision precision,
+                                   std::span<const Pair> pairs);
+
+/// How right a set of candidate pairs is.
+struct PairErrors {
+    std::uint64_t candidates = 0;
+    std::uint64_t disjoint = 0; ///< false pairs
+    std::uint64_t touching = 0, overlapping = 0;
+    std::uint64_t invalid = 0; ///< pairs with a tetrahedron whose coordinates are not finite
+    std::uint64_t missed_touching = 0, missed_overlapping = 0;
+
+    bool operator==(const PairErrors&) const = default;
+};
+
+/// `candidates` sorted, without repetition, of the frame and precision of `truth`.
+PairErrors pair_errors(const FrameTruth& truth, std::span<const Pair> candidates);
+
+} // namespace tandem
