@@ -53,7 +53,7 @@ void million(benchmark::State& state) {
     static const auto scene = make_scene("pile:bodies=64,frames=1,density=0.6");
     static const auto frame = scene.frame(0);
     static auto pairs = reference(scene, frame, {}, false, Method::sweep).pairs;
-    const auto found = pairs.size();
+    static const auto found = pairs.size();
     while (pairs.size() < 1000000)
         pairs.insert(pairs.end(), pairs.begin(), pairs.begin() + static_cast<long>(found));
     pairs.resize(1000000);
