@@ -48,7 +48,9 @@ def host_variant(kernels, geometry, identifier):
     for index, (name, text) in enumerate(kernels.items()):
         defaults = {key: value for key, value in DEFAULT.findall(text) if key not in fixed and key != "GROUP_SIZE"}
         names = sorted(defaults)
-        out += [f"namespace kernel_{index} {{", "#undef TANDEM_PORTABLE_H"]
+        # A namespace of this variant's own: types of one name differ between variants.
+        scope = f"{identifier}_kernel_{index}"
+        out += [f"namespace {scope} {{", "#undef TANDEM_PORTABLE_H"]
         out += [f"#define {key} {value}" for key, value in fixed.items()] + ["#define GROUP_SIZE 1"]
         for key in names:
             out += [f"static long runtime_{key} = {defaults[key]};", f"#define {key} runtime_{key}"]
@@ -57,9 +59,9 @@ def host_variant(kernels, geometry, identifier):
         macros = set(re.findall(r"^#\s*define (\w+)", text, re.M)) | set(fixed) | set(names) | {"GROUP_SIZE"}
         out += [f"#undef {macro}" for macro in sorted(macros)]
         for entry in ENTRY.findall(text):
-            call = f"tandem::host::Invoke<&kernel_{index}::{entry}>"
+            call = f"tandem::host::Invoke<&{scope}::{entry}>"
             rows.append(f'{{"{name}", "{entry}", "{geometry.replace(",", ";")}", {call}::run, {call}::count, '
-                        f"{{kernel_{index}::runtime, {len(names)}}}}},")
+                        f"{{{scope}::runtime, {len(names)}}}}},")
     out += [f"extern const std::span<const tandem::host::HostKernel> {identifier};",
             "static const tandem::host::HostKernel rows[] = {", *rows, "};",
             f"const std::span<const tandem::host::HostKernel> {identifier}(rows);", ""]
