@@ -128,6 +128,23 @@ DEVICE void make_deepest(const Refit* refit, LOCAL const uint* strip, uint node,
     for (int word = 0; word < K; ++word) values[word] = MERGED(word, child[word], child[word + K]);
 }
 
+// Where a work-item's node of one depth is: its heap index in the chunk, and in the strip's own heap.
+typedef struct {
+    LOCAL const uint* strip;
+    LOCAL Unit* heap;
+    uint node, place;
+} Place;
+
+DEVICE Place place_of(const Refit* refit, LOCAL const uint* strips, uint i, uint depth, LOCAL Unit* tile) {
+    const uint in_depth = i & ((1u << depth) - 1u);
+    Place at;
+    at.strip = strips + (i >> depth) * JOB_WORDS;
+    at.heap = HEAP(tile, i >> depth, refit->height);
+    at.node = (at.strip[JOB_ROOT] << depth) + in_depth;
+    at.place = (1u << depth) + in_depth;
+    return at;
+}
+
 // Small nodes are made in pairs; of larger ones a work-item makes one, as the tile of two would leave room
 // for too few work-groups.
 #define IN_PAIRS (K <= 8)
@@ -136,13 +153,9 @@ DEVICE void make_deepest(const Refit* refit, LOCAL const uint* strip, uint node,
 DEVICE void make_pairs(const Refit* refit, LOCAL const uint* strips, uint strip_count, LOCAL Unit* tile) {
     const uint depth = refit->height - 1u;
     for (uint i = TEAM_LANE; i < strip_count << depth; i += TEAM_SIZE) {
-        LOCAL const uint* strip = strips + (i >> depth) * JOB_WORDS;
-        LOCAL Unit* heap = HEAP(tile, i >> depth, refit->height);
-        const uint in_depth = i & ((1u << depth) - 1u);
-        const uint node = (strip[JOB_ROOT] << depth) + in_depth;
-        const uint place = (1u << depth) + in_depth;
-        if (node >= 2u * strip[JOB_ITEMS]) continue;
-        const uint inner = is_leaf(node, strip[JOB_ITEMS]) ? 0u : 1u;
+        const Place at = place_of(refit, strips, i, depth, tile);
+        if (at.node >= 2u * at.strip[JOB_ITEMS]) continue;
+        const uint inner = is_leaf(at.node, at.strip[JOB_ITEMS]) ? 0u : 1u;
         real both[K];
         for (int axis = 0; axis < SLABS; ++axis) {
             both[axis] = REAL_INFINITY;
@@ -150,11 +163,11 @@ DEVICE void make_pairs(const Refit* refit, LOCAL const uint* strips, uint strip_
         }
         NO_UNROLL for (uint child = 0; child <= inner; ++child) {
             real values[K];
-            make_deepest(refit, strip, (node << inner) + child, values);
-            store_node(values, heap + ((place << inner) + child) * NODE_STRIDE);
+            make_deepest(refit, at.strip, (at.node << inner) + child, values);
+            store_node(values, at.heap + ((at.place << inner) + child) * NODE_STRIDE);
             for (int word = 0; word < K; ++word) both[word] = MERGED(word, both[word], values[word]);
         }
-        store_node(both, heap + place * NODE_STRIDE);
+        store_node(both, at.heap + at.place * NODE_STRIDE);
     }
 }
 
@@ -162,19 +175,15 @@ DEVICE void make_pairs(const Refit* refit, LOCAL const uint* strips, uint strip_
 DEVICE void make_depth(const Refit* refit, LOCAL const uint* strips, uint strip_count, uint depth,
                        LOCAL Unit* tile) {
     for (uint i = TEAM_LANE; i < strip_count << depth; i += TEAM_SIZE) {
-        LOCAL const uint* strip = strips + (i >> depth) * JOB_WORDS;
-        LOCAL Unit* heap = HEAP(tile, i >> depth, refit->height);
-        const uint in_depth = i & ((1u << depth) - 1u);
-        const uint node = (strip[JOB_ROOT] << depth) + in_depth;
-        const uint place = (1u << depth) + in_depth;
-        if (node >= 2u * strip[JOB_ITEMS]) continue;
-        if (depth == refit->height || is_leaf(node, strip[JOB_ITEMS])) {
+        const Place at = place_of(refit, strips, i, depth, tile);
+        if (at.node >= 2u * at.strip[JOB_ITEMS]) continue;
+        if (depth == refit->height || is_leaf(at.node, at.strip[JOB_ITEMS])) {
             real values[K];
-            make_deepest(refit, strip, node, values);
-            store_node(values, heap + place * NODE_STRIDE);
+            make_deepest(refit, at.strip, at.node, values);
+            store_node(values, at.heap + at.place * NODE_STRIDE);
         } else {
-            merge_nodes(heap + 2u * place * NODE_STRIDE, heap + (2u * place + 1u) * NODE_STRIDE,
-                        heap + place * NODE_STRIDE);
+            merge_nodes(at.heap + 2u * at.place * NODE_STRIDE, at.heap + (2u * at.place + 1u) * NODE_STRIDE,
+                        at.heap + at.place * NODE_STRIDE);
         }
     }
 }
