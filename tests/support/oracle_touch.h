@@ -15,6 +15,13 @@ struct OraclePair {
     TetraCorners a, b;
 };
 
+inline constexpr TetraCorners unit{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
+inline TetraCorners moved(TetraCorners t, double x, double y, double z) {
+    for (auto& corner : t) corner = {corner[0] + x, corner[1] + y, corner[2] + z};
+    return t;
+}
+
 inline bool all_floats(const OraclePair& pair) {
     for (const auto* corners : {&pair.a, &pair.b})
         for (const auto& corner : *corners)

@@ -2,10 +2,21 @@
 #pragma once
 
 #include "scenes/digest.h"
+#include "scenes/error.h"
 #include "scenes/random.h"
 #include "scenes/scene.h"
 
 namespace tandem::testing_support {
+
+/// What make_scene() says of a specification that it refuses.
+inline std::string failure(const std::string& specification) {
+    try {
+        make_scene(specification);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
 
 /// A box of cells x cells x cells cubes of six tetrahedra each, its inner vertices shaken.
 inline Mesh shaken_box(std::uint32_t cells, Random& random) {

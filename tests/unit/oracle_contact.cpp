@@ -13,13 +13,6 @@ namespace {
 
 using namespace testing_support;
 
-constexpr TetraCorners unit{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-
-TetraCorners moved(TetraCorners t, double x, double y, double z) {
-    for (auto& corner : t) corner = {corner[0] + x, corner[1] + y, corner[2] + z};
-    return t;
-}
-
 TEST(OracleContact, ACornerInside) {
     const auto truth = contact_truth(unit, moved(unit, 0.25, 0.25, 0.25));
     ASSERT_TRUE(truth);

@@ -11,13 +11,6 @@ namespace {
 
 using namespace testing_support;
 
-constexpr TetraCorners unit{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-
-TetraCorners moved(TetraCorners t, double x, double y, double z) {
-    for (auto& corner : t) corner = {corner[0] + x, corner[1] + y, corner[2] + z};
-    return t;
-}
-
 /// The same answer from every tier on, both ways round.
 void expect(const OraclePair& pair, Relation relation, const char* what) {
     for (const auto first : {Tier::screen, Tier::filter, Tier::integers, Tier::big_integers}) {

@@ -11,8 +11,6 @@ namespace {
 
 using namespace testing_support;
 
-constexpr TetraCorners unit{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-
 TetraCorners point(double x, double y, double z) { return {{{x, y, z}, {x, y, z}, {x, y, z}, {x, y, z}}}; }
 
 TetraCorners segment(std::array<double, 3> p, std::array<double, 3> q) { return {{p, p, q, q}}; }

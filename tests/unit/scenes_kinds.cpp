@@ -3,6 +3,7 @@
 #include "scenes/digest.h"
 #include "scenes/error.h"
 #include "scenes/scene.h"
+#include "tests/support/scenes.h"
 
 #include <bit>
 #include <cmath>
@@ -15,15 +16,7 @@ namespace tandem {
 namespace {
 
 using testing::HasSubstr;
-
-std::string failure(const std::string& specification) {
-    try {
-        make_scene(specification);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
+using testing_support::failure;
 
 /// Coordinates that are not single-precision numbers.
 std::size_t not_single(const Mesh& mesh) {

@@ -2,6 +2,7 @@
 #include "scenes/error.h"
 #include "scenes/overlap.h"
 #include "scenes/scene.h"
+#include "tests/support/scenes.h"
 
 #include <cmath>
 #include <gmock/gmock.h>
@@ -14,15 +15,7 @@ namespace tandem {
 namespace {
 
 using testing::HasSubstr;
-
-std::string failure(const std::string& specification) {
-    try {
-        make_scene(specification);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
+using testing_support::failure;
 
 struct Row {
     std::string scene;
