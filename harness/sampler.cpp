@@ -15,10 +15,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::int64_t since(Clock::time_point begin) {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
-}
-
 void add(Digest& sum, const Digest& term) {
     sum.count += term.count;
     sum.a += term.a;
@@ -188,6 +184,19 @@ void Sampler::count() {
 }
 
 } // namespace
+
+std::int64_t since(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
+}
+
+StageSample& StageSample::operator+=(const StageSample& other) {
+    device_ns += other.device_ns;
+    host_ns += other.host_ns;
+    launches += other.launches;
+    waits += other.waits;
+    bytes += other.bytes;
+    return *this;
+}
 
 StageSamples by_stage(const Trace& trace) {
     StageSamples samples{};

@@ -4,6 +4,7 @@
 #include "harness/plan.h"
 #include "harness/reference.h"
 
+#include <chrono>
 #include <functional>
 #include <optional>
 
@@ -40,7 +41,12 @@ struct StageSample {
     std::int64_t device_ns = 0;
     std::int64_t host_ns = 0;
     std::uint64_t launches = 0, waits = 0, bytes = 0;
+
+    StageSample& operator+=(const StageSample& other);
 };
+
+/// Nanoseconds since `begin`.
+std::int64_t since(std::chrono::steady_clock::time_point begin);
 
 /// By stage, as in stage_names.
 using StageSamples = std::array<StageSample, stage_names.size()>;

@@ -22,10 +22,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::int64_t since(Clock::time_point begin) {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
-}
-
 Scene open_scene(const SimulateOptions& options) {
     if (options.scene.empty()) throw InputError("no scene; name one, see 'tandem scenes'");
     auto scene = make_scene(options.scene);
@@ -147,14 +143,7 @@ void ContactFinder::find(const Frame& frame, std::vector<ContactPoint>& contacts
     search_.body_pairs += result.body_pairs;
     search_.candidate_pairs += result.count;
     const auto stages = by_stage(device_.finish());
-    for (std::size_t i = 0; i < stages.size(); ++i) {
-        auto& sum = search_.stages[i];
-        sum.device_ns += stages[i].device_ns;
-        sum.host_ns += stages[i].host_ns;
-        sum.launches += stages[i].launches;
-        sum.waits += stages[i].waits;
-        sum.bytes += stages[i].bytes;
-    }
+    for (std::size_t i = 0; i < stages.size(); ++i) search_.stages[i] += stages[i];
 }
 
 Search ContactFinder::take() { return std::exchange(search_, {}); }

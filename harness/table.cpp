@@ -12,14 +12,7 @@ namespace {
 
 StageSample sum_of(const Measurement& m, Stage stage) {
     StageSample sum;
-    for (const auto& frame : m.stages) {
-        const auto& sample = frame[static_cast<std::size_t>(stage)];
-        sum.device_ns += sample.device_ns;
-        sum.host_ns += sample.host_ns;
-        sum.launches += sample.launches;
-        sum.waits += sample.waits;
-        sum.bytes += sample.bytes;
-    }
+    for (const auto& frame : m.stages) sum += frame[static_cast<std::size_t>(stage)];
     return sum;
 }
 
