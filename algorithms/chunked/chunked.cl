@@ -14,10 +14,11 @@ KERNEL void count_seeds(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLO
                         GLOBAL const uint* pairs, uint given_pairs, uint level_count, GLOBAL ulong* seeds,
                         GLOBAL const uint* status) {
     const uint pair_count = body_pair_count(given_pairs, status);
+    const ulong threshold = seed_threshold(pair_count);
     for (uint pair = GLOBAL_ID; pair < pair_count; pair += GLOBAL_COUNT) {
         GLOBAL const uint* a = bodies + (ulong)pairs[2u * pair] * BODY_WORDS;
         GLOBAL const uint* b = bodies + (ulong)pairs[2u * pair + 1u] * BODY_WORDS;
-        const uint own = seed_level(a, b, levels);
+        const uint own = seed_level(a, b, levels, threshold);
         const ulong chunks_a = levels[(ulong)(a[BODY_LEVELS] + own) * LEVEL_WORDS + LEVEL_CHUNKS];
         const ulong chunks_b = levels[(ulong)(b[BODY_LEVELS] + own) * LEVEL_WORDS + LEVEL_CHUNKS];
         const int apart =
@@ -130,8 +131,9 @@ KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL
     flush(&tally, status);
 }
 
-// A work-group's stack: rows of body pair, chunk of a, chunk of b, node pair. Seeds are looked at a batch at
-// a time, while there are fewer rows than work-items; SHARED_RESERVE is what the walk of one row can add.
+// A work-group's stack: rows of body pair, chunk of a, chunk of b, node pair. Seeds are looked at a batch of
+// at most BATCH at a time, while there are fewer rows than work-items; SHARED_RESERVE is what the walk of one
+// row can add.
 #define ROW_WORDS 4
 #define BATCH (8 * GROUP_SIZE)
 #define SHARED_RESERVE (3 * LEAF_BITS + 1)
@@ -157,6 +159,14 @@ DEVICE uint rows_to_take(uint count) {
     return taken == 0u && count != 0u ? 1u : taken;
 }
 
+// As few turns of batches as BATCH allows, all of one size: few seeds are spread over all work-groups, and
+// none has a turn more than its share.
+DEVICE uint batch_size(ulong seeds) {
+    const ulong most = (ulong)GROUP_COUNT * BATCH;
+    const ulong dealt = (seeds + most - 1u) / most * GROUP_COUNT;
+    return dealt == 0 ? 1u : (uint)((seeds + dealt - 1u) / dealt);
+}
+
 // Schedule `group`: batches of seeds are dealt to work-groups, a fixed stride apart. A group tests the roots
 // of a batch, which few seeds survive, and expands what is left from a stack that its work-items share, so
 // that all of them have work however unlike the walks are.
@@ -175,7 +185,8 @@ KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* bodi
     GLOBAL const ulong* starts = seeds + (ulong)level * (all_pairs + 1u);
     const ulong own = starts[all_pairs];
     const ulong total = seed_total(own, status, level, handed_capacity);
-    ulong start = (ulong)GROUP_ID * BATCH;
+    const uint batch = batch_size(total);
+    ulong start = (ulong)GROUP_ID * batch;
     uint count = 0;
     uint turn = 0;
     Tally tally = empty_tally();
@@ -193,7 +204,7 @@ KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* bodi
         if (collecting) {
             const uint pair_count = body_pair_count(given_pairs, status); // again, for want of registers
             const uint near = start < own ? pair_between(starts, 0u, pair_count, start) : 0u;
-            for (ulong seed = start + LOCAL_ID; seed < start + BATCH && seed < total; seed += GROUP_SIZE) {
+            for (ulong seed = start + LOCAL_ID; seed < start + batch && seed < total; seed += GROUP_SIZE) {
                 const Walk walk = walk_of_seed(&job, pair_count, starts, own, near, handed, seed);
                 if (COUNT_WORK) tally.seeds += 1;
                 if (COUNT_WORK) tally.tests += 1;
@@ -201,7 +212,7 @@ KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* bodi
                     push_row(rows, count, pushed + turn, walk.pair, walk.first_a / CHUNK_ITEMS,
                              walk.first_b / CHUNK_ITEMS, 1u << 16 | 1u);
             }
-            start += (ulong)GROUP_COUNT * BATCH;
+            start += (ulong)GROUP_COUNT * batch;
         } else if (LOCAL_ID < taken) {
             const Walk walk = start_walk(bodies, levels, pairs, level, row[0], row[1], row[2]);
             const Children children = expand(&job, &walk, row[3], &tally);

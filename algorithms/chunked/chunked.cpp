@@ -20,11 +20,18 @@ const std::vector<Parameter> own{
     {"chunk_bytes", "8000", {}, 1, std::int64_t{1} << 30, "memory of a pair of chunks in equation (1)"},
     {"leaves", "0", {}, 0, 16384, "tetrahedra per chunk, a power of two; 0: from chunk_bytes"},
     {"seed_threshold",
-     "1000",
+     "0",
+     {},
+     0,
+     std::int64_t{1} << 31,
+     "chunk pairs per body pair above which seeding climbs a level (the paper's: 1e7); 0: seed_target shared "
+     "by the frame's body pairs"},
+    {"seed_target",
+     "1048576",
      {},
      1,
      std::int64_t{1} << 31,
-     "chunk pairs per body pair above which seeding climbs a level (the paper's: 1e7)"},
+     "seeds a frame is to have at most, as far as levels allow, when seed_threshold is 0"},
     {"schedule",
      "group",
      {"group", "item"},
@@ -73,7 +80,8 @@ class ChunkedSession final : public KdopSession {
 public:
     ChunkedSession(Device& device, const Scene& scene, const Settings& settings)
         : KdopSession(device, scene, settings, leaves_of(settings)),
-          threshold_(static_cast<std::uint64_t>(integer(settings, "seed_threshold"))) {
+          threshold_(static_cast<std::uint64_t>(integer(settings, "seed_threshold"))),
+          target_(static_cast<std::uint64_t>(integer(settings, "seed_target"))) {
         do_compile(defines());
         find_top_level();
         reserve_seeds(static_cast<std::uint64_t>(integer(settings, "seed_capacity")));
@@ -84,7 +92,7 @@ private:
     bool do_grow(const Status& status) override;
     void do_compile(const Defines& defines) override;
 
-    std::uint32_t seed_level(std::uint32_t a, std::uint32_t b) const;
+    std::uint32_t seed_level(std::uint32_t a, std::uint32_t b, std::uint64_t pair_count) const;
     void find_top_level();
     void reserve_seeds(std::uint64_t count);
     void reserve_starts(std::uint64_t pairs);
@@ -94,7 +102,8 @@ private:
     bool try_published(std::span<const BodyPair> pairs);
     std::vector<std::uint32_t> seeds_of_level(std::span<const BodyPair> pairs, std::uint32_t level) const;
 
-    std::uint64_t threshold_;
+    std::uint64_t threshold_; ///< 0: target_ shared by the body pairs
+    std::uint64_t target_;
     std::uint32_t top_level_ = 0; ///< the highest level any pair of this scene's meshes is seeded at
     std::uint64_t seed_capacity_ = 0;
     std::uint64_t start_room_ = 0;
@@ -106,6 +115,7 @@ private:
 void ChunkedSession::do_compile(const Defines& common) {
     auto defines = common;
     defines["SEED_THRESHOLD"] = std::to_string(threshold_);
+    defines["SEED_TARGET"] = std::to_string(target_);
     // Body pairs found on the device have passed the same test.
     defines["ROOT_TEST"] = settings().at("root_test") == "yes" && !finds_pairs() ? "1" : "0";
     const auto& source = kernel_source("algorithms/chunked/chunked.cl");
@@ -116,23 +126,27 @@ void ChunkedSession::do_compile(const Defines& common) {
 }
 
 /// The rule of seed_level in chunked.cl, for the host.
-std::uint32_t ChunkedSession::seed_level(std::uint32_t a, std::uint32_t b) const {
+std::uint32_t ChunkedSession::seed_level(std::uint32_t a, std::uint32_t b, std::uint64_t pair_count) const {
+    const auto threshold = threshold_ != 0 ? threshold_ : target_ / std::max<std::uint64_t>(pair_count, 1);
     const auto& levels_a = scene().levels(a);
     const auto& levels_b = scene().levels(b);
     const auto top = static_cast<std::uint32_t>(std::min(levels_a.size(), levels_b.size()) - 1);
     std::uint32_t level = 0;
-    while (level < top && std::uint64_t{levels_a[level].chunks} * levels_b[level].chunks > threshold_)
-        ++level;
+    while (level < top && std::uint64_t{levels_a[level].chunks} * levels_b[level].chunks > threshold) ++level;
     return level;
 }
 
-/// Which levels can be seeded depends on meshes only, so that the sequence of launches is fixed beforehand.
+/// Which levels can be seeded depends on meshes and the number of bodies only, so that the sequence of
+/// launches is fixed beforehand.
 void ChunkedSession::find_top_level() {
+    const std::uint64_t bodies = scene().body_count();
+    const auto most_pairs = bodies * (bodies - 1) / 2;
     std::map<const std::vector<Level>*, std::uint32_t> first_with; // one body for each mesh
     for (std::uint32_t body = 0; body < scene().body_count(); ++body)
         first_with.emplace(&scene().levels(body), body);
     for (const auto& [levels_a, a] : first_with)
-        for (const auto& [levels_b, b] : first_with) top_level_ = std::max(top_level_, seed_level(a, b));
+        for (const auto& [levels_b, b] : first_with)
+            top_level_ = std::max(top_level_, seed_level(a, b, most_pairs));
 }
 
 void ChunkedSession::reserve_seeds(std::uint64_t count) {
@@ -210,7 +224,7 @@ std::vector<std::uint32_t> ChunkedSession::seeds_of_level(std::span<const BodyPa
     std::vector<std::uint32_t> seeds;
     for (std::uint32_t pair = 0; pair < body_pairs.size(); ++pair) {
         const auto [a, b] = body_pairs[pair];
-        if (seed_level(a, b) != level) continue;
+        if (seed_level(a, b, body_pairs.size()) != level) continue;
         for (std::uint32_t i = 0; i < scene().levels(a)[level].chunks; ++i)
             for (std::uint32_t j = 0; j < scene().levels(b)[level].chunks; ++j)
                 seeds.insert(seeds.end(), {pair, i, j});

@@ -38,7 +38,8 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
                            of("contact_capacity", {"1", "100000"})};
     if (traversal.name() == "chunked") {
         axes.push_back(of("leaves", {"2", "4", "32"}));
-        axes.push_back(of("seed_threshold", {"1", "40", "1e7"}));
+        axes.push_back(of("seed_threshold", {"0", "1", "40", "1e7"}));
+        axes.push_back(of("seed_target", {"1000", "1048576"}));
         axes.push_back(of("seed_capacity", {"1", "65536"}));
         axes.push_back(of("root_test", {"yes", "no"}));
         axes.push_back(of("schedule", {"group", "item"}));
@@ -251,6 +252,34 @@ TEST_P(Conformance, GproximityIsForcedThroughEveryMechanism) {
         fmt::print("{} balances, {} refills, {} spills, {} retries\n", result.work.balances,
                    result.work.refills, result.work.spills, timed.retries);
     }
+}
+
+/// A target shared by the pairs of a frame seeds as the threshold that is each pair's share does.
+TEST_P(Conformance, ChunkedSharesItsTargetOfSeeds) {
+    auto& on = device(GetParam());
+    const auto scene = crowd(53, 10, 0.9);
+    const auto& traversal = algorithm("chunked");
+    const auto seeds = [&](const std::string& threshold, const std::string& target, std::uint64_t& pairs) {
+        const auto settings = resolve(
+            traversal.parameters(), {},
+            {{"leaves", "2"}, {"seed_threshold", threshold}, {"seed_target", target}}, traversal.name());
+        const std::array devices{&on};
+        const auto session = traversal.prepare(devices, scene, settings);
+        session->count_work(true);
+        const auto body_pairs = all_pairs(scene, *session);
+        pairs = body_pairs.size();
+        return session->run(scene.frame(0), body_pairs).work.seeds;
+    };
+    std::uint64_t pairs = 0;
+    const auto coarse = seeds("1", "1", pairs);
+    const auto middle = seeds("40", "1", pairs);
+    const auto fine = seeds("1e7", "1", pairs);
+    ASSERT_GT(pairs, 1u);
+    ASSERT_NE(coarse, middle);
+    ASSERT_NE(middle, fine);
+    EXPECT_EQ(seeds("0", "1", pairs), coarse);
+    EXPECT_EQ(seeds("0", std::to_string(40 * pairs), pairs), middle);
+    EXPECT_EQ(seeds("0", "1e9", pairs), fine);
 }
 
 TEST_P(Conformance, ResidentChunkedWaitsOnce) {

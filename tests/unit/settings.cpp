@@ -30,7 +30,7 @@ TEST(Settings, DefaultsAreThoseOfTheDesign) {
     EXPECT_EQ(settings.at("k"), "18");
     EXPECT_EQ(settings.at("rounding"), "safe");
     EXPECT_EQ(settings.at("precision"), "float");
-    EXPECT_EQ(settings.at("seed_threshold"), "1000");
+    EXPECT_EQ(settings.at("seed_threshold"), "0");
     EXPECT_EQ(settings.at("residency"), "resident");
 }
 
