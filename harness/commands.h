@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "harness/accuracy/truths.h"
 #include "harness/plan.h"
 
 #include <string>
@@ -21,7 +22,9 @@ struct RunOptions {
     std::string dump_pairs, dump_contacts;
     std::vector<std::string> require; ///< devices or backends whose absence is a failure
     bool check = true;
-    bool count = true; ///< replay once more with kernels that count their work
+    bool count = true;                      ///< replay once more with kernels that count their work
+    TruthAmount truth = TruthAmount::pairs; ///< compare answers with the exact truth
+    std::size_t truth_contacts = 0;         ///< of this many pairs a frame at most; 0: all
     bool quiet = false;
 };
 

@@ -46,6 +46,18 @@ void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string
     app.add_option("--out", options.out, "append records to this JSON-lines file");
     app.add_option("--require", options.require, "devices or backends whose absence is a failure")
         ->delimiter(',');
+    app.add_option("--truth", options.truth,
+                   "compare with the exact truth: none, pairs (every pair of every frame; the default) or "
+                   "contacts (depths, "
+                   "normals and points too)")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, tandem::TruthAmount>{{"none", tandem::TruthAmount::none},
+                                                       {"pairs", tandem::TruthAmount::pairs},
+                                                       {"contacts", tandem::TruthAmount::contacts}}))
+        ->option_text("none|pairs|contacts");
+    app.add_option("--truth-contacts", options.truth_contacts,
+                   "exact contacts of at most so many pairs a frame; all when left out")
+        ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40));
     app.add_flag("--quiet", options.quiet, "no progress line");
 }
 

@@ -162,6 +162,50 @@ Json work_json(const Measurement& m) {
             {"retries", m.retries}};
 }
 
+Json spread_json(const std::vector<double>& samples) {
+    const auto s = spread(samples);
+    return s ? Json{{"median", s->median}, {"p99", s->p99}, {"max", s->maximum}} : Json();
+}
+
+Json contact_errors_json(const AnswerErrors& e) {
+    if (!e.contacts) return nullptr;
+    const auto& c = *e.contacts;
+    return {{"complete", e.every_contact},
+            {"overlapping", c.overlapping},
+            {"unanswered", c.unanswered},
+            {"not_finite", c.not_finite},
+            {"depth_relative", spread_json(c.depth_relative)},
+            {"depth_ulps", spread_json(c.depth_ulps)},
+            {"normal_degrees", spread_json(c.normal_degrees)},
+            {"point", spread_json(c.point)},
+            {"hausdorff", spread_json(c.hausdorff)}};
+}
+
+Json truth_json(const AnswerErrors& e) {
+    const auto upper = e.missed_upper95();
+    const auto ratio = e.candidate_ratio();
+    Json json{{"frames", e.frames},
+              {"candidates", e.pairs.candidates},
+              {"false", e.pairs.disjoint},
+              {"touching", e.pairs.touching},
+              {"overlapping", e.pairs.overlapping},
+              {"invalid", e.pairs.invalid},
+              {"missed_touching", e.pairs.missed_touching},
+              {"missed_overlapping", e.pairs.missed_overlapping},
+              {"missed_upper95", upper ? Json(*upper) : Json()},
+              {"candidate_ratio", ratio ? Json(*ratio) : Json()},
+              {"invalid_tetrahedra", e.invalid_tetrahedra}};
+    for (unsigned tier = 0; tier < tier_count; ++tier)
+        json["decided"][tier_names[tier]] = e.decided.tiers[tier];
+    json["decisions"] = e.decisions ? Json(*e.decisions) : Json();
+    json["contacts"] = contact_errors_json(e);
+    return json;
+}
+
+Json error_json(const Measurement& m) {
+    return {{"degenerate_pairs", m.degenerate}, {"truth", m.errors ? truth_json(*m.errors) : Json()}};
+}
+
 std::string status_of(const Measurement& m, const std::string& failure) {
     if (!failure.empty()) return "failed";
     return m.agreement.ok() ? "ok" : "wrong";
@@ -194,7 +238,7 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["preparation"] =
         measured ? Json{{"host_ns", m.prepare_ns}, {"device_bytes", m.device_bytes}} : Json();
     json["agreement"] = agreement_json(m, scene);
-    json["error"] = measured ? Json{{"degenerate_pairs", m.degenerate}} : Json();
+    json["error"] = measured ? error_json(m) : Json();
     json["environment"] = record_environment();
     return json;
 }

@@ -52,8 +52,7 @@ public:
             broad_ = std::make_unique<Broad>(scene, geometry_, broad_bound(out.settings));
     }
 
-    void check(References& references, bool against_reference,
-               const std::function<void(std::size_t)>& progress);
+    void check(References& references, const SampleOptions& options, const std::string& name);
     void time();
     void break_down();
     void count();
@@ -70,6 +69,8 @@ private:
 
     void compare(const ReferenceAnswer& expected, const FrameResult& result, const Digest& digest,
                  const Digest& contacts);
+    void add_errors(Truths& truths, std::size_t index, const FrameResult& result, const Digest& digest,
+                    const Digest& contacts, const Report& report);
 
     const FrameRange& range_;
     Measurement& out_;
@@ -104,20 +105,38 @@ void Sampler::compare(const ReferenceAnswer& expected, const FrameResult& result
         ++agreement.contact_frames_wrong;
 }
 
-void Sampler::check(References& references, bool against_reference,
-                    const std::function<void(std::size_t)>& progress) {
+void Sampler::add_errors(Truths& truths, std::size_t index, const FrameResult& result, const Digest& digest,
+                         const Digest& contacts, const Report& report) {
+    FrameAnswer answer;
+    answer.pairs = digest;
+    answer.contacts = contacts;
+    answer.makes_contacts = out_.settings.at("contact_rule") != "none";
+    answer.download = [&] { return session_->download(result); };
+    answer.download_contacts = [&] { return session_->download_contacts(result); };
+    if (!out_.errors) out_.errors.emplace();
+    out_.errors->add(truths.errors(geometry_.precision, index, answer, report));
+}
+
+void Sampler::check(References& references, const SampleOptions& options, const std::string& name) {
     session_->reset();
     for (std::size_t i = 0; i < range_.frames.size(); ++i) {
-        progress(i);
+        const auto frame = fmt::format("frame {} of {}", i + 1, range_.frames.size());
+        options.progress(fmt::format("{}: checking {}", name, frame));
         const auto result = run(i);
         const bool counted = out_.settings.at("output") == "count";
         auto digest = counted ? Digest{result.count, 0, 0} : session_->digest(result);
         const auto contacts = session_->contact_digest(result);
-        if (against_reference) {
+        if (options.check) {
             const auto& expected = references.answer(geometry_, i);
             if (counted && result.count == expected.digest.count) digest = expected.digest;
             compare(expected, result, digest, contacts);
         }
+        if (options.truths != nullptr && result.pairs)
+            add_errors(*options.truths, i, result, digest, contacts,
+                       [&](double share, std::uint64_t decided) {
+                           options.progress(fmt::format("truth of {}: {:.0f} %, {} pairs decided", frame,
+                                                        share * 100, decided));
+                       });
         add(out_.agreement.digest, digest);
         add(out_.agreement.contact_digest, contacts);
         digests_.push_back(digest);
@@ -250,9 +269,7 @@ Measurement measure(const Cell& cell, const Scene& scene, const FrameRange& rang
     options.progress(fmt::format("{}: preparing", name));
     cell.device->take_kernels();
     Sampler sampler(cell, scene, range, out);
-    sampler.check(references, options.check, [&](std::size_t frame) {
-        options.progress(fmt::format("{}: checking frame {} of {}", name, frame + 1, range.frames.size()));
-    });
+    sampler.check(references, options, name);
     for (std::size_t i = 0; i < options.repeat; ++i) {
         options.progress(fmt::format("{}: sample {} of {}", name, i + 1, options.repeat));
         sampler.time();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "harness/accuracy/truths.h"
 #include "harness/plan.h"
 #include "harness/reference.h"
 
@@ -76,6 +77,7 @@ struct Measurement {
     std::uint64_t degenerate = 0, rejected = 0, retries = 0;
     Work work;
     Agreement agreement;
+    std::optional<AnswerErrors> errors; ///< against the exact truth; none when not asked for
     std::vector<KernelFacts> kernels;
     std::int64_t prepare_ns = 0; ///< upload of static data and compilation; in no sample
     std::size_t device_bytes = 0;
@@ -85,6 +87,7 @@ struct SampleOptions {
     std::size_t repeat = 3;
     bool check = true;
     bool count_work = true;
+    Truths* truths = nullptr; ///< of the same scene and frames; null: no comparison with the truth
     std::function<void(std::string_view)> progress = [](std::string_view) {};
 };
 

@@ -27,6 +27,8 @@ enum class Tier : std::uint8_t {
     program       ///< a linear program over GMP rationals: tetrahedra of no volume
 };
 constexpr unsigned tier_count = 5;
+constexpr std::array tier_names{"screen", "filter", "integers", "big_integers", "program"};
+static_assert(tier_names.size() == tier_count);
 
 struct Decision {
     Relation relation = Relation::invalid;

@@ -124,6 +124,16 @@ std::vector<Decision> decide_pairs(const Scene& scene, const Frame& frame, Preci
     return decide_all(world_of(scene, frame, precision), pairs);
 }
 
+std::vector<std::array<TetraCorners, 2>> pair_corners(const Scene& scene, const Frame& frame,
+                                                      Precision precision, std::span<const Pair> pairs) {
+    std::vector<std::array<TetraCorners, 2>> corners;
+    if (pairs.empty()) return corners;
+    const auto world = world_of(scene, frame, precision);
+    for (const auto& pair : pairs)
+        corners.push_back({world[pair.body_a][pair.tet_a], world[pair.body_b][pair.tet_b]});
+    return corners;
+}
+
 PairErrors pair_errors(const FrameTruth& truth, std::span<const Pair> candidates) {
     PairErrors errors;
     errors.candidates = candidates.size();

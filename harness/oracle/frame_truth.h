@@ -33,6 +33,10 @@ FrameTruth frame_truth(const Scene& scene, const Frame& frame, Precision precisi
 std::vector<Decision> decide_pairs(const Scene& scene, const Frame& frame, Precision precision,
                                    std::span<const Pair> pairs);
 
+/// The corners of the pairs' tetrahedra, in their order: as the decision takes them.
+std::vector<std::array<TetraCorners, 2>> pair_corners(const Scene& scene, const Frame& frame,
+                                                      Precision precision, std::span<const Pair> pairs);
+
 /// How right a set of candidate pairs is.
 struct PairErrors {
     std::uint64_t candidates = 0;

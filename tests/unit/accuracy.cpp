@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+#include "harness/accuracy/answer_errors.h"
+#include "harness/accuracy/hull.h"
+#include "harness/accuracy/truths.h"
+#include "tests/support/scenes.h"
+
+#include <gmock/gmock.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+using Point = std::array<double, 3>;
+
+const TetraCorners unit{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
+TEST(Hull, DistanceOfPointsFromATetrahedron) {
+    EXPECT_DOUBLE_EQ(distance_to_hull(unit, {-2, 0.2, 0.3}), 2);             // a face
+    EXPECT_DOUBLE_EQ(distance_to_hull(unit, {0.5, -3, -4}), 5);              // an edge
+    EXPECT_DOUBLE_EQ(distance_to_hull(unit, {4, -4, 0}), 5);                 // a corner
+    EXPECT_NEAR(distance_to_hull(unit, {1, 1, 1}), 2 / std::sqrt(3), 1e-15); // the slanted face
+    EXPECT_NEAR(distance_to_hull(unit, {0.2, 0.2, 0.2}), 0, 1e-15);          // inside
+    EXPECT_NEAR(distance_to_hull(unit, {0.25, 0.25, 0}), 0, 1e-15);          // in a face
+}
+
+TEST(Hull, DistanceFromFewPoints) {
+    const std::vector<Point> one{{1, 2, 3}};
+    const std::vector<Point> two{{-1, 2, 0}, {1, 2, 0}};
+    const std::vector<Point> flat{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0}};
+    EXPECT_DOUBLE_EQ(distance_to_hull(one, {1, 2, 7}), 4);
+    EXPECT_DOUBLE_EQ(distance_to_hull(two, {0, 0, 0}), 2);
+    EXPECT_NEAR(distance_to_hull(flat, {0.3, 0.9, -2}), 2, 1e-15);
+}
+
+/// Points on a segment between two hull points are in the hull; beyond the far end of a support direction
+/// they are not.
+TEST(Hull, AgreesWithConvexCombinations) {
+    Random random(5);
+    for (int i = 0; i < 500; ++i) {
+        std::vector<Point> points(4 + random.next() % 8);
+        for (auto& p : points)
+            for (auto& x : p) x = random.uniform();
+        Point inside{};
+        double sum = 0;
+        for (const auto& p : points) {
+            const double weight = random.uniform();
+            sum += weight;
+            for (int c = 0; c < 3; ++c) inside[c] += weight * p[c];
+        }
+        for (auto& x : inside) x /= sum;
+        EXPECT_LT(distance_to_hull(points, inside), 1e-7);
+        const auto direction = random.direction();
+        const auto along = [&](const Point& p) {
+            return p[0] * direction.x() + p[1] * direction.y() + p[2] * direction.z();
+        };
+        const auto top = *std::max_element(points.begin(), points.end(),
+                                           [&](const auto& p, const auto& q) { return along(p) < along(q); });
+        const Point above{top[0] + 3 * direction.x(), top[1] + 3 * direction.y(), top[2] + 3 * direction.z()};
+        EXPECT_NEAR(distance_to_hull(points, above), 3, 1e-12);
+    }
+}
+
+TEST(Hull, HausdorffIsTheLargerOfBothSides) {
+    const std::vector<Point> p{{0, 0, 0}, {1, 0, 0}};
+    const std::vector<Point> q{{0, 0, 0}, {1, 0, 0}, {0, 5, 0}};
+    EXPECT_DOUBLE_EQ(hausdorff_distance(p, q), 5);
+    EXPECT_DOUBLE_EQ(hausdorff_distance(q, p), 5);
+    EXPECT_DOUBLE_EQ(hausdorff_distance(p, p), 0);
+}
+
+TEST(Accuracy, SpreadTakesTheLeastValueThatNinetyNinePercentDoNotExceed) {
+    std::vector<double> samples;
+    for (int i = 200; i > 0; --i) samples.push_back(i);
+    const auto s = spread(samples);
+    ASSERT_TRUE(s);
+    EXPECT_EQ(s->median, 100);
+    EXPECT_EQ(s->p99, 198);
+    EXPECT_EQ(s->maximum, 200);
+    EXPECT_FALSE(spread({}));
+}
+
+/// The unit tetrahedron and a copy, moved along x; body 0 at the origin.
+Scene two_units(double x) {
+    Scene scene;
+    scene.name = scene.key = "two";
+    Mesh mesh;
+    for (const auto& c : unit) mesh.vertices.emplace_back(c[0], c[1], c[2]);
+    mesh.tetrahedra = {{0, 1, 2, 3}};
+    complete_mesh(mesh, "unit");
+    scene.meshes = {mesh};
+    scene.bodies = {{}, {}};
+    scene.frame_count = 1;
+    scene.frame = [x](std::size_t) {
+        Frame frame;
+        frame.poses = {{}, {Eigen::Quaterniond::Identity(), {x, 0, 0}}};
+        frame.deformed.resize(2);
+        return frame;
+    };
+    return scene;
+}
+
+const Pair the_pair{0, 0, 1, 0};
+
+/// What `contacts` and candidates get for the two tetrahedra.
+AnswerErrors errors_of(double x, std::vector<Pair> pairs, std::vector<ContactPoint> contacts) {
+    const auto scene = two_units(x);
+    const std::vector<Frame> frames{scene.frame(0)};
+    Truths truths(scene, frames, TruthAmount::contacts, 0);
+    FrameAnswer answer;
+    answer.makes_contacts = true;
+    answer.download = [&] { return pairs; };
+    answer.download_contacts = [&] { return contacts; };
+    return truths.errors(Precision::single, 0, answer);
+}
+
+/// Moved by 3/4 along x the two share the tetrahedron of legs 1/4 at (3/4, 0, 0); the least way apart is
+/// along x, as long as the leg, or along (1,1,1): 1/4 / sqrt(3), which is shorter.
+TEST(Accuracy, ARightContactHasNoError) {
+    const double root = std::sqrt(3.0);
+    const auto e = errors_of(0.75, {the_pair},
+                             {{the_pair, 0, {0.75, 0, 0}, {1 / root, 1 / root, 1 / root}, -0.25 / root}});
+    EXPECT_EQ(e.missed(), 0u);
+    EXPECT_EQ(e.pairs.overlapping, 1u);
+    EXPECT_EQ((*e.decisions)[2][2], 1u);
+    ASSERT_TRUE(e.contacts);
+    EXPECT_LT(e.contacts->depth_relative.at(0), 1e-15);
+    EXPECT_LT(e.contacts->normal_degrees.at(0), 1e-6);
+    EXPECT_LT(e.contacts->point.at(0), 1e-15);
+    EXPECT_NEAR(e.contacts->hausdorff.at(0), 0.25 / std::sqrt(2.0), 1e-15); // L is sqrt(2)
+    EXPECT_TRUE(e.every_contact);
+}
+
+TEST(Accuracy, AWrongContactHasTheErrorItHas) {
+    const auto e = errors_of(0.75, {the_pair}, {{the_pair, 0, {0.75, 0, -1}, {1, 0, 0}, -0.25}});
+    const double exact = 0.25 / std::sqrt(3.0);
+    ASSERT_TRUE(e.contacts);
+    EXPECT_NEAR(e.contacts->depth_relative.at(0), (0.25 - exact) / exact, 1e-14);
+    EXPECT_NEAR(e.contacts->depth_ulps.at(0), (0.25 - exact) / std::sqrt(2.0) * 0x1p24, 1e-6);
+    EXPECT_NEAR(e.contacts->normal_degrees.at(0), std::acos(1 / std::sqrt(3.0)) * 180 / M_PI, 1e-12);
+    EXPECT_NEAR(e.contacts->point.at(0), 1 / std::sqrt(2.0), 1e-15);
+}
+
+TEST(Accuracy, MissedFalseAndUnansweredPairsAreCounted) {
+    const auto missed = errors_of(0.75, {}, {});
+    EXPECT_EQ(missed.pairs.missed_overlapping, 1u);
+    EXPECT_EQ((*missed.decisions)[2][0], 1u);
+    EXPECT_EQ(missed.contacts->unanswered, 1u);
+    EXPECT_FALSE(missed.missed_upper95());
+
+    const auto apart = errors_of(1.5, {the_pair}, {{the_pair, 0, {1, 0, 0}, {1, 0, 0}, 0}});
+    EXPECT_EQ(apart.pairs.disjoint, 1u);
+    EXPECT_EQ((*apart.decisions)[0][1], 1u);
+    EXPECT_FALSE(apart.candidate_ratio());
+
+    const auto touching = errors_of(1, {the_pair}, {});
+    EXPECT_EQ(touching.pairs.touching, 1u);
+    EXPECT_EQ((*touching.decisions)[1][0], 1u);
+    EXPECT_EQ(touching.contacts->overlapping, 0u);
+    EXPECT_EQ(touching.missed_upper95(), 1.0);
+}
+
+TEST(Accuracy, NumbersThatAreNotFiniteAreCountedAndInNoSample) {
+    const auto e = errors_of(0.75, {the_pair}, {{the_pair, 0, {0.75, 0, NAN}, {1, 0, 0}, -0.25}});
+    EXPECT_EQ(e.contacts->not_finite, 1u);
+    EXPECT_TRUE(e.contacts->depth_relative.empty());
+}
+
+TEST(Accuracy, EqualAnswersAreComparedOnceAndASampleSaysSo) {
+    const auto scene = crowd(3, 9, 1.2);
+    const std::vector<Frame> frames{scene.frame(0)};
+    const auto truth = frame_truth(scene, frames[0], Precision::single);
+    ASSERT_GT(truth.overlapping.size(), 20u);
+    int downloads = 0;
+    FrameAnswer answer;
+    answer.makes_contacts = true;
+    answer.pairs.count = 7;
+    answer.download = [&] {
+        ++downloads;
+        return truth.overlapping;
+    };
+    answer.download_contacts = [] { return std::vector<ContactPoint>{}; };
+    Truths truths(scene, frames, TruthAmount::contacts, 10);
+    const auto first = truths.errors(Precision::single, 0, answer);
+    truths.errors(Precision::single, 0, answer);
+    EXPECT_EQ(downloads, 1);
+    EXPECT_EQ(first.pairs.missed_touching, truth.touching.size());
+    EXPECT_FALSE(first.every_contact);
+    EXPECT_EQ(first.contacts->overlapping, 10u);
+    answer.pairs.a = 1;
+    truths.errors(Precision::single, 0, answer);
+    EXPECT_EQ(downloads, 2);
+}
+
+} // namespace
+} // namespace tandem
