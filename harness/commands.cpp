@@ -3,6 +3,7 @@
 
 #include "harness/dumps.h"
 #include "harness/inputs.h"
+#include "harness/job.h"
 #include "harness/progress.h"
 #include "harness/record.h"
 #include "harness/table.h"
@@ -18,26 +19,6 @@
 namespace tandem {
 
 namespace {
-
-/// Everything that a command needs, found and checked before anything is measured or written.
-struct Job {
-    Scene scene;
-    FrameRange range;
-    std::vector<BackendReport> backends;
-    std::vector<Cell> cells;
-};
-
-Job open_job(const RunOptions& options, const Request& request) {
-    Job job;
-    job.scene = open_scene(options);
-    job.range = open_frames(options, job.scene);
-    job.backends = discover();
-    check_required(job.backends, options.require);
-    job.cells = plan(request, choose_devices(job.backends, request.devices));
-    check_outputs(options, job.cells);
-    check_coordinates(job.cells, job.scene, job.range);
-    return job;
-}
 
 void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts) {
     if (!pairs && !contacts) return;
@@ -79,42 +60,6 @@ std::string verdict(const Measurement& m) {
                        a.contact_frames_wrong, a.frames);
 }
 
-/// Measures one cell and appends its record, also when the device fails on the way.
-int run_cell(const Cell& cell, const Job& job, References& references, const SampleOptions& sampling,
-             RecordFile& file, const Progress& progress, Measurement& out) {
-    std::string failure;
-    try {
-        out = measure(cell, job.scene, job.range, references, sampling);
-    } catch (const DeviceError& error) {
-        failure = error.what();
-    }
-    file.append(make_record(cell, job.scene, job.range, out, failure));
-    progress.clear();
-    if (failure.empty()) return out.agreement.ok() ? 0 : 1;
-    fmt::print(stderr, "tandem: {}: {}\n", describe(cell), failure);
-    return 3;
-}
-
-void print_scene(const Scene& scene, const FrameRange& range) {
-    fmt::print("scene {}: {} bodies, {} vertices, {} tetrahedra, frames {}:{}, digest {:016x}\n", scene.key,
-               scene.bodies.size(), vertex_count(scene), tetrahedron_count(scene), range.first, range.last,
-               scene.digest);
-    std::size_t inverted = 0;
-    std::size_t degenerate = 0;
-    for (const auto& mesh : scene.meshes) {
-        inverted += mesh.inverted;
-        degenerate += mesh.degenerate;
-    }
-    if (inverted + degenerate > 0)
-        fmt::print("its meshes have {} inverted and {} zero-volume tetrahedra; they are kept\n", inverted,
-                   degenerate);
-}
-
-/// Safe bounds miss nothing that meets (theorems of algorithms/kdop); the others promise nothing.
-bool misses_against_its_promise(const Measurement& m) {
-    return m.errors && m.errors->missed() > 0 && m.settings.at("rounding") == "safe";
-}
-
 void print_matrix_row(const Cell& cell, const Measurement& m) {
     fmt::print("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n",
                cell.device->info().id, cell.algorithm->name(), cell.preset, m.agreement.digest.count,
@@ -130,7 +75,9 @@ void print_matrix_row(const Cell& cell, const Measurement& m) {
 int run_command(const RunOptions& options) {
     auto request = options.request;
     if (request.devices.empty()) request.devices.emplace_back("opencl:0");
-    const auto job = open_job(options, request);
+    const auto backends = discover();
+    check_required(backends, options.require);
+    const auto job = open_job(options, plan(request, choose_devices(backends, request.devices)));
     RecordFile file(options.out);
     DumpFile pairs(options.dump_pairs, pairs_header);
     DumpFile contacts(options.dump_contacts, contacts_header);
@@ -169,7 +116,9 @@ int check_command(const RunOptions& options) {
     auto request = options.request;
     if (request.devices.empty()) request.devices.emplace_back("all");
     if (request.presets.empty()) request.presets.emplace_back("all");
-    const auto job = open_job(options, request);
+    const auto backends = discover();
+    check_required(backends, options.require);
+    const auto job = open_job(options, plan(request, choose_devices(backends, request.devices)));
     RecordFile file(options.out);
     print_scene(job.scene, job.range);
     References references(job.scene, job.range);

@@ -28,6 +28,12 @@ struct RunOptions {
     bool quiet = false;
 };
 
+/// Options of `tandem accuracy`, as given: those of `tandem run` for every one of several scenes.
+struct AccuracyOptions {
+    std::vector<std::string> scenes;
+    RunOptions run; ///< its scene is not used
+};
+
 /// Options of `tandem devices`.
 struct DevicesOptions {
     bool json = false;
@@ -65,6 +71,7 @@ struct SimulateOptions {
 /// Each returns the exit code: 0 ok, 1 a check failed, 3 a device failed. Bad use throws InputError.
 int run_command(const RunOptions& options);
 int check_command(const RunOptions& options);
+int accuracy_command(const AccuracyOptions& options);
 int simulate_command(const SimulateOptions& options);
 int export_command(const ExportOptions& options);
 int devices_command(const DevicesOptions& options);

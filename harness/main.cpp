@@ -24,9 +24,14 @@ parse_sets(const std::vector<std::string>& texts) {
     return sets;
 }
 
+tandem::TruthAmount parse_truth(const std::string& text) {
+    if (text == "none") return tandem::TruthAmount::none;
+    if (text == "pairs") return tandem::TruthAmount::pairs;
+    if (text == "contacts") return tandem::TruthAmount::contacts;
+    throw InputError(fmt::format("--truth {}: give none, pairs or contacts", text));
+}
+
 void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string>& sets) {
-    app.add_option("scene", options.scene,
-                   "NAME, NAME:par=value,..., a scene description (.json) or a recording (.frames)");
     app.add_option("--mesh", options.meshes, "a scene of mesh files instead")->expected(1)->take_all();
     app.add_option("--pose", options.poses, "\"tx ty tz qw qx qy qz\", one per --mesh, in order")
         ->expected(1)
@@ -46,19 +51,33 @@ void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string
     app.add_option("--out", options.out, "append records to this JSON-lines file");
     app.add_option("--require", options.require, "devices or backends whose absence is a failure")
         ->delimiter(',');
-    app.add_option("--truth", options.truth,
-                   "compare with the exact truth: none, pairs (every pair of every frame; the default) or "
-                   "contacts (depths, "
-                   "normals and points too)")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, tandem::TruthAmount>{{"none", tandem::TruthAmount::none},
-                                                       {"pairs", tandem::TruthAmount::pairs},
-                                                       {"contacts", tandem::TruthAmount::contacts}}))
+    app.add_option_function<std::string>(
+           "--truth", [&options](const std::string& text) { options.truth = parse_truth(text); },
+           "compare with the exact truth: none, pairs (every pair of every frame; the default) or contacts "
+           "(depths, "
+           "normals and points too)")
         ->option_text("none|pairs|contacts");
     app.add_option("--truth-contacts", options.truth_contacts,
                    "exact contacts of at most so many pairs a frame; all when left out")
         ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40));
     app.add_flag("--quiet", options.quiet, "no progress line");
+}
+
+constexpr auto scene_help = "NAME, NAME:par=value,..., a scene description (.json) or a recording (.frames)";
+
+void add_accuracy_options(CLI::App& app, tandem::AccuracyOptions& options, std::vector<std::string>& sets) {
+    app.add_option("scenes", options.scenes, scene_help);
+    options.run.truth_contacts = 1000;
+    add_run_options(app, options.run, sets);
+    app.remove_option(app.get_option("--truth"));
+    app.get_option("--algorithm")->description("A,B (see 'tandem algorithms'); chunked when left out");
+    app.get_option("--frames")->description("FIRST:LAST, both inclusive; ten in the middle when left out");
+    app.get_option("--set")->description(
+        "NAME=V1,V2: these cells; when left out k, precision and rounding, then "
+        "precision, decision and contact rule");
+    app.get_option("--truth-contacts")
+        ->description("exact contacts of at most so many pairs a frame; 1000 when left out");
+    app.add_option("--repeat", options.run.repeat, "samples per cell")->check(CLI::Range(1, 1000));
 }
 
 void add_export_options(CLI::App& app, tandem::ExportOptions& options) {
@@ -111,6 +130,7 @@ int dispatch(int argc, char** argv) {
     tandem::DevicesOptions devices;
     bool json = false;
     auto* run_app = app.add_subcommand("run", "measure; print a table, append records");
+    run_app->add_option("scene", run.scene, scene_help);
     add_run_options(*run_app, run, run_sets);
     run_app->add_option("--repeat", run.repeat, "samples per cell")->check(CLI::Range(1, 1000));
     run_app->add_option("--profile", run.profile, "only replay the frames N times, for a profiler")
@@ -123,7 +143,13 @@ int dispatch(int argc, char** argv) {
     run_app->add_flag("!--no-check", run.check, "do not compare with the reference");
     auto* check_app =
         app.add_subcommand("check", "device x algorithm agreement matrix; exit 1 on any difference");
+    check_app->add_option("scene", check.scene, scene_help);
     add_run_options(*check_app, check, check_sets);
+    tandem::AccuracyOptions accuracy;
+    std::vector<std::string> accuracy_sets;
+    auto* accuracy_app =
+        app.add_subcommand("accuracy", "error beside speed over settings, for several scenes");
+    add_accuracy_options(*accuracy_app, accuracy, accuracy_sets);
     SimulateOptions simulate;
     std::vector<std::string> simulate_sets;
     auto* simulate_app = app.add_subcommand("simulate", "move a scene with dynamics; record its frames");
@@ -154,6 +180,8 @@ int dispatch(int argc, char** argv) {
     check.request.sets = parse_sets(check_sets);
     if (*run_app) return tandem::run_command(run);
     if (*check_app) return tandem::check_command(check);
+    accuracy.run.request.sets = parse_sets(accuracy_sets);
+    if (*accuracy_app) return tandem::accuracy_command(accuracy);
     simulate.request.sets = parse_sets(simulate_sets);
     if (*simulate_app) return tandem::simulate_command(simulate);
     if (*export_app) return tandem::export_command(exported);

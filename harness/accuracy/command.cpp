@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// tandem accuracy: error beside speed, over the settings that either depends on.
+#include "harness/inputs.h"
+#include "harness/job.h"
+#include "harness/statistics.h"
+#include "scenes/error.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace tandem {
+
+namespace {
+
+using Axis = std::pair<std::string, std::vector<std::string>>;
+
+constexpr std::size_t default_frames = 10;
+
+/// The words a setting may be, without `left_out`; nothing when the algorithm does not have it.
+std::vector<std::string> choices(const Traversal& traversal, const std::string& name,
+                                 const std::string& left_out = "") {
+    std::vector<std::string> result;
+    for (const auto& parameter : traversal.parameters())
+        if (parameter.name == name) result = parameter.choices;
+    std::erase(result, left_out);
+    return result;
+}
+
+/// What bounds depend on: directions, precision, rounding.
+std::vector<Axis> axes_of_bounds(const Traversal& traversal) {
+    return {{"k", {"6", "8", "14", "18", "26"}},
+            {"precision", choices(traversal, "precision")},
+            {"rounding", choices(traversal, "rounding")}};
+}
+
+/// What contacts depend on: precision, who decides, rule.
+std::vector<Axis> axes_of_contacts(const Traversal& traversal) {
+    return {{"precision", choices(traversal, "precision")},
+            {"decision", choices(traversal, "decision")},
+            {"contact_rule", choices(traversal, "contact_rule", "none")}};
+}
+
+/// Calls visit with every combination of one value of each axis.
+void for_each_combination(std::span<const Axis> axes, std::vector<Axis>& chosen,
+                          const std::function<void(const std::vector<Axis>&)>& visit) {
+    if (axes.empty()) return visit(chosen);
+    if (axes.front().second.empty()) return for_each_combination(axes.subspan(1), chosen, visit);
+    for (const auto& value : axes.front().second) {
+        chosen.push_back({axes.front().first, {value}});
+        for_each_combination(axes.subspan(1), chosen, visit);
+        chosen.pop_back();
+    }
+}
+
+bool same(const Cell& a, const Cell& b) {
+    return a.algorithm == b.algorithm && a.preset == b.preset && a.settings == b.settings
+           && a.device == b.device;
+}
+
+/// The cells of a request that names no settings: for each algorithm and device first the bounds, then the
+/// contacts. Combinations that a device or another setting excludes are left out.
+std::vector<Cell> sweep(const Request& request, std::span<Device* const> devices) {
+    std::vector<Cell> cells;
+    for (const auto& base : plan(request, devices)) {
+        auto own = request;
+        own.algorithms = {std::string(base.algorithm->name())};
+        own.presets = {base.preset};
+        const auto add = [&](const std::vector<Axis>& values) {
+            own.sets = values;
+            std::vector<Cell> made;
+            try {
+                made = plan(own, std::array{base.device});
+            } catch (const InputError&) {
+                return;
+            }
+            for (const auto& cell : made)
+                if (std::none_of(cells.begin(), cells.end(), [&](const auto& c) { return same(c, cell); }))
+                    cells.push_back(cell);
+        };
+        std::vector<Axis> chosen;
+        for_each_combination(axes_of_bounds(*base.algorithm), chosen, add);
+        for_each_combination(axes_of_contacts(*base.algorithm), chosen, add);
+    }
+    return cells;
+}
+
+/// "FIRST:LAST" of ten frames in the middle; empty for a scene with no more.
+std::string middle_frames(const Scene& scene) {
+    if (scene.frame_count <= default_frames) return "";
+    const auto first = (scene.frame_count - default_frames) / 2;
+    return fmt::format("{}:{}", first, first + default_frames - 1);
+}
+
+/// Median over the samples of a frame's time, in ms.
+double frame_ms(const Measurement& m) {
+    std::vector<std::int64_t> sums;
+    for (const auto& frames : m.total_ns)
+        sums.push_back(std::accumulate(frames.begin(), frames.end(), std::int64_t{0}));
+    return summarise(sums).median * 1e-6 / static_cast<double>(m.total_ns.front().size());
+}
+
+std::string number(const std::optional<double>& value) { return value ? fmt::format("{:.3g}", *value) : "-"; }
+
+std::string p99(const std::vector<double>& samples) {
+    const auto s = spread(samples);
+    return s ? fmt::format("{:.3g}", s->p99) : "-";
+}
+
+void print_header() {
+    fmt::print("{:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9}  cell\n", "ms/frame", "missed", "false",
+               "ratio", "no answer", "depth/uL", "degrees", "point/L");
+}
+
+/// Errors of contacts are 99th percentiles.
+void print_row(const Cell& cell, const Measurement& m) {
+    const auto& e = *m.errors;
+    const auto contacts = e.contacts.value_or(ContactErrors{});
+    fmt::print("{:>9.3g} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9}  {}{}\n", frame_ms(m), e.missed(),
+               e.pairs.disjoint, number(e.candidate_ratio()), contacts.unanswered, p99(contacts.depth_ulps),
+               p99(contacts.normal_degrees), p99(contacts.point), describe(cell),
+               e.missed() > 0 ? "  MISSES" : "");
+}
+
+/// All cells on one scene; the exit code.
+int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, RecordFile& file) {
+    auto own = options;
+    if (own.frames.empty()) own.frames = middle_frames(open_scene(own));
+    const auto job = open_job(own, cells);
+    print_scene(job.scene, job.range);
+    References references(job.scene, job.range);
+    Truths truths(job.scene, job.range.frames, TruthAmount::contacts, options.truth_contacts);
+    const Progress progress(options.quiet);
+    SampleOptions sampling;
+    sampling.repeat = options.repeat;
+    sampling.count_work = false;
+    sampling.truths = &truths;
+    int code = 0;
+    print_header();
+    for (std::size_t i = 0; i < job.cells.size(); ++i) {
+        sampling.progress = [&](std::string_view text) {
+            progress.show(fmt::format("[{}/{}] {}", i + 1, job.cells.size(), text));
+        };
+        Measurement m;
+        const int result = run_cell(job.cells[i], job, references, sampling, file, progress, m);
+        code = std::max({code, result, misses_against_its_promise(m) ? 1 : 0});
+        if (result == 1) fmt::print("WRONG against the reference: {}\n", describe(job.cells[i]));
+        if (result != 3 && m.errors) print_row(job.cells[i], m);
+    }
+    fmt::print("\n");
+    return code;
+}
+
+} // namespace
+
+int accuracy_command(const AccuracyOptions& options) {
+    auto request = options.run.request;
+    if (request.devices.empty()) request.devices.emplace_back("opencl:0");
+    if (request.algorithms.empty()) request.algorithms.emplace_back("chunked");
+    const auto backends = discover();
+    check_required(backends, options.run.require);
+    const auto devices = choose_devices(backends, request.devices);
+    const auto cells = request.sets.empty() ? sweep(request, devices) : plan(request, devices);
+    auto scenes = options.scenes;
+    if (scenes.empty()) scenes.emplace_back(); // of --mesh, or the message that there is none
+    RecordFile file(options.run.out);
+    int code = 0;
+    for (const auto& scene : scenes) {
+        auto own = options.run;
+        own.scene = scene;
+        code = std::max(code, measure_scene(own, cells, file));
+    }
+    fmt::print("ms of the whole frame; ratio: candidates per pair that meets; errors of contacts are 99th "
+               "percentiles, u half a unit in the\n"
+               "last place of 1, L the longest edge; MISSES: pairs that meet are not among the candidates\n");
+    return code;
+}
+
+} // namespace tandem

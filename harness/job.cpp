@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "harness/job.h"
+
+#include "harness/inputs.h"
+#include "scenes/error.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tandem {
+
+Job open_job(const RunOptions& options, std::vector<Cell> cells) {
+    Job job;
+    job.scene = open_scene(options);
+    job.range = open_frames(options, job.scene);
+    job.cells = std::move(cells);
+    check_outputs(options, job.cells);
+    check_coordinates(job.cells, job.scene, job.range);
+    return job;
+}
+
+int run_cell(const Cell& cell, const Job& job, References& references, const SampleOptions& sampling,
+             RecordFile& file, const Progress& progress, Measurement& out) {
+    std::string failure;
+    try {
+        out = measure(cell, job.scene, job.range, references, sampling);
+    } catch (const DeviceError& error) {
+        failure = error.what();
+    }
+    file.append(make_record(cell, job.scene, job.range, out, failure));
+    progress.clear();
+    if (failure.empty()) return out.agreement.ok() ? 0 : 1;
+    fmt::print(stderr, "tandem: {}: {}\n", describe(cell), failure);
+    return 3;
+}
+
+void print_scene(const Scene& scene, const FrameRange& range) {
+    fmt::print("scene {}: {} bodies, {} vertices, {} tetrahedra, frames {}:{}, digest {:016x}\n", scene.key,
+               scene.bodies.size(), vertex_count(scene), tetrahedron_count(scene), range.first, range.last,
+               scene.digest);
+    std::size_t inverted = 0;
+    std::size_t degenerate = 0;
+    for (const auto& mesh : scene.meshes) {
+        inverted += mesh.inverted;
+        degenerate += mesh.degenerate;
+    }
+    if (inverted + degenerate > 0)
+        fmt::print("its meshes have {} inverted and {} zero-volume tetrahedra; they are kept\n", inverted,
+                   degenerate);
+}
+
+bool misses_against_its_promise(const Measurement& m) {
+    return m.errors && m.errors->missed() > 0 && m.settings.at("rounding") == "safe";
+}
+
+} // namespace tandem

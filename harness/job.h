@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/commands.h"
+#include "harness/progress.h"
+#include "harness/record.h"
+
+namespace tandem {
+
+/// What is measured: a scene's frames and cells; the devices belong to whoever found them.
+struct Job {
+    Scene scene;
+    FrameRange range;
+    std::vector<Cell> cells;
+};
+
+/// Opens the scene and its frames; throws InputError when they, the outputs or the cells do not fit each
+/// other.
+Job open_job(const RunOptions& options, std::vector<Cell> cells);
+
+/// Measures one cell and appends its record, also when the device fails on the way. Returns the exit code: 1
+/// when the answer is wrong, 3 when the device failed, which is then said.
+int run_cell(const Cell& cell, const Job& job, References& references, const SampleOptions& sampling,
+             RecordFile& file, const Progress& progress, Measurement& out);
+
+/// A line that says what scene it is, and one for tetrahedra of no or negative volume.
+void print_scene(const Scene& scene, const FrameRange& range);
+
+/// Safe bounds miss nothing that meets (theorems of algorithms/kdop); the others promise nothing.
+bool misses_against_its_promise(const Measurement& m);
+
+} // namespace tandem

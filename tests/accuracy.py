@@ -1,0 +1,115 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""accuracy.py PROGRAM SOURCE: errors against the exact truth as a user meets them: tandem accuracy, --truth, figures."""
+import csv
+import json
+import subprocess
+import sys
+import unittest
+import xml.etree.ElementTree
+
+from command_line import SOURCE, Case, bar, gmsh, tandem
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+class Accuracy(Case):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.shifted = gmsh(cls.work / "shifted.msh", *bar(4, (0.75, 0, 0)))
+        cls.two = ("--mesh", cls.good, "--mesh", cls.shifted)
+
+    def run_two(self, name, *arguments, command="run"):
+        out = self.work / f"{name}.jsonl"
+        status, text, errors = tandem(command, *self.two, "--device", "host", "--quiet", "--out", out, *arguments)
+        self.assertEqual((status, errors), (0, []), text)
+        return self.records(out), text
+
+    def test_every_pair_is_compared_unless_told_otherwise(self):
+        records, text = self.run_two("pairs", "--algorithm", "chunked")
+        truth = records[0]["error"]["truth"]
+        # Equal meshes three cubes over each other: each of 18 tetrahedra lies on one of the other's.
+        self.assertGreaterEqual(truth["overlapping"], 18)
+        self.assertEqual(truth["missed_touching"] + truth["missed_overlapping"], 0)
+        self.assertEqual(truth["false"] + truth["touching"] + truth["overlapping"], truth["candidates"])
+        self.assertEqual(sum(map(sum, truth["decisions"])), truth["candidates"])
+        meeting = truth["touching"] + truth["overlapping"]
+        self.assertAlmostEqual(truth["missed_upper95"], 3 / meeting)
+        self.assertAlmostEqual(truth["candidate_ratio"], truth["candidates"] / meeting)
+        self.assertIsNone(truth["contacts"])
+        self.assertIn(f"truth: 0 of {meeting} meeting pairs missed, {truth['false']} candidates do not meet", text)
+        records, text = self.run_two("none", "--algorithm", "chunked", "--truth", "none")
+        self.assertIsNone(records[0]["error"]["truth"])
+        self.assertNotIn("truth", text)
+
+    def test_contacts_are_compared_on_request_and_samples_say_so(self):
+        records, _ = self.run_two("contacts", "--algorithm", "chunked", "--truth", "contacts")
+        contacts = records[0]["error"]["truth"]["contacts"]
+        self.assertTrue(contacts["complete"])
+        self.assertEqual(contacts["overlapping"], records[0]["error"]["truth"]["overlapping"])
+        self.assertLess(contacts["point"]["max"], 1e-6)
+        records, _ = self.run_two("sample", "--algorithm", "chunked", "--truth", "contacts", "--truth-contacts", 5)
+        contacts = records[0]["error"]["truth"]["contacts"]
+        self.assertEqual((contacts["complete"], contacts["overlapping"]), (False, 5))
+
+    def test_check_shows_missed_and_false(self):
+        _, text = self.run_two("check", "--algorithm", "chunked", "--preset", "resident", command="check")
+        head, row = text.splitlines()[-3:-1]
+        self.assertEqual(head.split()[-2:], ["missed", "false"])
+        self.assertEqual(row.split()[-2], "0")
+
+    def test_accuracy_sweeps_bounds_and_contacts_over_scenes(self):
+        out = self.work / "sweep.jsonl"
+        status, text, errors = tandem("accuracy", "pile:bodies=2,frames=1", "plates", "--frames", "0", "--device", "host", "--repeat", 1,
+                                      "--truth-contacts", 3, "--quiet", "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        records = self.records(out)
+        self.assertEqual({r["scene"]["name"] for r in records}, {"pile", "plates"})
+        settings = [json.dumps([r["scene"]["name"], r["settings"]]) for r in records]
+        self.assertEqual(len(settings), len(set(settings)))
+        for name, values in (("k", {"6", "8", "14", "18", "26"}), ("precision", {"float", "double"})):
+            self.assertEqual({r["settings"][name] for r in records}, values)
+        self.assertLessEqual({"safe", "nearest"}, {r["settings"]["rounding"] for r in records})
+        for record in records:
+            truth = record["error"]["truth"]
+            if record["settings"]["rounding"] == "safe":
+                self.assertEqual(truth["missed_touching"] + truth["missed_overlapping"], 0)
+        ratio = {r["settings"]["k"]: r["error"]["truth"]["candidate_ratio"] for r in records
+                 if r["scene"]["name"] == "pile" and r["settings"]["rounding"] == "safe" and r["settings"]["precision"] == "float"}
+        self.assertGreater(ratio["6"], ratio["18"])
+        self.assertGreater(ratio["18"], ratio["26"])
+
+    def test_given_settings_are_the_only_cells(self):
+        records, text = self.run_two("given", "--set", "k=8,18", "--repeat", 1, command="accuracy")
+        self.assertEqual([r["settings"]["k"] for r in records], ["8", "18"])
+        self.assertEqual(text.count("on host"), 2)
+        self.assertEqual(text.count("MISSES"), 1)  # in the legend
+
+    def test_figures_draw_records(self):
+        records, _ = self.run_two("drawn", "--set", "k=8,18", "--repeat", 1, command="accuracy")
+        folder = self.work / "figures"
+        done = subprocess.run(["/usr/bin/python3", SOURCE / "scripts/figures", self.work / "drawn.jsonl", folder], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for name in ("pareto", "bars"):
+            drawing = xml.etree.ElementTree.parse(folder / f"{name}.svg")
+            self.assertGreater(len(list(drawing.iter(f"{SVG}path"))), 10)
+            rows = list(csv.DictReader((folder / f"{name}.csv").read_text().splitlines()))
+            self.assertEqual([row["k"] for row in rows], ["8", "18"])
+            self.assertEqual([int(row["candidates"]) for row in rows], [r["error"]["truth"]["candidates"] for r in records])
+        empty = self.work / "no.jsonl"
+        empty.write_text("")
+        done = subprocess.run(["/usr/bin/python3", SOURCE / "scripts/figures", empty, folder], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1))
+        self.assertIn("tandem accuracy", done.stderr)
+
+    def test_bad_use(self):
+        self.bad("no scene", "accuracy", "--device", "host")
+        self.bad("--truth some: give none, pairs or contacts", "run", "plates", "--truth", "some")
+        self.bad("--truth-contacts", "accuracy", "plates", "--truth-contacts", 0)
+        self.bad("the nearest is 'plates'", "accuracy", "plats", "--device", "host")
+        self.bad("frames 3:900", "accuracy", "plates", "--frames", "3:900", "--device", "host", "--set", "k=8")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)
