@@ -2,7 +2,7 @@
 #include "harness/reference.h"
 
 #include "algorithms/contacts/reference.h"
-#include "harness/parallel.h"
+#include "scenes/parallel.h"
 #include "harness/world_vertices.h"
 
 #include <algorithm>

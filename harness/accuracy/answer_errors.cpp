@@ -2,7 +2,7 @@
 #include "harness/accuracy/answer_errors.h"
 
 #include "harness/accuracy/hull.h"
-#include "harness/parallel.h"
+#include "scenes/parallel.h"
 
 #include <algorithm>
 #include <cmath>

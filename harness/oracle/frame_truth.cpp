@@ -2,7 +2,7 @@
 #include "harness/oracle/frame_truth.h"
 
 #include "harness/oracle/superset.h"
-#include "harness/parallel.h"
+#include "scenes/parallel.h"
 #include "harness/world_vertices.h"
 
 #include <algorithm>

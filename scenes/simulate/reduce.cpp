@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/simulate/reduce.h"
 
+#include "scenes/parallel.h"
 #include "scenes/simulate/algebra.h"
 #include "scenes/simulate/cells.h"
 
@@ -79,15 +80,26 @@ void choose(std::span<const ContactPoint> group, std::size_t count, std::vector<
     for (const auto i : chosen) kept.push_back(group[i]);
 }
 
-/// Calls visit(group) for every run of contacts of the same two bodies.
-template<class Visit>
-void for_each_group(std::span<const ContactPoint> contacts, Visit visit) {
+/// Merges one body pair's contacts and keeps some of them.
+void reduce_group(std::span<const ContactPoint> group, double radius, std::size_t per_pair, Cells& cells,
+                  std::vector<ContactPoint>& kept) {
+    if (per_pair == 0) return merge(group, radius, cells, kept);
+    std::vector<ContactPoint> merged;
+    merge(group, radius, cells, merged);
+    if (merged.size() > per_pair) return choose(merged, per_pair, kept);
+    kept.insert(kept.end(), merged.begin(), merged.end());
+}
+
+/// Runs of contacts of the same two bodies.
+std::vector<std::span<const ContactPoint>> groups_of(std::span<const ContactPoint> contacts) {
+    std::vector<std::span<const ContactPoint>> groups;
     for (std::size_t begin = 0, end = 0; begin < contacts.size(); begin = end) {
         while (end < contacts.size() && contacts[end].pair.body_a == contacts[begin].pair.body_a
                && contacts[end].pair.body_b == contacts[begin].pair.body_b)
             ++end;
-        visit(contacts.subspan(begin, end - begin));
+        groups.push_back(contacts.subspan(begin, end - begin));
     }
+    return groups;
 }
 
 /// Pairs are ordered by body_a, tet_a, body_b, tet_b: those of two bodies are brought together, their order
@@ -97,7 +109,7 @@ std::vector<ContactPoint> by_bodies(std::span<const ContactPoint> contacts) {
     order.reserve(contacts.size());
     for (const auto& contact : contacts)
         order.emplace_back(std::uint64_t{contact.pair.body_a} << 32 | contact.pair.body_b, order.size());
-    std::sort(order.begin(), order.end());
+    parallel_sort(order);
     std::vector<ContactPoint> result;
     result.reserve(contacts.size());
     for (const auto& [bodies, index] : order) result.push_back(contacts[index]);
@@ -109,19 +121,19 @@ std::vector<ContactPoint> by_bodies(std::span<const ContactPoint> contacts) {
 std::vector<ContactPoint> reduce_contacts(std::span<const ContactPoint> contacts,
                                           std::span<const double> sizes, const ReductionSettings& settings) {
     const auto grouped = by_bodies(contacts);
-    std::vector<ContactPoint> merged;
-    merged.reserve(contacts.size());
-    Cells cells;
-    for_each_group(grouped, [&](std::span<const ContactPoint> group) {
-        const auto& pair = group.front().pair;
-        merge(group, settings.distance * std::min(sizes[pair.body_a], sizes[pair.body_b]), cells, merged);
+    const auto groups = groups_of(grouped);
+    constexpr std::size_t block = 16; // groups a core takes at a time
+    std::vector<std::vector<ContactPoint>> parts((groups.size() + block - 1) / block);
+    parallel_for(parts.size(), [&](std::size_t part) {
+        Cells cells;
+        for (auto i = part * block; i < std::min(groups.size(), (part + 1) * block); ++i) {
+            const auto& pair = groups[i].front().pair;
+            reduce_group(groups[i], settings.distance * std::min(sizes[pair.body_a], sizes[pair.body_b]),
+                         settings.per_pair, cells, parts[part]);
+        }
     });
-    if (settings.per_pair == 0) return merged;
     std::vector<ContactPoint> kept;
-    for_each_group(merged, [&](std::span<const ContactPoint> group) {
-        if (group.size() > settings.per_pair) return choose(group, settings.per_pair, kept);
-        kept.insert(kept.end(), group.begin(), group.end());
-    });
+    for (const auto& part : parts) kept.insert(kept.end(), part.begin(), part.end());
     return kept;
 }
 

@@ -2,7 +2,7 @@
 // Every tier gives the answer of the slowest one, and the filter certifies nothing that is not so.
 #include "harness/oracle/filter.h"
 #include "harness/oracle/lattice.h"
-#include "harness/parallel.h"
+#include "scenes/parallel.h"
 #include "tests/support/oracle_pairs.h"
 
 #include <atomic>

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <thread>
+#include <vector>
+
+namespace tandem {
+
+/// Calls work(i) for i < count on all cores. `work` must not throw.
+template<class Work>
+void parallel_for(std::size_t count, Work work) {
+    std::atomic<std::size_t> next = 0;
+    const auto drain = [&] {
+        for (auto i = next++; i < count; i = next++) work(i);
+    };
+    std::vector<std::jthread> others;
+    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) others.emplace_back(drain);
+    drain();
+}
+
+/// std::sort on all cores: parts of their own, then merged by twos. No two values may be equal, or their
+/// order would depend on the number of cores.
+template<class Value>
+void parallel_sort(std::vector<Value>& values) {
+    constexpr std::size_t least = 1 << 14;
+    const auto parts =
+        std::clamp<std::size_t>(values.size() / least, 1, std::max(1u, std::thread::hardware_concurrency()));
+    const auto start = [&](std::size_t part) {
+        return values.begin() + static_cast<std::ptrdiff_t>(std::min(part, parts) * values.size() / parts);
+    };
+    parallel_for(parts, [&](std::size_t i) { std::sort(start(i), start(i + 1)); });
+    for (std::size_t width = 1; width < parts; width *= 2)
+        parallel_for((parts + 2 * width - 1) / (2 * width), [&](std::size_t i) {
+            const auto first = 2 * width * i;
+            std::inplace_merge(start(first), start(first + width), start(first + 2 * width));
+        });
+}
+
+} // namespace tandem
