@@ -21,13 +21,16 @@ void parallel_for(std::size_t count, Work work) {
     drain();
 }
 
-/// std::sort on all cores: parts of their own, then merged by twos. No two values may be equal, or their
-/// order would depend on the number of cores.
-template<class Value>
-void parallel_sort(std::vector<Value>& values) {
+/// How many parts are worth sorting at once.
+inline std::size_t sort_parts(std::size_t count) {
     constexpr std::size_t least = 1 << 14;
-    const auto parts =
-        std::clamp<std::size_t>(values.size() / least, 1, std::max(1u, std::thread::hardware_concurrency()));
+    return std::clamp<std::size_t>(count / least, 1, std::max(1u, std::thread::hardware_concurrency()));
+}
+
+/// std::sort on all cores: parts of their own, then merged by twos. No two values may be equal, or their
+/// order would depend on the number of parts.
+template<class Value>
+void parallel_sort(std::vector<Value>& values, std::size_t parts) {
     const auto start = [&](std::size_t part) {
         return values.begin() + static_cast<std::ptrdiff_t>(std::min(part, parts) * values.size() / parts);
     };
@@ -37,6 +40,11 @@ void parallel_sort(std::vector<Value>& values) {
             const auto first = 2 * width * i;
             std::inplace_merge(start(first), start(first + width), start(first + 2 * width));
         });
+}
+
+template<class Value>
+void parallel_sort(std::vector<Value>& values) {
+    parallel_sort(values, sort_parts(values.size()));
 }
 
 } // namespace tandem

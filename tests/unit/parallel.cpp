@@ -15,15 +15,21 @@ TEST(Parallel, EveryIndexIsWorkedOnOnce) {
     EXPECT_EQ(std::count(times.begin(), times.end(), 1), std::ssize(times));
 }
 
-TEST(Parallel, SortsListsOfAnyLength) {
+TEST(Parallel, SortsListsOfAnyLengthInAnyNumberOfParts) {
     Random random(3);
-    for (const std::size_t count : {0, 1, 2, 16383, 16384, 32769, 100003, 300007}) {
+    for (const std::size_t count : {0, 1, 2, 5, 100, 4099}) {
         std::vector<std::uint64_t> expected(count);
         std::iota(expected.begin(), expected.end(), 0);
-        auto values = expected;
-        for (std::size_t i = count; i > 1; --i) std::swap(values[i - 1], values[random.next() % i]);
+        auto shuffled = expected;
+        for (std::size_t i = count; i > 1; --i) std::swap(shuffled[i - 1], shuffled[random.next() % i]);
+        for (std::size_t parts = 1; parts < 20; ++parts) {
+            auto values = shuffled;
+            parallel_sort(values, parts);
+            EXPECT_EQ(values, expected) << count << " in " << parts;
+        }
+        auto values = shuffled;
         parallel_sort(values);
-        EXPECT_EQ(values, expected) << count;
+        EXPECT_EQ(values, expected);
     }
 }
 
