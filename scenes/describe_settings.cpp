@@ -1,66 +1,85 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/describe_settings.h"
 
+#include "scenes/dynamics_settings.h"
+
+#include <algorithm>
+
 namespace tandem::description {
 
 namespace {
 
-/// Reads a number over its default.
-void read_over(double& value, const Json& json, const char* name, const Place& place, double least = 0) {
-    if (json.contains(name)) value = number(json[name], place / name, least, largest);
+/// The settings of one object of a description: its own name for each, and the setting's.
+struct Group {
+    const char* name;
+    std::vector<std::pair<const char*, const char*>> members;
+};
+
+const std::vector<Group>& groups() {
+    static const std::vector<Group> all{
+        {"solver",
+         {{"method", "method"},
+          {"iterations", "iterations"},
+          {"absolute_tolerance", "absolute_tolerance"},
+          {"relative_tolerance", "relative_tolerance"},
+          {"warm_start", "warm_start"}}},
+        {"stepping",
+         {{"pre_stabilize", "pre_stabilize"},
+          {"post_stabilize", "post_stabilize"},
+          {"bounce", "bounce"},
+          {"linear_damping", "linear_damping"},
+          {"angular_damping", "angular_damping"},
+          {"adaptive_tolerance", "adaptive_tolerance"},
+          {"least_step", "least_step"},
+          {"couple_contacts", "couple_contacts"}}},
+        {"reduction", {{"distance", "merge_distance"}, {"per_pair", "per_pair"}}},
+    };
+    return all;
 }
 
-void read_over(std::size_t& value, const Json& json, const char* name, const Place& place, double least) {
-    if (json.contains(name))
-        value = static_cast<std::size_t>(whole(json[name], place / name, least, largest));
+const DynamicsSetting& setting_named(std::string_view name) {
+    const auto all = dynamics_settings();
+    return *std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == name; });
 }
 
-void read_over(bool& value, const Json& json, const char* name, const Place& place) {
-    if (json.contains(name)) value = flag(json, name, place);
+/// What --dynamics would be given for the member of that name.
+std::string text_of(const Json& json, const char* name, const Place& place, const DynamicsSetting& setting) {
+    switch (setting.kind) {
+    case DynamicsSetting::Kind::real:
+        return fmt::format("{}", number(json[name], place / name, setting.least, setting.most));
+    case DynamicsSetting::Kind::whole:
+        return fmt::format("{:.0f}", whole(json[name], place / name, setting.least, setting.most));
+    case DynamicsSetting::Kind::toggle:
+        return flag(json, name, place) ? "1" : "0";
+    case DynamicsSetting::Kind::word:
+        break;
+    }
+    return setting.words[choice(json[name], place / name, name, setting.words)];
 }
 
-void read_solver(const Json& json, const Place& place, SolverSettings& solver) {
-    check_names(json, place,
-                {"method", "iterations", "absolute_tolerance", "relative_tolerance", "warm_start"});
-    if (json.contains("method"))
-        solver.method = static_cast<SolverSettings::Method>(
-            choice(json["method"], place / "method", "method", {"gauss_seidel", "jacobi"}));
-    read_over(solver.iterations, json, "iterations", place, 1);
-    read_over(solver.absolute_tolerance, json, "absolute_tolerance", place);
-    read_over(solver.relative_tolerance, json, "relative_tolerance", place);
-    read_over(solver.warm_start, json, "warm_start", place);
-}
-
-void read_stepping(const Json& json, const Place& place, StepSettings& stepping) {
-    check_names(json, place,
-                {"pre_stabilize", "post_stabilize", "bounce", "linear_damping", "angular_damping",
-                 "adaptive_tolerance", "least_step", "couple_contacts"});
-    read_over(stepping.pre_stabilize, json, "pre_stabilize", place);
-    read_over(stepping.post_stabilize, json, "post_stabilize", place);
-    read_over(stepping.bounce, json, "bounce", place);
-    read_over(stepping.linear_damping, json, "linear_damping", place);
-    read_over(stepping.angular_damping, json, "angular_damping", place);
-    read_over(stepping.adaptive_tolerance, json, "adaptive_tolerance", place);
-    if (json.contains("least_step")) stepping.least_step = positive(json["least_step"], place / "least_step");
-    read_over(stepping.couple_contacts, json, "couple_contacts", place);
-}
-
-void read_reduction(const Json& json, const Place& place, ReductionSettings& reduction) {
-    check_names(json, place, {"distance", "per_pair"});
-    read_over(reduction.distance, json, "distance", place);
-    read_over(reduction.per_pair, json, "per_pair", place, 0);
+void read(const Json& json, const char* name, const Place& place, std::string_view setting_name,
+          Dynamics& dynamics) {
+    if (!json.contains(name)) return;
+    const auto& setting = setting_named(setting_name);
+    setting.set(dynamics, text_of(json, name, place, setting));
 }
 
 } // namespace
 
 void read_settings(const Json& json, const Place& place, Dynamics& dynamics) {
     if (json.contains("gravity")) dynamics.gravity = vector(json["gravity"], place / "gravity");
-    if (json.contains("stepping")) read_stepping(json["stepping"], place / "stepping", dynamics.stepping);
-    if (json.contains("step")) dynamics.stepping.step = positive(json["step"], place / "step");
-    read_over(dynamics.steps, json, "steps", place, 1);
-    if (json.contains("solver")) read_solver(json["solver"], place / "solver", dynamics.solver);
-    if (json.contains("reduction"))
-        read_reduction(json["reduction"], place / "reduction", dynamics.reduction);
+    read(json, "step", place, "step", dynamics);
+    if (json.contains("steps"))
+        dynamics.steps = static_cast<std::size_t>(whole(json["steps"], place / "steps", 1, largest));
+    for (const auto& group : groups()) {
+        if (!json.contains(group.name)) continue;
+        const auto& members = json[group.name];
+        std::vector<std::string> names;
+        for (const auto& [name, setting] : group.members) names.emplace_back(name);
+        check_names(members, place / group.name, names);
+        for (const auto& [name, setting] : group.members)
+            read(members, name, place / group.name, setting, dynamics);
+    }
 }
 
 } // namespace tandem::description

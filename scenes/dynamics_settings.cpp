@@ -33,20 +33,38 @@ bool flag(std::string_view name, std::string_view text) {
 
 template<class Field>
 DynamicsSetting real(std::string_view name, Field field, double least, double most, std::string_view help) {
-    return {name, help, [=](const Dynamics& d) { return fmt::format("{}", field(d)); },
+    return {name,
+            help,
+            DynamicsSetting::Kind::real,
+            least,
+            most,
+            {},
+            [=](const Dynamics& d) { return fmt::format("{}", field(d)); },
             [=](Dynamics& d, std::string_view text) { field(d) = number(name, text, least, most); }};
 }
 
 template<class Field>
 DynamicsSetting whole(std::string_view name, Field field, std::size_t least, std::string_view help) {
     constexpr std::size_t most = 1000000000;
-    return {name, help, [=](const Dynamics& d) { return fmt::format("{}", field(d)); },
+    return {name,
+            help,
+            DynamicsSetting::Kind::whole,
+            static_cast<double>(least),
+            static_cast<double>(most),
+            {},
+            [=](const Dynamics& d) { return fmt::format("{}", field(d)); },
             [=](Dynamics& d, std::string_view text) { field(d) = number(name, text, least, most); }};
 }
 
 template<class Field>
 DynamicsSetting toggle(std::string_view name, Field field, std::string_view help) {
-    return {name, help, [=](const Dynamics& d) { return std::string(field(d) ? "1" : "0"); },
+    return {name,
+            help,
+            DynamicsSetting::Kind::toggle,
+            0,
+            1,
+            {},
+            [=](const Dynamics& d) { return std::string(field(d) ? "1" : "0"); },
             [=](Dynamics& d, std::string_view text) { field(d) = flag(name, text); }};
 }
 
@@ -61,7 +79,14 @@ DynamicsSetting method() {
                 fmt::format("dynamics method={} is impossible; give gauss_seidel or jacobi", text));
         d.solver.method = text == "jacobi" ? Method::jacobi : Method::gauss_seidel;
     };
-    return {"method", "of the contact solver: gauss_seidel, or jacobi on all cores", value, set};
+    return {"method",
+            "of the contact solver: gauss_seidel, or jacobi on all cores",
+            DynamicsSetting::Kind::word,
+            0,
+            0,
+            {"gauss_seidel", "jacobi"},
+            value,
+            set};
 }
 
 /// A member of a member of (const) dynamics.

@@ -6,12 +6,17 @@
 #include <functional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace tandem {
 
 /// A setting of a simulation that can be given by name, whatever the scene.
 struct DynamicsSetting {
+    enum class Kind { real, whole, toggle, word };
     std::string_view name, help;
+    Kind kind;
+    double least, most;             ///< of a number
+    std::vector<std::string> words; ///< of a word
     std::function<std::string(const Dynamics&)> value;
     std::function<void(Dynamics&, std::string_view text)> set; ///< throws InputError
 };

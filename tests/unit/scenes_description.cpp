@@ -195,7 +195,7 @@ TEST_F(ScenesDescription, ErrorsOfDynamicsNameThePath) {
     const auto dynamics = [&](const std::string& names) { return failure(dynamic_scene(", " + names)); };
     const auto body = [&](const std::string& names) { return failure(dynamic_scene("", ", " + names)); };
     const auto stone = [&](const std::string& names) { return failure(dynamic_scene("", "", ", " + names)); };
-    EXPECT_THAT(dynamics(R"("step": 0)"), HasSubstr("scene.json: /dynamics/step: must be above 0"));
+    EXPECT_THAT(dynamics(R"("step": 0)"), HasSubstr("scene.json: /dynamics/step: must be from 1e-09 to 10"));
     EXPECT_THAT(dynamics(R"("stepp": 1)"),
                 HasSubstr("/dynamics: unknown name 'stepp'; the nearest is 'step'"));
     EXPECT_THAT(dynamics(R"("steps": 0)"), HasSubstr("/dynamics/steps: must be an integer from 1"));
