@@ -2,12 +2,14 @@
 #include "harness/commands.h"
 
 #include "harness/dumps.h"
+#include "harness/hard_truth.h"
 #include "harness/inputs.h"
 #include "harness/progress.h"
 #include "harness/record.h"
 #include "harness/table.h"
 #include "harness/walk.h"
 #include "scenes/error.h"
+#include "scenes/hard/hard.h"
 
 #include <algorithm>
 #include <deque>
@@ -23,17 +25,15 @@ namespace {
 struct Job {
     Scene scene;
     FrameRange range;
-    std::vector<BackendReport> backends;
     std::vector<Cell> cells;
 };
 
-Job open_job(const RunOptions& options, const Request& request) {
+Job open_job(const RunOptions& options, const Request& request, const std::vector<BackendReport>& backends) {
     Job job;
     job.scene = open_scene(options);
     job.range = open_frames(options, job.scene);
-    job.backends = discover();
-    check_required(job.backends, options.require);
-    job.cells = plan(request, choose_devices(job.backends, request.devices));
+    check_required(backends, options.require);
+    job.cells = plan(request, choose_devices(backends, request.devices));
     check_outputs(options, job.cells);
     check_coordinates(job.cells, job.scene, job.range);
     return job;
@@ -113,12 +113,72 @@ void print_matrix_row(const Cell& cell, const Measurement& m) {
                m.agreement.contact_frames_wrong == 0 ? "yes" : "NO");
 }
 
+/// Checks every cell; `print` is given each that finished. Returns the exit code.
+int check_cells(const Job& job, References& references, RecordFile& file, const Progress& progress,
+                const std::function<void(const Cell&, const Measurement&)>& print) {
+    SampleOptions sampling;
+    sampling.repeat = 0;
+    sampling.progress = [&](std::string_view text) { progress.show(text); };
+    int code = 0;
+    for (const auto& cell : job.cells) {
+        Measurement m;
+        const int own = run_cell(cell, job, references, sampling, file, progress, m);
+        code = std::max(code, own);
+        if (own != 3) print(cell, m);
+    }
+    return code;
+}
+
+/// One family of hard:all, on one line.
+int check_family(const Job& job, RecordFile& file, const Progress& progress) {
+    References references(job.scene, job.range);
+    std::uint64_t wrong = 0;
+    const int code = check_cells(job, references, file, progress, [&](const Cell&, const Measurement& m) {
+        wrong += m.agreement.ok() ? 0 : 1;
+    });
+    const auto misses = count_misses(job.scene, job.range, job.cells, references);
+    fmt::print("{:<26} {:>6} {:>9} {:>11} {:>7} {:>8} {:>6} {:>10}\n", job.scene.name,
+               job.range.frames.size(), misses.touching, misses.overlapping, misses.safe, misses.nearest,
+               job.cells.size(), wrong);
+    return misses.safe == 0 ? code : std::max(code, 1);
+}
+
+/// `tandem check hard:all`: cells against the reference, and the reference against the exact truth.
+int check_hard(const RunOptions& options, const Request& request, const std::vector<BackendReport>& backends,
+               const std::vector<std::string>& scenes) {
+    RecordFile file(options.out);
+    const Progress progress(options.quiet);
+    fmt::print("{:<26} {:>6} {:>9} {:>11} {:>7} {:>8} {:>6} {:>10}\n", "family", "frames", "touching",
+               "overlapping", "missed", "nearest", "cells", "that differ");
+    int code = 0;
+    for (const auto& scene : scenes) {
+        auto one = options;
+        one.scene = scene;
+        std::string refusal;
+        try {
+            code = std::max(code, check_family(open_job(one, request, backends), file, progress));
+        } catch (const InputError& error) {
+            refusal = error.what();
+        }
+        const bool invalid = scene.starts_with("hard:not-finite");
+        if (invalid && refusal.empty()) code = std::max(code, 1);
+        if (!refusal.empty() && !invalid) throw InputError(refusal);
+        if (invalid)
+            fmt::print("{:<26} {}\n", "hard:not-finite",
+                       refusal.empty() ? "NOT refused" : "refused: " + refusal);
+    }
+    fmt::print("{}\n", code == 0 ? "all agree with the reference; with rounding=safe it misses nothing"
+                                 : "NOT all agree with the reference and the truth");
+    return code;
+}
+
 } // namespace
 
 int run_command(const RunOptions& options) {
     auto request = options.request;
     if (request.devices.empty()) request.devices.emplace_back("opencl:0");
-    const auto job = open_job(options, request);
+    const auto backends = discover();
+    const auto job = open_job(options, request, backends);
     RecordFile file(options.out);
     DumpFile pairs(options.dump_pairs, pairs_header);
     DumpFile contacts(options.dump_contacts, contacts_header);
@@ -155,25 +215,23 @@ int check_command(const RunOptions& options) {
     auto request = options.request;
     if (request.devices.empty()) request.devices.emplace_back("all");
     if (request.presets.empty()) request.presets.emplace_back("all");
-    const auto job = open_job(options, request);
+    const auto backends = discover();
+    const auto scenes = expand_hard(options.scene);
+    if (scenes.size() > 1) return check_hard(options, request, backends, scenes);
+    const auto job = open_job(options, request, backends);
     RecordFile file(options.out);
     print_scene(job.scene, job.range);
     References references(job.scene, job.range);
     const Progress progress(options.quiet);
-    SampleOptions sampling;
-    sampling.repeat = 0;
-    sampling.progress = [&](std::string_view text) { progress.show(text); };
-    int code = 0;
     fmt::print("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {}\n", "device", "algorithm", "preset",
                "pairs", "missing", "extra", "retry", "contacts", "contacts equal");
-    for (const auto& cell : job.cells) {
-        Measurement m;
-        const int own = run_cell(cell, job, references, sampling, file, progress, m);
-        code = std::max(code, own);
-        if (own != 3) print_matrix_row(cell, m);
-    }
+    int code = check_cells(job, references, file, progress, print_matrix_row);
     fmt::print("{}\n", code == 0 ? "all agree with the reference" : "NOT all agree with the reference");
-    return code;
+    if (!options.scene.starts_with("hard:")) return code;
+    const auto misses = count_misses(job.scene, job.range, job.cells, references);
+    fmt::print("of {} touching and {} overlapping pairs {} are missed with rounding=safe, {} with nearest\n",
+               misses.touching, misses.overlapping, misses.safe, misses.nearest);
+    return misses.safe == 0 ? code : std::max(code, 1);
 }
 
 } // namespace tandem
