@@ -214,10 +214,10 @@ int run_command(const RunOptions& options) {
 int check_command(const RunOptions& options) {
     auto request = options.request;
     if (request.devices.empty()) request.devices.emplace_back("all");
-    if (request.presets.empty()) request.presets.emplace_back("all");
     const auto backends = discover();
     const auto scenes = expand_hard(options.scene);
     if (scenes.size() > 1) return check_hard(options, request, backends, scenes);
+    if (request.presets.empty()) request.presets.emplace_back("all");
     const auto job = open_job(options, request, backends);
     RecordFile file(options.out);
     print_scene(job.scene, job.range);

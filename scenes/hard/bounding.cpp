@@ -37,13 +37,16 @@ Vector above(Random& random, const Vector& d, int reach, const Vector& steps) {
     }
 }
 
-/// The face of a tetrahedron about c in the plane of u and v, its tip below; a corner of the other at c, the
-/// rest of it above. All integers.
+/// The face of a tetrahedron around c in the plane of u and v, its tip below; a corner of the other at c, the
+/// rest of it above. All integers. Weights other than 1 let all three corners of the face round one way, as
+/// corners that cancel out cannot.
 std::pair<Corners, Corners> touching_across(Random& random, const Vector& c, const Vector& d, const Vector& u,
                                             const Vector& v, int reach, const Vector& steps) {
     for (;;) {
         const Vector p = in_plane(random, u, v, reach), q = in_plane(random, u, v, reach);
-        const Corners a{c + p, c + q, c - p - q, c - above(random, d, reach, steps)};
+        const double weights[2]{1.0 * whole(random, 1, 2), 1.0 * whole(random, 1, 2)};
+        const Corners a{c + p, c + q, c - weights[0] * p - weights[1] * q,
+                        c - above(random, d, reach, steps)};
         Corners b{c, c, c, c};
         for (unsigned i = 1; i < 4; ++i) b[i] += above(random, d, reach, steps);
         const Vector area = p.cross(q);

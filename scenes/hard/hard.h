@@ -71,7 +71,7 @@ HardPair hard_pair(const HardFamily& family, std::uint64_t seed, std::uint64_t i
 /// How many pairs, and how many of them share a frame.
 struct HardCount {
     std::uint64_t pairs = 64;
-    std::uint64_t together = 1;
+    std::uint64_t together = 16;
 };
 
 /// Bodies 0 and 1 hold `together` tetrahedra each, in world coordinates or with one pose: tetrahedron t of

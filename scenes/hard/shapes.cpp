@@ -37,8 +37,9 @@ Corners thin(Random& random, double e, std::uint64_t index) {
 HardPair sliver(Random& random, double e, std::uint64_t index) {
     const auto a = thin(random, e, index);
     const auto b = thin(random, e, index / 4);
-    return rounded_pair(random, a,
-                        moved(b, 0.5 * (a[0] + a[2]) - 0.5 * (b[0] + b[2]) + 2 * e * random.direction()));
+    const double apart = index / 16 % 2 == 0 ? 2 * e : 0.5;
+    const Vector by = 0.5 * (a[0] + a[2]) - 0.5 * (b[0] + b[2]) + apart * random.direction();
+    return rounded_pair(random, a, moved(b, by));
 }
 
 /// Edges that cross at the angle e, as far apart as e at most, and the rest of each behind its edge.

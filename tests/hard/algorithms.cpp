@@ -47,8 +47,9 @@ TEST_P(HardAlgorithms, MissNothing) {
         for (const auto* traversal : algorithms())
             for (const std::string k : {"8", "18", "26"}) {
                 SCOPED_TRACE(fmt::format("{} {} k={}", family.name, traversal->name(), k));
-                expect_none_missed(*traversal, scene,
-                                   {{"k", k}, {"work_items", "64"}, {"contact_rule", "none"}});
+                expect_none_missed(
+                    *traversal, scene,
+                    {{"k", k}, {"work_items", "64"}, {"pair_capacity", "8192"}, {"contact_rule", "none"}});
             }
     }
     EXPECT_GT(met_, 10000u);
