@@ -67,6 +67,7 @@ HardPair ties(Random& random, double noise, std::uint64_t index) {
     return rounded_pair(random, a, b, Known::overlapping);
 }
 
+/// Depths of at most 2^-8, so that the faces stay around a common point however slim they are.
 HardPair vanishing_depth(Random& random, double halvings, std::uint64_t) {
     const auto [a, b] = touching_integers(random, 3, 3);
     return exact_pair(random, a, moved(b, {-std::ldexp(1.0, -static_cast<int>(halvings)), 0, 0}),
@@ -202,7 +203,7 @@ std::vector<HardFamily> contact_families() {
              'd',
              "vanishing-depth",
              "faces barely within each other",
-             {"halvings of the depth", 1, 20, 16},
+             {"halvings of the depth", 8, 20, 16},
              HardTruth::geometry,
              "DULP",
              "relative errors of the depth",

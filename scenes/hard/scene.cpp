@@ -101,8 +101,8 @@ SceneKind kind_of(const HardFamily& family) {
     kind.parameters.push_back({"seed", "1", "of everything random"});
     if (family.scene == nullptr) {
         kind.parameters.push_back({"pairs", "64", "how many, `together` a frame"});
-        kind.parameters.push_back({"together", "16",
-                                   "pairs that share a frame and meet each other too, or 1; divides pairs"});
+        kind.parameters.push_back(
+            {"together", "16", "pairs that share a frame and meet each other too, or 1; divides pairs"});
     }
     kind.make = [&family](std::span<const SceneParameter> parameters) {
         return make_kind(family, parameters);

@@ -116,6 +116,9 @@ int dispatch(int argc, char** argv) {
     app.add_option("--family", options.families, "F,G; all when left out")->delimiter(',');
     app.add_option("--batch", options.run.batch, "pairs in one launch")->check(CLI::Range(1, 1 << 24));
     app.add_option("--seed", options.run.seed, "of all pairs");
+    app.add_option("--sample", options.run.sample,
+                   "of so many pairs known by construction the oracle decides one as well")
+        ->check(CLI::PositiveNumber);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

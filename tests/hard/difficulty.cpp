@@ -239,7 +239,7 @@ const std::vector<Case>& cases() {
                                        {"deep", of_contact(depth), 0.01, 0.4},
                                        {"ties", of_contact(normals), 0.1, 0},
                                        {"configurations", overlapping, 0, 0.125},
-                                       {"vanishing-depth", of_contact(shallowness), 1, 10},
+                                       {"vanishing-depth", of_contact(shallowness), 8, 16},
                                        {"interior-faces", meeting, 0.001, 0.5},
                                        {"plane-division", of_contact(depth), 1e-5, 0.1},
                                        {"inverting", volume_of_a, 0, 1},
