@@ -189,10 +189,11 @@ AdversarialTally run_adversarial(const HardFamily& family, std::span<const Adver
     const auto difficulties = difficulties_of(family);
     const auto each = (options.pairs + difficulties.size() - 1) / difficulties.size();
     const auto most = family.pose != nullptr ? std::min(options.batch, most_of_a_pose) : options.batch;
-    const auto together = std::clamp<std::uint64_t>(each, 1, most);
+    const auto batches = std::max<std::uint64_t>(1, (each + most - 1) / most);
+    const auto together = std::max<std::uint64_t>(1, (each + batches - 1) / batches);
     for (const double difficulty : difficulties) {
         Runner runner(family, cells, options, difficulty, together);
-        for (std::uint64_t number = 0; number * together < each; ++number) runner.run(number, tally);
+        for (std::uint64_t number = 0; number < batches; ++number) runner.run(number, tally);
     }
     return tally;
 }

@@ -21,6 +21,11 @@ std::vector<HardFamily> all_families() {
 
 } // namespace
 
+std::string_view name_of(HardTruth truth) {
+    constexpr std::string_view names[] = {"construction", "oracle", "program", "geometry"};
+    return names[static_cast<unsigned>(truth)];
+}
+
 std::span<const HardFamily> hard_families() {
     static const auto families = all_families();
     return families;

