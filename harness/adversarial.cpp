@@ -2,6 +2,7 @@
 #include "harness/adversarial.h"
 
 #include "algorithms/kdop/pair_list.h"
+#include "harness/oracle/contact_truth.h"
 #include "harness/oracle/frame_truth.h"
 #include "harness/parallel.h"
 #include "scenes/error.h"
@@ -45,7 +46,7 @@ TetraCorners widened(const FloatCorners& corners) {
 struct Batch {
     Frame frame;
     std::vector<Relation> truth;
-    std::atomic<std::uint64_t> decided = 0, contradictions = 0;
+    std::atomic<std::uint64_t> decided = 0, clipped = 0, contradictions = 0;
 };
 
 /// One family at one difficulty: its pairs, batch after batch, through every cell.
@@ -120,8 +121,9 @@ private:
             }
         const bool open = pair.known == Known::open;
         if (!open) batch.truth[place] = relation_of(pair.known);
-        if (!open && index % options_.sample != 0) return;
-        const auto decided = relation(widened(pair.a), widened(pair.b));
+        const bool clips = family_.truth == HardTruth::geometry && index < options_.clipped;
+        if (!open && !clips && index % options_.sample != 0) return;
+        const auto decided = clips ? clipped(batch, pair) : relation(widened(pair.a), widened(pair.b));
         ++batch.decided;
         if (open)
             batch.truth[place] = decided;
@@ -129,10 +131,22 @@ private:
             ++batch.contradictions;
     }
 
+    /// The relation by the exact intersection, which shares nothing with the decision but the facets; invalid
+    /// where the pair has no volume.
+    static Relation clipped(Batch& batch, const HardPair& pair) {
+        const auto truth = contact_truth(widened(pair.a), widened(pair.b));
+        ++batch.clipped;
+        if (!truth) return Relation::invalid;
+        return truth->volume > 0         ? Relation::overlapping
+               : truth->vertices.empty() ? Relation::disjoint
+                                         : Relation::touching;
+    }
+
     void compare(const Batch& batch, const std::vector<std::vector<std::uint8_t>>& found,
                  std::uint64_t number, AdversarialTally& tally) const {
         tally.pairs += together_;
         tally.decided += batch.decided;
+        tally.clipped += batch.clipped;
         tally.contradictions += batch.contradictions;
         for (std::size_t i = 0; i < batch.truth.size(); ++i) {
             const bool meets = batch.truth[i] != Relation::disjoint;

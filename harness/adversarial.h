@@ -21,6 +21,9 @@ struct AdversarialOptions {
     std::uint64_t batch = 1 << 17; ///< in one launch
     std::uint64_t seed = 1;
     std::uint64_t sample = 64; ///< of so many pairs known by construction the oracle decides one as well
+    /// Families whose truth is geometry: of so many, at each difficulty, the exact intersection is made
+    /// instead.
+    std::uint64_t clipped = 2000;
 };
 
 /// A pair that meets and was not found.
@@ -34,6 +37,7 @@ struct MissedPair {
 struct AdversarialTally {
     std::uint64_t pairs = 0, touching = 0, overlapping = 0; ///< the rest is disjoint
     std::uint64_t decided = 0;                              ///< by the oracle
+    std::uint64_t clipped = 0;                              ///< of these by the exact intersection
     std::uint64_t contradictions = 0;           ///< constructions that the oracle does not confirm
     std::vector<std::uint64_t> missed;          ///< [cell] pairs that meet and were not found
     std::vector<std::uint64_t> false_pairs;     ///< [cell] found pairs that do not meet

@@ -214,7 +214,7 @@ std::vector<HardFamily> bounding_families() {
              {"added to every coordinate", 1, 1e7, 1e4},
              HardTruth::oracle,
              "MISS, FPR",
-             "slabs widened by absolute tolerances; false pairs double at 1e6",
+             "wide diagonals: with k = 26 false pairs double at 1e6",
              far_origin},
             {4,
              'a',

@@ -45,6 +45,7 @@ void add(AdversarialTally& sum, const AdversarialTally& term) {
     sum.touching += term.touching;
     sum.overlapping += term.overlapping;
     sum.decided += term.decided;
+    sum.clipped += term.clipped;
     sum.contradictions += term.contradictions;
     sum.truth_seconds += term.truth_seconds;
     sum.test_seconds += term.test_seconds;

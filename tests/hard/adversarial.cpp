@@ -13,6 +13,12 @@ namespace {
 
 using namespace testing_support;
 
+#ifdef TANDEM_FEW_PAIRS // host kernels of two geometries only
+constexpr std::array tested{8, 18};
+#else
+constexpr std::array tested{8, 18, 26};
+#endif
+
 class Adversarial : public testing::TestWithParam<std::string> {
 protected:
     std::vector<AdversarialCell> cells(Rounding rounding) {
@@ -27,11 +33,12 @@ TEST_P(Adversarial, SafeRoundingMissesNothing) {
     std::uint64_t met = 0;
     for (const auto& family : hard_families()) {
         if (!is_adversarial(family)) continue;
-        const auto tally =
-            run_adversarial(family, cells(Rounding::safe), {.pairs = 600, .batch = 70, .sample = 1});
+        const auto tally = run_adversarial(family, cells(Rounding::safe),
+                                           {.pairs = 600, .batch = 70, .sample = 1, .clipped = 20});
         EXPECT_TRUE(tally.ok()) << family.name;
         EXPECT_EQ(tally.pairs, 600u) << family.name; // two batches of 60 at each difficulty
         EXPECT_EQ(tally.decided, tally.pairs);
+        EXPECT_EQ(tally.clipped, family.truth == HardTruth::geometry ? 100u : 0u) << family.name;
         met += tally.touching + tally.overlapping;
     }
     EXPECT_GT(met, 10000u);
@@ -45,7 +52,9 @@ TEST_P(Adversarial, RoundingToNearestIsFoundOut) {
     EXPECT_EQ(tally.contradictions, 0u);
     EXPECT_GT(tally.missed[0], 0u);
     EXPECT_EQ(tally.missed[1], 0u);
-    EXPECT_GT(tally.missed[2], 0u);
+    if (tested.size() > 2) {
+        EXPECT_GT(tally.missed[2], 0u);
+    }
     ASSERT_TRUE(tally.first);
     EXPECT_EQ(tally.first->cell, 0u);
     EXPECT_FALSE(tally.ok());
