@@ -8,8 +8,8 @@ KERNEL void digest_pairs(GLOBAL const uint* found, uint capacity, GLOBAL const u
     Tally tally = empty_tally();
     const uint count =
         status[STATUS_PAIRS + 1] != 0u || status[STATUS_PAIRS] > capacity ? capacity : status[STATUS_PAIRS];
-    for (uint i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
-        GLOBAL const uint* pair = found + (ulong)i * PAIR_WORDS;
+    for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) { // of 64 bits, or it would start over near 2^32
+        GLOBAL const uint* pair = found + i * PAIR_WORDS;
         tally_digest(&tally, bodies, ids, pair[0], pair[1], pair[2], pair[3]);
     }
     if (tally.a != 0 || tally.b != 0) {

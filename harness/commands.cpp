@@ -9,6 +9,7 @@
 #include "harness/table.h"
 #include "harness/walk.h"
 #include "scenes/error.h"
+#include "scenes/hard/hard.h"
 
 #include <algorithm>
 #include <deque>
@@ -60,16 +61,6 @@ std::string verdict(const Measurement& m) {
                        a.contact_frames_wrong, a.frames);
 }
 
-void print_matrix_row(const Cell& cell, const Measurement& m) {
-    fmt::print("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n",
-               cell.device->info().id, cell.algorithm->name(), cell.preset, m.agreement.digest.count,
-               m.agreement.missing, m.agreement.extra, m.retries,
-               std::accumulate(m.contacts.begin(), m.contacts.end(), std::uint64_t{0}),
-               m.agreement.contact_frames_wrong == 0 ? "yes" : "NO",
-               m.errors ? fmt::to_string(m.errors->missed()) : "-",
-               m.errors ? fmt::to_string(m.errors->pairs.disjoint) : "-");
-}
-
 } // namespace
 
 int run_command(const RunOptions& options) {
@@ -109,43 +100,6 @@ int run_command(const RunOptions& options) {
     }
     for (const auto& row : rows) fmt::print("{}: {}\n", describe(*row.cell), verdict(*row.measurement));
     if (!options.out.empty()) fmt::print("{} records appended to {}\n", job.cells.size(), options.out);
-    return code;
-}
-
-int check_command(const RunOptions& options) {
-    auto request = options.request;
-    if (request.devices.empty()) request.devices.emplace_back("all");
-    if (request.presets.empty()) request.presets.emplace_back("all");
-    const auto backends = discover();
-    check_required(backends, options.require);
-    const auto job = open_job(options, plan(request, choose_devices(backends, request.devices)));
-    RecordFile file(options.out);
-    print_scene(job.scene, job.range);
-    References references(job.scene, job.range);
-    const Progress progress(options.quiet);
-    SampleOptions sampling;
-    sampling.repeat = 0;
-    Truths truths(job.scene, job.range.frames, options.truth, options.truth_contacts);
-    if (options.truth != TruthAmount::none) sampling.truths = &truths;
-    sampling.progress = [&](std::string_view text) { progress.show(text); };
-    int code = 0;
-    int broken = 0;
-    fmt::print("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n", "device",
-               "algorithm", "preset", "pairs", "missing", "extra", "retry", "contacts", "contacts equal",
-               "missed", "false");
-    for (const auto& cell : job.cells) {
-        Measurement m;
-        const int own = run_cell(cell, job, references, sampling, file, progress, m);
-        code = std::max(code, own);
-        if (own == 3) continue;
-        print_matrix_row(cell, m);
-        if (misses_against_its_promise(m)) {
-            code = std::max(code, 1);
-            ++broken;
-        }
-    }
-    fmt::print("{}\n", code == 0 ? "all agree with the reference" : "NOT all agree with the reference");
-    if (broken > 0) fmt::print("{} cells with safe rounding MISS pairs that meet\n", broken);
     return code;
 }
 

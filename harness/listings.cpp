@@ -4,6 +4,7 @@
 #include "harness/inputs.h"
 #include "harness/record.h"
 #include "scenes/dynamics_settings.h"
+#include "scenes/hard/hard.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -107,6 +108,41 @@ Json dynamics_json(const Scene& scene) {
     return json;
 }
 
+Json scene_json(const SceneKind& kind, const Scene& scene) {
+    Json parameters = Json::object();
+    for (const auto& p : kind.parameters) parameters[p.name] = {{"default", p.value}, {"help", p.help}};
+    return {{"name", kind.name},
+            {"models", kind.models},
+            {"parameters", parameters},
+            {"bodies", scene.bodies.size()},
+            {"vertices", vertex_count(scene)},
+            {"tetrahedra", tetrahedron_count(scene)},
+            {"frames", scene.frame_count},
+            {"steps", scene.dynamics ? Json(scene.dynamics->steps) : Json(nullptr)},
+            {"dynamics", dynamics_json(scene)}};
+}
+
+/// What else there is to know of a family of hard cases.
+Json hard_json(const HardFamily& family) {
+    return {{"row", family.row},
+            {"group", std::string(1, family.group)},
+            {"summary", family.summary},
+            {"difficulty", family.knob.meaning},
+            {"range", {family.knob.least, family.knob.most}},
+            {"truth", name_of(family.truth)},
+            {"metric", family.metric},
+            {"fails", family.fails}};
+}
+
+void print_hard() {
+    fmt::print("\nhard cases, hard:NAME:difficulty=X,seed=N,pairs=N,together=N; 'tandem check hard:all' "
+               "takes all\n");
+    for (const auto& family : hard_families())
+        fmt::print("    {} {:<20} {}\n      {:<20} difficulty {}: {}, {}..{}\n", family.group, family.name,
+                   family.summary, "", family.knob.initial, family.knob.meaning, family.knob.least,
+                   family.knob.most);
+}
+
 void print_dynamics() {
     fmt::print("\nmotion by simulation, --dynamics NAME=VALUE; a scene may have other defaults (--json)\n");
     for (const auto& setting : dynamics_settings())
@@ -144,25 +180,20 @@ int devices_command(const DevicesOptions& options) {
 int scenes_command(bool json) {
     Json all = Json::array();
     for (const auto& kind : scene_kinds()) {
-        Json parameters = Json::object();
-        for (const auto& p : kind.parameters) parameters[p.name] = {{"default", p.value}, {"help", p.help}};
         const auto scene = make_scene(kind.name);
-        all.push_back({{"name", kind.name},
-                       {"models", kind.models},
-                       {"parameters", parameters},
-                       {"bodies", scene.bodies.size()},
-                       {"vertices", vertex_count(scene)},
-                       {"tetrahedra", tetrahedron_count(scene)},
-                       {"frames", scene.frame_count},
-                       {"steps", scene.dynamics ? Json(scene.dynamics->steps) : Json(nullptr)},
-                       {"dynamics", dynamics_json(scene)}});
+        all.push_back(scene_json(kind, scene));
         if (!json) print_scene(kind, scene);
     }
     if (json) {
+        for (const auto& kind : hard_kinds()) {
+            all.push_back(scene_json(kind, make_scene(kind.name)));
+            all.back()["hard"] = hard_json(hard_family(kind.name.substr(5)));
+        }
         fmt::print("{}\n", all.dump(2));
         return 0;
     }
     print_scene_table(all);
+    print_hard();
     print_dynamics();
     return 0;
 }

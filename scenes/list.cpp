@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/digest.h"
 #include "scenes/error.h"
+#include "scenes/hard/hard.h"
 #include "scenes/parameters.h"
 #include "scenes/recording/recording.h"
 #include "scenes/refine.h"
@@ -76,9 +77,11 @@ std::span<const SceneKind> scene_kinds() {
 Scene make_scene(std::string_view specification) {
     if (specification.ends_with(".json")) return load_description(std::string(specification));
     if (specification.ends_with(".frames")) return load_recording(std::string(specification));
-    const auto name = specification.substr(0, specification.find(':'));
+    const bool hard = specification.starts_with("hard:");
+    const auto name = specification.substr(0, specification.find(':', hard ? 5 : 0));
+    if (hard) hard_family(name.substr(5));
     std::vector<std::string> names;
-    for (const auto& kind : scene_kinds()) {
+    for (const auto& kind : hard ? hard_kinds() : scene_kinds()) {
         names.push_back(kind.name);
         if (kind.name != name) continue;
         const auto rest =
@@ -90,6 +93,7 @@ Scene make_scene(std::string_view specification) {
         scene.digest = digest_of(scene);
         return scene;
     }
+    names.emplace_back("hard:FAMILY");
     throw InputError(unknown("scene", name, names));
 }
 

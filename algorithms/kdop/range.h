@@ -10,7 +10,8 @@ namespace tandem {
 /// overflows (three terms of one transformed vertex, each a sum of four products with |entries| <= 1).
 double largest_coordinate(Precision precision);
 
-/// Throws InputError that names the first body of `frame` with a coordinate beyond largest_coordinate.
+/// Throws InputError that names the first body of `frame` with a coordinate beyond largest_coordinate, or
+/// that is not finite.
 void check_range(const Scene& scene, const Frame& frame, Precision precision);
 
 } // namespace tandem

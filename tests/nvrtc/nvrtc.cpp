@@ -2,6 +2,7 @@
 // nvrtc [--require nvrtc]: compiles every kernel of the plan with NVRTC, which needs no GPU: all define sets
 // for sm_90, the defaults for the other architectures. Without NVRTC it says how many kernels it did not
 // compile.
+#include "algorithms/kdop/pair_list.h"
 #include "algorithms/sources.h"
 #include "algorithms/traversal.h"
 #include "backends/ptxas_log.h"
@@ -44,6 +45,13 @@ void prepare(Device& device, const Traversal& traversal, const Settings& from, c
     session->count_work(true);
 }
 
+/// Compiles the test of an explicit list of pairs.
+void prepare_list(Device& device, Precision precision) {
+    const auto scene = make_scene("hard:touch:pairs=2,together=2");
+    const DeviceScene on_device(device, scene, {.precision = precision}, 32, 128, Residency::resident);
+    const PairList list(on_device, std::vector<Pair>{{0, 0, 1, 0}, {0, 1, 1, 1}});
+}
+
 /// The plan: every geometry with the first preset of every algorithm, and every preset and output with its
 /// own.
 Programs plan() {
@@ -61,6 +69,7 @@ Programs plan() {
             for (const std::string output : {"pairs", "count", "digest"})
                 prepare(device, *traversal, preset.values, {{"output", output}});
     }
+    for (const auto precision : {Precision::single, Precision::twice}) prepare_list(device, precision);
     return device.asked();
 }
 
@@ -69,6 +78,7 @@ Programs defaults() {
     for (const auto* traversal : algorithms())
         for (const std::string precision : {"float", "double"})
             prepare(device, *traversal, traversal->presets().front().values, {{"precision", precision}});
+    for (const auto precision : {Precision::single, Precision::twice}) prepare_list(device, precision);
     return device.asked();
 }
 

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// tandem check: do all algorithms on all devices agree with the reference, and what do they miss of the
+// truth?
+#include "harness/inputs.h"
+#include "harness/job.h"
+#include "scenes/error.h"
+#include "scenes/hard/hard.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace tandem {
+
+namespace {
+
+/// Checks every cell; `print` is given each that finished. Returns the exit code.
+int check_cells(const Job& job, const RunOptions& options, RecordFile& file, const Progress& progress,
+                const std::function<void(const Cell&, const Measurement&)>& print) {
+    References references(job.scene, job.range);
+    Truths truths(job.scene, job.range.frames, options.truth, options.truth_contacts);
+    SampleOptions sampling;
+    sampling.repeat = 0;
+    sampling.progress = [&](std::string_view text) { progress.show(text); };
+    if (options.truth != TruthAmount::none) sampling.truths = &truths;
+    int code = 0;
+    for (const auto& cell : job.cells) {
+        Measurement m;
+        const int own = run_cell(cell, job, references, sampling, file, progress, m);
+        code = std::max({code, own, misses_against_its_promise(m) ? 1 : 0});
+        if (own != 3) print(cell, m);
+    }
+    return code;
+}
+
+void print_matrix_header() {
+    fmt::print("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n", "device",
+               "algorithm", "preset", "pairs", "missing", "extra", "retry", "contacts", "contacts equal",
+               "missed", "false");
+}
+
+void print_matrix_row(const Cell& cell, const Measurement& m) {
+    fmt::print("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n",
+               cell.device->info().id, cell.algorithm->name(), cell.preset, m.agreement.digest.count,
+               m.agreement.missing, m.agreement.extra, m.retries,
+               std::accumulate(m.contacts.begin(), m.contacts.end(), std::uint64_t{0}),
+               m.agreement.contact_frames_wrong == 0 ? "yes" : "NO",
+               m.errors ? fmt::to_string(m.errors->missed()) : "-",
+               m.errors ? fmt::to_string(m.errors->pairs.disjoint) : "-");
+}
+
+void print_family_header() {
+    fmt::print("{:<26} {:>6} {:>9} {:>11} {:>7} {:>9} {:>6} {:>10}\n", "family", "frames", "touching",
+               "overlapping", "missed", "by others", "cells", "that differ");
+}
+
+/// One family of hard:all, on one line.
+int check_family(const Job& job, const RunOptions& options, RecordFile& file, const Progress& progress) {
+    std::uint64_t wrong = 0;
+    std::uint64_t safe = 0;
+    std::uint64_t others = 0;
+    PairErrors meeting;
+    const int code = check_cells(job, options, file, progress, [&](const Cell&, const Measurement& m) {
+        wrong += m.agreement.ok() ? 0 : 1;
+        if (!m.errors) return;
+        meeting = m.errors->pairs;
+        (m.settings.at("rounding") == "safe" ? safe : others) += m.errors->missed();
+    });
+    fmt::print("{:<26} {:>6} {:>9} {:>11} {:>7} {:>9} {:>6} {:>10}\n", job.scene.name,
+               job.range.frames.size(), meeting.touching + meeting.missed_touching,
+               meeting.overlapping + meeting.missed_overlapping, safe, others, job.cells.size(), wrong);
+    return code;
+}
+
+/// `tandem check hard:all`. The family with numbers that are not finite has to be refused.
+int check_hard(const RunOptions& options, const std::vector<Cell>& cells,
+               const std::vector<std::string>& scenes) {
+    RecordFile file(options.out);
+    const Progress progress(options.quiet);
+    print_family_header();
+    int code = 0;
+    for (const auto& scene : scenes) {
+        auto one = options;
+        one.scene = scene;
+        std::string refusal;
+        try {
+            code = std::max(code, check_family(open_job(one, cells), one, file, progress));
+        } catch (const InputError& error) {
+            refusal = error.what();
+        }
+        const bool invalid = scene.starts_with("hard:not-finite");
+        if (!invalid && !refusal.empty()) throw InputError(refusal);
+        if (!invalid) continue;
+        if (refusal.empty()) code = std::max(code, 1);
+        fmt::print("{:<26} {}\n", "hard:not-finite", refusal.empty() ? "NOT refused" : "refused: " + refusal);
+    }
+    fmt::print("{}\n", code == 0
+                           ? "all agree with the reference; with rounding=safe nothing that meets is missed"
+                           : "NOT all agree with the reference and the truth");
+    return code;
+}
+
+} // namespace
+
+int check_command(const RunOptions& options) {
+    auto request = options.request;
+    if (request.devices.empty()) request.devices.emplace_back("all");
+    const auto backends = discover();
+    check_required(backends, options.require);
+    const auto devices = choose_devices(backends, request.devices);
+    const auto scenes = expand_hard(options.scene);
+    if (scenes.size() > 1) return check_hard(options, plan(request, devices), scenes);
+    if (request.presets.empty()) request.presets.emplace_back("all");
+    const auto job = open_job(options, plan(request, devices));
+    RecordFile file(options.out);
+    print_scene(job.scene, job.range);
+    const Progress progress(options.quiet);
+    std::size_t broken = 0;
+    print_matrix_header();
+    const int code = check_cells(job, options, file, progress, [&](const Cell& cell, const Measurement& m) {
+        print_matrix_row(cell, m);
+        broken += misses_against_its_promise(m) ? 1 : 0;
+    });
+    fmt::print("{}\n", code == 0 ? "all agree with the reference" : "NOT all agree with the reference");
+    if (broken > 0) fmt::print("{} cells with safe rounding MISS pairs that meet\n", broken);
+    return code;
+}
+
+} // namespace tandem

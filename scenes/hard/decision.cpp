@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+// Group c: what decides whether two tetrahedra meet may get wrong because they touch, or nearly do.
+#include "scenes/hard/families.h"
+#include "scenes/hard/maker.h"
+
+#include <cmath>
+
+namespace tandem::hard {
+
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+/// Corner, edge or face of each, by the index: nine ways.
+std::pair<Corners, Corners> by_index(Random& random, std::uint64_t index) {
+    return touching_integers(random, 1 + static_cast<unsigned>(index % 3),
+                             1 + static_cast<unsigned>(index / 3 % 3));
+}
+
+Vector whole_offset(Random& random, int largest) {
+    Vector by;
+    for (auto& x : by) x = whole(random, -largest, largest);
+    return by;
+}
+
+HardPair mapped_pair(Random& random, std::pair<Corners, Corners> pair, double bits, Known known) {
+    const auto map = integer_map(random, static_cast<int>(bits));
+    const Vector by = whole_offset(random, 1000);
+    return exact_pair(random, mapped(map, pair.first, by), mapped(map, pair.second, by), known);
+}
+
+HardPair touch(Random& random, double bits, std::uint64_t index) {
+    auto pair = by_index(random, index);
+    return mapped_pair(random, std::move(pair), bits, Known::touching);
+}
+
+/// Two faces in one plane around a common point, mapped to numbers about 2^23 + 2^22, where one unit is that
+/// of the last place; b is moved by whole units along the axis nearest the normal. The map stretches so much
+/// that a unit is below 2^-10 of what it was, so that the faces stay around a common point.
+HardPair units_apart(Random& random, double units, std::uint64_t) {
+    const auto [a, b] = touching_integers(random, 3, 3);
+    const auto map = integer_map(random, 17, 0x1p45);
+    const Vector normal = map.col(1).cross(map.col(2)); // of the image of the plane x = 0
+    const double outwards = normal.dot(map.col(0)) > 0 ? 1 : -1;
+    int axis = 0;
+    normal.cwiseAbs().maxCoeff(&axis);
+    Vector by = Vector::Constant(0x1p23 + 0x1p22);
+    const auto a_mapped = mapped(map, a, by);
+    by[axis] += (normal[axis] > 0 ? outwards : -outwards) * std::round(units);
+    const auto known = std::round(units) > 0   ? Known::disjoint
+                       : std::round(units) < 0 ? Known::overlapping
+                                               : Known::touching;
+    return exact_pair(random, a_mapped, mapped(map, b, by), known);
+}
+
+/// A corner of b goes to a point of a's face 0 1 2, lifted by so many units of 2^-24, then rounded; the rest
+/// of b is on the far side.
+HardPair rounded_onto_face(Random& random, double lift, std::uint64_t) {
+    const auto a = random_tetrahedron(random);
+    Vector normal = (a[1] - a[0]).cross(a[2] - a[0]).normalized();
+    if (normal.dot(a[3] - a[0]) > 0) normal = -normal;
+    const double p = random.uniform(0.1, 0.4), q = random.uniform(0.1, 0.4);
+    const Vector foot = (1 - p - q) * a[0] + p * a[1] + q * a[2] + lift * 0x1p-24 * normal;
+    Corners b{foot, foot, foot, foot};
+    for (unsigned i = 1; i < 4; ++i) {
+        b[i] += random.uniform(0.3, 1) * normal;
+        b[i] += 0.8 * random.direction().cross(normal);
+    }
+    return rounded_pair(random, a, b);
+}
+
+/// Faces in one plane beside each other: they share a corner (even pairs) or are a unit apart before the map.
+HardPair coplanar(Random& random, double bits, std::uint64_t index) {
+    const double gap = index % 2 == 0 ? 0 : 1;
+    Corners sides[2];
+    for (int side = 0; side < 2; ++side) {
+        const int sign = side == 0 ? -1 : 1;
+        do {
+            for (auto& c : sides[side]) {
+                const double y = sign * whole(random, 1, 4);
+                c = Vector{0, y, 1.0 * whole(random, -4, 4)};
+            }
+            sides[side][0] = Vector{0, side == 0 ? 0 : gap, 0};
+            sides[side][3].x() = sign * whole(random, 1, 4);
+            if (side == 1)
+                for (unsigned i = 1; i < 4; ++i) sides[side][i].y() += gap;
+        } while (determinant(sides[side]) == 0);
+    }
+    return mapped_pair(random, {sides[0], sides[1]}, bits, gap == 0 ? Known::touching : Known::disjoint);
+}
+
+/// A face, an edge or a corner in common, with equal bits.
+HardPair shared(Random& random, double bits, std::uint64_t index) {
+    const auto in_common = 3 - static_cast<unsigned>(index % 3);
+    for (;;) {
+        auto [a, b] = touching_integers(random, 3, 3);
+        for (unsigned i = 0; i < in_common; ++i) b[i] = a[i];
+        for (unsigned i = in_common; i < 3; ++i) b[i].x() = whole(random, 1, 4);
+        if (determinant(b) != 0) return mapped_pair(random, {a, b}, bits, Known::touching);
+    }
+}
+
+/// b is a, shrunk about the centroid.
+HardPair nested(Random& random, double shrink, std::uint64_t) {
+    const auto a = random_tetrahedron(random);
+    const Vector middle = 0.25 * ((a[0] + a[1]) + (a[2] + a[3]));
+    auto b = a;
+    for (auto& c : b) c += shrink * (middle - c);
+    return rounded_pair(random, a, b, Known::overlapping);
+}
+
+/// Odd pairs are the even ones with two corners of each swapped, which turns them inside out.
+HardPair inside_out(Random& random, double bits, std::uint64_t index) {
+    auto pair = touch(random, bits, index / 2);
+    if (index % 2 == 1) {
+        std::swap(pair.a[1], pair.a[2]);
+        std::swap(pair.b[0], pair.b[3]);
+    }
+    return pair;
+}
+
+} // namespace
+
+std::vector<HardFamily> decision_families() {
+    return {
+        {14,
+         'c',
+         "touch",
+         "corner, edge or face on corner, edge or face: small integers",
+         {"bits of the integer map", 1, 9, 3},
+         HardTruth::construction,
+         "CLS",
+         "distance algorithms with tolerances miss 20 to 55 %",
+         touch},
+        {15,
+         'c',
+         "touch-24bit",
+         "the same with coordinates of up to 24 bits",
+         {"bits of the integer map", 10, 19, 19},
+         HardTruth::construction,
+         "CLS",
+         "separating axes in single precision miss 4 to 12 %, in double 2 to 7 %",
+         touch},
+        {16,
+         'c',
+         "units-apart",
+         "faces in one plane, then moved apart or together by units in the last place",
+         {"units apart", -16, 16, 1},
+         HardTruth::construction,
+         "CLS",
+         "whatever rounds a difference",
+         units_apart},
+        {17,
+         'c',
+         "rounded-onto-face",
+         "a corner rounded onto a face",
+         {"lift in units of 2^-24", -1e6, 1e6, 0},
+         HardTruth::oracle,
+         "CLS",
+         "single precision: 45 missed and 655 false of 2000",
+         rounded_onto_face},
+        {18,
+         'c',
+         "coplanar",
+         "faces in one plane beside each other, with a common corner or none",
+         {"bits of the integer map", 1, 19, 8},
+         HardTruth::construction,
+         "CLS",
+         "portal refinement misses 55 %",
+         coplanar},
+        {19,
+         'c',
+         "shared",
+         "a common face, edge or corner, as neighbours in a mesh have",
+         {"bits of the integer map", 1, 19, 12},
+         HardTruth::construction,
+         "CLS",
+         "filters, which are unsure of all of them",
+         shared},
+        {20,
+         'c',
+         "nested",
+         "a copy, shrunk about its centroid",
+         {"shrunk by", 0, 0.99, 0.5},
+         HardTruth::construction,
+         "CLS, DREL",
+         "pushing along one side of an axis only: depth too large",
+         nested},
+    };
+}
+
+HardFamily inverted_family() {
+    return {27,
+            'c',
+            "inverted",
+            "touching pairs and the same pairs inside out",
+            {"bits of the integer map", 1, 19, 12},
+            HardTruth::construction,
+            "PERM",
+            "face normals that trust the order of corners",
+            inside_out,
+            true};
+}
+
+} // namespace tandem::hard

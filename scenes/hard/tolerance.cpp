@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// Group b: overlap tests with a tolerance, and hierarchies made anew.
+#include "scenes/hard/families.h"
+#include "scenes/hard/maker.h"
+#include "scenes/hard/solids.h"
+
+#include <cmath>
+
+namespace tandem::hard {
+
+namespace {
+
+HardPair scaled_pair(Random& random, double size, std::uint64_t) {
+    const auto [a, b] = near_pair(random);
+    return rounded_pair(random, scaled(a, size), scaled(b, size));
+}
+
+/// Faces in the planes x = 0 and x = gap, one behind the other: the distance is the gap, exactly.
+HardPair gap_near_tolerance(Random& random, double units, std::uint64_t) {
+    constexpr double tolerance = 10 * 0x1p-23; // the paper's 10 FLT_EPSILON
+    const double gap = tolerance + std::round(units) * float_unit(tolerance);
+    auto [a, b] = touching_integers(random, 3, 3);
+    for (unsigned i = 0; i < 3; ++i) b[i].x() = gap;
+    return exact_pair(random, a, b, Known::disjoint);
+}
+
+/// Two boxes of tetrahedra, deformed anew in every frame.
+Scene refits(Random& random, double frames) {
+    Scene scene;
+    scene.meshes = {grid({3, 3, 3}, {1, 1, 1})};
+    scene.bodies = {{.deformable = true}, {.deformable = true}};
+    scene.frame_count = static_cast<std::size_t>(frames);
+    scene.frame = [rest = scene.meshes.front().vertices, seed = random.next()](std::size_t index) {
+        Frame frame;
+        frame.poses.resize(2);
+        frame.deformed.assign(2, rest);
+        Random shake(seed + index * 0x9e3779b97f4a7c15u);
+        for (unsigned body = 0; body < 2; ++body)
+            for (auto& v : frame.deformed[body])
+                for (int axis = 0; axis < 3; ++axis)
+                    v[axis] = static_cast<double>(static_cast<float>(
+                        v[axis] + 0.9 * body * (axis == 0 ? 1 : 0) + shake.uniform(-0.1, 0.1)));
+        return frame;
+    };
+    return scene;
+}
+
+} // namespace
+
+std::vector<HardFamily> tolerance_families() {
+    return {
+        {11,
+         'b',
+         "tolerance-scale",
+         "random near pairs of another size",
+         {"size", 1e-6, 1e6, 1e-3},
+         HardTruth::oracle,
+         "MISS, FPR",
+         "absolute tolerances: at 1e-6 everything overlaps",
+         scaled_pair},
+        {12,
+         'b',
+         "tolerance-gap",
+         "parallel faces as far apart as the paper's tolerance, give or take some units in the last place",
+         {"units above the tolerance", -64, 64, 1},
+         HardTruth::construction,
+         "false pairs at gap > tolerance",
+         "tolerances added after rounding",
+         gap_near_tolerance},
+        {.row = 13,
+         .group = 'b',
+         .name = "refit-order",
+         .summary = "two boxes of tetrahedra deformed anew in every frame",
+         .knob = {"frames", 2, 1000, 8},
+         .truth = HardTruth::oracle,
+         .metric = "equality with a fresh build",
+         .fails = "hierarchies that widen in place",
+         .scene = refits}};
+}
+
+} // namespace tandem::hard

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Lists of pairs, bounded and tested by the kernels of the walks, against the exact truth.
+#include "harness/adversarial.h"
+#include "scenes/error.h"
+#include "tests/support/cells.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+#ifdef TANDEM_FEW_PAIRS // host kernels of two geometries only
+constexpr std::array tested{8, 18};
+#else
+constexpr std::array tested{8, 18, 26};
+#endif
+
+class Adversarial : public testing::TestWithParam<std::string> {
+protected:
+    std::vector<AdversarialCell> cells(Rounding rounding) {
+        std::vector<AdversarialCell> result;
+        for (const int k : {8, 18, 26})
+            result.push_back({&device(GetParam()), {.k = k, .rounding = rounding}});
+        return result;
+    }
+};
+
+TEST_P(Adversarial, SafeRoundingMissesNothing) {
+    std::uint64_t met = 0;
+    for (const auto& family : hard_families()) {
+        if (!is_adversarial(family)) continue;
+        const auto tally = run_adversarial(family, cells(Rounding::safe),
+                                           {.pairs = 600, .batch = 70, .sample = 1, .clipped = 20});
+        EXPECT_TRUE(tally.ok()) << family.name;
+        EXPECT_EQ(tally.pairs, 600u) << family.name; // two batches of 60 at each difficulty
+        EXPECT_EQ(tally.decided, tally.pairs);
+        EXPECT_EQ(tally.clipped, family.truth == HardTruth::geometry ? 100u : 0u) << family.name;
+        met += tally.touching + tally.overlapping;
+    }
+    EXPECT_GT(met, 10000u);
+}
+
+/// The same pairs with slabs rounded to nearest: what is missed is seen, on every diagonal set, and nowhere
+/// else.
+TEST_P(Adversarial, RoundingToNearestIsFoundOut) {
+    const auto tally =
+        run_adversarial(hard_family("corner-cancellation"), cells(Rounding::nearest), {.pairs = 5000});
+    EXPECT_EQ(tally.contradictions, 0u);
+    EXPECT_GT(tally.missed[0], 0u);
+    EXPECT_EQ(tally.missed[1], 0u);
+    if (tested.size() > 2) {
+        EXPECT_GT(tally.missed[2], 0u);
+    }
+    ASSERT_TRUE(tally.first);
+    EXPECT_EQ(tally.first->cell, 0u);
+    EXPECT_FALSE(tally.ok());
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, Adversarial, testing::ValuesIn(device_names()),
+                         [](const auto& name) { return device_label(name.param); });
+
+TEST(AdversarialFamilies, RefuseWhatHasNoPairs) {
+    EXPECT_THROW(run_adversarial(hard_family("all-overlap"), {}, {}), InputError);
+    EXPECT_THROW(run_adversarial(hard_family("not-finite"), {}, {}), InputError);
+}
+
+} // namespace
+} // namespace tandem

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+// Every algorithm on every device: nothing that meets is missed, in any family, with rounding=safe.
+#include "harness/oracle/frame_truth.h"
+#include "scenes/error.h"
+#include "scenes/hard/hard.h"
+#include "tests/support/cells.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+std::string specification(const HardFamily& family) {
+    if (family.scene != nullptr) return fmt::format("hard:{}", family.name);
+    return fmt::format("hard:{}:pairs=36,together=18", family.name);
+}
+
+#ifdef TANDEM_FEW_PAIRS // host kernels of two geometries only
+constexpr std::array tested{"8", "18"};
+#else
+constexpr std::array tested{"8", "18", "26"};
+#endif
+
+class HardAlgorithms : public testing::TestWithParam<std::string> {
+protected:
+    /// Runs first and last frame.
+    void expect_none_missed(const Traversal& traversal, const Scene& scene, const Settings& given) {
+        const std::array devices{&device(GetParam())};
+        const auto session =
+            traversal.prepare(devices, scene, resolve(traversal.parameters(), {}, given, traversal.name()));
+        for (const std::size_t index : {std::size_t{0}, scene.frame_count - 1}) {
+            const auto frame = scene.frame(index);
+            const auto truth = frame_truth(scene, frame, Precision::single);
+            const auto result = session->run(frame, all_pairs(scene, *session));
+            const auto errors = pair_errors(truth, session->download(result));
+            EXPECT_EQ(errors.missed_touching, 0u) << "of " << truth.touching.size();
+            EXPECT_EQ(errors.missed_overlapping, 0u) << "of " << truth.overlapping.size();
+            met_ += truth.touching.size() + truth.overlapping.size();
+        }
+    }
+
+    std::uint64_t met_ = 0;
+};
+
+TEST_P(HardAlgorithms, MissNothing) {
+    for (const auto& family : hard_families()) {
+        if (family.name == "not-finite") continue;
+        const auto scene = make_scene(specification(family));
+        for (const auto* traversal : algorithms())
+            for (const std::string k : tested) {
+                SCOPED_TRACE(fmt::format("{} {} k={}", family.name, traversal->name(), k));
+                Settings given{
+                    {"k", k}, {"work_items", "64"}, {"pair_capacity", "8192"}, {"contact_rule", "none"}};
+                if (traversal->name() == "gproximity") given["queue_bytes"] = "1048576";
+                expect_none_missed(*traversal, scene, given);
+            }
+    }
+    EXPECT_GT(met_, 10000u);
+}
+
+/// One too few, just right, one too many: counted in full, and run again where it did not fit.
+TEST_P(HardAlgorithms, ExactCapacityLosesNothing) {
+    const auto scene = make_scene("hard:exact-capacity:difficulty=1000");
+    const auto frame = scene.frame(0);
+    for (const auto* traversal : algorithms())
+        for (const auto& [capacity, retries] : {std::pair{"999", 1u}, {"1000", 0u}, {"1001", 0u}}) {
+            const std::array devices{&device(GetParam())};
+            const auto session = traversal->prepare(
+                devices, scene,
+                resolve(traversal->parameters(), {}, {{"pair_capacity", capacity}}, traversal->name()));
+            const auto result = session->run(frame, all_pairs(scene, *session));
+            EXPECT_EQ(result.count, 1000u) << traversal->name() << " " << capacity;
+            EXPECT_EQ(result.retries, retries) << traversal->name() << " " << capacity;
+            EXPECT_EQ(session->download(result).size(), 1000u);
+        }
+}
+
+/// What a body is after many frames is what it would be at once.
+TEST_P(HardAlgorithms, RefitsLeaveNoTrace) {
+    const auto scene = make_scene("hard:refit-order:difficulty=20");
+    for (const auto* traversal : algorithms()) {
+        const std::array devices{&device(GetParam())};
+        const auto settings = resolve(traversal->parameters(), {}, {}, traversal->name());
+        const auto old = traversal->prepare(devices, scene, settings);
+        for (std::size_t i = 0; i + 1 < scene.frame_count; ++i)
+            old->run(scene.frame(i), all_pairs(scene, *old));
+        const auto last = scene.frame(scene.frame_count - 1);
+        const auto result = old->run(last, all_pairs(scene, *old));
+        const auto fresh = traversal->prepare(devices, scene, settings);
+        const auto expected = fresh->run(last, all_pairs(scene, *fresh));
+        EXPECT_GT(expected.count, 0u);
+        EXPECT_EQ(old->digest(result), fresh->digest(expected)) << traversal->name();
+    }
+}
+
+bool is_finite(const ContactPoint& contact) {
+    double sum = contact.depth;
+    for (unsigned axis = 0; axis < 3; ++axis) sum += contact.point[axis] + contact.normal[axis];
+    return std::isfinite(sum);
+}
+
+/// Divisions by almost nothing give numbers all the same, and there are contacts at all.
+TEST_P(HardAlgorithms, ContactsAreFinite) {
+    const auto& traversal = algorithm("chunked");
+    std::size_t found = 0;
+    for (const auto& family : hard_families()) {
+        if (family.name == "not-finite") continue;
+        const auto scene = make_scene(specification(family));
+        const std::array devices{&device(GetParam())};
+        const auto session = traversal.prepare(
+            devices, scene,
+            resolve(traversal.parameters(), {}, {{"pair_capacity", "32768"}, {"contact_capacity", "65536"}},
+                    "chunked"));
+        const auto result = session->run(scene.frame(0), all_pairs(scene, *session));
+        for (const auto& contact : session->download_contacts(result)) {
+            ASSERT_TRUE(is_finite(contact)) << family.name;
+            ++found;
+        }
+    }
+    EXPECT_GT(found, 10000u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, HardAlgorithms, testing::ValuesIn(device_names()),
+                         [](const auto& name) { return device_label(name.param); });
+
+} // namespace
+} // namespace tandem
