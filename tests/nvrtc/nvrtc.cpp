@@ -44,19 +44,25 @@ void prepare(Device& device, const Traversal& traversal, const Settings& from, c
     session->count_work(true);
 }
 
-/// The plan: every geometry with the first preset of every algorithm, and every preset and output with its
-/// own.
+/// The plan: every geometry with the first preset of every algorithm, every rounding and truth with all
+/// directions, and every preset and output with its own.
 Programs plan() {
     CompilingDevice device;
     for (const auto* traversal : algorithms()) {
-        for (const std::string k : {"6", "8", "8c", "14", "18", "26"})
-            for (const std::string precision : {"float", "double"})
-                for (const std::string rounding : {"nearest", "safe"})
-                    prepare(device, *traversal, traversal->presets().front().values,
-                            {{"k", k.substr(0, k.find('c'))},
-                             {"axes", k == "8c" ? "coordinate" : "standard"},
-                             {"precision", precision},
-                             {"rounding", rounding}});
+        const auto& first = traversal->presets().front().values;
+        for (const std::string precision : {"float", "double"}) {
+            for (const std::string k : {"6", "8", "8c", "12", "14", "16", "18", "20", "24", "26"})
+                prepare(device, *traversal, first,
+                        {{"k", k.substr(0, k.find('c'))},
+                         {"axes", k == "8c" ? "coordinate" : "standard"},
+                         {"precision", precision}});
+            for (const std::string rounding : {"nearest", "published", "directed"})
+                prepare(device, *traversal, first,
+                        {{"k", "26"}, {"precision", precision}, {"rounding", rounding}});
+            for (const std::string rounding : {"safe", "directed"})
+                prepare(device, *traversal, first,
+                        {{"k", "26"}, {"precision", precision}, {"rounding", rounding}, {"truth", "t2"}});
+        }
         for (const auto& preset : traversal->presets())
             for (const std::string output : {"pairs", "count", "digest"})
                 prepare(device, *traversal, preset.values, {{"output", output}});
