@@ -164,6 +164,24 @@ TEST(Nvrtc, NoFusedMultiplyAdd) {
     });
 }
 
+TEST(Nvrtc, DirectedSlabsAreAddedDownAndUp) {
+    CompilingDevice device;
+    const auto& chunked = algorithm("chunked");
+    for (const std::string precision : {"float", "double"})
+        prepare(device, chunked, {}, {{"k", "26"}, {"rounding", "directed"}, {"precision", precision}});
+    if (!can_compile(device.asked())) return;
+    int checked = 0;
+    for (const auto& [program, names] : device.asked()) {
+        if (!names.contains("refit_strips")) continue;
+        const auto ptx = nvrtc()->compile(kernel_source(program.first), program.second, 90, true).bytes;
+        const std::string type = program.second.at("PRECISION") == "64" ? "f64" : "f32";
+        EXPECT_NE(ptx.find("add.rm." + type), std::string::npos);
+        EXPECT_NE(ptx.find("add.rp." + type), std::string::npos);
+        ++checked;
+    }
+    EXPECT_EQ(checked, 2);
+}
+
 TEST(Nvrtc, DefaultsForEveryArchitecture) {
     const auto programs = defaults();
     if (!can_compile(programs)) return;

@@ -76,11 +76,11 @@ public:
     Real upper(unsigned body, std::size_t pair, std::size_t axis) const {
         return slabs_[body][pair * 2 * axes_ + axes_ + axis];
     }
-    /// Whether some axis tells the tetrahedra of a pair apart, by the kernels' rule.
-    bool separated(std::size_t pair) const {
+    /// Whether some axis tells tetrahedron a of the first body from b of the second, by the kernels' rule.
+    bool separated(std::size_t pair) const { return separated(pair, pair); }
+    bool separated(std::size_t a, std::size_t b) const {
         for (std::size_t axis = 0; axis < axes_; ++axis)
-            if (beyond(lower(0, pair, axis), upper(1, pair, axis))
-                || beyond(lower(1, pair, axis), upper(0, pair, axis)))
+            if (beyond(lower(0, a, axis), upper(1, b, axis)) || beyond(lower(1, b, axis), upper(0, a, axis)))
                 return true;
         return false;
     }
