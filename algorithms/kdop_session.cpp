@@ -77,7 +77,13 @@ std::vector<Parameter> kdop_parameters(std::span<const Parameter> own) {
 }
 
 Settings effective(Settings settings, const DeviceInfo& info) {
-    if (geometry_of(settings).precision == Precision::twice && !info.has_double)
+    const auto geometry = geometry_of(settings);
+    if (geometry.rounding == Rounding::directed && !info.has_directed_rounding)
+        throw InputError(
+            fmt::format("setting rounding=directed is impossible on {}, which adds to nearest only; "
+                        "choose safe, or a cuda device",
+                        info.id));
+    if (geometry.precision == Precision::twice && !info.has_double)
         throw InputError(fmt::format("setting precision=double is impossible on {}; choose float", info.id));
     const auto wanted = integer(settings, "group_size");
     if (info.max_group_size == 1)

@@ -35,7 +35,8 @@ struct DeviceInfo {
     std::uint64_t max_allocation = 0;
     std::uint64_t local_bytes = 0;
     bool has_double = true;
-    bool stages_pinned = false; ///< uploads that do not block go through page-locked memory
+    bool has_directed_rounding = false; ///< kernels can add rounding down and up
+    bool stages_pinned = false;         ///< uploads that do not block go through page-locked memory
 };
 
 /// Compile-time parameters of a kernel: name -> value, emitted as defines under the same names.

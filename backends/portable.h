@@ -87,6 +87,13 @@
 #define ABSOLUTE(value) fabs(value)
 #define MINIMUM(a, b) fmin((a), (b))
 #define MAXIMUM(a, b) fmax((a), (b))
+#if PRECISION == 64 // sums rounded down and up; OpenCL C has none
+#define ADD_DOWN(a, b) __dadd_rd((a), (b))
+#define ADD_UP(a, b) __dadd_ru((a), (b))
+#else
+#define ADD_DOWN(a, b) __fadd_rd((a), (b))
+#define ADD_UP(a, b) __fadd_ru((a), (b))
+#endif
 #define UNROLL _Pragma("unroll")
 #define NO_UNROLL _Pragma("unroll 1")
 #define REAL_INFINITY ((real)__int_as_float(0x7f800000))
@@ -116,6 +123,8 @@ typedef unsigned long ulong; // 64 bits where CUDA runs on Linux, as glibc has i
 #define ABSOLUTE(value) std::fabs(value)
 #define MINIMUM(a, b) ((a) < (b) ? (a) : (b))
 #define MAXIMUM(a, b) ((a) > (b) ? (a) : (b))
+#define ADD_DOWN(a, b) tandem::host::add_down((a), (b))
+#define ADD_UP(a, b) tandem::host::add_up((a), (b))
 #define UNROLL
 #define NO_UNROLL
 #define REAL_INFINITY std::numeric_limits<real>::infinity()

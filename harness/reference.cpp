@@ -2,10 +2,12 @@
 #include "harness/reference.h"
 
 #include "algorithms/contacts/reference.h"
-#include "scenes/parallel.h"
+#include "algorithms/kdop/drift.h"
 #include "harness/world_vertices.h"
+#include "scenes/parallel.h"
 
 #include <algorithm>
+#include <cfenv>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -18,6 +20,7 @@ namespace {
 template<class Real>
 struct Bounds {
     std::size_t axes = 0;
+    bool published = false; ///< rounding
     std::vector<std::array<Real, 3>> vertices;
     std::vector<Real> slabs;
     std::vector<Real> whole; ///< of the body
@@ -25,34 +28,90 @@ struct Bounds {
     const Real* tetrahedron(std::size_t i) const { return &slabs[i * 2 * axes]; }
 };
 
+/// Whether a slab starts after another's end; the paper's test asks for more than its tolerance.
 template<class Real>
-bool overlapping(const Real* a, const Real* b, std::size_t axes) {
+bool apart(Real lower, Real upper, bool published) {
+    constexpr Real tolerance = 10 * std::numeric_limits<float>::epsilon();
+    return published ? lower - upper > tolerance : lower > upper;
+}
+
+/// Closed: touching overlaps.
+template<class Real>
+bool overlapping(const Real* a, const Real* b, std::size_t axes, bool published) {
     for (std::size_t axis = 0; axis < axes; ++axis)
-        if (a[axis] > b[axes + axis] || b[axis] > a[axes + axis]) return false;
+        if (apart(a[axis], b[axes + axis], published) || apart(b[axis], a[axes + axis], published))
+            return false;
     return true;
 }
 
-/// Projection of a point with its error bound: terms are added in the order x, y, z; three terms have two
-/// roundings, and safe rounding widens those by 4u(|first sum| + |sum|).
+/// Sum of the terms from the first on, to nearest. `partial` adds up the magnitudes of the sums on the way; a
+/// lone term counts as one.
+template<class Real>
+Real nearest_sum(std::span<const Real> terms, Real& partial) {
+    Real sum = terms[0];
+    partial = terms.size() == 1 ? std::fabs(sum) : 0;
+    for (const auto term : terms.subspan(1)) {
+        sum += term;
+        partial += std::fabs(sum);
+    }
+    return sum;
+}
+
+/// The same with every addition rounded in a mode of fesetround.
+template<class Real>
+Real directed_sum(std::span<const Real> terms, int mode) {
+    volatile Real sum = terms[0];
+    std::fesetround(mode);
+    for (const auto term : terms.subspan(1)) {
+        const volatile Real next = term;
+        sum = sum + next;
+    }
+    std::fesetround(FE_TONEAREST);
+    return sum;
+}
+
+/// Projection of a point with what its rounding asks for (algorithms/kdop/README.md); `drift`: of the point,
+/// by axis, null unless the truth is the pose's.
 template<class Real>
 std::pair<Real, Real> project(const std::array<Real, 3>& point, const std::array<int, 3>& direction,
-                              Rounding rounding) {
-    Real sum = 0;
-    Real before = 0;
-    int terms = 0;
+                              Rounding rounding, const std::array<Real, 3>* drift) {
+    std::array<Real, 3> terms{};
+    std::size_t count = 0;
+    Real off = 0;
     for (int i = 0; i < 3; ++i) {
         if (direction[i] == 0) continue;
-        before = sum;
-        if (terms == 0)
-            sum = direction[i] > 0 ? point[i] : -point[i];
-        else
-            sum = direction[i] > 0 ? sum + point[i] : sum - point[i];
-        ++terms;
+        terms[count++] = direction[i] > 0 ? point[i] : -point[i];
+        if (drift != nullptr) off += (*drift)[i];
     }
+    if (rounding == Rounding::published && count > 1)
+        for (auto& term : terms)
+            term *=
+                count == 2 ? static_cast<Real>(0.7071067811865476) : static_cast<Real>(0.5773502691896258);
+    const auto used = std::span<const Real>(terms).first(count);
+    if (rounding == Rounding::directed) {
+        const std::array<Real, 2> low{directed_sum(used, FE_DOWNWARD), -off};
+        const std::array<Real, 2> high{directed_sum(used, FE_UPWARD), off};
+        return {directed_sum(std::span<const Real>(low), FE_DOWNWARD),
+                directed_sum(std::span<const Real>(high), FE_UPWARD)};
+    }
+    Real partial = 0;
+    const Real sum = nearest_sum(used, partial);
     Real bound = 0;
-    if (terms == 3 && rounding == Rounding::safe)
-        bound = (std::fabs(before) + std::fabs(sum)) * (2 * std::numeric_limits<Real>::epsilon());
+    if (drift != nullptr || (rounding == Rounding::safe && count == 3))
+        bound = partial * (2 * std::numeric_limits<Real>::epsilon()) + off;
     return {sum - bound, sum + bound};
+}
+
+/// The bound on a body's drift is an input, as its pose is; a test of its own holds it against the exact
+/// truth.
+template<class Real>
+std::array<Real, 3> drift_in(const Scene& scene, const Frame& frame, const Geometry& geometry,
+                             std::size_t body) {
+    const auto& mesh = scene.meshes[scene.bodies[body].mesh];
+    const auto bound = scene.bodies[body].deformable
+                           ? drift_bound(frame.deformed[body], geometry.precision)
+                           : drift_bound(frame.poses[body], reach_of(mesh.vertices), geometry.precision);
+    return {static_cast<Real>(bound[0]), static_cast<Real>(bound[1]), static_cast<Real>(bound[2])};
 }
 
 template<class Real>
@@ -60,6 +119,9 @@ Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& g
     const auto axes = directions(geometry);
     Bounds<Real> bounds;
     bounds.axes = axes.size();
+    bounds.published = geometry.rounding == Rounding::published;
+    const bool drifts = geometry.truth == Truth::pose;
+    const auto drift = drifts ? drift_in<Real>(scene, frame, geometry, body) : std::array<Real, 3>{};
     bounds.vertices = world_vertices<Real>(scene, frame, body);
     const auto& tetrahedra = scene.meshes[scene.bodies[body].mesh].tetrahedra;
     bounds.slabs.resize(tetrahedra.size() * 2 * axes.size());
@@ -70,7 +132,8 @@ Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& g
             Real lower = std::numeric_limits<Real>::infinity();
             Real upper = -lower;
             for (const auto vertex : tetrahedra[t]) {
-                const auto [low, high] = project(bounds.vertices[vertex], axes[axis], geometry.rounding);
+                const auto [low, high] = project(bounds.vertices[vertex], axes[axis], geometry.rounding,
+                                                 drifts ? &drift : nullptr);
                 lower = std::min(lower, low);
                 upper = std::max(upper, high);
             }
@@ -88,7 +151,8 @@ template<class Real>
 std::vector<std::uint32_t> near(const Bounds<Real>& body, const Bounds<Real>& other) {
     std::vector<std::uint32_t> result;
     for (std::uint32_t t = 0; t < body.slabs.size() / (2 * body.axes); ++t)
-        if (overlapping(body.tetrahedron(t), other.whole.data(), body.axes)) result.push_back(t);
+        if (overlapping(body.tetrahedron(t), other.whole.data(), body.axes, body.published))
+            result.push_back(t);
     std::sort(result.begin(), result.end(),
               [&](auto x, auto y) { return body.tetrahedron(x)[0] < body.tetrahedron(y)[0]; });
     return result;
@@ -102,8 +166,9 @@ void sweep(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
     const auto list_b = near(b, a);
     const auto scan = [&](const Bounds<Real>& x, const Bounds<Real>& y, auto from, auto end, auto tx,
                           auto each) {
-        for (auto it = from; it != end && y.tetrahedron(*it)[0] <= x.tetrahedron(tx)[x.axes]; ++it)
-            if (overlapping(x.tetrahedron(tx), y.tetrahedron(*it), x.axes)) each(*it);
+        for (auto it = from;
+             it != end && !apart(y.tetrahedron(*it)[0], x.tetrahedron(tx)[x.axes], x.published); ++it)
+            if (overlapping(x.tetrahedron(tx), y.tetrahedron(*it), x.axes, x.published)) each(*it);
     };
     auto at_a = list_a.begin();
     auto at_b = list_b.begin();
@@ -122,7 +187,7 @@ template<class Real, class Hit>
 void test_all(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
     for (std::uint32_t ta = 0; ta < a.slabs.size() / (2 * a.axes); ++ta)
         for (std::uint32_t tb = 0; tb < b.slabs.size() / (2 * b.axes); ++tb)
-            if (overlapping(a.tetrahedron(ta), b.tetrahedron(tb), a.axes)) hit(ta, tb);
+            if (overlapping(a.tetrahedron(ta), b.tetrahedron(tb), a.axes, a.published)) hit(ta, tb);
 }
 
 template<class Real>
@@ -171,7 +236,8 @@ ReferenceAnswer answer_in(const Scene& scene, const Frame& frame, const Geometry
             const auto hit = [&](std::uint32_t ta, std::uint32_t tb) { found[a].push_back({a, ta, b, tb}); };
             if (method == Method::brute_force)
                 test_all(bounds[a], bounds[b], hit);
-            else if (overlapping(bounds[a].whole.data(), bounds[b].whole.data(), bounds[a].axes))
+            else if (overlapping(bounds[a].whole.data(), bounds[b].whole.data(), bounds[a].axes,
+                                 bounds[a].published))
                 sweep(bounds[a], bounds[b], hit);
         }
         std::sort(found[a].begin(), found[a].end());

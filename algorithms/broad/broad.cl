@@ -42,7 +42,7 @@ DEVICE int tiles_overlap(GLOBAL const RealPair* unions, uint row, uint column) {
     GLOBAL const RealPair* b = unions + (ulong)column * SLABS;
     if (column < row) return 0;
     for (int axis = 0; axis < SLABS; ++axis)
-        if (a[axis].x > b[axis].y || b[axis].x > a[axis].y) return 0;
+        if (starts_beyond(a[axis].x, b[axis].y) || starts_beyond(b[axis].x, a[axis].y)) return 0;
     return 1;
 }
 
@@ -51,8 +51,8 @@ DEVICE int volumes_overlap(const RealPair* a, LOCAL const RealPair* b) {
     int apart = 0;
     UNROLL for (int axis = 0; axis < SLABS; ++axis) {
         const RealPair slab = b[axis];
-        apart |= a[axis].x > slab.y;
-        apart |= slab.x > a[axis].y;
+        apart |= starts_beyond(a[axis].x, slab.y);
+        apart |= starts_beyond(slab.x, a[axis].y);
         if (axis % 3 == 2 && apart) return 0;
     }
     return !apart;

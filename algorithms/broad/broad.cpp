@@ -11,8 +11,12 @@ namespace tandem {
 namespace {
 
 /// Roundings on the way from a body's vertex to a slab: input, rotation (4), two sums, and E of a safe corner
-/// (4), doubled for good measure.
+/// (4), doubled for good measure and for the bound on the drift from the pose (6; truth = t2).
 constexpr double rounding_steps = 24;
+
+/// What published rounding adds, in integer directions: its tolerance is one of unit directions, shared by
+/// two bodies; three times as much covers the roundings of the test.
+constexpr double published_slack = 3 * 0.5 * 10 * 0x1p-23;
 
 /// apart[j] != 0 for those bodies i + 1 .. end - 1 that some direction tells from body i.
 void mark_apart(const std::vector<std::vector<double>>& along, std::size_t i, std::size_t end,
@@ -52,7 +56,8 @@ Broad::Bound broad_bound(const Settings& settings) {
 Broad::Broad(const Scene& scene, const Geometry& geometry, Bound bound)
     : scene_(scene),
       bound_(bound),
-      roundoff_(std::ldexp(1.0, geometry.precision == Precision::twice ? -53 : -24)) {
+      roundoff_(std::ldexp(1.0, geometry.precision == Precision::twice ? -53 : -24)),
+      tolerance_(geometry.rounding == Rounding::published ? published_slack : 0) {
     for (const auto& d : directions(geometry)) directions_.emplace_back(d[0], d[1], d[2]);
     for (const auto& mesh : scene.meshes) shapes_.push_back(shape_of(mesh.vertices));
 }
@@ -80,7 +85,8 @@ void Broad::bound_rigid(const Shape& shape, const Pose& pose, double* slabs) con
         const double reach = bound_ == Bound::sphere ? shape.radius * d.norm()
                                                      : (rotation.transpose() * d).cwiseAbs().dot(shape.half);
         const double middle = d.dot(centre);
-        const double width = reach * (1 + 8 * std::numeric_limits<double>::epsilon()) + slack * d.lpNorm<1>();
+        const double width = reach * (1 + 8 * std::numeric_limits<double>::epsilon()) + slack * d.lpNorm<1>()
+                             + tolerance_ * d.norm();
         *slabs++ = middle - width;
         *slabs++ = middle + width;
     }
@@ -99,7 +105,8 @@ void Broad::bound_deformed(const std::vector<Eigen::Vector3d>& vertices, double*
                 upper = std::max(upper, d.dot(v));
             }
         }
-        const double slack = rounding_steps * roundoff_ * 2 * shape.reach * d.lpNorm<1>();
+        const double slack =
+            rounding_steps * roundoff_ * 2 * shape.reach * d.lpNorm<1>() + tolerance_ * d.norm();
         *slabs++ = lower - slack;
         *slabs++ = upper + slack;
     }

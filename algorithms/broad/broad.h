@@ -38,6 +38,7 @@ private:
     std::vector<Eigen::Vector3d> directions_;
     Bound bound_;
     double roundoff_;
+    double tolerance_;          ///< of the overlap test along unit directions
     std::vector<Shape> shapes_; ///< by mesh
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/kdop/device_scene.h"
 
+#include "algorithms/kdop/drift.h"
 #include "algorithms/kdop/pack.h"
 #include "algorithms/sources.h"
 
@@ -52,6 +53,7 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const Geometry& geo
       residency_(residency) {
     for (const auto& mesh : scene.meshes) {
         meshes_.push_back(ordered(mesh));
+        if (geometry.truth == Truth::pose) reaches_.push_back(reach_of(mesh.vertices));
         mesh_levels_.push_back(chunk_levels(static_cast<std::uint32_t>(mesh.tetrahedra.size()), leaves));
     }
     lay_out();
@@ -189,7 +191,7 @@ void DeviceScene::upload_static() {
     put(body_order_, bytes_of(order), "bodies to refit");
     const auto real = real_bytes(geometry_);
     nodes_ = device_.allocate(slots_ * static_cast<std::uint64_t>(geometry_.k) * real, "nodes");
-    poses_ = device_.allocate(scene_.bodies.size() * 12 * real, "poses");
+    poses_ = device_.allocate(scene_.bodies.size() * pose_reals(geometry_) * real, "poses");
     vertices_ = device_.allocate(vertex_total_ * 4 * real, "vertices");
     if (residency_ == Residency::resident) {
         device_.upload(vertices_, shared_vertices());
@@ -199,14 +201,27 @@ void DeviceScene::upload_static() {
     vertex_bodies_ = device_.allocate(vertex_total_ * 4, "vertex bodies");
 }
 
+std::array<double, 3> DeviceScene::drift_of(const Frame& frame, std::size_t body) const {
+    if (geometry_.truth == Truth::vertices) return {};
+    if (scene_.bodies[body].deformable) return drift_bound(frame.deformed[body], geometry_.precision);
+    return drift_bound(frame.poses[body], reaches_[scene_.bodies[body].mesh], geometry_.precision);
+}
+
+void DeviceScene::pack_poses(std::vector<std::byte>& bytes, const Frame& frame) const {
+    bytes.reserve(frame.poses.size() * pose_reals(geometry_) * real_bytes(geometry_));
+    for (std::size_t body = 0; body < frame.poses.size(); ++body)
+        pack_pose(bytes, geometry_, frame.poses[body], drift_of(frame, body));
+}
+
 void DeviceScene::upload_poses(const Frame& frame) {
-    const auto moves = [](const Body& body) { return !body.fixed && !body.deformable; };
+    const auto moves = [this](const Body& body) {
+        return !body.fixed && (!body.deformable || geometry_.truth == Truth::pose);
+    };
     if (!fresh_ && std::none_of(scene_.bodies.begin(), scene_.bodies.end(), moves)) return;
     std::vector<std::byte> bytes;
     {
         const HostWork work(device_, Stage::preprocess, "pack poses");
-        bytes.reserve(frame.poses.size() * 12 * real_bytes(geometry_));
-        for (const auto& pose : frame.poses) pack_pose(bytes, geometry_, pose);
+        pack_poses(bytes, frame);
     }
     const StageScope scope(device_, Stage::write);
     device_.upload(poses_, bytes);

@@ -70,6 +70,8 @@ private:
     void plan_strip(std::uint32_t level, bool fixed, std::uint32_t top);
     void upload_static();
     std::vector<std::byte> shared_vertices() const;
+    std::array<double, 3> drift_of(const Frame& frame, std::size_t body) const;
+    void pack_poses(std::vector<std::byte>& bytes, const Frame& frame) const;
     void upload_poses(const Frame& frame);
     void upload_deformed(const Frame& frame);
     void refit(bool all);
@@ -85,6 +87,7 @@ private:
     std::uint32_t refit_group_;
     Residency residency_;
     std::vector<OrderedMesh> meshes_;
+    std::vector<double> reaches_; ///< by mesh: reach_of; truth = pose only
     std::vector<std::vector<Level>> mesh_levels_;
     std::vector<std::uint32_t> body_rows_;
     std::vector<std::uint32_t> level_rows_;

@@ -55,11 +55,16 @@ std::array<double, 12> pose_rows(const Pose& pose) {
             2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y), t.z()};
 }
 
-void pack_pose(std::vector<std::byte>& out, const Geometry& geometry, const Pose& pose) {
-    if (geometry.precision == Precision::twice)
-        append<double>(out, pose_rows(pose));
-    else
-        append<float>(out, pose_rows(pose));
+void pack_pose(std::vector<std::byte>& out, const Geometry& geometry, const Pose& pose,
+               const std::array<double, 3>& drift) {
+    const auto put = [&](const auto& numbers) {
+        if (geometry.precision == Precision::twice)
+            append<double>(out, numbers);
+        else
+            append<float>(out, numbers);
+    };
+    put(pose_rows(pose));
+    if (geometry.truth == Truth::pose) put(std::array<double, 4>{drift[0], drift[1], drift[2], 0});
 }
 
 } // namespace tandem

@@ -16,8 +16,10 @@ void pack_vertices(std::vector<std::byte>& out, const Geometry& geometry, const 
                    const std::vector<Eigen::Vector3d>& vertices);
 
 /// Appends 12 reals a pose: the rows of the rotation matrix, each followed by its component of the
-/// translation. The quaternion is normalised and the matrix made in double, then rounded once.
-void pack_pose(std::vector<std::byte>& out, const Geometry& geometry, const Pose& pose);
+/// translation. The quaternion is normalised and the matrix made in double, then rounded once. With truth =
+/// pose 4 more: `drift`, the body's drift_bound, and padding.
+void pack_pose(std::vector<std::byte>& out, const Geometry& geometry, const Pose& pose,
+               const std::array<double, 3>& drift);
 
 /// The same 12 numbers before rounding.
 std::array<double, 12> pose_rows(const Pose& pose);

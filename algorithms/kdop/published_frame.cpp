@@ -39,11 +39,11 @@ void DeviceScene::update_published(const Frame& frame) {
             pack_vertices(vertices, geometry_, mesh,
                           deformable ? frame.deformed[body]
                                      : scene_.meshes[scene_.bodies[body].mesh].vertices);
-            pack_pose(poses, geometry_, frame.poses[body]);
             vertex_bodies.insert(vertex_bodies.end(), mesh.vertices.size(), body);
             tetrahedra.insert(tetrahedra.end(), mesh.tetrahedra.begin(), mesh.tetrahedra.end());
             boundary.insert(boundary.end(), mesh.boundary.begin(), mesh.boundary.end());
         }
+        pack_poses(poses, frame);
         nodes = geometry_.precision == Precision::twice ? empty_nodes<double>(slots_, geometry_.k)
                                                         : empty_nodes<float>(slots_, geometry_.k);
     }
@@ -56,10 +56,10 @@ void DeviceScene::update_published(const Frame& frame) {
         device_.download(from, bytes);
     };
     // Scenes of deformable bodies have no transform stage: their vertices are in world coordinates already.
+    if (rigid || geometry_.truth == Truth::pose) upload(poses_, poses);
     if (rigid) {
         upload(local_vertices_, vertices);
         upload(vertex_bodies_, bytes_of(vertex_bodies));
-        upload(poses_, poses);
         {
             const StageScope scope(device_, Stage::transform);
             const auto count = static_cast<std::uint32_t>(vertex_total_);

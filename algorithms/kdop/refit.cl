@@ -68,7 +68,8 @@ DEVICE void bound_tetrahedron(const Refit* refit, LOCAL const uint* strip, uint 
         node[axis] = REAL_INFINITY;
         node[axis + SLABS] = -REAL_INFINITY;
     }
-    for (int i = 0; i < 4; ++i) widen_by_point(corner[i].x, corner[i].y, corner[i].z, node, node + SLABS);
+    const Point drift = drift_at(refit->poses, strip[JOB_BODY]);
+    for (int i = 0; i < 4; ++i) widen_by_point(corner[i], drift, node, node + SLABS);
     for (int word = 0; word < K; ++word) node[word] = node[word] + (real)0;
 }
 

@@ -199,6 +199,7 @@ void CudaDevice::describe() {
     info_.compiler =
         fmt::format("NVRTC {} for sm_{}", version_text(libraries_->nvrtc.version()), capability_);
     info_.is_gpu = true;
+    info_.has_directed_rounding = true;
     info_.stages_pinned = true;
     info_.compute_units = static_cast<std::uint32_t>(attribute(multiprocessor_count));
     info_.max_group_size = static_cast<std::uint32_t>(attribute(max_threads_per_block));

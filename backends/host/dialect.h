@@ -23,6 +23,27 @@ inline uint group_count = 1;
 
 inline uint fetch_add(uint* pointer, uint value) { return std::exchange(*pointer, *pointer + value); }
 
+/// The sum rounded down and up, from operations that round to nearest: what was rounded off is a number of
+/// the same kind (Knuth's exact sum, Muller et al. 2018, 4.3), and its sign says on which side the sum is.
+template<class Real>
+Real rounded_off(Real a, Real b, Real sum) {
+    const Real of_b = sum - a;
+    const Real of_a = sum - of_b;
+    return (a - of_a) + (b - of_b);
+}
+
+template<class Real>
+Real add_down(Real a, Real b) {
+    const Real sum = a + b;
+    return rounded_off(a, b, sum) < 0 ? std::nextafter(sum, -std::numeric_limits<Real>::infinity()) : sum;
+}
+
+template<class Real>
+Real add_up(Real a, Real b) {
+    const Real sum = a + b;
+    return rounded_off(a, b, sum) > 0 ? std::nextafter(sum, std::numeric_limits<Real>::infinity()) : sum;
+}
+
 struct HostBuffer : Buffer::Impl {
     std::vector<std::byte> storage;
     std::byte* data = nullptr;
@@ -35,7 +56,7 @@ struct RuntimeDefine {
     long initial; ///< the kernel's default
 };
 
-/// One kernel of one variant. `defines` are the compiled ones, "AXES=0;K=18;PRECISION=32;ROUNDING=1".
+/// One kernel of one variant. `defines` are the compiled ones, "AXES=0;K=18;PRECISION=32".
 struct HostKernel {
     const char* source;
     const char* entry;

@@ -124,7 +124,7 @@ std::pair<std::string, Defines> split(const Defines& defines) {
     std::string fixed;
     Defines rest;
     for (const auto& [name, value] : defines) {
-        if (name == "K" || name == "AXES" || name == "PRECISION" || name == "ROUNDING")
+        if (name == "K" || name == "AXES" || name == "PRECISION")
             fixed += fmt::format("{}{}={}", fixed.empty() ? "" : ";", name, value);
         else
             rest[name] = value;
@@ -145,8 +145,8 @@ std::shared_ptr<Kernel::Impl> HostDevice::do_compile(const KernelSource& source,
     const auto* row = find_row(source.name, entry, fixed);
     if (!row)
         throw DeviceError(
-            fmt::format("host: kernel '{}' of {} is not compiled for {}; the host has K 6, 8, 14, 18, 26 "
-                        "in PRECISION 32 and 64",
+            fmt::format("host: kernel '{}' of {} is not compiled for {}; the host has the K that setting k "
+                        "lists, in PRECISION 32 and 64",
                         entry, source.name, fixed));
     auto impl = std::make_shared<HostKernelImpl>();
     impl->row = row;

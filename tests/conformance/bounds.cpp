@@ -19,12 +19,15 @@ std::vector<Geometry> geometries() {
 #ifdef TANDEM_FEW_GEOMETRIES
     for (const int k : {8, 18})
 #else
-    for (const int k : {6, 8, 14, 18, 26})
+    for (const int k : {6, 8, 12, 14, 16, 18, 20, 24, 26})
 #endif
-        for (const auto precision : {Precision::single, Precision::twice})
-            for (const auto rounding : {Rounding::nearest, Rounding::safe})
-                all.push_back(
-                    {.k = k, .coordinate_axes = false, .precision = precision, .rounding = rounding});
+        for (const auto precision : {Precision::single, Precision::twice}) {
+            all.push_back({.k = k, .precision = precision});
+            if (k != 8 && k != 26) continue; // these have every kind of direction
+            for (const auto rounding : {Rounding::nearest, Rounding::published})
+                all.push_back({.k = k, .precision = precision, .rounding = rounding});
+            all.push_back({.k = k, .precision = precision, .truth = Truth::pose});
+        }
     return all;
 }
 

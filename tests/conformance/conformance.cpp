@@ -24,11 +24,16 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
     const Axis directions{{{"k", "8"}}, {{"k", "18"}}};
 #else
     const Axis directions{{{"k", "6"}},  {{"k", "8"}},  {{"k", "8"}, {"axes", "coordinate"}},
-                          {{"k", "14"}}, {{"k", "18"}}, {{"k", "26"}}};
+                          {{"k", "12"}}, {{"k", "14"}}, {{"k", "16"}},
+                          {{"k", "18"}}, {{"k", "20"}}, {{"k", "24"}},
+                          {{"k", "26"}}};
 #endif
     std::vector<Axis> axes{directions,
                            of("precision", {"float", "double"}),
-                           of("rounding", {"safe", "nearest"}),
+                           {{{"rounding", "safe"}},
+                            {{"rounding", "nearest"}},
+                            {{"rounding", "published"}},
+                            {{"rounding", "safe"}, {"truth", "t2"}}},
                            of("group_size", {"1", "8", "32", "64"}),
                            of("residency", {"resident", "published"}),
                            of("work_items", {"64", "2048"}),

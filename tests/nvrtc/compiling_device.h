@@ -18,6 +18,7 @@ public:
         info_.max_group_size = 1024;
         info_.global_bytes = info_.max_allocation = std::uint64_t{1} << 40;
         info_.local_bytes = 49152;
+        info_.has_directed_rounding = true;
     }
 
     /// Every (file, defines) asked for, and the entries of each.

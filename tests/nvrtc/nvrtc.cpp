@@ -52,19 +52,25 @@ void prepare_list(Device& device, Precision precision) {
     const PairList list(on_device, std::vector<Pair>{{0, 0, 1, 0}, {0, 1, 1, 1}});
 }
 
-/// The plan: every geometry with the first preset of every algorithm, and every preset and output with its
-/// own.
+/// The plan: every geometry with the first preset of every algorithm, every rounding and truth with all
+/// directions, and every preset and output with its own.
 Programs plan() {
     CompilingDevice device;
     for (const auto* traversal : algorithms()) {
-        for (const std::string k : {"6", "8", "8c", "14", "18", "26"})
-            for (const std::string precision : {"float", "double"})
-                for (const std::string rounding : {"nearest", "safe"})
-                    prepare(device, *traversal, traversal->presets().front().values,
-                            {{"k", k.substr(0, k.find('c'))},
-                             {"axes", k == "8c" ? "coordinate" : "standard"},
-                             {"precision", precision},
-                             {"rounding", rounding}});
+        const auto& first = traversal->presets().front().values;
+        for (const std::string precision : {"float", "double"}) {
+            for (const std::string k : {"6", "8", "8c", "12", "14", "16", "18", "20", "24", "26"})
+                prepare(device, *traversal, first,
+                        {{"k", k.substr(0, k.find('c'))},
+                         {"axes", k == "8c" ? "coordinate" : "standard"},
+                         {"precision", precision}});
+            for (const std::string rounding : {"nearest", "published", "directed"})
+                prepare(device, *traversal, first,
+                        {{"k", "26"}, {"precision", precision}, {"rounding", rounding}});
+            for (const std::string rounding : {"safe", "directed"})
+                prepare(device, *traversal, first,
+                        {{"k", "26"}, {"precision", precision}, {"rounding", rounding}, {"truth", "t2"}});
+        }
         for (const auto& preset : traversal->presets())
             for (const std::string output : {"pairs", "count", "digest"})
                 prepare(device, *traversal, preset.values, {{"output", output}});
@@ -166,6 +172,24 @@ TEST(Nvrtc, NoFusedMultiplyAdd) {
         EXPECT_NE(ptx.find(".visible .entry"), std::string::npos);
         EXPECT_EQ(ptx.find("fma.rn.f"), std::string::npos) << source.name << text_of(defines);
     });
+}
+
+TEST(Nvrtc, DirectedSlabsAreAddedDownAndUp) {
+    CompilingDevice device;
+    const auto& chunked = algorithm("chunked");
+    for (const std::string precision : {"float", "double"})
+        prepare(device, chunked, {}, {{"k", "26"}, {"rounding", "directed"}, {"precision", precision}});
+    if (!can_compile(device.asked())) return;
+    int checked = 0;
+    for (const auto& [program, names] : device.asked()) {
+        if (!names.contains("refit_strips")) continue;
+        const auto ptx = nvrtc()->compile(kernel_source(program.first), program.second, 90, true).bytes;
+        const std::string type = program.second.at("PRECISION") == "64" ? "f64" : "f32";
+        EXPECT_NE(ptx.find("add.rm." + type), std::string::npos);
+        EXPECT_NE(ptx.find("add.rp." + type), std::string::npos);
+        ++checked;
+    }
+    EXPECT_EQ(checked, 2);
 }
 
 TEST(Nvrtc, DefaultsForEveryArchitecture) {

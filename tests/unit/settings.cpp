@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+
 namespace tandem {
 namespace {
 
@@ -41,7 +44,10 @@ TEST(Settings, IntegersMayBeWrittenWithAnExponent) {
 
 TEST(Settings, UnknownNamesOfferTheNearest) {
     EXPECT_THAT(message_of([] { with({{"rouding", "safe"}}); }), HasSubstr("the nearest is 'rounding'"));
-    EXPECT_THAT(message_of([] { with({{"k", "10"}}); }), HasSubstr("choose one of 6, 8, 14, 18, 26"));
+    EXPECT_THAT(message_of([] {
+                    with({{"k", "10"}});
+                }),
+                HasSubstr("choose one of 6, 8, 12, 14, 16, 18, 20, 24, 26"));
     EXPECT_THAT(message_of([] { with({{"group_size", "0"}}); }), HasSubstr("from 1 to 1024"));
     EXPECT_THAT(message_of([] { algorithm("chunky"); }), HasSubstr("the nearest is 'chunked'"));
     EXPECT_THAT(message_of([] { preset(algorithm("gproximity"), "fare"); }),
@@ -50,6 +56,11 @@ TEST(Settings, UnknownNamesOfferTheNearest) {
                     geometry_of(with({{"k", "18"}, {"axes", "coordinate"}}));
                 }),
                 HasSubstr("goes with k=8"));
+    for (const std::string rounding : {"nearest", "published"})
+        EXPECT_THAT(message_of([&] {
+                        geometry_of(with({{"truth", "t2"}, {"rounding", rounding}}));
+                    }),
+                    HasSubstr("goes with rounding=safe or directed"));
 }
 
 TEST(Settings, EveryPresetResolves) {
@@ -65,8 +76,21 @@ TEST(Settings, EveryPresetResolves) {
 }
 
 TEST(Geometry, DirectionsAreHalfOfK) {
-    for (const int k : {6, 8, 14, 18, 26})
-        EXPECT_EQ(directions({.k = k}).size(), static_cast<std::size_t>(k) / 2);
+    for (const int k : {6, 8, 12, 14, 16, 18, 20, 24, 26}) {
+        const auto all = directions({.k = k});
+        EXPECT_EQ(all.size(), static_cast<std::size_t>(k) / 2);
+        std::set<std::array<int, 3>> lines; // a direction and its opposite are one slab
+        for (const auto& d : all) lines.insert(std::max(d, {-d[0], -d[1], -d[2]}));
+        EXPECT_EQ(lines.size(), all.size()) << k;
+    }
+    // What FCL's sets of 16 and 24 planes leave out of the symmetric ones of 18 and 26.
+    const auto has = [](int k, const std::array<int, 3>& d) {
+        const auto all = directions({.k = k});
+        return std::find(all.begin(), all.end(), d) != all.end();
+    };
+    EXPECT_TRUE(has(18, {0, 1, -1}) && !has(16, {0, 1, -1}));
+    EXPECT_TRUE(has(26, {1, 1, 1}) && !has(24, {1, 1, 1}));
+    EXPECT_TRUE(has(20, {1, 1, 1}) && !has(20, {1, 0, 0}) && !has(12, {1, 0, 0}));
     EXPECT_EQ(directions({.k = 8})[1], (std::array<int, 3>{1, 1, -1}));
     EXPECT_EQ(directions({.k = 8, .coordinate_axes = true})[1], (std::array<int, 3>{0, 1, 0}));
 }

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "harness/oracle/drift.h"
+
+#include "algorithms/kdop/drift.h"
+#include "harness/oracle/posed.h"
+#include "harness/oracle/rounding.h"
+#include "scenes/parallel.h"
+#include "harness/world_vertices.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tandem {
+
+namespace {
+
+using namespace oracle;
+
+struct BodyDrift {
+    std::vector<double> ulps; ///< by vertex
+    double of_bound = 0;
+};
+
+Vector<mpq_class> exact_vertex(const Scene& scene, const Frame& frame, std::size_t body, std::size_t vertex) {
+    if (scene.bodies[body].deformable) {
+        const auto& v = frame.deformed[body][vertex];
+        return {mpq_class(v.x()), mpq_class(v.y()), mpq_class(v.z())};
+    }
+    const auto& v = scene.meshes[scene.bodies[body].mesh].vertices[vertex];
+    return posed_point(frame.poses[body], {v.x(), v.y(), v.z()});
+}
+
+/// The distance of the Real next above the one at or below |x|.
+template<class Real>
+double spacing(double x) {
+    const int least = std::numeric_limits<Real>::min_exponent - std::numeric_limits<Real>::digits;
+    return std::ldexp(1.0, x == 0 ? least
+                                  : std::max(std::ilogb(x) - std::numeric_limits<Real>::digits + 1, least));
+}
+
+template<class Real>
+BodyDrift drift_in(const Scene& scene, const Frame& frame, std::size_t body) {
+    constexpr auto precision = sizeof(Real) == 8 ? Precision::twice : Precision::single;
+    const auto world = world_vertices<Real>(scene, frame, body);
+    const auto& mesh = scene.meshes[scene.bodies[body].mesh];
+    const auto bound = scene.bodies[body].deformable
+                           ? drift_bound(frame.deformed[body], precision)
+                           : drift_bound(frame.poses[body], reach_of(mesh.vertices), precision);
+    BodyDrift result;
+    for (std::size_t vertex = 0; vertex < world.size(); ++vertex) {
+        const auto exact = exact_vertex(scene, frame, body, vertex);
+        double off = 0;
+        double largest = 0;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const auto at = static_cast<double>(world[vertex][axis]);
+            const double along = std::fabs(nearest(mpq_class(at) - exact[axis]));
+            off = std::max(off, along);
+            largest = std::max({largest, std::fabs(at), std::fabs(nearest(exact[axis]))});
+            if (along > 0) result.of_bound = std::max(result.of_bound, along / bound[axis]);
+        }
+        result.ulps.push_back(off / spacing<Real>(largest));
+    }
+    return result;
+}
+
+} // namespace
+
+Drift vertex_drift(const Scene& scene, const Frame& frame, Precision precision) {
+    std::vector<BodyDrift> bodies(scene.bodies.size());
+    parallel_for(bodies.size(), [&](std::size_t body) {
+        bodies[body] = precision == Precision::twice ? drift_in<double>(scene, frame, body)
+                                                     : drift_in<float>(scene, frame, body);
+    });
+    Drift drift;
+    std::vector<double> ulps;
+    for (const auto& body : bodies) {
+        ulps.insert(ulps.end(), body.ulps.begin(), body.ulps.end());
+        drift.of_bound = std::max(drift.of_bound, body.of_bound);
+    }
+    std::sort(ulps.begin(), ulps.end());
+    drift.vertices = ulps.size();
+    if (ulps.empty()) return drift;
+    drift.median = ulps[ulps.size() / 2];
+    drift.p99 = ulps[(ulps.size() - 1) * 99 / 100];
+    drift.max = ulps.back();
+    return drift;
+}
+
+} // namespace tandem

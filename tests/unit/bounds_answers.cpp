@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// Candidate pairs by rounding and truth: which answers have to be equal, which must not be compared, and that
+// kernels, reference and broad phase mean the same slabs.
+#include "algorithms/broad/broad.h"
+#include "algorithms/kdop_session.h"
+#include "harness/sampler.h"
+#include "scenes/error.h"
+#include "tests/support/cells.h"
+#include "tests/support/leaf_slabs.h"
+#include "tests/support/scenes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+using testing::HasSubstr;
+
+/// The crowd moved away from the origin, where rounding bites.
+Scene far_crowd(std::uint64_t seed, double offset) {
+    auto scene = crowd(seed, 9, 1.0);
+    scene.frame = [near = scene.frame, offset](std::size_t i) {
+        auto frame = near(i);
+        for (auto& pose : frame.poses) pose.translation.array() += offset;
+        for (auto& body : frame.deformed)
+            for (auto& v : body) v.array() += offset;
+        frame.poses[1] = {}; // of the deformable body
+        return frame;
+    };
+    return scene;
+}
+
+Measurement measured(const Scene& scene, References& references, const FrameRange& range,
+                     const Settings& given) {
+    const auto& chunked = algorithm("chunked");
+    const auto& preset = chunked.presets().front();
+    const Cell cell{&chunked, preset.name,
+                    resolve(chunked.parameters(), preset.values, given, chunked.name()), &device("host")};
+    SampleOptions options;
+    options.repeat = 1;
+    options.count_work = false;
+    return measure(cell, scene, range, references, options);
+}
+
+TEST(BoundsAnswers, SafeAndNearestAgreeWithoutCornersAndEveryCellWithItsOwnReference) {
+    const auto scene = far_crowd(81, 3000);
+    const auto range = make_frames(scene, 0, 1);
+    References references(scene, range);
+#ifdef TANDEM_FEW_PAIRS // a sanitized build has these only, see cmake/kernels.cmake
+    for (const int k : {8, 18}) {
+#else
+    for (const int k : {8, 12, 18}) {
+#endif
+        std::map<std::string, Digest> digests;
+        for (const std::string rounding : {"nearest", "safe", "published"}) {
+            const auto found =
+                measured(scene, references, range, {{"k", std::to_string(k)}, {"rounding", rounding}});
+            EXPECT_TRUE(found.agreement.ok()) << "k = " << k << " " << rounding;
+            EXPECT_GT(found.agreement.digest.count, 100u);
+            digests[rounding] = found.agreement.digest;
+        }
+        EXPECT_EQ(digests["nearest"] == digests["safe"], k != 8) << "k = " << k;
+        EXPECT_NE(digests["published"], digests["safe"]) << "k = " << k;
+    }
+}
+
+TEST(BoundsAnswers, WiderTruthFindsMore) {
+    const auto scene = far_crowd(82, 1000);
+    for (const auto precision : {Precision::single, Precision::twice}) {
+        const auto at = [&](Truth truth) {
+            return reference(scene, scene.frame(0), {.precision = precision, .truth = truth}, false,
+                             Method::brute_force)
+                .pairs;
+        };
+        const auto lost = difference(at(Truth::vertices), at(Truth::pose));
+        EXPECT_EQ(lost.missing, 0u);
+        EXPECT_EQ(lost.extra > 0, precision == Precision::single);
+    }
+}
+
+/// All pairs of tetrahedra that leaf slabs of the kernels do not separate.
+template<class Real>
+std::vector<Pair> kernel_pairs(const PairScene& scene, const Geometry& geometry) {
+    const LeafSlabs<Real> slabs(device("host"), scene, geometry);
+    const auto count = static_cast<std::uint32_t>(scene.scene().meshes[0].tetrahedra.size());
+    std::vector<Pair> pairs;
+    for (std::uint32_t a = 0; a < count; ++a)
+        for (std::uint32_t b = 0; b < count; ++b)
+            if (!slabs.separated(a, b)) pairs.push_back({0, a, 1, b});
+    return pairs;
+}
+
+/// Directed sums are made in two ways: exact sums tell the kernels' host dialect, the processor's modes the
+/// reference.
+TEST(BoundsAnswers, KernelsAndReferenceMeanTheSameSlabsInEveryRounding) {
+    SlabTouchMaker<float> maker(83, 300);
+    std::vector<OraclePair> pairs;
+    for (std::size_t i = 0; i < 150; ++i)
+        pairs.push_back(maker.touching(directions({.k = 26})[i % 13], {1, -1, 0.5}));
+    const Pose turned{Eigen::Quaterniond(0.9, 0.1, -0.3, 0.2), {0.1, 0.2, 0.3}};
+    const PairScene in_world(pairs);
+    const PairScene posed(pairs, {turned, turned});
+    std::set<std::size_t> counts;
+    for (const auto* scene : {&in_world, &posed})
+        for (const auto rounding :
+             {Rounding::nearest, Rounding::safe, Rounding::published, Rounding::directed})
+            for (const auto truth : {Truth::vertices, Truth::pose}) {
+                if (truth == Truth::pose
+                    && (rounding == Rounding::nearest || rounding == Rounding::published))
+                    continue;
+                Geometry geometry{.k = 8, .rounding = rounding, .truth = truth};
+                const auto in = [&] {
+                    return reference(scene->scene(), scene->frame(), geometry, false, Method::brute_force)
+                        .pairs;
+                };
+                const auto found = kernel_pairs<float>(*scene, geometry);
+                EXPECT_EQ(found, in()) << static_cast<int>(rounding);
+                counts.insert(found.size());
+                geometry.precision = Precision::twice;
+                EXPECT_EQ(kernel_pairs<double>(*scene, geometry), in()) << static_cast<int>(rounding);
+            }
+    EXPECT_GT(counts.size(), 4u) << "roundings that do not differ here say little";
+}
+
+TEST(BoundsAnswers, TheHostsBroadPhaseDropsNoBodyPairOfAnyBounds) {
+    for (const double offset : {0.0, 1e3, 1e5}) {
+        const auto scene = far_crowd(84, offset);
+        const auto frame = scene.frame(0);
+        for (const Geometry& geometry :
+             {Geometry{.k = 8, .rounding = Rounding::published}, Geometry{.k = 8, .truth = Truth::pose},
+              Geometry{.k = 8, .rounding = Rounding::directed, .truth = Truth::pose}}) {
+            const auto expected = reference(scene, frame, geometry, false, Method::brute_force).pairs;
+            ASSERT_GT(expected.size(), 100u);
+            for (const auto bound : {Broad::Bound::sphere, Broad::Bound::tight}) {
+                const auto found = Broad(scene, geometry, bound).pairs(frame);
+                for (const auto& pair : expected)
+                    ASSERT_TRUE(
+                        std::binary_search(found.begin(), found.end(), BodyPair{pair.body_a, pair.body_b}));
+            }
+        }
+    }
+}
+
+TEST(BoundsAnswers, DirectedIsRefusedWhereKernelsCannotRoundDirected) {
+    const auto& chunked = algorithm("chunked");
+    const auto settings = resolve(chunked.parameters(), {}, {{"rounding", "directed"}}, chunked.name());
+    auto info = device("opencl:0").info();
+    try {
+        effective(settings, info);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("rounding=directed is impossible on opencl:0"));
+    }
+    info.has_directed_rounding = true;
+    EXPECT_EQ(effective(settings, info).at("rounding"), "directed");
+}
+
+} // namespace
+} // namespace tandem
