@@ -50,7 +50,8 @@ void print_scene(const Scene& scene, const FrameRange& range) {
 }
 
 bool misses_against_its_promise(const Measurement& m) {
-    return m.errors && m.errors->missed() > 0 && m.settings.at("rounding") == "safe";
+    const auto& rounding = m.settings.at("rounding");
+    return m.errors && m.errors->missed() > 0 && (rounding == "safe" || rounding == "directed");
 }
 
 } // namespace tandem

@@ -26,7 +26,8 @@ int run_cell(const Cell& cell, const Job& job, References& references, const Sam
 /// A line that says what scene it is, and one for tetrahedra of no or negative volume.
 void print_scene(const Scene& scene, const FrameRange& range);
 
-/// Safe bounds miss nothing that meets (theorems of algorithms/kdop); the others promise nothing.
+/// Safe and directed bounds miss nothing that meets (theorems of algorithms/kdop); the others promise
+/// nothing.
 bool misses_against_its_promise(const Measurement& m);
 
 } // namespace tandem

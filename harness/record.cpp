@@ -181,6 +181,16 @@ Json contact_errors_json(const AnswerErrors& e) {
             {"hausdorff", spread_json(c.hausdorff)}};
 }
 
+Json drift_json(const AnswerErrors& e) {
+    if (!e.drift) return nullptr;
+    const auto& d = *e.drift;
+    return {{"vertices", d.vertices},
+            {"median", d.median},
+            {"p99", d.p99},
+            {"max", d.max},
+            {"of_bound", d.of_bound}};
+}
+
 Json truth_json(const AnswerErrors& e) {
     const auto upper = e.missed_upper95();
     const auto ratio = e.candidate_ratio();
@@ -199,6 +209,7 @@ Json truth_json(const AnswerErrors& e) {
         json["decided"][tier_names[tier]] = e.decided.tiers[tier];
     json["decisions"] = e.decisions ? Json(*e.decisions) : Json();
     json["contacts"] = contact_errors_json(e);
+    json["drift"] = drift_json(e);
     return json;
 }
 

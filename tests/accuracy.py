@@ -49,6 +49,7 @@ class Accuracy(Case):
         self.assertTrue(contacts["complete"])
         self.assertEqual(contacts["overlapping"], records[0]["error"]["truth"]["overlapping"])
         self.assertLess(contacts["point"]["max"], 1e-6)
+        self.assertEqual(records[0]["error"]["truth"]["drift"]["max"], 0)  # poses that move nothing
         records, _ = self.run_two("sample", "--algorithm", "chunked", "--truth", "contacts", "--truth-contacts", 5)
         contacts = records[0]["error"]["truth"]["contacts"]
         self.assertEqual((contacts["complete"], contacts["overlapping"]), (False, 5))
@@ -79,6 +80,22 @@ class Accuracy(Case):
                  if r["scene"]["name"] == "pile" and r["settings"]["rounding"] == "safe" and r["settings"]["precision"] == "float"}
         self.assertGreater(ratio["6"], ratio["18"])
         self.assertGreater(ratio["18"], ratio["26"])
+
+    def test_hard_families_are_spread_over_their_difficulties(self):
+        out = self.work / "hard.jsonl"
+        status, text, errors = tandem("accuracy", "hard:all:pairs=4,together=2", "--device", "host", "--set", "k=8", "--set", "rounding=published",
+                                      "--repeat", 1, "--truth-contacts", 1, "--quiet", "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        difficulties = {}
+        for record in self.records(out):
+            family, rest = record["scene"]["key"].removeprefix("hard:").split(":")
+            difficulties.setdefault(family, []).append(float(rest.split("difficulty=")[1].split(",")[0]))
+        self.assertGreater(len(difficulties), 38)
+        self.assertNotIn("not-finite", difficulties)
+        self.assertEqual(len(difficulties["slab-touch"]), 5)
+        self.assertEqual((difficulties["slab-touch"][0], difficulties["slab-touch"][-1]), (1, 1e6))
+        self.assertEqual(len(difficulties["all-overlap"]), 1)
+        self.assertTrue(all(values == sorted(set(values)) for values in difficulties.values()), difficulties)
 
     def test_given_settings_are_the_only_cells(self):
         records, text = self.run_two("given", "--set", "k=8,18", "--repeat", 1, command="accuracy")

@@ -200,7 +200,7 @@ class CommandLine(Case):
         record = self.records(out)[0]
         maps, nullable = {"settings", "defines"}, {"failure", "agreement", "commit", "processor", "clocks_mhz", "hardware", "device_span_ns",
                                                    "registers", "local_bytes", "spill_bytes", "missed_upper95", "candidate_ratio", "decisions"}
-        nullable_paths = {("error", "truth"), ("error", "truth", "contacts")}
+        nullable_paths = {("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift")}
         seen = set()
         for path in places(record):
             shape = tuple(0 if isinstance(name, int) else name for name in path)

@@ -129,6 +129,7 @@ void AnswerErrors::add(const AnswerErrors& other) {
     decided.add(other.decided);
     invalid_tetrahedra += other.invalid_tetrahedra;
     every_contact = every_contact && other.every_contact;
+    if (!drift) drift = other.drift;
     if (other.decisions) {
         if (!decisions) decisions.emplace();
         for (unsigned row = 0; row < 3; ++row)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "harness/oracle/contact_truth.h"
+#include "harness/oracle/drift.h"
 #include "harness/oracle/frame_truth.h"
 
 #include <optional>
@@ -38,6 +39,7 @@ struct AnswerErrors {
     std::uint64_t invalid_tetrahedra = 0;
     std::optional<DecisionMatrix> decisions; ///< none without contacts
     std::optional<ContactErrors> contacts;   ///< none when not asked for
+    std::optional<Drift> drift;              ///< of the first frame; none when contacts were not asked for
     bool every_contact = true;               ///< no pair was left out of `contacts`
 
     std::uint64_t missed() const { return pairs.missed_touching + pairs.missed_overlapping; }

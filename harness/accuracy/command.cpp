@@ -4,8 +4,10 @@
 #include "harness/job.h"
 #include "harness/statistics.h"
 #include "scenes/error.h"
+#include "scenes/hard/hard.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <numeric>
 
@@ -92,6 +94,40 @@ std::string middle_frames(const Scene& scene) {
     return fmt::format("{}:{}", first, first + default_frames - 1);
 }
 
+/// Five difficulties from the least to the most, by equal factors where the range spans a hundredfold; the
+/// initial one alone of whole scenes, which grow with it. Whole numbers where the initial one is.
+std::vector<double> difficulties(const HardFamily& family) {
+    const auto& knob = family.knob;
+    if (family.scene != nullptr) return {knob.initial};
+    constexpr int count = 5;
+    const bool factors = knob.least > 0 && knob.most >= 100 * knob.least;
+    const bool whole = knob.least == std::floor(knob.least) && knob.initial == std::floor(knob.initial);
+    std::vector<double> result;
+    for (int i = 0; i < count; ++i) {
+        const double share = static_cast<double>(i) / (count - 1);
+        double value = factors ? knob.least * std::pow(knob.most / knob.least, share)
+                               : knob.least + (knob.most - knob.least) * share;
+        value = std::clamp(whole ? std::round(value) : value, knob.least, knob.most);
+        if (result.empty() || value > result.back()) result.push_back(value);
+    }
+    return result;
+}
+
+/// hard:all as all families at several difficulties, less the one that is refused; other scenes as they are.
+std::vector<std::string> expand(const std::string& scene) {
+    const auto families = expand_hard(scene);
+    if (families.size() < 2) return {scene};
+    std::vector<std::string> scenes;
+    for (const auto& one : families) {
+        const auto name = one.substr(5, one.find(':', 5) - 5); // hard:NAME or hard:NAME:...
+        if (name == "not-finite") continue;
+        for (const double difficulty : difficulties(hard_family(name)))
+            scenes.push_back(fmt::format("{}{}difficulty={}", one,
+                                         one.find(':', 5) == std::string::npos ? ":" : ",", difficulty));
+    }
+    return scenes;
+}
+
 /// Median over the samples of a frame's time, in ms.
 double frame_ms(const Measurement& m) {
     std::vector<std::int64_t> sums;
@@ -165,11 +201,12 @@ int accuracy_command(const AccuracyOptions& options) {
     if (scenes.empty()) scenes.emplace_back(); // of --mesh, or the message that there is none
     RecordFile file(options.run.out);
     int code = 0;
-    for (const auto& scene : scenes) {
-        auto own = options.run;
-        own.scene = scene;
-        code = std::max(code, measure_scene(own, cells, file));
-    }
+    for (const auto& given : scenes)
+        for (const auto& scene : expand(given)) {
+            auto own = options.run;
+            own.scene = scene;
+            code = std::max(code, measure_scene(own, cells, file));
+        }
     fmt::print("ms of the whole frame; ratio: candidates per pair that meets; errors of contacts are 99th "
                "percentiles, u half a unit in the\n"
                "last place of 1, L the longest edge; MISSES: pairs that meet are not among the candidates\n");

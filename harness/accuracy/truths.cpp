@@ -8,8 +8,9 @@ Truths::Known& Truths::known(Precision precision, std::size_t index, const Repor
     auto& known = found->second;
     if (!added) return known;
     known.truth = frame_truth(scene_, frames_[index], precision, report);
-    if (amount_ == TruthAmount::contacts)
-        known.contacts = contact_truths(scene_, frames_[index], precision, known.truth, most_contacts_);
+    if (amount_ != TruthAmount::contacts) return known;
+    known.contacts = contact_truths(scene_, frames_[index], precision, known.truth, most_contacts_);
+    if (index == 0) known.drift = vertex_drift(scene_, frames_[index], precision);
     return known;
 }
 
@@ -25,6 +26,7 @@ const AnswerErrors& Truths::errors(Precision precision, std::size_t index, const
     errors.frames = 1;
     errors.pairs = pair_errors(truth.truth, pairs);
     errors.decided = truth.truth.decisions;
+    errors.drift = truth.drift;
     errors.invalid_tetrahedra = truth.truth.invalid.size();
     if (!answer.makes_contacts) return errors;
     const auto contacts = answer.download_contacts();

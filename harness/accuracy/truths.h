@@ -43,6 +43,7 @@ private:
     struct Known {
         FrameTruth truth;
         std::optional<ContactTruths> contacts;
+        std::optional<Drift> drift; ///< first frame only
     };
     Known& known(Precision precision, std::size_t index, const Report& report);
 
