@@ -375,9 +375,10 @@ class CommandLine(Case):
         self.bad("the nearest is 'opencl:0'", "check", "plates", "--device", "opencl:7")
         self.bad("the nearest is 'chunked'", "check", "plates", "--algorithm", "chunkd")
         for setting in ("k=10", "group_size=0", "leaves=3", "precision=half", "pair_capacity=-1", "pair_capacity=4294967296",
-                        "k=6,,8", "axes=coordinate"):
+                        "k=6,,8", "axes=coordinate", "rounding=directed"):
             expected = "goes with k=8 only" if setting == "axes=coordinate" else "impossible"
             self.bad(expected, "run", "plates", "--algorithm", "chunked", "--set", setting, "--frames", "0")
+        self.bad("goes with rounding=safe", "run", "plates", "--set", "truth=t2", "--set", "rounding=nearest")
         for frames in ("5:2", "0:500", "500", "x", "1:", "-1:2", "0:99999999999999999999"):
             self.bad("frames", "run", "plates", "--frames", frames)
         for pose in ("0 0 0 1 0 0", "0 0 0 1 0 0 0 0", "0 0 0 0 0 0 0", "nan 0 0 1 0 0 0", "a b c d e f g", ""):

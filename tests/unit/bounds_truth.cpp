@@ -127,6 +127,32 @@ TEST(Truth, T2KeepsWhatThePosesMakeTouchAndT1DoesNot) {
     EXPECT_GT(lost["t1 double"], 0u);
 }
 
+/// Deformable bodies have no pose; what float drops of their vertices counts as drift.
+TEST(Truth, T2KeepsDeformablePairsThatTouchInDoubleOnly) {
+    for (const double offset : {0.0, 10.0, 1e4}) {
+        SlabTouchMaker<double> maker(11, offset);
+        std::vector<OraclePair> pairs;
+        for (std::size_t i = 0; i < 1300; ++i) {
+            pairs.push_back(maker.touching(directions({.k = 26})[i % 13], {1, -1, 0.5}));
+            ASSERT_EQ(relation(pairs.back().a, pairs.back().b), Relation::touching);
+        }
+        const PairScene scene(pairs);
+        const auto lost_of = [&](const Geometry& geometry) {
+            const LeafSlabs<float> slabs(device("host"), scene, geometry);
+            std::uint64_t lost = 0;
+            for (std::size_t i = 0; i < pairs.size(); ++i) lost += slabs.separated(i) ? 1 : 0;
+            return lost;
+        };
+        // E, which k = 8 adds anyway, happens to be enough.
+        EXPECT_GT(lost_of({.k = 18}), 0u) << "at " << offset;
+        for (const int k : {8, 18}) {
+            for (const auto rounding : {Rounding::safe, Rounding::directed})
+                EXPECT_EQ(lost_of(posed_geometry(k, rounding, Precision::single)), 0u)
+                    << "k = " << k << " at " << offset;
+        }
+    }
+}
+
 TEST(Truth, DriftStaysWithinItsBoundAndComesNearIt) {
     for (const auto precision : {Precision::single, Precision::twice}) {
         double largest = 0;
