@@ -81,6 +81,21 @@ TEST_P(HardAlgorithms, ExactCapacityLosesNothing) {
         }
 }
 
+/// Counted alike, whatever is done with the pairs. `adversarial --counter 32` goes past 2^32.
+TEST_P(HardAlgorithms, CountsAreThoseConstructed) {
+    const auto& family = hard_family("counter-wrap");
+    const auto scene = make_scene("hard:counter-wrap:difficulty=15");
+    for (const auto* traversal : algorithms())
+        for (const std::string output : {"pairs", "count", "digest"}) {
+            const std::array devices{&device(GetParam())};
+            const auto session = traversal->prepare(
+                devices, scene,
+                resolve(traversal->parameters(), {}, {{"output", output}}, traversal->name()));
+            const auto result = session->run(scene.frame(0), all_pairs(scene, *session));
+            EXPECT_EQ(result.count, family.meeting(15)) << traversal->name() << " " << output;
+        }
+}
+
 /// What a body is after many frames is what it would be at once.
 TEST_P(HardAlgorithms, RefitsLeaveNoTrace) {
     const auto scene = make_scene("hard:refit-order:difficulty=20");
