@@ -60,7 +60,7 @@ std::pair<Corners, Corners> touching_across(Random& random, const Vector& c, con
 int reach_of(double unit) { return static_cast<int>(std::clamp(0.25 / unit, 4.0, 0x1p17)); }
 
 HardPair slab_touch(Random& random, double offset, std::uint64_t index) {
-    const Vector d = directions[index % directions.size()];
+    const Vector& d = directions[index % directions.size()];
     const Vector u = d.cross(d.x() != 0 && d.y() == 0 && d.z() == 0 ? Vector{0, 1, 0} : Vector{1, 0, 0});
     const Vector v = d.cross(u);
     const double unit = float_unit(2 * offset);

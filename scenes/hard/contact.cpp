@@ -121,7 +121,7 @@ Scene configurations(Random&, double depth) {
     Scene scene = still({spike(), wedge(), box, cracked()}, {});
     std::vector<Pose> poses;
     const auto add = [&](std::uint32_t below, const Vector& offset, std::uint32_t above, Pose pose) {
-        const Vector place{8.0 * static_cast<double>(poses.size() / 2), 0, 0};
+        const Vector place{4.0 * static_cast<double>(poses.size()), 0, 0};
         scene.bodies.push_back({.mesh = below});
         poses.push_back(at(place));
         pose.translation = pose.translation + offset + place;

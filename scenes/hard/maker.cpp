@@ -46,7 +46,7 @@ Corners side(Random& random, unsigned level, int sign) {
 
 Corners solid_side(Random& random, unsigned level, int sign) {
     for (;;) {
-        const auto corners = side(random, level, sign);
+        auto corners = side(random, level, sign);
         if (determinant(corners) != 0) return corners;
     }
 }
@@ -105,7 +105,7 @@ std::pair<Corners, Corners> near_pair(Random& random) {
 
 Eigen::Vector3d across(Random& random, const Eigen::Vector3d& axis) {
     for (;;) {
-        const Eigen::Vector3d other = axis.cross(random.direction());
+        Eigen::Vector3d other = axis.cross(random.direction());
         if (other.norm() > 0.3 * axis.norm()) return other;
     }
 }

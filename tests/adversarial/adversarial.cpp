@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// adversarial [--pairs N] [--device D,E] [--k K,L] [--rounding safe|nearest] [--family F,G] [--batch N]
-// [--seed N]: N pairs in all, spread over the families of hard cases, bounded and tested on every device by
-// the kernels of the walks and compared with the exact truth. One line a family and a last one; exit 1 when a
-// pair is missed.
+// adversarial [--pairs N] [--device D,E] [--family F,G] ...: N pairs in all, spread over the families of hard
+// cases, bounded and tested on every device by the kernels of the walks and compared with the exact truth.
+// One line a family and a last one; exit 1 when a pair is missed. adversarial --counter E [--algorithm A,B]
+// [--device D,E]: 2^E pairs, counted by every algorithm; exit 1 when a count is wrong. --help lists all
+// options.
 #include "backends/registry.h"
 #include "harness/adversarial.h"
 #include "harness/plan.h"
+#include "harness/sampler.h"
+#include "harness/walk.h"
 #include "scenes/error.h"
 
 #include <CLI/CLI.hpp>
@@ -20,6 +23,8 @@ struct Options {
     std::vector<std::string> devices{"all"}, families;
     std::vector<int> k{6, 8, 14, 18, 26};
     std::string rounding = "safe";
+    int exponent = 0; ///< not 0: count 2^exponent pairs instead
+    std::vector<std::string> algorithms;
     AdversarialOptions run;
 };
 
@@ -103,6 +108,26 @@ int run(const Options& options) {
     return sum.ok() ? 0 : 1;
 }
 
+/// Runs every algorithm once over 2^exponent pairs that it only counts.
+int count(const Options& options) {
+    const auto scene = make_scene(fmt::format("hard:counter-wrap:difficulty={}", options.exponent));
+    const auto expected = hard_family("counter-wrap").meeting(options.exponent);
+    const auto backends = discover();
+    Request request;
+    request.algorithms = options.algorithms;
+    request.sets = {{"output", {"count"}}};
+    int code = 0;
+    for (const auto& cell : plan(request, choose_devices(backends, options.devices))) {
+        const auto begin = std::chrono::steady_clock::now();
+        const auto result = Walk(cell, scene).run(scene.frame(0));
+        const double seconds = 1e-9 * static_cast<double>(since(begin));
+        fmt::print("{}: {} pairs of {} in {:.1f} s\n", describe(cell), result.count, expected, seconds);
+        std::fflush(stdout);
+        if (result.count != expected) code = 1;
+    }
+    return code;
+}
+
 int dispatch(int argc, char** argv) {
     Options options;
     CLI::App app{"adversarial: pairs of every family of hard cases against the exact truth"};
@@ -120,12 +145,17 @@ int dispatch(int argc, char** argv) {
     app.add_option("--sample", options.run.sample,
                    "of so many pairs known by construction the oracle decides one as well")
         ->check(CLI::PositiveNumber);
+    auto* counter =
+        app.add_option("--counter", options.exponent,
+                       "instead: 2^N pairs by every algorithm, with output=count (hard:counter-wrap)")
+            ->check(CLI::Range(1, 34));
+    app.add_option("--algorithm", options.algorithms, "A,B for --counter")->delimiter(',')->needs(counter);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 2;
     }
-    return run(options);
+    return options.exponent > 0 ? count(options) : run(options);
 }
 
 } // namespace
