@@ -44,8 +44,8 @@ void prepare(Device& device, const Traversal& traversal, const Settings& from, c
     session->count_work(true);
 }
 
-/// The plan: every geometry with the first preset of every algorithm, and every preset and output with its
-/// own.
+/// The plan: every geometry and contact rule with the first preset of every algorithm, and every preset and
+/// output with its own.
 Programs plan() {
     CompilingDevice device;
     for (const auto* traversal : algorithms()) {
@@ -57,6 +57,11 @@ Programs plan() {
                              {"axes", k == "8c" ? "coordinate" : "standard"},
                              {"precision", precision},
                              {"rounding", rounding}});
+        for (const std::string precision : {"float", "double"})
+            for (const std::string rule : {"published", "sat", "clip"})
+                for (const std::string decision : {"recheck", "fp64", "exact"})
+                    prepare(device, *traversal, traversal->presets().front().values,
+                            {{"precision", precision}, {"contact_rule", rule}, {"decision", decision}});
         for (const auto& preset : traversal->presets())
             for (const std::string output : {"pairs", "count", "digest"})
                 prepare(device, *traversal, preset.values, {{"output", output}});
