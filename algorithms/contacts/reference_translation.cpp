@@ -81,6 +81,7 @@ std::vector<Contact<Real>> translation_contacts(const ReferencePair<Real>& pair,
         if (const auto n = area_normal(pair)) {
             normal = *n;
             std::vector<Real> heights;
+            heights.reserve(meetings.size());
             for (const auto& meeting : meetings)
                 heights.push_back(dot(normal, meeting.point - pair.solids[0].corners[0]));
             depth = 0;
@@ -90,6 +91,7 @@ std::vector<Contact<Real>> translation_contacts(const ReferencePair<Real>& pair,
             }
         }
     std::vector<Contact<Real>> result;
+    result.reserve(meetings.size());
     for (const auto& meeting : meetings) result.push_back(pair.contact(meeting, normal, depth));
     return result;
 }
