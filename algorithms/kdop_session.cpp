@@ -31,12 +31,6 @@ const std::vector<Parameter> common{
      0,
      "published: convert, upload and read back everything in every frame, as the paper's code"},
     {"output", "pairs", {"pairs", "count", "digest"}, 0, 0, "what a walk hands out; contacts need pairs"},
-    {"contact_rule",
-     "opposing",
-     {"opposing", "none"},
-     0,
-     0,
-     "opposing: the paper's most opposing boundary faces"},
     {"group_size", "128", {}, 1, 1024, "work-items per work-group (1 on host)"},
     {"work_items", "2048", {}, 1, 1 << 20, "work-items per compute unit of the kernels that stride"},
     {"pair_capacity", "1048576", {}, 1, word_limit, "candidate pairs there is room for at first"},
@@ -71,6 +65,8 @@ std::uint64_t with_room(std::uint64_t count, std::string_view what) {
 std::vector<Parameter> kdop_parameters(std::span<const Parameter> own) {
     const auto geometry = geometry_parameters();
     std::vector<Parameter> all(geometry.begin(), geometry.end());
+    const auto contact = contact_parameters();
+    all.insert(all.end(), contact.begin(), contact.end());
     all.insert(all.end(), common.begin(), common.end());
     all.insert(all.end(), own.begin(), own.end());
     return all;
@@ -85,6 +81,10 @@ Settings effective(Settings settings, const DeviceInfo& info) {
                         info.id));
     if (geometry.precision == Precision::twice && !info.has_double)
         throw InputError(fmt::format("setting precision=double is impossible on {}; choose float", info.id));
+    if (contact_settings_of(settings).decision != DecisionPrecision::fp32 && !info.has_double)
+        throw InputError(
+            fmt::format("setting decision={} is impossible on {}, which has no double; choose fp32",
+                        settings.at("decision"), info.id));
     const auto wanted = integer(settings, "group_size");
     if (info.max_group_size == 1)
         settings["group_size"] = "1";
@@ -117,7 +117,8 @@ KdopSession::KdopSession(Device& device, const Scene& scene, Settings settings, 
     }
     if (output_ == Output::pairs && settings_.at("contact_rule") != "none")
         contact_stage_ = std::make_unique<ContactStage>(
-            scene_, static_cast<std::uint64_t>(integer(settings_, "contact_capacity")), groups_);
+            scene_, contact_settings_of(settings_),
+            static_cast<std::uint64_t>(integer(settings_, "contact_capacity")), groups_);
 }
 
 Defines KdopSession::defines() const {
@@ -231,6 +232,8 @@ FrameResult KdopSession::result_of(const Status& status) const {
     result.contacts = status.counter(STATUS_CONTACTS);
     result.degenerate = status.counter(STATUS_DEGENERATE);
     result.rejected = status.counter(STATUS_REJECTED);
+    result.unsure = status.counter(STATUS_UNSURE);
+    result.uncertain = status.counter(STATUS_UNCERTAIN);
     if (output_ == Output::pairs) {
         result.pairs = found_;
         result.capacity = capacity_;

@@ -41,6 +41,8 @@ struct FrameResult {
     std::uint64_t contacts = 0;
     std::uint64_t degenerate = 0; ///< pairs without contacts because a tetrahedron has no volume
     std::uint64_t rejected = 0;   ///< pairs that a separating axis told apart
+    std::uint64_t unsure = 0;     ///< pairs the certified filter could not decide (decision=recheck, exact)
+    std::uint64_t uncertain = 0;  ///< pairs double could not decide either (decision=recheck, fp64, exact)
     std::uint64_t retries = 0;    ///< times a buffer was too small and the walk ran again
     std::optional<Digest> digest; ///< output = digest: of the pairs; otherwise ask Session::digest
     Work work;                    ///< zero unless Session::count_work(true)

@@ -159,6 +159,8 @@ Json work_json(const Measurement& m) {
             {"queue_bytes", m.work.queue_bytes},
             {"published_queue_bytes", m.work.published_queue_bytes},
             {"rejected", m.rejected},
+            {"unsure", m.unsure},
+            {"uncertain", m.uncertain},
             {"retries", m.retries}};
 }
 

@@ -192,7 +192,7 @@ void test_all(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
 
 template<class Real>
 void add_contacts(const Scene& scene, const std::vector<Bounds<Real>>& bounds, std::span<const Pair> pairs,
-                  ReferenceAnswer& answer, std::mutex& mutex) {
+                  const ContactSettings& settings, ReferenceAnswer& answer, std::mutex& mutex) {
     ContactCounts counts;
     Digest digest;
     const auto corners = [&](std::uint32_t body, std::uint32_t tetrahedron) {
@@ -205,8 +205,9 @@ void add_contacts(const Scene& scene, const std::vector<Bounds<Real>>& bounds, s
     for (const auto& p : pairs) {
         const auto flags_a = scene.meshes[scene.bodies[p.body_a].mesh].boundary[p.tet_a];
         const auto flags_b = scene.meshes[scene.bodies[p.body_b].mesh].boundary[p.tet_b];
-        for (const auto& contact : reference_contacts<Real>(
-                 corners(p.body_a, p.tet_a), corners(p.body_b, p.tet_b), flags_a, flags_b, counts)) {
+        for (const auto& contact :
+             reference_contacts<Real>(corners(p.body_a, p.tet_a), corners(p.body_b, p.tet_b), flags_a,
+                                      flags_b, counts, settings)) {
             const auto [a, b] = contact_terms<Real>(p.body_a, p.tet_a, p.body_b, p.tet_b, contact);
             ++digest.count;
             digest.a += a;
@@ -220,11 +221,13 @@ void add_contacts(const Scene& scene, const std::vector<Bounds<Real>>& bounds, s
     answer.contact_digest.b += digest.b;
     answer.degenerate += counts.degenerate;
     answer.rejected += counts.rejected;
+    answer.unsure += counts.unsure;
+    answer.uncertain += counts.uncertain;
 }
 
 template<class Real>
 ReferenceAnswer answer_in(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
-                          Method method) {
+                          Method method, const ContactSettings& settings) {
     std::vector<Bounds<Real>> bounds(scene.bodies.size());
     parallel_for(bounds.size(),
                  [&](std::size_t body) { bounds[body] = bounds_of<Real>(scene, frame, geometry, body); });
@@ -250,8 +253,8 @@ ReferenceAnswer answer_in(const Scene& scene, const Frame& frame, const Geometry
     constexpr std::size_t part = 4096;
     parallel_for((answer.pairs.size() + part - 1) / part, [&](std::size_t i) {
         const auto all = std::span<const Pair>(answer.pairs);
-        add_contacts(scene, bounds, all.subspan(i * part, std::min(part, all.size() - i * part)), answer,
-                     mutex);
+        add_contacts(scene, bounds, all.subspan(i * part, std::min(part, all.size() - i * part)), settings,
+                     answer, mutex);
     });
     return answer;
 }
@@ -265,10 +268,10 @@ std::uint64_t split_mix(std::uint64_t x) {
 } // namespace
 
 ReferenceAnswer reference(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
-                          Method method) {
+                          Method method, const ContactSettings& settings) {
     return geometry.precision == Precision::twice
-               ? answer_in<double>(scene, frame, geometry, contacts, method)
-               : answer_in<float>(scene, frame, geometry, contacts, method);
+               ? answer_in<double>(scene, frame, geometry, contacts, method, settings)
+               : answer_in<float>(scene, frame, geometry, contacts, method, settings);
 }
 
 Method reference_method(const Scene& scene) {

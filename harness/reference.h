@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/contacts/contact_settings.h"
 #include "algorithms/traversal.h"
 
 namespace tandem {
@@ -12,6 +13,7 @@ struct ReferenceAnswer {
     std::uint64_t contacts = 0;
     std::uint64_t degenerate = 0;
     std::uint64_t rejected = 0;
+    std::uint64_t unsure = 0, uncertain = 0;
     Digest contact_digest;
 };
 
@@ -23,7 +25,7 @@ enum class Method {
 /// Finds every pair of tetrahedra of different bodies (not both fixed) whose leaf k-DOPs overlap, on all
 /// cores; shares no code with kernels, hierarchies or broad phase.
 ReferenceAnswer reference(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
-                          Method method);
+                          Method method, const ContactSettings& settings = {});
 
 /// Brute force for small scenes, sweep otherwise.
 Method reference_method(const Scene& scene);

@@ -127,7 +127,7 @@ void Sampler::check(References& references, const SampleOptions& options, const 
         auto digest = counted ? Digest{result.count, 0, 0} : session_->digest(result);
         const auto contacts = session_->contact_digest(result);
         if (options.check) {
-            const auto& expected = references.answer(geometry_, i);
+            const auto& expected = references.answer(geometry_, contact_settings_of(out_.settings), i);
             if (counted && result.count == expected.digest.count) digest = expected.digest;
             compare(expected, result, digest, contacts);
         }
@@ -145,6 +145,8 @@ void Sampler::check(References& references, const SampleOptions& options, const 
         out_.contacts.push_back(result.contacts);
         out_.degenerate += result.degenerate;
         out_.rejected += result.rejected;
+        out_.unsure += result.unsure;
+        out_.uncertain += result.uncertain;
         out_.retries += result.retries;
         device_.finish();
     }
@@ -250,15 +252,18 @@ FrameRange make_frames(const Scene& scene, std::size_t first, std::size_t last) 
     return range;
 }
 
-const ReferenceAnswer& References::answer(const Geometry& geometry, std::size_t index) {
-    auto found = std::find_if(known_.begin(), known_.end(),
-                              [&](const auto& entry) { return entry.first == geometry; });
+const ReferenceAnswer& References::answer(const Geometry& geometry, const ContactSettings& contacts,
+                                          std::size_t index) {
+    const Key key{geometry, contacts};
+    auto found =
+        std::find_if(known_.begin(), known_.end(), [&](const auto& entry) { return entry.first == key; });
     if (found == known_.end()) {
-        known_.emplace_back(geometry, std::vector<std::optional<ReferenceAnswer>>(range_.frames.size()));
+        known_.emplace_back(key, std::vector<std::optional<ReferenceAnswer>>(range_.frames.size()));
         found = known_.end() - 1;
     }
     auto& answer = found->second[index];
-    if (!answer) answer = reference(scene_, range_.frames[index], geometry, true, reference_method(scene_));
+    if (!answer)
+        answer = reference(scene_, range_.frames[index], geometry, true, reference_method(scene_), contacts);
     return *answer;
 }
 

@@ -29,12 +29,14 @@ class References {
 public:
     References(const Scene& scene, const FrameRange& range) : scene_(scene), range_(range) {}
 
-    const ReferenceAnswer& answer(const Geometry& geometry, std::size_t index);
+    const ReferenceAnswer& answer(const Geometry& geometry, const ContactSettings& contacts,
+                                  std::size_t index);
 
 private:
     const Scene& scene_;
     const FrameRange& range_;
-    std::vector<std::pair<Geometry, std::vector<std::optional<ReferenceAnswer>>>> known_;
+    using Key = std::pair<Geometry, ContactSettings>;
+    std::vector<std::pair<Key, std::vector<std::optional<ReferenceAnswer>>>> known_;
 };
 
 /// Sums of a stage over one frame of the breakdown run.
@@ -74,7 +76,7 @@ struct Measurement {
     std::vector<std::int64_t> breakdown_ns;          ///< [frame] span of the breakdown run
     std::vector<std::int64_t> device_span_ns; ///< [frame] first begin to last end; empty when not known
     std::vector<std::uint64_t> body_pairs, candidate_pairs, contacts; ///< [frame]
-    std::uint64_t degenerate = 0, rejected = 0, retries = 0;
+    std::uint64_t degenerate = 0, rejected = 0, unsure = 0, uncertain = 0, retries = 0;
     Work work;
     Agreement agreement;
     std::optional<AnswerErrors> errors; ///< against the exact truth; none when not asked for

@@ -5,12 +5,19 @@
 
 namespace tandem {
 
-ContactStage::ContactStage(const DeviceScene& scene, std::uint64_t capacity, std::uint32_t groups)
+ContactStage::ContactStage(const DeviceScene& scene, const ContactSettings& settings, std::uint64_t capacity,
+                           std::uint32_t groups)
     : scene_(scene), groups_(groups) {
-    const auto defines = geometry_defines(scene.geometry(), scene.group_size());
+    auto defines = geometry_defines(scene.geometry(), scene.group_size());
     const auto& source = kernel_source("algorithms/contacts/contacts.cl");
-    generate_ = scene.device().compile(source, "generate_contacts", defines);
     digest_ = scene.device().compile(source, "digest_contacts", defines);
+    defines["CONTACT_RULE"] = std::to_string(static_cast<int>(settings.rule));
+    defines["DECIDED"] = settings.decision == DecisionPrecision::fp32 ? "0" : "1";
+    generate_ = scene.device().compile(source, "generate_contacts", defines);
+    if (settings.decision != DecisionPrecision::fp32)
+        decision_ = std::make_unique<DecisionStage>(scene, settings.decision, groups);
+    else
+        no_verdicts_ = scene.device().allocate(1, "no verdicts");
     reserve(capacity);
 }
 
@@ -24,8 +31,9 @@ void ContactStage::reserve(std::uint64_t count) {
 
 void ContactStage::launch(const Buffer& found, std::uint64_t first, std::uint64_t pair_capacity,
                           const Buffer& status) {
+    if (decision_) decision_->launch(found, first, pair_capacity, status);
     const StageScope scope(scene_.device(), Stage::contact);
-    const std::array<Argument, 12> arguments{found,
+    const std::array<Argument, 13> arguments{found,
                                              static_cast<std::uint32_t>(first),
                                              static_cast<std::uint32_t>(pair_capacity),
                                              scene_.bodies(),
@@ -36,6 +44,7 @@ void ContactStage::launch(const Buffer& found, std::uint64_t first, std::uint64_
                                              ids_,
                                              values_,
                                              static_cast<std::uint32_t>(capacity_),
+                                             decision_ ? decision_->verdicts() : no_verdicts_,
                                              status};
     scene_.device().launch(generate_, {groups_, scene_.group_size()}, arguments);
 }

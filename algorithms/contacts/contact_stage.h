@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/kdop/device_scene.h"
+#include "algorithms/contacts/decision_stage.h"
+
+#include <memory>
 
 namespace tandem {
 
-/// Generates contacts between candidate pairs in a buffer, into a buffer of its own.
+/// Decides which candidate pairs in a buffer meet and generates their contacts, into a buffer of its own.
 class ContactStage {
 public:
-    ContactStage(const DeviceScene& scene, std::uint64_t capacity, std::uint32_t groups);
+    ContactStage(const DeviceScene& scene, const ContactSettings& settings, std::uint64_t capacity,
+                 std::uint32_t groups);
 
     /// Enqueues contact generation for pairs `first`.. of `found`, whose count stands in `status`.
     void launch(const Buffer& found, std::uint64_t first, std::uint64_t pair_capacity, const Buffer& status);
@@ -27,6 +30,8 @@ private:
     std::uint64_t capacity_ = 0;
     Buffer ids_, values_;
     Kernel generate_, digest_;
+    Buffer no_verdicts_;
+    std::unique_ptr<DecisionStage> decision_; ///< none for decision=fp32, which generate_contacts does itself
 };
 
 } // namespace tandem

@@ -3,9 +3,24 @@
 // README.md here has the rule.
 #include "backends/portable.h"
 
-#include "algorithms/contacts/opposing.clh"
+#include "algorithms/contacts/candidates.clh"
+#include "algorithms/contacts/clipping.clh"
+#include "algorithms/contacts/published.clh"
 #include "algorithms/contacts/separation.clh"
-#include "algorithms/pairs.clh"
+
+// Whether filter.cl and recheck.cl have written verdicts.
+#ifndef DECIDED
+#define DECIDED 0
+#endif
+#ifndef CONTACT_RULE
+#define CONTACT_RULE 0
+#endif
+#define RULE_OPPOSING 0
+#define RULE_PUBLISHED 1
+#define RULE_SAT 2
+#define RULE_CLIP 3
+// Rules that take boundary faces of the bodies as they are named, or any two tetrahedra in canonical order.
+#define IS_CANONICAL (CONTACT_RULE == RULE_SAT || CONTACT_RULE == RULE_CLIP)
 
 #define CONTACT_WORDS 2
 #define CONTACT_REALS 8
@@ -18,11 +33,6 @@ typedef struct {
     GLOBAL uint* status;
     uint capacity;
 } Sink;
-
-// How many of the counted are really in the buffer.
-DEVICE uint stored(GLOBAL const uint* counter, uint capacity) {
-    return counter[1] != 0u || counter[0] > capacity ? capacity : counter[0];
-}
 
 // Negative zero becomes positive: equal contacts then have equal bits.
 DEVICE void write_contact(const Encounter* pair, Point normal, Point at, real depth, GLOBAL real* value) {
@@ -37,15 +47,20 @@ DEVICE void write_contact(const Encounter* pair, Point normal, Point at, real de
     value[7] = 0;
 }
 
+// The features that can make a contact, a bit each.
+DEVICE ulong candidate_features(const Encounter* pair) {
+    return CONTACT_RULE == RULE_PUBLISHED ? published_features(pair) : features_of(pair);
+}
+
 // Finds which features make contacts, reserves room for all of them at once, and writes what fits.
-DEVICE void append_contacts(const Encounter* pair, int face, uint index, const Sink* sink) {
-    const Support support = support_at(&pair->solid[0], face);
+DEVICE void append_contacts(const Encounter* pair, const Support* support, Naming naming, uint index,
+                            const Sink* sink) {
     Point p;
     real depth;
     ulong kept = 0;
     uint count = 0;
-    for (ulong rest = features_of(pair); rest != 0; rest &= rest - 1) {
-        if (!contact_at(pair, &support, lowest(rest), &p, &depth)) continue;
+    for (ulong rest = candidate_features(pair); rest != 0; rest &= rest - 1) {
+        if (!contact_at(pair, support, lowest(rest), &p, &depth)) continue;
         kept |= rest & (~rest + 1);
         ++count;
     }
@@ -53,32 +68,13 @@ DEVICE void append_contacts(const Encounter* pair, int face, uint index, const S
     ulong slot = counter_add(sink->status + STATUS_CONTACTS, count);
     for (ulong rest = kept; rest != 0 && slot < sink->capacity; rest &= rest - 1) {
         const int feature = lowest(rest);
-        contact_at(pair, &support, feature, &p, &depth);
+        contact_at(pair, support, feature, &p, &depth);
         sink->ids[slot * CONTACT_WORDS] = index;
-        sink->ids[slot * CONTACT_WORDS + 1] = (uint)feature;
-        write_contact(pair, support.normal, p, depth, sink->values + slot * CONTACT_REALS);
+        sink->ids[slot * CONTACT_WORDS + 1] = (uint)(IS_CANONICAL ? given_feature(naming, feature) : feature);
+        write_contact(pair, support->normal, p, IS_CANONICAL ? support->depth : depth,
+                      sink->values + slot * CONTACT_REALS);
         ++slot;
     }
-}
-
-// What a launch reads.
-typedef struct {
-    GLOBAL const uint* found;
-    GLOBAL const uint* bodies;
-    GLOBAL const real* poses;
-    GLOBAL const uint* tetrahedra;
-    GLOBAL const real* vertices;
-    GLOBAL const uchar* boundary;
-} Candidates;
-
-DEVICE void load_pair(const Candidates* all, uint index, Point* a, Point* b) {
-    GLOBAL const uint* row = all->found + (ulong)index * PAIR_WORDS;
-    load_corners(all->bodies, all->poses, all->tetrahedra, all->vertices, row[0], row[2], a);
-    load_corners(all->bodies, all->poses, all->tetrahedra, all->vertices, row[1], row[3], b);
-}
-
-DEVICE uint boundary_of(const Candidates* all, uint body, uint item) {
-    return all->boundary[all->bodies[(ulong)body * BODY_WORDS + BODY_TETRAHEDRA] + item];
 }
 
 // What became of a pair.
@@ -93,21 +89,26 @@ DEVICE int try_normals(const Candidates* all, uint index) {
     Point normal[4];
     Encounter pair;
     load_pair(all, index, a, b);
+    if (IS_CANONICAL) canonical(a, b);
     if (!meet(a, b, &pair) || !find_normals(a, normal)) return DEGENERATE;
-    const int apart = normals_separate(&pair, normal);
+    const int apart = DECIDED ? 0 : normals_separate(&pair, normal);
     if (!find_normals(b, normal)) return DEGENERATE;
-    return apart || normals_separate(&pair, normal) ? REJECTED : UNDECIDED;
+    return !DECIDED && (apart || normals_separate(&pair, normal)) ? REJECTED : UNDECIDED;
 }
 
-// Without boundary faces on both sides the rule has no normal (opposing_face) and nothing is left to do.
+// Without boundary faces on both sides a rule that asks for them has no normal and nothing is left to do.
 DEVICE int try_edges(const Candidates* all, uint index) {
     GLOBAL const uint* row = all->found + (ulong)index * PAIR_WORDS;
     Point a[4];
     Point b[4];
     Encounter pair;
-    load_pair(all, index, a, b);
-    meet(a, b, &pair);
-    if (edges_separate(&pair)) return REJECTED;
+    if (!DECIDED) {
+        load_pair(all, index, a, b);
+        if (IS_CANONICAL) canonical(a, b);
+        meet(a, b, &pair);
+        if (edges_separate(&pair)) return REJECTED;
+    }
+    if (IS_CANONICAL) return UNDECIDED;
     return boundary_of(all, row[0], row[2]) == 0u || boundary_of(all, row[1], row[3]) == 0u ? INNER
                                                                                             : UNDECIDED;
 }
@@ -118,13 +119,24 @@ DEVICE void make_contacts(const Candidates* all, uint index, const Sink* sink) {
     Point b[4];
     Encounter pair;
     load_pair(all, index, a, b);
+    Naming naming = {0u, 0u, 0};
+    if (IS_CANONICAL) naming = canonical(a, b);
     meet(a, b, &pair);
     find_normals(a, pair.solid[0].normal);
     find_normals(b, pair.solid[1].normal);
     NO_UNROLL for (int i = 0; i < 8; ++i) pair.solid[i / 4].normal[i % 4] =
         unit(pair.solid[i / 4].normal[i % 4]);
-    const int face = opposing_face(&pair, boundary_of(all, row[0], row[2]), boundary_of(all, row[1], row[3]));
-    append_contacts(&pair, face, index, sink);
+    Support support;
+    if (IS_CANONICAL) {
+        support = least_translation(&pair, a, b);
+        if (CONTACT_RULE == RULE_CLIP) clip_support(&pair, &support);
+        if (naming.swapped) support.normal = times(support.normal, (real)-1);
+    } else {
+        support = support_at(
+            &pair, opposing_face(&pair, boundary_of(all, row[0], row[2]), boundary_of(all, row[1], row[3])));
+        if (CONTACT_RULE == RULE_PUBLISHED) loosen(&pair, &support);
+    }
+    append_contacts(&pair, &support, naming, index, sink);
 }
 
 // A work-group's pairs that wait for the next step, so that work-items which step together all have work.
@@ -141,12 +153,14 @@ DEVICE uint taken(uint held, int last) {
     return last ? held : 0u;
 }
 
-// Three steps, each for the pairs that the one before could not settle.
+// Three steps, each for the pairs that the one before could not settle. `verdicts` are read when DECIDED
+// only; a pair that is not known to be apart then counts as one that meets.
 KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_capacity,
                               GLOBAL const uint* bodies, GLOBAL const real* poses,
                               GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
                               GLOBAL const uchar* boundary, GLOBAL uint* contact_ids,
-                              GLOBAL real* contact_values, uint contact_capacity, GLOBAL uint* status) {
+                              GLOBAL real* contact_values, uint contact_capacity,
+                              GLOBAL const uchar* verdicts, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, for_edges, WAITING + 1);
     LOCAL_ARRAY(uint, for_contacts, WAITING + 1);
     const Candidates all = {found, bodies, poses, tetrahedra, vertices, boundary};
@@ -163,7 +177,8 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
         last = start >= count;
         if (start + LOCAL_ID < count) {
             const uint index = (uint)(start + LOCAL_ID);
-            const int state = try_normals(&all, index);
+            const int apart = DECIDED && verdicts[index] == VERDICT_APART;
+            const int state = apart ? REJECTED : try_normals(&all, index);
             degenerate += state == DEGENERATE ? 1u : 0u;
             rejected += state == REJECTED ? 1u : 0u;
             if (state == UNDECIDED) put(for_edges, index);

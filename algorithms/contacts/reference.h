@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/contacts/contact_settings.h"
+
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -20,26 +22,30 @@ struct Contact {
     unsigned feature = 0;
     std::array<Real, 3> point{};
     std::array<Real, 3> normal{}; ///< unit, out of A; the same for all contacts of a pair
-    Real depth = 0;               ///< signed distance from A's face, negative when the point is below it
+    /// Negative inside. Rules opposing and published: signed distance from A's face; sat and clip: of the
+    /// pair.
+    Real depth = 0;
 
     bool operator==(const Contact&) const = default;
 };
 
-/// Pairs that gave no contact, by reason.
+/// Pairs that gave no contact, by reason, and what the stages of the decision left open.
 struct ContactCounts {
     std::uint64_t degenerate = 0; ///< no certain volume, or a coordinate that is no usable number
-    std::uint64_t rejected = 0;   ///< told apart by a separating axis
+    std::uint64_t rejected = 0;   ///< told apart
+    std::uint64_t unsure = 0;     ///< by the certified filter left open
+    std::uint64_t uncertain = 0;  ///< by double left open
 
     bool operator==(const ContactCounts&) const = default;
 };
 
 /// The contacts of one pair in ascending order of feature, by the arithmetic of contacts.cl but none of its
-/// code: equal to the kernel's bit by bit. Bit i of `boundary_a`: the face opposite corner i of A is on its
-/// mesh's boundary. Real is float or double.
+/// code: equal to the kernel's bit by bit. Flat pairs that meet are degenerate. Bit i of `boundary_a`: the
+/// face opposite corner i of A is on its mesh's boundary. Real is float or double.
 template<class Real>
 std::vector<Contact<Real>> reference_contacts(const Corners<Real>& a, const Corners<Real>& b,
-                                              unsigned boundary_a, unsigned boundary_b,
-                                              ContactCounts& counts);
+                                              unsigned boundary_a, unsigned boundary_b, ContactCounts& counts,
+                                              const ContactSettings& settings = {});
 
 /// The two terms a contact adds to the order-free digest; tetrahedra in input order.
 template<class Real>

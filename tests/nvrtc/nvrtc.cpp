@@ -52,10 +52,22 @@ void prepare_list(Device& device, Precision precision) {
     const PairList list(on_device, std::vector<Pair>{{0, 0, 1, 0}, {0, 1, 1, 1}});
 }
 
-/// The plan: every geometry with the first preset of every algorithm, every rounding and truth with all
-/// directions in float, and every preset and output with its own.
+/// Every contact rule with and without verdicts, and every decision.
+void prepare_contacts(Device& device) {
+    const auto& traversal = algorithm("chunked");
+    for (const std::string precision : {"float", "double"})
+        for (const std::string rule : {"opposing", "published", "sat", "clip"})
+            for (const std::string decision : {"fp32", "recheck", "fp64", "exact"})
+                if (rule == "sat" || decision == "fp32" || decision == "recheck")
+                    prepare(device, traversal, traversal.presets().front().values,
+                            {{"precision", precision}, {"contact_rule", rule}, {"decision", decision}});
+}
+
+/// The plan: every geometry and contact rule with the first preset of every algorithm, every rounding and
+/// truth with all directions in float, and every preset and output with its own.
 Programs plan() {
     CompilingDevice device;
+    prepare_contacts(device);
     for (const auto* traversal : algorithms()) {
         const auto& first = traversal->presets().front().values;
         for (const std::string precision : {"float", "double"}) {
@@ -160,6 +172,31 @@ TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
             EXPECT_EQ(use.spill_bytes, 0) << name;
         }
     }
+}
+
+/// A quarter of a multiprocessor's work-items for contacts by any rule, half for the filter, three sixteenths
+/// for the decision in double.
+TEST(Nvrtc, ContactRulesAndDecisionsKeepTheirBudget) {
+    CompilingDevice device;
+    prepare_contacts(device);
+    if (!can_compile(device.asked())) return;
+    const std::map<std::string, int> budgets{
+        {"generate_contacts", 128}, {"filter_pairs", 72}, {"recheck_pairs", 168}};
+    std::set<std::string> seen;
+    for_each(device.asked(),
+             [&](const KernelSource& source, const Defines& defines, const std::set<std::string>& names) {
+                 if (defines.contains("PRECISION") && defines.at("PRECISION") == "64") return;
+                 const auto image = nvrtc()->compile(source, defines, 90);
+                 for (const auto& name : names) {
+                     const auto budget = budgets.find(name);
+                     if (budget == budgets.end()) continue;
+                     const auto use = use_of(image.log, name);
+                     EXPECT_LE(use.registers, budget->second) << name << text_of(defines);
+                     EXPECT_EQ(use.spill_bytes, 0) << name << text_of(defines);
+                 }
+             });
+    for (const auto& [program, names] : device.asked()) seen.insert(names.begin(), names.end());
+    for (const auto& [name, budget] : budgets) EXPECT_TRUE(seen.contains(name)) << name;
 }
 
 TEST(Nvrtc, NoFusedMultiplyAdd) {

@@ -14,7 +14,8 @@ namespace tandem::test {
 namespace {
 
 constexpr std::uint32_t status_pairs = 0, status_contacts = 6, status_digest_a = 8, status_digest_b = 10,
-                        status_degenerate = 12, status_rejected = 14, status_words = 84;
+                        status_degenerate = 12, status_rejected = 14, status_unsure = 90,
+                        status_uncertain = 92, status_words = 94;
 
 struct Row {
     std::uint32_t pair, feature;
@@ -62,17 +63,20 @@ public:
         boundary_ = uploaded(boundary);
         ids_ = uploaded(ids);
         found_ = uploaded(found);
+        verdicts_ = uploaded(std::vector<unsigned char>(count, 9));
+        unsure_ = uploaded(std::vector<std::uint32_t>(count, ~0u));
+        uncertain_ = uploaded(std::vector<std::uint32_t>(count, ~0u));
     }
 
     static std::uint32_t input_id(std::uint32_t item) { return item ^ 1u; }
 
     Outcome<Real> run(std::uint32_t first, std::uint32_t pairs, std::uint32_t high,
-                      std::uint32_t pair_capacity, std::uint32_t capacity) {
-        const Defines defines{{"K", "18"},
-                              {"AXES", "0"},
-                              {"ROUNDING", "1"},
-                              {"PRECISION", sizeof(Real) == 8 ? "64" : "32"},
-                              {"GROUP_SIZE", std::to_string(group_size_)}};
+                      std::uint32_t pair_capacity, std::uint32_t capacity, ContactSettings settings = {}) {
+        Defines defines{{"K", "18"},
+                        {"AXES", "0"},
+                        {"ROUNDING", "1"},
+                        {"PRECISION", sizeof(Real) == 8 ? "64" : "32"},
+                        {"GROUP_SIZE", std::to_string(group_size_)}};
         const auto& source = kernel_source("algorithms/contacts/contacts.cl");
         Outcome<Real> outcome{std::vector<std::uint32_t>(status_words),
                               std::vector<Row>(capacity + 8, {~0u, ~0u}),
@@ -82,9 +86,13 @@ public:
         const Buffer status = uploaded(outcome.status), rows = uploaded(outcome.rows),
                      values = uploaded(outcome.values);
         const Grid grid{16, group_size_};
-        const std::array<Argument, 12> generate{found_, first,       pair_capacity, bodies_,
-                                                poses_, tetrahedra_, vertices_,     boundary_,
-                                                rows,   values,      capacity,      status};
+        const bool decided = settings.decision != DecisionPrecision::fp32;
+        if (decided) decide(defines, settings.decision, first, pair_capacity, status);
+        defines["DECIDED"] = decided ? "1" : "0";
+        defines["CONTACT_RULE"] = std::to_string(static_cast<int>(settings.rule));
+        const std::array<Argument, 13> generate{found_,      first,     pair_capacity, bodies_, poses_,
+                                                tetrahedra_, vertices_, boundary_,     rows,    values,
+                                                capacity,    verdicts_, status};
         device_.launch(device_.compile(source, "generate_contacts", defines), grid, generate);
         const std::array<Argument, 7> digest{found_, bodies_, ids_, rows, values, capacity, status};
         device_.launch(device_.compile(source, "digest_contacts", defines), grid, digest);
@@ -95,6 +103,24 @@ public:
     }
 
 private:
+    void decide(Defines defines, DecisionPrecision decision, std::uint32_t first, std::uint32_t pair_capacity,
+                const Buffer& status) {
+        const Grid grid{16, group_size_};
+        const std::array<Argument, 10> filter{found_,      first,     pair_capacity, bodies_, poses_,
+                                              tetrahedra_, vertices_, verdicts_,     unsure_, status};
+        if (decision != DecisionPrecision::fp64)
+            device_.launch(
+                device_.compile(kernel_source("algorithms/contacts/filter.cl"), "filter_pairs", defines),
+                grid, filter);
+        defines["RECHECK_ALL"] = decision == DecisionPrecision::fp64 ? "1" : "0";
+        const std::array<Argument, 11> recheck{found_,  first,       pair_capacity, bodies_,
+                                               poses_,  tetrahedra_, vertices_,     verdicts_,
+                                               unsure_, uncertain_,  status};
+        device_.launch(
+            device_.compile(kernel_source("algorithms/contacts/recheck.cl"), "recheck_pairs", defines), grid,
+            recheck);
+    }
+
     template<class T>
     Buffer uploaded(const std::vector<T>& values) {
         Buffer buffer = device_.allocate(values.size() * sizeof(T), "test");
@@ -104,16 +130,16 @@ private:
 
     Device& device_;
     std::uint32_t group_size_;
-    Buffer bodies_, poses_, tetrahedra_, vertices_, boundary_, ids_, found_;
+    Buffer bodies_, poses_, tetrahedra_, vertices_, boundary_, ids_, found_, verdicts_, unsure_, uncertain_;
 };
 
 /// What the reference says, per pair and in all.
 template<class Real>
 struct Expected {
-    explicit Expected(const std::vector<TetrahedronPair<Real>>& pairs) {
+    explicit Expected(const std::vector<TetrahedronPair<Real>>& pairs, ContactSettings settings = {}) {
         for (std::uint32_t i = 0; i < pairs.size(); ++i) {
             const auto& p = pairs[i];
-            contacts.push_back(reference_contacts(p.a, p.b, p.boundary_a, p.boundary_b, counts));
+            contacts.push_back(reference_contacts(p.a, p.b, p.boundary_a, p.boundary_b, counts, settings));
             total += contacts.back().size();
             const auto id = Stage<Real>::input_id(i);
             for (const auto& contact : contacts.back()) {
@@ -198,6 +224,37 @@ TYPED_TEST(ContactsKernel, EqualsTheReferenceBitForBit) {
             EXPECT_EQ(outcome.counter(status_digest_b), expected.digest_b);
             EXPECT_EQ(by_pair(outcome, expected.total, pairs.size()), expected.contacts);
         }
+}
+
+TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReference) {
+    using enum ContactRule;
+    using enum DecisionPrecision;
+    const auto pairs = random_pairs<TypeParam>(7000);
+    const auto count = static_cast<std::uint32_t>(pairs.size());
+    for (const ContactSettings settings : {ContactSettings{published, fp32},
+                                           {sat, fp32},
+                                           {clip, fp32},
+                                           {opposing, recheck},
+                                           {clip, recheck},
+                                           {sat, fp64}}) {
+        const Expected<TypeParam> expected(pairs, settings);
+        ASSERT_GT(expected.total, pairs.size() / 20);
+        ASSERT_GT(expected.counts.rejected, 500u);
+        for (auto& device : this->devices) {
+            SCOPED_TRACE(device->info().id + " rule " + std::to_string(static_cast<int>(settings.rule))
+                         + " decision " + std::to_string(static_cast<int>(settings.decision)));
+            Stage<TypeParam> stage(*device, pairs, this->group_sizes(*device).back());
+            const auto outcome =
+                stage.run(0, count, 0, count, static_cast<std::uint32_t>(expected.total), settings);
+            EXPECT_EQ(outcome.counter(status_degenerate), expected.counts.degenerate);
+            EXPECT_EQ(outcome.counter(status_rejected), expected.counts.rejected);
+            EXPECT_EQ(outcome.counter(status_unsure), expected.counts.unsure);
+            EXPECT_EQ(outcome.counter(status_uncertain), expected.counts.uncertain);
+            ASSERT_EQ(outcome.counter(status_contacts), expected.total);
+            EXPECT_EQ(by_pair(outcome, expected.total, pairs.size()), expected.contacts);
+            EXPECT_EQ(outcome.counter(status_digest_a), expected.digest_a);
+        }
+    }
 }
 
 TYPED_TEST(ContactsKernel, PastCapacityCountingGoesOnAndNothingIsWritten) {

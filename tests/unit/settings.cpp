@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "algorithms/kdop_session.h"
 #include "algorithms/traversal.h"
 #include "scenes/error.h"
 
@@ -61,6 +62,28 @@ TEST(Settings, UnknownNamesOfferTheNearest) {
                         geometry_of(with({{"truth", "t2"}, {"rounding", rounding}}));
                     }),
                     HasSubstr("goes with rounding=safe or directed"));
+}
+
+TEST(Settings, DecisionsWithCertaintyNeedDouble) {
+    DeviceInfo info;
+    info.id = "opencl:9";
+    info.max_group_size = 256;
+    info.has_double = false;
+    for (const std::string decision : {"recheck", "fp64", "exact"})
+        EXPECT_EQ(message_of([&] {
+                      effective(with({{"decision", decision}}), info);
+                  }),
+                  "setting decision=" + decision
+                      + " is impossible on opencl:9, which has no double; choose fp32");
+    EXPECT_EQ(effective(with({}), info).at("decision"), "fp32");
+    EXPECT_THAT(message_of([] {
+                    with({{"decision", "fp16"}});
+                }),
+                HasSubstr("choose one of fp32, recheck, fp64, exact"));
+    EXPECT_THAT(message_of([] {
+                    with({{"contact_rule", "clop"}});
+                }),
+                HasSubstr("choose one of opposing, published, sat, clip, none"));
 }
 
 TEST(Settings, EveryPresetResolves) {

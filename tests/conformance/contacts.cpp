@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// Contact rules and decisions through sessions, on stones that touch: both algorithms' buffers and schedules.
+#include "algorithms/contacts/contact_settings.h"
+#include "harness/oracle/frame_truth.h"
+#include "scenes/builtin.h"
+#include "tests/support/cells.h"
+
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+class ContactConformance : public testing::TestWithParam<std::string> {
+protected:
+    Device& on = device(GetParam());
+    Scene scene = make_scene("colosseum:slices=3,layers=1");
+    Frame frame = scene.frame(0);
+
+    std::unique_ptr<Session> prepare(const std::string& algorithm_name, const Settings& given) const {
+        const auto& traversal = algorithm(algorithm_name);
+        const std::array devices{&on};
+        return traversal.prepare(devices, scene,
+                                 resolve(traversal.parameters(), {}, given, traversal.name()));
+    }
+
+    /// Runs the frame and compares with the reference.
+    FrameResult expect_right(const std::string& algorithm_name, const Settings& given) {
+        SCOPED_TRACE(algorithm_name + " on " + on.info().id + text(given));
+        const auto session = prepare(algorithm_name, given);
+        const auto& settings = session->settings();
+        const auto expected = reference(scene, frame, geometry_of(settings), true, Method::brute_force,
+                                        contact_settings_of(settings));
+        const auto result = session->run(frame, all_pairs(scene, *session));
+        EXPECT_EQ(session->contact_digest(result), expected.contact_digest);
+        EXPECT_EQ(result.rejected, expected.rejected);
+        EXPECT_EQ(result.degenerate, expected.degenerate);
+        EXPECT_EQ(result.unsure, expected.unsure);
+        EXPECT_EQ(result.uncertain, expected.uncertain);
+        EXPECT_GT(result.contacts, 0u);
+        return result;
+    }
+};
+
+TEST_P(ContactConformance, EveryDecisionEqualsTheReferenceInEveryResidency) {
+    EXPECT_EQ(expect_right("chunked", {}).unsure, 0u);
+    const auto recheck = expect_right("chunked", {{"decision", "recheck"}, {"contact_rule", "sat"}});
+    EXPECT_GT(recheck.uncertain, 100u);
+    EXPECT_LE(recheck.uncertain, recheck.unsure);
+    expect_right("gproximity", {{"decision", "fp64"}, {"contact_rule", "clip"}});
+    const auto exact = expect_right("gproximity", {{"decision", "exact"},
+                                                   {"contact_rule", "published"},
+                                                   {"pair_capacity", "1"},
+                                                   {"contact_capacity", "1"}});
+    EXPECT_GT(exact.retries, 0u);
+    expect_right("chunked", {{"decision", "exact"}, {"precision", "double"}});
+    for (const std::string decision : {"recheck", "exact"})
+        expect_right("chunked", {{"decision", decision},
+                                 {"contact_rule", "sat"},
+                                 {"residency", "published"},
+                                 {"seed_threshold", "1"}});
+}
+
+TEST_P(ContactConformance, ExactTellsApartWhatTheOracleDoes) {
+    const auto session = prepare("chunked", {{"decision", "exact"}});
+    const auto result = session->run(frame, all_pairs(scene, *session));
+    const auto truth = decide_pairs(scene, frame, Precision::single, session->download(result));
+    const auto disjoint = std::count_if(
+        truth.begin(), truth.end(), [](auto decision) { return decision.relation == Relation::disjoint; });
+    EXPECT_EQ(result.rejected, static_cast<std::uint64_t>(disjoint));
+    EXPECT_GT(disjoint, 0);
+}
+
+TEST_P(ContactConformance, OnlyExactWaitsForTheHost) {
+    for (const std::string decision : {"recheck", "fp64", "exact"}) {
+        const auto session = prepare("chunked", {{"decision", decision}});
+        on.finish();
+        session->run(frame, all_pairs(scene, *session));
+        const auto trace = on.finish();
+        const auto waits =
+            std::count_if(trace.events.begin(), trace.events.end(), [](const auto& e) { return e.blocked; });
+        EXPECT_EQ(waits > 1, decision == "exact") << decision;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, ContactConformance, testing::ValuesIn(device_names()),
+                         [](const auto& test) { return device_label(test.param); });
+
+} // namespace
+} // namespace tandem

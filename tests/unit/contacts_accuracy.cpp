@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// Depth and normal of every rule against the exact least translation. TANDEM_PRINT=1 prints the table of the
+// room's README.
+#include "algorithms/contacts/reference.h"
+#include "harness/oracle/contact_truth.h"
+#include "tests/support/oracle_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <numbers>
+
+namespace tandem::test {
+namespace {
+
+using namespace testing_support;
+
+Corners<float> narrowed(const TetraCorners& corners) {
+    Corners<float> result;
+    for (unsigned i = 0; i < 4; ++i)
+        for (unsigned k = 0; k < 3; ++k) result[i][k] = static_cast<float>(corners[i][k]);
+    return result;
+}
+
+double longest_edge(const TetraCorners& t) {
+    double longest = 0;
+    for (unsigned i = 0; i < 4; ++i)
+        for (unsigned j = 0; j < i; ++j)
+            longest = std::max(longest, std::hypot(t[i][0] - t[j][0], t[i][1] - t[j][1], t[i][2] - t[j][2]));
+    return longest;
+}
+
+/// In degrees, also of small angles.
+double angle_between(const std::array<double, 3>& p, const std::array<float, 3>& q) {
+    double along = 0, across = 0;
+    for (unsigned i = 0; i < 3; ++i) {
+        const unsigned j = (i + 1) % 3, k = (i + 2) % 3;
+        along += p[i] * static_cast<double>(q[i]);
+        across = std::hypot(across, p[j] * static_cast<double>(q[k]) - p[k] * static_cast<double>(q[j]));
+    }
+    return std::atan2(across, along) * 180 / std::numbers::pi;
+}
+
+/// How one rule did on pairs that overlap.
+struct Errors {
+    std::size_t pairs = 0, silent = 0; ///< silent: without a contact
+    std::vector<double> depth;         ///< |d - d*| / (u L), L the longest edge
+    std::vector<double> angle;         ///< degrees to the nearest of the best normals
+
+    static double at(std::vector<double> values, double share) {
+        if (values.empty()) return 0;
+        std::sort(values.begin(), values.end());
+        return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+    }
+};
+
+void add(Errors& errors, const OraclePair& pair, const ContactTruth& truth, ContactRule rule) {
+    ContactCounts counts;
+    const auto contacts = reference_contacts(narrowed(pair.a), narrowed(pair.b), 15, 15, counts,
+                                             {rule, DecisionPrecision::fp32});
+    ++errors.pairs;
+    errors.silent += contacts.empty() ? 1 : 0;
+    if (contacts.empty()) return;
+    double depth = -1e300;
+    for (const auto& contact : contacts) depth = std::max(depth, -static_cast<double>(contact.depth));
+    double least = 180;
+    for (const auto& n : truth.normals) least = std::min(least, angle_between(n, contacts[0].normal));
+    const double size = std::max(longest_edge(pair.a), longest_edge(pair.b));
+    errors.depth.push_back(std::abs(depth - truth.depth) / (0x1p-24 * size));
+    errors.angle.push_back(least);
+}
+
+template<class Make>
+Errors errors_of(ContactRule rule, Make make) {
+    Errors errors;
+    for (int i = 0; i < 300; ++i) {
+        const auto pair = make();
+        const auto truth = contact_truth(pair.a, pair.b, 1e-5);
+        if (truth && truth->relation == Relation::overlapping) add(errors, pair, *truth, rule);
+    }
+    return errors;
+}
+
+Errors errors_of(ContactRule rule, Family family) {
+    Random random(7 + static_cast<unsigned>(family));
+    return errors_of(rule, [&] { return random_pair(family, random); });
+}
+
+void print(const char* family, const char* rule, const Errors& e) {
+    if (std::getenv("TANDEM_PRINT") == nullptr) return;
+    std::printf("| %s | %s | %zu | %zu | %.2g, %.2g | %.2g, %.2g |\n", family, rule, e.pairs, e.silent,
+                Errors::at(e.depth, 0.5), Errors::at(e.depth, 1), Errors::at(e.angle, 0.5),
+                Errors::at(e.angle, 1));
+}
+
+constexpr std::pair<ContactRule, const char*> rules[] = {{ContactRule::opposing, "opposing"},
+                                                         {ContactRule::published, "published"},
+                                                         {ContactRule::sat, "sat"},
+                                                         {ContactRule::clip, "clip"}};
+
+TEST(ContactsAccuracy, SatFindsTheLeastTranslation) {
+    for (const auto family : {Family::generic, Family::far_origin, Family::sliver, Family::scale_ratio})
+        for (const auto& [rule, name_of_rule] : rules) {
+            const auto errors = errors_of(rule, family);
+            print(name(family), name_of_rule, errors);
+            ASSERT_GT(errors.pairs, 20u) << name(family);
+            if (rule != ContactRule::sat) continue;
+            EXPECT_LT(Errors::at(errors.depth, 1), 16) << name(family);
+        }
+    TouchMaker maker(3);
+    for (const auto& [rule, name_of_rule] : rules) {
+        print("nested copies", name_of_rule, errors_of(rule, [&] { return maker.nested(); }));
+        print("one ulp deep", name_of_rule, errors_of(rule, [&] { return maker.one_ulp(-1); }));
+    }
+}
+
+TEST(ContactsAccuracy, OfGenericPairsSatHasTheBestNormalAndClipTheNextBest) {
+    const auto sat = errors_of(ContactRule::sat, Family::generic);
+    const auto clip = errors_of(ContactRule::clip, Family::generic);
+    const auto opposing = errors_of(ContactRule::opposing, Family::generic);
+    EXPECT_LT(Errors::at(sat.angle, 1), 1e-4);
+    EXPECT_LT(Errors::at(clip.angle, 0.5), Errors::at(opposing.angle, 0.5));
+    EXPECT_EQ(sat.silent, 0u);
+    EXPECT_EQ(clip.silent, 0u);
+    EXPECT_GT(opposing.silent, 0u);
+}
+
+} // namespace
+} // namespace tandem::test

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// Setting decision against the exact oracle, on pairs that touch, nearly touch and keep clear.
+#include "algorithms/contacts/reference_pair.h"
+#include "tests/support/oracle_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <map>
+
+namespace tandem::test {
+namespace {
+
+using namespace testing_support;
+
+Corners<float> narrowed(const TetraCorners& corners) {
+    Corners<float> result;
+    for (unsigned i = 0; i < 4; ++i)
+        for (unsigned k = 0; k < 3; ++k) result[i][k] = static_cast<float>(corners[i][k]);
+    return result;
+}
+
+/// How one decision did on some pairs.
+struct Score {
+    std::uint64_t pairs = 0;
+    std::uint64_t missed = 0;      ///< told apart though they meet
+    std::uint64_t kept = 0;        ///< disjoint, but not told apart
+    std::uint64_t unexplained = 0; ///< of those, neither uncertain in double nor degenerate
+    std::uint64_t unsure = 0, uncertain = 0;
+};
+
+Score score(const std::vector<OraclePair>& pairs, DecisionPrecision decision) {
+    Score result;
+    for (const auto& pair : pairs) {
+        EXPECT_TRUE(all_floats(pair));
+        ContactCounts counts;
+        reference_contacts(narrowed(pair.a), narrowed(pair.b), 15, 15, counts,
+                           {ContactRule::opposing, decision});
+        const bool disjoint = relation(pair.a, pair.b) == Relation::disjoint;
+        ++result.pairs;
+        result.missed += !disjoint ? counts.rejected : 0;
+        const std::uint64_t kept = disjoint && counts.rejected == 0 ? 1 : 0;
+        result.kept += kept;
+        result.unexplained += counts.uncertain == 0 ? kept : 0;
+        result.unsure += counts.unsure;
+        result.uncertain += counts.uncertain;
+    }
+    return result;
+}
+
+std::vector<OraclePair> random_family(Family family, std::size_t count) {
+    Random random(91 + static_cast<unsigned>(family));
+    std::vector<OraclePair> pairs;
+    for (std::size_t i = 0; i < count; ++i) pairs.push_back(random_pair(family, random));
+    return pairs;
+}
+
+std::vector<OraclePair> touching(int largest, std::size_t count) {
+    TouchMaker maker(17);
+    std::vector<OraclePair> pairs;
+    for (std::size_t i = 0; i < count; ++i)
+        pairs.push_back(maker.touching(1 + i % 3, 1 + i / 3 % 3, largest));
+    return pairs;
+}
+
+std::vector<OraclePair> one_ulp(int direction, std::size_t count) {
+    TouchMaker maker(18);
+    std::vector<OraclePair> pairs;
+    for (std::size_t i = 0; i < count; ++i) pairs.push_back(maker.one_ulp(direction));
+    return pairs;
+}
+
+std::map<std::string, std::vector<OraclePair>> families() {
+    std::map<std::string, std::vector<OraclePair>> result;
+    for (unsigned family = 0; family < static_cast<unsigned>(Family::count); ++family)
+        result[name(Family(family))] = random_family(Family(family), 1000);
+    result["touching"] = touching(3, 500);
+    result["touching, 24 bits"] = touching(1 << 17, 500);
+    result["gap of one ulp"] = one_ulp(1, 300);
+    result["one ulp deep"] = one_ulp(-1, 300);
+    return result;
+}
+
+TEST(ContactsDecision, NoDecisionTellsApartWhatMeets) {
+    for (const auto& [name, pairs] : families())
+        for (const auto decision : {DecisionPrecision::fp32, DecisionPrecision::recheck,
+                                    DecisionPrecision::fp64, DecisionPrecision::exact})
+            EXPECT_EQ(score(pairs, decision).missed, 0u) << name << " " << static_cast<int>(decision);
+}
+
+TEST(ContactsDecision, EachStageIsWrongOnlyWhereItSaysSo) {
+    std::uint64_t wrong_in_float = 0, wrong_after_recheck = 0, uncertain = 0, unsure = 0;
+    for (const auto& [name, pairs] : families()) {
+        SCOPED_TRACE(name);
+        const auto fp32 = score(pairs, DecisionPrecision::fp32);
+        const auto recheck = score(pairs, DecisionPrecision::recheck);
+        const auto fp64 = score(pairs, DecisionPrecision::fp64);
+        const auto exact = score(pairs, DecisionPrecision::exact);
+        if (std::getenv("TANDEM_PRINT"))
+            std::printf(
+                "| %s | %llu | %llu | %llu | %llu | %llu | %llu | %llu |\n", name.c_str(),
+                static_cast<unsigned long long>(pairs.size()), static_cast<unsigned long long>(fp32.kept),
+                static_cast<unsigned long long>(recheck.kept), static_cast<unsigned long long>(fp64.kept),
+                static_cast<unsigned long long>(exact.kept), static_cast<unsigned long long>(recheck.unsure),
+                static_cast<unsigned long long>(recheck.uncertain));
+        EXPECT_EQ(recheck.unexplained, 0u);
+        EXPECT_EQ(fp64.unexplained, 0u);
+        EXPECT_EQ(exact.kept, 0u);
+        EXPECT_LE(recheck.uncertain, recheck.unsure);
+        EXPECT_LE(recheck.kept, fp32.kept);
+        EXPECT_EQ(fp64.unsure, 0u);
+        wrong_in_float += fp32.kept;
+        wrong_after_recheck += recheck.kept;
+        uncertain += recheck.uncertain;
+        unsure += recheck.unsure;
+    }
+    EXPECT_GT(wrong_in_float, 500u);
+    EXPECT_LT(wrong_after_recheck, wrong_in_float / 10);
+    EXPECT_GT(uncertain, 500u);
+    EXPECT_LT(uncertain, unsure);
+}
+
+TEST(ContactsDecision, VerdictsAreNeverWrongInEitherPrecision) {
+    std::uint64_t certain[2][3]{};
+    for (const auto& [name, pairs] : families())
+        for (const auto& pair : pairs) {
+            const auto truth = relation(pair.a, pair.b);
+            const unsigned verdicts[] = {
+                contact_reference::certain_verdict(narrowed(pair.a), narrowed(pair.b)),
+                contact_reference::certain_verdict(pair.a, pair.b)};
+            for (unsigned i = 0; i < 2; ++i) {
+                ++certain[i][verdicts[i]];
+                EXPECT_TRUE(verdicts[i] != 1 || truth == Relation::disjoint) << name;
+                EXPECT_TRUE(verdicts[i] != 2 || truth == Relation::overlapping) << name;
+            }
+        }
+    for (const auto& counts : certain)
+        for (const auto count : counts) EXPECT_GT(count, 1000u);
+    EXPECT_LT(certain[1][0], certain[0][0]);
+}
+
+TEST(ContactsDecision, FlatAndUnusableTetrahedraAreDecidedExactly) {
+    const Corners<float> block{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}}};
+    const Corners<float> flat_inside{{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}, {2, 2, 0}}};
+    const Corners<float> flat_beside{{{1, 1, -1}, {2, 1, -1}, {1, 2, -1}, {2, 2, -1}}};
+    auto spoiled = flat_beside;
+    spoiled[1][1] = std::numeric_limits<float>::quiet_NaN();
+    ContactCounts counts;
+    const auto decide = [&](const Corners<float>& b) {
+        counts = {};
+        EXPECT_TRUE(reference_contacts(block, b, 15, 15, counts, {ContactRule::sat, DecisionPrecision::exact})
+                        .empty());
+        return std::pair(counts.rejected, counts.degenerate);
+    };
+    using Counted = std::pair<std::uint64_t, std::uint64_t>;
+    EXPECT_EQ(decide(flat_inside), Counted(0, 1));
+    EXPECT_EQ(decide(flat_beside), Counted(1, 0));
+    EXPECT_EQ(decide(spoiled), Counted(0, 1));
+}
+
+} // namespace
+} // namespace tandem::test
