@@ -53,12 +53,13 @@ struct Batch {
 class Runner {
 public:
     Runner(const HardFamily& family, std::span<const AdversarialCell> cells,
-           const AdversarialOptions& options, double difficulty, std::uint64_t together)
+           const AdversarialOptions& options, double difficulty, std::uint64_t seed, std::uint64_t together)
         : family_(family),
           options_(options),
           difficulty_(difficulty),
+          seed_(seed),
           together_(together),
-          scene_(hard_pair_scene(family, options.seed, difficulty, {together, together})) {
+          scene_(hard_pair_scene(family, seed, difficulty, {together, together})) {
         std::vector<Pair> list(together);
         for (std::uint32_t i = 0; i < together; ++i) list[i] = {0, i, 1, i};
         list_ = std::move(list);
@@ -113,7 +114,7 @@ private:
     }
 
     void make_pair(Batch& batch, std::uint64_t index, std::uint64_t place) const {
-        const auto pair = hard_pair(family_, options_.seed, index, difficulty_);
+        const auto pair = hard_pair(family_, seed_, index, difficulty_);
         for (unsigned i = 0; i < 4; ++i)
             for (unsigned axis = 0; axis < 3; ++axis) {
                 batch.frame.deformed[0][4 * place + i][axis] = static_cast<double>(pair.a[i][axis]);
@@ -157,7 +158,7 @@ private:
                 tally.missed[cell] += meets && !reported ? 1 : 0;
                 tally.false_pairs[cell] += reported && !meets ? 1 : 0;
                 if (meets && !reported && !tally.first)
-                    tally.first = {cell, difficulty_, number * together_ + i};
+                    tally.first = {cell, difficulty_, seed_, number * together_ + i};
             }
         }
     }
@@ -165,6 +166,7 @@ private:
     const HardFamily& family_;
     const AdversarialOptions& options_;
     double difficulty_;
+    std::uint64_t seed_;
     std::uint64_t together_;
     Scene scene_;
     std::vector<Pair> list_;
@@ -205,8 +207,9 @@ AdversarialTally run_adversarial(const HardFamily& family, std::span<const Adver
     const auto most = family.pose != nullptr ? std::min(options.batch, most_of_a_pose) : options.batch;
     const auto batches = std::max<std::uint64_t>(1, (each + most - 1) / most);
     const auto together = std::max<std::uint64_t>(1, (each + batches - 1) / batches);
+    auto seed = options.seed * difficulties.size(); // one each: difficulties may be equal
     for (const double difficulty : difficulties) {
-        Runner runner(family, cells, options, difficulty, together);
+        Runner runner(family, cells, options, difficulty, seed++, together);
         for (std::uint64_t number = 0; number < batches; ++number) runner.run(number, tally);
     }
     return tally;

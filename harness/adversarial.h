@@ -30,6 +30,7 @@ struct AdversarialOptions {
 struct MissedPair {
     std::size_t cell = 0;
     double difficulty = 0;
+    std::uint64_t seed = 0;  ///< of hard_pair
     std::uint64_t index = 0; ///< of hard_pair; in families with poses: frame * together + tetrahedron
 };
 
@@ -49,8 +50,8 @@ struct AdversarialTally {
 
 /// Makes pairs of a family, bounds and tests them by the kernels of the walks on every cell
 /// (kdop/pair_list.h) and compares with the truth: by construction, or the oracle's decision of the very
-/// vertices. Pairs are those of hard_pair(family, seed, 0.., difficulty). Families of whole scenes and those
-/// that are not finite have none and throw InputError.
+/// vertices. Pairs are those of hard_pair(family, 5 seed + i, 0.., difficulty), i the number of the
+/// difficulty. Families of whole scenes and those that are not finite have none and throw InputError.
 AdversarialTally run_adversarial(const HardFamily& family, std::span<const AdversarialCell> cells,
                                  const AdversarialOptions& options);
 

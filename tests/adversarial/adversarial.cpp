@@ -93,7 +93,7 @@ int run(const Options& options) {
         if (tally.first)
             fmt::print("  first missed: {}, difficulty {}, pair {} of seed {}\n",
                        name_of(cells[tally.first->cell]), tally.first->difficulty, tally.first->index,
-                       each.seed);
+                       tally.first->seed);
         add(sum, tally);
     }
     print("all", sum);

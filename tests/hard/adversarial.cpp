@@ -2,6 +2,7 @@
 // Lists of pairs, bounded and tested by the kernels of the walks, against the exact truth.
 #include "harness/adversarial.h"
 #include "scenes/error.h"
+#include "tests/hard/support.h"
 #include "tests/support/cells.h"
 
 #include <gtest/gtest.h>
@@ -57,6 +58,10 @@ TEST_P(Adversarial, RoundingToNearestIsFoundOut) {
     }
     ASSERT_TRUE(tally.first);
     EXPECT_EQ(tally.first->cell, 0u);
+    const auto pair = hard_pair(hard_family("corner-cancellation"), tally.first->seed, tally.first->index,
+                                tally.first->difficulty);
+    EXPECT_EQ(hard_test::relation_of(pair), Relation::touching);
+    EXPECT_FALSE(hard_test::slabs_overlap(pair, directions({.k = 8}), false, 0));
     EXPECT_FALSE(tally.ok());
 }
 

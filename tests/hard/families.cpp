@@ -2,6 +2,7 @@
 // The catalogue: that generators make what they say, always the same, and refuse what they cannot make.
 #include "tests/hard/support.h"
 
+#include "algorithms/kdop/range.h"
 #include "harness/oracle/frame_truth.h"
 #include "scenes/error.h"
 #include "tests/support/scenes.h"
@@ -174,6 +175,26 @@ TEST(HardScenes, RefuseWhatTheyCannotMake) {
     for (const auto& family : hard_families()) {
         EXPECT_THROW(check_difficulty(family, std::nextafter(family.knob.least, -1e300)), InputError);
         EXPECT_THROW(check_difficulty(family, std::nextafter(family.knob.most, 1e300)), InputError);
+    }
+}
+
+std::string refusal(const Scene& scene, std::size_t frame) {
+    try {
+        check_range(scene, scene.frame(frame), Precision::single);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+/// Whichever corner it is, and whether it is no number or infinite.
+TEST(HardScenes, OfWhatIsNotFiniteAreRefused) {
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const auto scene =
+            make_scene("hard:not-finite:pairs=9,together=1,difficulty=" + std::to_string(corner));
+        const auto expected = "body " + std::to_string(corner / 4) + ": vertex " + std::to_string(corner % 4);
+        for (std::size_t frame = 0; frame < 9; ++frame)
+            EXPECT_THAT(refusal(scene, frame), HasSubstr(expected + " is not finite")) << frame;
     }
 }
 
