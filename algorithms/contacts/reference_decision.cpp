@@ -80,7 +80,15 @@ private:
 
 template<class Real>
 unsigned certain_verdict(const Corners<Real>& a, const Corners<Real>& b) {
-    return Couple<Real>(a, b).verdict();
+    const auto finite = [](const Vector<Real>& p) {
+        return std::all_of(p.begin(), p.end(), [](Real x) { return std::isfinite(x); });
+    };
+    if (!std::all_of(a.begin(), a.end(), finite) || !std::all_of(b.begin(), b.end(), finite)) return 0;
+    auto first = a, second = b;
+    std::sort(first.begin(), first.end());
+    std::sort(second.begin(), second.end());
+    if (second < first) std::swap(first, second);
+    return Couple<Real>(first, second).verdict();
 }
 
 template unsigned certain_verdict(const Corners<float>&, const Corners<float>&);

@@ -150,7 +150,8 @@ std::vector<Contact<Real>> published_contacts(const ReferencePair<Real>& pair, u
 template<class Real>
 std::vector<Contact<Real>> translation_contacts(const ReferencePair<Real>& pair, bool clip);
 
-/// What arithmetic in Real is certain of: 1 apart, 2 they meet, 0 neither.
+/// What arithmetic in Real is certain of: 1 apart, 2 they meet, 0 neither. Order of corners and of the two
+/// makes no difference.
 template<class Real>
 unsigned certain_verdict(const Corners<Real>& a, const Corners<Real>& b);
 

@@ -4,6 +4,8 @@
 #include "harness/oracle/frame_truth.h"
 #include "scenes/builtin.h"
 #include "tests/support/cells.h"
+#include "tests/support/oracle_pairs.h"
+#include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +13,33 @@ namespace tandem {
 namespace {
 
 using namespace testing_support;
+
+/// Bodies of one tetrahedron each, whose coordinates are spread over thirty powers of ten: of many pairs not
+/// even double can tell whether they meet.
+Scene hard_pairs(std::size_t bodies) {
+    Random random(8);
+    Scene scene;
+    scene.name = scene.key = "hard pairs";
+    while (scene.bodies.size() < bodies) {
+        Mesh mesh;
+        mesh.name = "one";
+        for (const auto& p : random_pair(Family::mixed_exponents, random).a)
+            mesh.vertices.push_back({p[0], p[1], p[2]});
+        mesh.tetrahedra = {{0, 1, 2, 3}};
+        complete_mesh(mesh, "one");
+        scene.bodies.push_back({.mesh = static_cast<std::uint32_t>(scene.meshes.size())});
+        scene.meshes.push_back(mesh);
+    }
+    scene.frame_count = 1;
+    scene.frame = [bodies](std::size_t) {
+        Frame frame;
+        frame.poses.resize(bodies);
+        frame.deformed.resize(bodies);
+        return frame;
+    };
+    scene.digest = digest_of(scene);
+    return scene;
+}
 
 class ContactConformance : public testing::TestWithParam<std::string> {
 protected:
@@ -70,6 +99,23 @@ TEST_P(ContactConformance, ExactTellsApartWhatTheOracleDoes) {
         truth.begin(), truth.end(), [](auto decision) { return decision.relation == Relation::disjoint; });
     EXPECT_EQ(result.rejected, static_cast<std::uint64_t>(disjoint));
     EXPECT_GT(disjoint, 0);
+}
+
+TEST_P(ContactConformance, ExactTellsApartWhatDoubleCannot) {
+    scene = hard_pairs(60);
+    frame = scene.frame(0);
+    const auto expected = [&](const std::string& decision) {
+        const auto session = prepare("chunked", {{"decision", decision}});
+        const auto result = session->run(frame, all_pairs(scene, *session));
+        const auto truth = decide_pairs(scene, frame, Precision::single, session->download(result));
+        const auto disjoint = std::count_if(
+            truth.begin(), truth.end(), [](auto decided) { return decided.relation == Relation::disjoint; });
+        return std::pair(result.rejected, static_cast<std::uint64_t>(disjoint));
+    };
+    const auto [apart, disjoint] = expected("exact");
+    EXPECT_EQ(apart, disjoint);
+    const auto [apart_in_double, same] = expected("fp64");
+    EXPECT_LT(apart_in_double + 20, same);
 }
 
 TEST_P(ContactConformance, OnlyExactWaitsForTheHost) {

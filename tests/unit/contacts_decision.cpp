@@ -139,6 +139,25 @@ TEST(ContactsDecision, VerdictsAreNeverWrongInEitherPrecision) {
     EXPECT_LT(certain[1][0], certain[0][0]);
 }
 
+TEST(ContactsDecision, NamesOfCornersAndOfTheTwoMakeNoDifference) {
+    unsigned seen[3]{};
+    for (const auto& [name, pairs] : families())
+        for (std::size_t i = 0; i < pairs.size(); i += 10) {
+            auto [a, b] = pairs[i];
+            const auto in_float = contact_reference::certain_verdict(narrowed(a), narrowed(b));
+            const auto in_double = contact_reference::certain_verdict(a, b);
+            ++seen[in_float];
+            std::sort(a.begin(), a.end());
+            do {
+                std::rotate(b.begin(), b.begin() + 1, b.end());
+                ASSERT_EQ(contact_reference::certain_verdict(narrowed(a), narrowed(b)), in_float) << name;
+                ASSERT_EQ(contact_reference::certain_verdict(narrowed(b), narrowed(a)), in_float) << name;
+                ASSERT_EQ(contact_reference::certain_verdict(b, a), in_double) << name;
+            } while (std::next_permutation(a.begin(), a.end()));
+        }
+    for (const auto count : seen) EXPECT_GT(count, 100u);
+}
+
 TEST(ContactsDecision, FlatAndUnusableTetrahedraAreDecidedExactly) {
     const Corners<float> block{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}}};
     const Corners<float> flat_inside{{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}, {2, 2, 0}}};
