@@ -174,9 +174,9 @@ private:
     std::vector<std::unique_ptr<PairList>> lists_;
 };
 
+/// By equal factors where that is possible; never outside, whatever the rounding.
 double between(double low, double high) {
-    if (low > 0) return std::sqrt(low) * std::sqrt(high);
-    return 0.5 * (low + high);
+    return low > 0 ? std::clamp(std::sqrt(low) * std::sqrt(high), low, high) : 0.5 * (low + high);
 }
 
 } // namespace

@@ -10,8 +10,12 @@
 namespace tandem {
 
 Job open_job(const RunOptions& options, std::vector<Cell> cells) {
+    return open_job(open_scene(options), options, std::move(cells));
+}
+
+Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells) {
     Job job;
-    job.scene = open_scene(options);
+    job.scene = std::move(scene);
     job.range = open_frames(options, job.scene);
     job.cells = std::move(cells);
     check_outputs(options, job.cells);

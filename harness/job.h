@@ -17,6 +17,7 @@ struct Job {
 /// Opens the scene and its frames; throws InputError when they, the outputs or the cells do not fit each
 /// other.
 Job open_job(const RunOptions& options, std::vector<Cell> cells);
+Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells);
 
 /// Measures one cell and appends its record, also when the device fails on the way. Returns the exit code: 1
 /// when the answer is wrong, 3 when the device failed, which is then said.

@@ -127,7 +127,7 @@ std::vector<Device*> choose_devices(const std::vector<BackendReport>& backends,
     return chosen;
 }
 
-std::vector<Cell> plan(const Request& request, std::span<Device* const> devices) {
+std::vector<Cell> plan(const Request& request, std::span<Device* const> devices, Unfit unfit) {
     const auto chosen = choose_algorithms(request);
     check_sets(request, chosen);
     check_presets(request, chosen);
@@ -135,8 +135,13 @@ std::vector<Cell> plan(const Request& request, std::span<Device* const> devices)
     for (auto* device : devices)
         for (const auto* traversal : chosen)
             for (const auto* preset : choose_presets(request, *traversal))
-                for (const auto& given : combinations(request, *traversal))
-                    cells.push_back(make_cell(*traversal, *preset, given, *device));
+                for (const auto& given : combinations(request, *traversal)) {
+                    try {
+                        cells.push_back(make_cell(*traversal, *preset, given, *device));
+                    } catch (const InputError&) {
+                        if (unfit == Unfit::refuse) throw;
+                    }
+                }
     return cells;
 }
 

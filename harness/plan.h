@@ -29,10 +29,13 @@ struct Request {
 std::vector<Device*> choose_devices(const std::vector<BackendReport>& backends,
                                     std::span<const std::string> names);
 
+/// What plan() does with a combination that does not fit a device or itself.
+enum class Unfit { refuse, leave_out };
+
 /// All cells: devices x algorithms x presets x every combination of values. InputErrors: a preset that none
 /// of the chosen algorithms has, an algorithm chosen by name that has none of the presets, a setting that
 /// none declares or that is given twice, and settings that do not fit a device or each other.
-std::vector<Cell> plan(const Request& request, std::span<Device* const> devices);
+std::vector<Cell> plan(const Request& request, std::span<Device* const> devices, Unfit unfit = Unfit::refuse);
 
 /// "chunked resident on opencl:0", with the settings that differ from the preset.
 std::string describe(const Cell& cell);

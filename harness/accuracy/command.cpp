@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // tandem accuracy: error beside speed, over the settings that either depends on.
+#include "harness/adversarial.h"
 #include "harness/inputs.h"
 #include "harness/job.h"
 #include "harness/statistics.h"
@@ -7,9 +8,9 @@
 #include "scenes/hard/hard.h"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <numeric>
+#include <set>
 
 namespace tandem {
 
@@ -43,18 +44,6 @@ std::vector<Axis> axes_of_contacts(const Traversal& traversal) {
             {"contact_rule", choices(traversal, "contact_rule", "none")}};
 }
 
-/// Calls visit with every combination of one value of each axis.
-void for_each_combination(std::span<const Axis> axes, std::vector<Axis>& chosen,
-                          const std::function<void(const std::vector<Axis>&)>& visit) {
-    if (axes.empty()) return visit(chosen);
-    if (axes.front().second.empty()) return for_each_combination(axes.subspan(1), chosen, visit);
-    for (const auto& value : axes.front().second) {
-        chosen.push_back({axes.front().first, {value}});
-        for_each_combination(axes.subspan(1), chosen, visit);
-        chosen.pop_back();
-    }
-}
-
 bool same(const Cell& a, const Cell& b) {
     return a.algorithm == b.algorithm && a.preset == b.preset && a.settings == b.settings
            && a.device == b.device;
@@ -68,21 +57,12 @@ std::vector<Cell> sweep(const Request& request, std::span<Device* const> devices
         auto own = request;
         own.algorithms = {std::string(base.algorithm->name())};
         own.presets = {base.preset};
-        const auto add = [&](const std::vector<Axis>& values) {
-            own.sets = values;
-            std::vector<Cell> made;
-            try {
-                made = plan(own, std::array{base.device});
-            } catch (const InputError&) {
-                return;
-            }
-            for (const auto& cell : made)
+        for (const auto& axes : {axes_of_bounds(*base.algorithm), axes_of_contacts(*base.algorithm)}) {
+            own.sets = axes;
+            for (const auto& cell : plan(own, std::array{base.device}, Unfit::leave_out))
                 if (std::none_of(cells.begin(), cells.end(), [&](const auto& c) { return same(c, cell); }))
                     cells.push_back(cell);
-        };
-        std::vector<Axis> chosen;
-        for_each_combination(axes_of_bounds(*base.algorithm), chosen, add);
-        for_each_combination(axes_of_contacts(*base.algorithm), chosen, add);
+        }
     }
     return cells;
 }
@@ -94,23 +74,12 @@ std::string middle_frames(const Scene& scene) {
     return fmt::format("{}:{}", first, first + default_frames - 1);
 }
 
-/// Five difficulties from the least to the most, by equal factors where the range spans a hundredfold; the
-/// initial one alone of whole scenes, which grow with it. Whole numbers where the initial one is.
+/// Those of the family, by size; the initial one alone of whole scenes, which grow with it.
 std::vector<double> difficulties(const HardFamily& family) {
-    const auto& knob = family.knob;
-    if (family.scene != nullptr) return {knob.initial};
-    constexpr int count = 5;
-    const bool factors = knob.least > 0 && knob.most >= 100 * knob.least;
-    const bool whole = knob.least == std::floor(knob.least) && knob.initial == std::floor(knob.initial);
-    std::vector<double> result;
-    for (int i = 0; i < count; ++i) {
-        const double share = static_cast<double>(i) / (count - 1);
-        double value = factors ? knob.least * std::pow(knob.most / knob.least, share)
-                               : knob.least + (knob.most - knob.least) * share;
-        value = std::clamp(whole ? std::round(value) : value, knob.least, knob.most);
-        if (result.empty() || value > result.back()) result.push_back(value);
-    }
-    return result;
+    if (family.scene != nullptr) return {family.knob.initial};
+    const auto all = difficulties_of(family);
+    const std::set<double> sorted(all.begin(), all.end());
+    return {sorted.begin(), sorted.end()};
 }
 
 /// hard:all as all families at several difficulties, less the one that is refused; other scenes as they are.
@@ -161,8 +130,9 @@ void print_row(const Cell& cell, const Measurement& m) {
 /// All cells on one scene; the exit code.
 int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, RecordFile& file) {
     auto own = options;
-    if (own.frames.empty()) own.frames = middle_frames(open_scene(own));
-    const auto job = open_job(own, cells);
+    auto scene = open_scene(own);
+    if (own.frames.empty()) own.frames = middle_frames(scene);
+    const auto job = open_job(std::move(scene), own, cells);
     print_scene(job.scene, job.range);
     References references(job.scene, job.range);
     Truths truths(job.scene, job.range.frames, TruthAmount::contacts, options.truth_contacts);
