@@ -185,6 +185,24 @@ bool AdversarialTally::ok() const {
     return contradictions == 0 && std::accumulate(missed.begin(), missed.end(), std::uint64_t{0}) == 0;
 }
 
+void AdversarialTally::add(const AdversarialTally& other) {
+    pairs += other.pairs;
+    touching += other.touching;
+    overlapping += other.overlapping;
+    decided += other.decided;
+    clipped += other.clipped;
+    contradictions += other.contradictions;
+    missed.resize(other.missed.size());
+    false_pairs.resize(other.false_pairs.size());
+    for (std::size_t cell = 0; cell < missed.size(); ++cell) {
+        missed[cell] += other.missed[cell];
+        false_pairs[cell] += other.false_pairs[cell];
+    }
+    if (!first) first = other.first;
+    truth_seconds += other.truth_seconds;
+    test_seconds += other.test_seconds;
+}
+
 bool is_adversarial(const HardFamily& family) {
     return family.pair != nullptr && family.name != "not-finite";
 }

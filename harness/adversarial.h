@@ -46,6 +46,8 @@ struct AdversarialTally {
     double truth_seconds = 0, test_seconds = 0; ///< generation and truth on all cores; upload, refit and test
 
     bool ok() const;
+    /// `other` is of the same cells; a new tally takes any.
+    void add(const AdversarialTally& other);
 };
 
 /// Makes pairs of a family, bounds and tests them by the kernels of the walks on every cell

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <vector>
 
 namespace tandem {
 
@@ -42,6 +41,16 @@ Summary summarise(std::span<const std::int64_t> samples) {
     summary.low = quantile(medians, 0.025);
     summary.high = quantile(medians, 0.975);
     return summary;
+}
+
+std::optional<Spread> spread(std::vector<double> samples) {
+    if (samples.empty()) return std::nullopt;
+    std::sort(samples.begin(), samples.end());
+    const auto at = [&](double share) {
+        const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(samples.size())));
+        return samples[std::max<std::size_t>(rank, 1) - 1];
+    };
+    return Spread{at(0.5), at(0.99), samples.back()};
 }
 
 } // namespace tandem

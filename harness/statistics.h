@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
 namespace tandem {
 
@@ -15,5 +17,13 @@ struct Summary {
 
 /// `samples` must not be empty.
 Summary summarise(std::span<const std::int64_t> samples);
+
+/// Median and 99th percentile (the least sample that so many do not exceed) and the largest sample.
+struct Spread {
+    double median = 0, p99 = 0, maximum = 0;
+};
+
+/// Nothing of no samples.
+std::optional<Spread> spread(std::vector<double> samples);
 
 } // namespace tandem

@@ -8,7 +8,7 @@ import sys
 import unittest
 import xml.etree.ElementTree
 
-from command_line import SOURCE, Case, bar, gmsh, tandem
+from program import SOURCE, Case, bar, gmsh, tandem
 
 SVG = "{http://www.w3.org/2000/svg}"
 

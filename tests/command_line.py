@@ -1,57 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""command_line.py PROGRAM SOURCE: the program as a user meets it: listings, records, dumps, and every bad input."""
-import csv
+"""command_line.py PROGRAM SOURCE: the program as a user meets it: listings, tables, dumps, and every bad input."""
 import itertools
 import json
-import os
-import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
 
-import jsonschema
-
-if len(sys.argv) != 3:
-    sys.exit(__doc__)
-PROGRAM = pathlib.Path(sys.argv[1]).resolve()
-SOURCE = pathlib.Path(sys.argv[2]).resolve()
-
-
-def tandem(*arguments, environment=None, timeout=300):
-    """(exit code, standard output, lines of standard error less PoCL's own)."""
-    done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, timeout=timeout,
-                          env={**os.environ, **(environment or {})})
-    lines = [line for line in done.stderr.splitlines() if line.strip() and not line.rstrip().endswith("generated.")]
-    return done.returncode, done.stdout, lines
-
-
-def bar(cells, offset):
-    """Vertices and tetrahedra of a row of cubes, six tetrahedra each; coordinates are exact in single precision."""
-    points = [(i, j, k) for i in range(cells + 1) for j in range(2) for k in range(2)]
-    number = {p: n for n, p in enumerate(points)}
-    tets = []
-    for cube in range(cells):
-        for order in itertools.permutations(range(3)):
-            corner, tet = [cube, 0, 0], [number[(cube, 0, 0)]]
-            for axis in order:
-                corner[axis] += 1
-                tet.append(number[tuple(corner)])
-            tets.append(tet)
-    shifted = [tuple(x * 0.75 + o for x, o in zip(p, offset)) for p in points]
-    return shifted, tets
-
-
-def gmsh(path, points, tets, kind=4):
-    with open(path, "w") as out:
-        out.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n" % len(points))
-        out.writelines("%d %r %r %r\n" % (n, *p) for n, p in enumerate(points, 1))
-        out.write("$EndNodes\n$Elements\n%d\n" % len(tets))
-        out.writelines("%d %d 2 0 0 %s\n" % (n, kind, " ".join(str(v + 1) for v in t)) for n, t in enumerate(tets, 1))
-        out.write("$EndElements\n")
-    return path
+from program import PROGRAM, Case, bar, gmsh, tandem
 
 
 def boxes(points, tets):
@@ -62,65 +19,6 @@ def overlapping(a, b):
     """Pairs of tetrahedra whose boxes overlap or touch. Coordinates are multiples of 1/8, so this is exact."""
     return [(i, j) for i, x in enumerate(boxes(*a)) for j, y in enumerate(boxes(*b))
             if all(p[0] <= q[1] and q[0] <= p[1] for p, q in zip(x, y))]
-
-
-def places(value, path=()):
-    """Every path to a value inside a JSON document, parents first."""
-    for name, child in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
-        yield (*path, name)
-        yield from places(child, (*path, name))
-
-
-def changed(record, path, change):
-    """A copy of `record` after change(parent of path, last name of path)."""
-    copy = json.loads(json.dumps(record))
-    parent = copy
-    for name in path[:-1]:
-        parent = parent[name]
-    change(parent, path[-1])
-    return copy
-
-
-class Case(unittest.TestCase):
-    """What every case needs: a folder, a good mesh in it, and readers of what the program writes."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.work = pathlib.Path(cls.folder.name)
-        cls.good = gmsh(cls.work / "good.msh", *bar(4, (0, 0, 0)))
-        schema = json.loads((SOURCE / "results/record.schema.json").read_text())
-        cls.validator = jsonschema.Draft7Validator(schema)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
-
-    def records(self, path):
-        records = [json.loads(line) for line in path.read_text().splitlines()]
-        for record in records:
-            problems = ["/".join(map(str, e.absolute_path)) + ": " + e.message for e in self.validator.iter_errors(record)]
-            self.assertEqual(problems, [])
-        return records
-
-    def bad(self, expected, *arguments, code=2, environment=None):
-        status, out, errors = tandem(*arguments, environment=environment)
-        self.assertEqual(status, code, (arguments, out, errors))
-        self.assertEqual(len(errors), 1, (arguments, errors))
-        self.assertTrue(errors[0].startswith("tandem: "), errors)
-        for part in [expected] if isinstance(expected, str) else expected:
-            self.assertIn(part, errors[0])
-        print(f"\n  {status}: {errors[0]}", end="", file=sys.stderr)
-        return out
-
-    def dump(self, path, header):
-        """Rows of a dump below its header, which must be sorted by their first five numbers."""
-        rows = list(csv.reader(path.read_text().splitlines()))
-        self.assertEqual(",".join(rows[0]), header)
-        ids = [tuple(map(int, row[:5])) for row in rows[1:]]
-        self.assertEqual(ids, sorted(ids))
-        self.assertEqual({len(row) for row in rows}, {len(rows[0])})
-        return rows[1:], ids
 
 
 class CommandLine(Case):
@@ -140,114 +38,6 @@ class CommandLine(Case):
             for entry in entries:
                 self.assertLessEqual(keys[name], set(entry))
             self.assertTrue(all(word in out for word in words))
-
-    def test_ceilings_are_measured_and_recorded(self):
-        out = self.work / "ceilings.jsonl"
-        status, text, errors = tandem("devices", "--measure", "--device", "opencl:0", "--out", out)
-        self.assertEqual((status, errors), (0, []), text)
-        self.assertIn("read of device memory", text)
-        records = [json.loads(line) for line in out.read_text().splitlines()]
-        self.assertEqual([r["device"]["id"] for r in records], ["opencl:0"])
-        for name in ("copy_bytes_per_s", "launch_s", "overlap_tests_k8_per_s"):
-            self.assertGreater(records[0][name]["median"], 0)
-        # Eighteen planes take more comparisons than eight.
-        self.assertGreater(records[0]["overlap_tests_k8_per_s"]["median"], records[0]["overlap_tests_k18_per_s"]["median"])
-        script = [sys.executable, str(SOURCE / "tests/validate_records.py"), str(out)]
-        self.assertEqual(subprocess.run(script, capture_output=True).returncode, 0)
-        out.write_text(out.read_text().replace('"launch_s":{"median":', '"launch_s":{"median":-', 1))
-        self.assertEqual(subprocess.run(script, capture_output=True).returncode, 1)
-        self.bad("--measure", "devices", "--device", "opencl:0")
-        self.bad("the nearest is", "devices", "--measure", "--device", "opencl:77")
-
-    def test_run_records_and_appends(self):
-        out = self.work / "run.jsonl"
-        arguments = ("run", "plates", "--frames", "20:21", "--algorithm", "chunked,gproximity", "--device", "host,opencl:0",
-                     "--repeat", 2, "--out", out)
-        status, text, errors = tandem(*arguments)
-        self.assertEqual((status, errors), (0, []), text)
-        self.assertEqual(text.count(": right: "), 4, text)
-        for word in ("method", "traverse", "launches", "total ms", "how many times chunked is faster", "narrow"):
-            self.assertIn(word, text)
-        first = out.read_bytes()
-        records = self.records(out)
-        self.assertEqual([(r["devices"][0]["id"], r["algorithm"]) for r in records],
-                         list(itertools.product(["host", "opencl:0"], ["chunked", "gproximity"])))
-        self.assertEqual({r["status"] for r in records}, {"ok"})
-        self.assertEqual(len({json.dumps(r["agreement"]["digest"]) for r in records}), 1)
-        self.assertEqual(len({json.dumps(r["agreement"]["contact_digest"]) for r in records}), 1)
-        for record in records:
-            self.assertGreater(record["agreement"]["digest"]["count"], 1000)
-            self.assertEqual(sum(record["work"]["candidate_pairs"]), record["agreement"]["digest"]["count"])
-            self.assertEqual([sum(frames) for frames in record["total_ns"]["frames"]], record["total_ns"]["samples"])
-            self.assertEqual(len(record["total_ns"]["samples"]), 2)
-            self.assertGreater(record["stages"]["traverse"]["device_ns"]["median"], 0)
-        self.assertEqual(tandem(*arguments)[0], 0)
-        self.assertTrue(out.read_bytes().startswith(first))
-        self.assertEqual([r["key"] for r in self.records(out)], [r["key"] for r in records] * 2)
-
-    def test_several_values_make_several_cells(self):
-        out = self.work / "cells.jsonl"
-        status, text, errors = tandem("run", "plates", "--frames", "0", "--algorithm", "chunked", "--set", "k=6,8",
-                                      "--set", "precision=float,double", "--repeat", 1, "--out", out)
-        self.assertEqual((status, errors), (0, []), text)
-        self.assertEqual([(r["settings"]["k"], r["settings"]["precision"]) for r in self.records(out)],
-                         list(itertools.product(["6", "8"], ["float", "double"])))
-
-    def test_schema_can_fail(self):
-        """Every field of a real record: taken away, of another type, null, or with another one beside it."""
-        out = self.work / "schema.jsonl"
-        tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "opencl:0", "--algorithm", "gproximity", "--out", out)
-        record = self.records(out)[0]
-        maps, nullable = {"settings", "defines"}, {"failure", "agreement", "commit", "processor", "clocks_mhz", "hardware", "device_span_ns",
-                                                   "registers", "local_bytes", "spill_bytes", "missed_upper95", "candidate_ratio", "decisions"}
-        nullable_paths = {("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift")}
-        since = {"unsure", "uncertain", "truth"}  # records of before setting decision and of before the truth lack them
-        seen = set()
-        for path in places(record):
-            shape = tuple(0 if isinstance(name, int) else name for name in path)
-            if shape in seen:
-                continue
-            seen.add(shape)
-            parent, name = path[-2] if len(path) > 1 else None, path[-1]
-            optional = parent in maps or parent == "stages" or isinstance(name, int) or name in since
-            with self.subTest(path=path):
-                gone = changed(record, path, lambda p, n: p.pop(n))
-                self.assertTrue(optional or not self.validator.is_valid(gone), "taken away")
-                self.assertFalse(self.validator.is_valid(changed(record, path, lambda p, n: p.update({n: {"x": []}})
-                                                                 if isinstance(p, dict) else p.append({"x": []}))), "type")
-                null = changed(record, path, lambda p, n: p.__setitem__(n, None))
-                self.assertEqual(self.validator.is_valid(null), name in nullable or path in nullable_paths, "null")
-                if not isinstance(name, int) and parent not in maps:
-                    more = changed(record, path, lambda p, n: p.update(surprise=1))
-                    self.assertFalse(self.validator.is_valid(more), "one more")
-        self.assertGreater(len(seen), 150)
-        for change in ({"status": "fine"}, {"status": "failed"}, {"failure": "device lost"}, {"failure": ""}, {"schema": 2},
-                       {"stages": {"travers": record["stages"]["traverse"]}}, {"breakdown_ns": {"samples": []}},
-                       {"total_ns": {**record["total_ns"], "samples": []}}, {"devices": []}, {"settings": {"k": 18}},
-                       {"scene": {**record["scene"], "digest": "0123456789ABCDEF"}},
-                       {"agreement": {**record["agreement"], "missing": 1}}):
-            self.assertFalse(self.validator.is_valid({**record, **change}), change)
-
-    def test_validate_records(self):
-        script = SOURCE / "tests/validate_records.py"
-
-        def validate(*files):
-            done = subprocess.run([sys.executable, str(script), *map(str, files)], capture_output=True, text=True)
-            return done.returncode, done.stdout + done.stderr
-
-        good, bad, empty = (self.work / name for name in ("good.jsonl", "bad.jsonl", "empty.jsonl"))
-        tandem("run", "--mesh", self.good, "--device", "host", "--out", good)
-        line = good.read_text().splitlines()[0]
-        bad.write_text(line + "\n" + line.replace('"count":0,', '"count":-1,', 1) + "\n" + line[:100] + "\n")
-        empty.write_text("")
-        self.assertEqual(validate(good), (0, "2 records valid\n"))
-        status, text = validate(good, bad)
-        self.assertEqual(status, 1, text)
-        self.assertRegex(text, r"bad\.jsonl:2: /agreement/\w*digest/count: ")
-        self.assertIn("bad.jsonl:3: not JSON", text)
-        for files in ([empty], [self.work / "none.jsonl"], [good, self.work / "none.jsonl"]):
-            self.assertEqual(validate(*files)[0], 1, files)
-        self.assertEqual(validate()[0], 0)
 
     def test_check_prints_the_matrix(self):
         presets = sum(len(entry["presets"]) for entry in json.loads(tandem("algorithms", "--json")[1]))
@@ -425,22 +215,6 @@ class CommandLine(Case):
             self.assertLess(there_is, needed)
             self.assertGreater(there_is, 0)
 
-    def test_a_failing_cell_keeps_what_is_recorded(self):
-        out = self.work / "fail.jsonl"
-        out.write_text("what was there before\n")
-        memory = min(d["memory_bytes"] for e in json.loads(tandem("devices", "--json")[1]) for d in e["devices"]
-                     if d["id"] == "opencl:0")
-        if memory >= 68719476720:
-            self.skipTest("the device has room for 4,294,967,295 pairs")
-        self.bad("68719476720", "run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "chunked", "--device", "opencl:0",
-                 "--set", "pair_capacity=64,4294967295,128", "--repeat", 1, "--out", out, code=3)
-        first, rest = out.read_text().split("\n", 1)
-        self.assertEqual(first, "what was there before")
-        out.write_text(rest)
-        records = self.records(out)
-        self.assertEqual([r["status"] for r in records], ["ok", "failed", "ok"])
-        self.assertIn("68719476720", records[1]["failure"])
-
     def test_without_any_driver(self):
         nothing = {"OCL_ICD_VENDORS": "/nonexistent/"}
         status, out, errors = tandem("devices", environment=nothing)
@@ -500,14 +274,6 @@ class Repaired(Case):
         done = subprocess.run([str(PROGRAM), "run", "--mesh", self.good, "--algorithm", "gproximity", "--device", "host", "--set",
                                "queue_bytes=1099511627776"], capture_output=True, text=True, timeout=60)
         self.assertTrue(done.stderr.startswith("tandem: "), done.stderr)
-
-    def test_any_file_name_can_be_recorded(self):
-        path = os.path.join(os.fsencode(self.work), b"na\xffme.msh")
-        with open(path, "wb") as file:
-            file.write(self.good.read_bytes())
-        done = subprocess.run([os.fsencode(PROGRAM), b"run", b"--mesh", path, b"--device", b"host", b"--repeat", b"1", b"--out",
-                               os.fsencode(self.work / "name.jsonl")], capture_output=True, timeout=60)
-        self.assertIn(done.returncode, (0, 2), done.stderr)
 
     def test_records_go_into_a_pipe(self):
         self.assertEqual(self.cell("--out", "/dev/stdout")[0], 0)

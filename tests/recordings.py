@@ -11,7 +11,7 @@ import unittest
 import xml.etree.ElementTree
 import zlib
 
-from command_line import SOURCE, Case, tandem
+from program import SOURCE, Case, tandem
 
 PILE = "pile:bodies=4,frames=30"
 

@@ -13,7 +13,7 @@ import unittest
 
 import jsonschema
 
-from command_line import PROGRAM, SOURCE, Case, tandem
+from program import PROGRAM, SOURCE, Case, tandem
 from validate_records import validator_of
 
 ARCH = "arch:segments=2"

@@ -40,24 +40,11 @@ double length(const std::array<double, 3>& p, const std::array<double, 3>& q) {
     return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
 }
 
-double longest_edge(const TetraCorners& corners) {
-    double most = 0;
-    for (unsigned i = 0; i < 4; ++i)
-        for (unsigned j = 0; j < i; ++j) most = std::max(most, length(corners[i], corners[j]));
-    return most;
-}
-
-/// Degrees between two directions; exact for small angles, where an arc cosine is not.
+/// Degrees between two directions.
 double angle(const std::array<double, 3>& n, const std::array<double, 3>& m) {
     const double sine =
         std::hypot(n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2], n[0] * m[1] - n[1] * m[0]);
     return std::atan2(sine, n[0] * m[0] + n[1] * m[1] + n[2] * m[2]) * 180 / std::numbers::pi;
-}
-
-double nearest_angle(const std::vector<std::array<double, 3>>& normals, const std::array<double, 3>& normal) {
-    double least = 180;
-    for (const auto& n : normals) least = std::min(least, angle(n, normal));
-    return least;
 }
 
 /// Adds the samples of one pair.
@@ -90,16 +77,6 @@ void compare(const ContactTruth& truth, double size, std::span<const ContactPoin
     errors.hausdorff.push_back(hausdorff_distance(points, truth.vertices) / size);
 }
 
-void add_pairs(PairErrors& sum, const PairErrors& term) {
-    sum.candidates += term.candidates;
-    sum.disjoint += term.disjoint;
-    sum.touching += term.touching;
-    sum.overlapping += term.overlapping;
-    sum.invalid += term.invalid;
-    sum.missed_touching += term.missed_touching;
-    sum.missed_overlapping += term.missed_overlapping;
-}
-
 } // namespace
 
 void ContactErrors::add(const ContactErrors& other) {
@@ -125,7 +102,7 @@ std::optional<double> AnswerErrors::missed_upper95() const {
 
 void AnswerErrors::add(const AnswerErrors& other) {
     frames += other.frames;
-    add_pairs(pairs, other.pairs);
+    pairs.add(other.pairs);
     decided.add(other.decided);
     invalid_tetrahedra += other.invalid_tetrahedra;
     every_contact = every_contact && other.every_contact;
@@ -184,6 +161,19 @@ ContactTruths contact_truths(const Scene& scene, const Frame& frame, Precision p
     return result;
 }
 
+double longest_edge(const TetraCorners& corners) {
+    double most = 0;
+    for (unsigned i = 0; i < 4; ++i)
+        for (unsigned j = 0; j < i; ++j) most = std::max(most, length(corners[i], corners[j]));
+    return most;
+}
+
+double nearest_angle(std::span<const std::array<double, 3>> normals, const std::array<double, 3>& normal) {
+    double least = 180;
+    for (const auto& n : normals) least = std::min(least, angle(n, normal));
+    return least;
+}
+
 ContactErrors contact_errors(const ContactTruths& truths, std::span<const ContactPoint> contacts,
                              double unit) {
     constexpr std::size_t part = 256;
@@ -197,16 +187,6 @@ ContactErrors contact_errors(const ContactTruths& truths, std::span<const Contac
     ContactErrors errors;
     for (const auto& one : parts) errors.add(one);
     return errors;
-}
-
-std::optional<Spread> spread(std::vector<double> samples) {
-    if (samples.empty()) return std::nullopt;
-    std::sort(samples.begin(), samples.end());
-    const auto at = [&](double share) {
-        const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(samples.size())));
-        return samples[std::max<std::size_t>(rank, 1) - 1];
-    };
-    return Spread{at(0.5), at(0.99), samples.back()};
 }
 
 } // namespace tandem

@@ -69,14 +69,15 @@ struct ContactTruths {
 ContactTruths contact_truths(const Scene& scene, const Frame& frame, Precision precision,
                              const FrameTruth& truth, std::size_t most);
 
+/// L of one tetrahedron.
+double longest_edge(const TetraCorners& corners);
+
+/// Degrees from a contact's normal to the nearest of the best; exact for small angles, where an arc cosine is
+/// not. `normals` not empty; none of either need have length 1.
+double nearest_angle(std::span<const std::array<double, 3>> normals, const std::array<double, 3>& normal);
+
 /// Errors of one frame's contacts, sorted by pair; `unit` is u.
 ContactErrors contact_errors(const ContactTruths& truths, std::span<const ContactPoint> contacts,
                              double unit);
-
-/// Median, 99th percentile (the least value that 99 % do not exceed) and maximum.
-struct Spread {
-    double median = 0, p99 = 0, maximum = 0;
-};
-std::optional<Spread> spread(std::vector<double> samples);
 
 } // namespace tandem

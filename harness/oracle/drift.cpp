@@ -4,8 +4,9 @@
 #include "algorithms/kdop/drift.h"
 #include "harness/oracle/posed.h"
 #include "harness/oracle/rounding.h"
-#include "scenes/parallel.h"
+#include "harness/statistics.h"
 #include "harness/world_vertices.h"
+#include "scenes/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,12 +79,12 @@ Drift vertex_drift(const Scene& scene, const Frame& frame, Precision precision) 
         ulps.insert(ulps.end(), body.ulps.begin(), body.ulps.end());
         drift.of_bound = std::max(drift.of_bound, body.of_bound);
     }
-    std::sort(ulps.begin(), ulps.end());
     drift.vertices = ulps.size();
-    if (ulps.empty()) return drift;
-    drift.median = ulps[ulps.size() / 2];
-    drift.p99 = ulps[(ulps.size() - 1) * 99 / 100];
-    drift.max = ulps.back();
+    if (const auto of_all = spread(std::move(ulps))) {
+        drift.median = of_all->median;
+        drift.p99 = of_all->p99;
+        drift.max = of_all->maximum;
+    }
     return drift;
 }
 

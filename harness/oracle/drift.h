@@ -11,7 +11,7 @@ namespace tandem {
 /// ulps of its largest coordinate: spacings of the precision's numbers there.
 struct Drift {
     std::uint64_t vertices = 0;          ///< of all bodies
-    double median = 0, p99 = 0, max = 0; ///< ulps
+    double median = 0, p99 = 0, max = 0; ///< ulps, as of `Spread`
     double of_bound = 0; ///< the largest share of its drift_bound that a vertex uses along an axis; at most 1
 };
 

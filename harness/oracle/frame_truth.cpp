@@ -134,6 +134,16 @@ std::vector<std::array<TetraCorners, 2>> pair_corners(const Scene& scene, const 
     return corners;
 }
 
+void PairErrors::add(const PairErrors& other) {
+    candidates += other.candidates;
+    disjoint += other.disjoint;
+    touching += other.touching;
+    overlapping += other.overlapping;
+    invalid += other.invalid;
+    missed_touching += other.missed_touching;
+    missed_overlapping += other.missed_overlapping;
+}
+
 PairErrors pair_errors(const FrameTruth& truth, std::span<const Pair> candidates) {
     PairErrors errors;
     errors.candidates = candidates.size();

@@ -45,6 +45,7 @@ struct PairErrors {
     std::uint64_t invalid = 0; ///< pairs with a tetrahedron whose coordinates are not finite
     std::uint64_t missed_touching = 0, missed_overlapping = 0;
 
+    void add(const PairErrors& other);
     bool operator==(const PairErrors&) const = default;
 };
 

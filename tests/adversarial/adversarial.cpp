@@ -45,21 +45,6 @@ std::vector<AdversarialCell> cells_of(const Options& options, const std::vector<
     return cells;
 }
 
-void add(AdversarialTally& sum, const AdversarialTally& term) {
-    sum.pairs += term.pairs;
-    sum.touching += term.touching;
-    sum.overlapping += term.overlapping;
-    sum.decided += term.decided;
-    sum.clipped += term.clipped;
-    sum.contradictions += term.contradictions;
-    sum.truth_seconds += term.truth_seconds;
-    sum.test_seconds += term.test_seconds;
-    for (std::size_t i = 0; i < sum.missed.size(); ++i) {
-        sum.missed[i] += term.missed[i];
-        sum.false_pairs[i] += term.false_pairs[i];
-    }
-}
-
 std::uint64_t total(const std::vector<std::uint64_t>& counts) {
     return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
@@ -83,8 +68,6 @@ int run(const Options& options) {
     auto each = options.run;
     each.pairs = (options.pairs + families.size() - 1) / families.size();
     AdversarialTally sum;
-    sum.missed.assign(cells.size(), 0);
-    sum.false_pairs.assign(cells.size(), 0);
     fmt::print("{:<20} {:>11} {:>11} {:>11} {:>11} {:>6} {:>8} {:>8} {:>8}\n", "family", "pairs", "touching",
                "overlapping", "by oracle", "wrong", "missed", "truth s", "test s");
     for (const auto* family : families) {
@@ -94,7 +77,7 @@ int run(const Options& options) {
             fmt::print("  first missed: {}, difficulty {}, pair {} of seed {}\n",
                        name_of(cells[tally.first->cell]), tally.first->difficulty, tally.first->index,
                        tally.first->seed);
-        add(sum, tally);
+        sum.add(tally);
     }
     print("all", sum);
     for (std::size_t i = 0; i < cells.size(); ++i)

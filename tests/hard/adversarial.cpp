@@ -68,6 +68,30 @@ TEST_P(Adversarial, RoundingToNearestIsFoundOut) {
 INSTANTIATE_TEST_SUITE_P(Devices, Adversarial, testing::ValuesIn(device_names()),
                          [](const auto& name) { return device_label(name.param); });
 
+TEST(AdversarialFamilies, TalliesAddUp) {
+    AdversarialTally one, other, sum;
+    one.pairs = 1, one.touching = 2, one.overlapping = 3, one.decided = 4, one.clipped = 5;
+    other.pairs = 10, other.touching = 20, other.overlapping = 30, other.decided = 40, other.clipped = 50;
+    one.missed = {0, 0}, one.false_pairs = {6, 7};
+    other.missed = {0, 1}, other.false_pairs = {60, 70};
+    other.first = {1, 0.5, 2, 3};
+    sum.add(one);
+    EXPECT_TRUE(sum.ok());
+    sum.add(other);
+    EXPECT_FALSE(sum.ok());
+    EXPECT_EQ((std::array{sum.pairs, sum.touching, sum.overlapping, sum.decided, sum.clipped}),
+              (std::array<std::uint64_t, 5>{11, 22, 33, 44, 55}));
+    EXPECT_EQ(sum.missed, other.missed);
+    EXPECT_EQ(sum.false_pairs, (std::vector<std::uint64_t>{66, 77}));
+    ASSERT_TRUE(sum.first);
+    EXPECT_EQ(sum.first->index, 3u);
+    AdversarialTally contradicted;
+    contradicted.contradictions = 1;
+    contradicted.missed = contradicted.false_pairs = {0, 0};
+    one.add(contradicted);
+    EXPECT_FALSE(one.ok());
+}
+
 TEST(AdversarialFamilies, RefuseWhatHasNoPairs) {
     EXPECT_THROW(run_adversarial(hard_family("all-overlap"), {}, {}), InputError);
     EXPECT_THROW(run_adversarial(hard_family("not-finite"), {}, {}), InputError);

@@ -68,17 +68,6 @@ TEST(Hull, HausdorffIsTheLargerOfBothSides) {
     EXPECT_DOUBLE_EQ(hausdorff_distance(p, p), 0);
 }
 
-TEST(Accuracy, SpreadTakesTheLeastValueThatNinetyNinePercentDoNotExceed) {
-    std::vector<double> samples;
-    for (int i = 200; i > 0; --i) samples.push_back(i);
-    const auto s = spread(samples);
-    ASSERT_TRUE(s);
-    EXPECT_EQ(s->median, 100);
-    EXPECT_EQ(s->p99, 198);
-    EXPECT_EQ(s->maximum, 200);
-    EXPECT_FALSE(spread({}));
-}
-
 /// The unit tetrahedron and a copy, moved along x; body 0 at the origin.
 Scene two_units(double x) {
     Scene scene;
@@ -189,6 +178,33 @@ TEST(Accuracy, EqualAnswersAreComparedOnceAndASampleSaysSo) {
     answer.pairs.a = 1;
     truths.errors(Precision::single, 0, answer);
     EXPECT_EQ(downloads, 2);
+}
+
+TEST(Accuracy, ErrorsOfFramesAddUp) {
+    AnswerErrors one, other, sum;
+    one.pairs = {1, 2, 3, 4, 5, 6, 7};
+    other.pairs = {10, 20, 30, 40, 50, 60, 70};
+    one.decisions = DecisionMatrix{{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}};
+    other.every_contact = false;
+    one.contacts.emplace().depth_ulps = {8};
+    other.contacts.emplace().depth_ulps = {9};
+    one.drift = Drift{1, 2, 3, 4, 5};
+    other.drift = Drift{6, 7, 8, 9, 10};
+    sum.add(one);
+    sum.add(other);
+    EXPECT_EQ(sum.pairs, (PairErrors{11, 22, 33, 44, 55, 66, 77}));
+    EXPECT_EQ(sum.decisions, one.decisions);
+    EXPECT_EQ(sum.contacts->depth_ulps, (std::vector<double>{8, 9}));
+    EXPECT_EQ(sum.drift->vertices, 1u); // of the first frame
+    EXPECT_FALSE(sum.every_contact);
+}
+
+TEST(Accuracy, AnglesAreThoseToTheNearestNormal) {
+    const std::vector<Point> normals{{0, 2, 0}, {3, 0, 0}};
+    EXPECT_DOUBLE_EQ(nearest_angle(normals, {0.5, 0, 0.5}), 45);
+    EXPECT_DOUBLE_EQ(nearest_angle(normals, {1, 1e-9, 0}), 1e-9 * 180 / M_PI);
+    EXPECT_DOUBLE_EQ(nearest_angle(std::span(normals).first(1), {0, -1, 0}), 180);
+    EXPECT_DOUBLE_EQ(longest_edge({{{0, 0, 0}, {1, 0, 0}, {0, 3, 0}, {0, 0, 4}}}), 5);
 }
 
 } // namespace

@@ -1,45 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Depth and normal of every rule against the exact least translation. TANDEM_PRINT=1 prints the table of the
 // room's README.
-#include "algorithms/contacts/reference.h"
-#include "harness/oracle/contact_truth.h"
+#include "contacts_pairs.h"
+
+#include "harness/accuracy/answer_errors.h"
 #include "tests/support/oracle_pairs.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <numbers>
 
 namespace tandem::test {
 namespace {
 
 using namespace testing_support;
-
-Corners<float> narrowed(const TetraCorners& corners) {
-    Corners<float> result;
-    for (unsigned i = 0; i < 4; ++i)
-        for (unsigned k = 0; k < 3; ++k) result[i][k] = static_cast<float>(corners[i][k]);
-    return result;
-}
-
-double longest_edge(const TetraCorners& t) {
-    double longest = 0;
-    for (unsigned i = 0; i < 4; ++i)
-        for (unsigned j = 0; j < i; ++j)
-            longest = std::max(longest, std::hypot(t[i][0] - t[j][0], t[i][1] - t[j][1], t[i][2] - t[j][2]));
-    return longest;
-}
-
-/// In degrees, also of small angles.
-double angle_between(const std::array<double, 3>& p, const std::array<float, 3>& q) {
-    double along = 0, across = 0;
-    for (unsigned i = 0; i < 3; ++i) {
-        const unsigned j = (i + 1) % 3, k = (i + 2) % 3;
-        along += p[i] * static_cast<double>(q[i]);
-        across = std::hypot(across, p[j] * static_cast<double>(q[k]) - p[k] * static_cast<double>(q[j]));
-    }
-    return std::atan2(across, along) * 180 / std::numbers::pi;
-}
 
 /// How one rule did on pairs that overlap.
 struct Errors {
@@ -63,11 +37,11 @@ void add(Errors& errors, const OraclePair& pair, const ContactTruth& truth, Cont
     if (contacts.empty()) return;
     double depth = -1e300;
     for (const auto& contact : contacts) depth = std::max(depth, -static_cast<double>(contact.depth));
-    double least = 180;
-    for (const auto& n : truth.normals) least = std::min(least, angle_between(n, contacts[0].normal));
+    std::array<double, 3> normal;
+    std::copy_n(contacts[0].normal.begin(), 3, normal.begin());
     const double size = std::max(longest_edge(pair.a), longest_edge(pair.b));
     errors.depth.push_back(std::abs(depth - truth.depth) / (0x1p-24 * size));
-    errors.angle.push_back(least);
+    errors.angle.push_back(nearest_angle(truth.normals, normal));
 }
 
 template<class Make>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Setting decision against the exact oracle, on pairs that touch, nearly touch and keep clear.
+#include "contacts_pairs.h"
+
 #include "algorithms/contacts/reference_pair.h"
 #include "tests/support/oracle_pairs.h"
 
@@ -12,13 +14,6 @@ namespace tandem::test {
 namespace {
 
 using namespace testing_support;
-
-Corners<float> narrowed(const TetraCorners& corners) {
-    Corners<float> result;
-    for (unsigned i = 0; i < 4; ++i)
-        for (unsigned k = 0; k < 3; ++k) result[i][k] = static_cast<float>(corners[i][k]);
-    return result;
-}
 
 /// How one decision did on some pairs.
 struct Score {

@@ -189,18 +189,12 @@ void add_close_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
     using namespace testing_support;
     Random random(5);
     TouchMaker maker(6);
-    const auto narrowed = [](const TetraCorners& corners) {
-        Corners<Real> result;
-        for (unsigned i = 0; i < 4; ++i)
-            for (unsigned k = 0; k < 3; ++k) result[i][k] = static_cast<Real>(corners[i][k]);
-        return result;
-    };
     for (unsigned i = 0; i < 200; ++i)
         for (const auto& pair :
              {random_pair(Family::near_touch, random), random_pair(Family::mixed_exponents, random),
               random_pair(Family::needle, random), maker.one_ulp(1), maker.one_ulp(-1),
               maker.touching(1 + i % 3, 1 + i / 3 % 3, 1 << 17)})
-            pairs.push_back({narrowed(pair.a), narrowed(pair.b)});
+            pairs.push_back({narrowed<Real>(pair.a), narrowed<Real>(pair.b)});
 }
 
 template<class Real>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/contacts/reference.h"
+#include "harness/oracle/decision.h"
 
 #include <cmath>
 #include <limits>
@@ -28,6 +29,15 @@ Corners<Real> moved(Corners<Real> corners, const std::array<Real, 3>& by) {
     for (auto& corner : corners)
         for (unsigned axis = 0; axis < 3; ++axis) corner[axis] += by[axis];
     return corners;
+}
+
+/// As a contact stage of the precision takes them.
+template<class Real = float>
+Corners<Real> narrowed(const TetraCorners& corners) {
+    Corners<Real> result;
+    for (unsigned i = 0; i < 4; ++i)
+        for (unsigned k = 0; k < 3; ++k) result[i][k] = static_cast<Real>(corners[i][k]);
+    return result;
 }
 
 /// Families of pairs that are near each other. The same seed gives the same pairs on every platform.

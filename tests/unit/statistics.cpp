@@ -33,5 +33,16 @@ TEST(Statistics, OneSample) {
     EXPECT_EQ(s.high, 7);
 }
 
+TEST(Statistics, SpreadTakesTheLeastValueThatNinetyNinePercentDoNotExceed) {
+    std::vector<double> samples;
+    for (int i = 200; i > 0; --i) samples.push_back(i);
+    const auto s = spread(samples);
+    ASSERT_TRUE(s);
+    EXPECT_EQ(s->median, 100);
+    EXPECT_EQ(s->p99, 198);
+    EXPECT_EQ(s->maximum, 200);
+    EXPECT_FALSE(spread({}));
+}
+
 } // namespace
 } // namespace tandem

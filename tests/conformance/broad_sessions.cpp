@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// Sessions that find their body pairs on the device: every algorithm and preset with every broad phase
+// against brute force, capacities of the pairs' buffer, and the commands of a frame.
+#include "broad_support.h"
+
+#include "harness/walk.h"
+#include "scenes/error.h"
+
+#include <fmt/format.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+class BroadSessions : public testing::TestWithParam<std::string> {};
+
+/// Every preset with every broad phase gives the answer of the reference, or says why it cannot.
+TEST_P(BroadSessions, EveryPresetWithEveryBroadPhase) {
+    auto& on = device(GetParam());
+    const auto scene = crowd(5, 12, 1.5);
+    std::uint64_t cells = 0;
+    for (const auto* traversal : algorithms()) {
+        for (const auto& p : traversal->presets()) {
+            for (const std::string broad : {"sphere", "tight", "device"}) {
+                Settings given{{"broad", broad}};
+                if (p.values.contains("groups")) given["queue_bytes"] = "1048576";
+                const Cell cell{traversal, p.name,
+                                resolve(traversal->parameters(), p.values, given, traversal->name()), &on};
+                SCOPED_TRACE(fmt::format("{} {}{}", traversal->name(), p.name, text(given)));
+                if (broad == "device" && p.name != "resident" && p.name != "fair") {
+                    EXPECT_THROW(traversal->check(cell.settings, on.info()), InputError);
+                    continue;
+                }
+                Walk walk(cell, scene);
+                EXPECT_EQ(walk.session->finds_pairs(), broad == "device");
+                for (std::size_t i = 0; i < scene.frame_count; ++i) {
+                    const auto frame = scene.frame(i);
+                    const auto right =
+                        reference(scene, frame, geometry_of(cell.settings), true, Method::brute_force);
+                    const auto result = walk.run(frame);
+                    ASSERT_GT(result.count, 0u);
+                    EXPECT_EQ(walk.session->digest(result), right.digest);
+                    EXPECT_EQ(walk.session->contact_digest(result), right.contact_digest);
+                    EXPECT_GT(result.body_pairs, 0u);
+                    EXPECT_LT(result.body_pairs, all_pairs(scene).size());
+                }
+                on.finish();
+                ++cells;
+            }
+        }
+    }
+    EXPECT_GE(cells, 20u);
+}
+
+/// A buffer for all pairs but one grows once, one for all of them not at all.
+TEST_P(BroadSessions, ACapacityOfExactlyTheBodyPairsNeedsNoRetry) {
+    auto& on = device(GetParam());
+    const auto scene = crowd(8, 14, 1.5);
+    const auto frame = scene.frame(0);
+    const auto right = reference(scene, frame, {}, true, Method::brute_force);
+    Search search(on, scene, {}, 32, 100);
+    search.sort_by(0);
+    search.go_to(0);
+    const auto pairs = search.expected().size();
+    for (const auto* traversal : algorithms()) {
+        for (const std::uint64_t capacity : {std::uint64_t{1}, pairs - 1, pairs}) {
+            const auto settings = resolve(
+                traversal->parameters(), {},
+                {{"broad", "device"}, {"body_pair_capacity", std::to_string(capacity)}}, traversal->name());
+            const std::array devices{&on};
+            const auto session = traversal->prepare(devices, scene, settings);
+            const auto result = session->run(frame, {});
+            EXPECT_EQ(result.body_pairs, pairs);
+            EXPECT_EQ(result.retries, capacity < pairs ? 1u : 0u);
+            EXPECT_EQ(session->digest(result), right.digest);
+            EXPECT_EQ(session->contact_digest(result), right.contact_digest);
+        }
+    }
+}
+
+TEST_P(BroadSessions, RefusesPairsFromTheHost) {
+    auto& on = device(GetParam());
+    const auto scene = crowd(8, 4, 0.5);
+    for (const auto* traversal : algorithms()) {
+        const auto settings = resolve(traversal->parameters(), {}, {{"broad", "device"}}, traversal->name());
+        const std::array devices{&on};
+        const auto session = traversal->prepare(devices, scene, settings);
+        EXPECT_THROW(session->run(scene.frame(0), all_pairs(scene)), InputError);
+    }
+}
+
+/// The commands of a resident chunked frame: the same for frames of different answers, one wait, and the
+/// search booked as what it is.
+TEST_P(BroadSessions, ResidentChunkedIsOneSequence) {
+    auto& on = device(GetParam());
+    const auto scene = gravel(10, 300, 5, 1000);
+    const auto& traversal = algorithm("chunked");
+    const auto settings = resolve(traversal.parameters(), {}, {{"broad", "device"}}, traversal.name());
+    const std::array devices{&on};
+    const auto session = traversal.prepare(devices, scene, settings);
+    session->run(scene.frame(0), {}); // sorts the bodies
+    on.finish();
+    std::vector<std::vector<std::string>> sequences;
+    std::vector<std::uint64_t> found;
+    for (const std::size_t frame : {0u, 1u}) {
+        const auto result = session->run(scene.frame(frame), {});
+        EXPECT_EQ(result.retries, 0u);
+        found.push_back(result.body_pairs);
+        std::uint64_t waits = 0, searches = 0;
+        sequences.emplace_back();
+        for (const auto& e : on.finish().events) {
+            if (e.command == Command::host_work) continue;
+            waits += e.blocked ? 1 : 0;
+            searches += e.command == Command::launch && e.stage == Stage::broad ? 1 : 0;
+            sequences.back().push_back(fmt::format("{} {} {}", e.label, e.groups, e.group_size));
+        }
+        EXPECT_EQ(waits, 1u);
+        EXPECT_EQ(searches, 2u);
+    }
+    EXPECT_NE(found[0], found[1]);
+    EXPECT_EQ(sequences[0], sequences[1]);
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, BroadSessions, testing::ValuesIn(device_names()),
+                         [](const auto& test) { return device_label(test.param); });
+
+} // namespace
+} // namespace tandem

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: MIT
+"""What tests of the program share: PROGRAM and SOURCE, the two arguments of each, how it is run, meshes, a case."""
+import csv
+import itertools
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import jsonschema
+
+if len(sys.argv) != 3:
+    sys.exit(sys.modules["__main__"].__doc__)
+PROGRAM = pathlib.Path(sys.argv[1]).resolve()
+SOURCE = pathlib.Path(sys.argv[2]).resolve()
+
+
+def tandem(*arguments, environment=None, timeout=300):
+    """(exit code, standard output, lines of standard error less PoCL's own)."""
+    done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, timeout=timeout,
+                          env={**os.environ, **(environment or {})})
+    lines = [line for line in done.stderr.splitlines() if line.strip() and not line.rstrip().endswith("generated.")]
+    return done.returncode, done.stdout, lines
+
+
+def bar(cells, offset):
+    """Vertices and tetrahedra of a row of cubes, six tetrahedra each; coordinates are exact in single precision."""
+    points = [(i, j, k) for i in range(cells + 1) for j in range(2) for k in range(2)]
+    number = {p: n for n, p in enumerate(points)}
+    tets = []
+    for cube in range(cells):
+        for order in itertools.permutations(range(3)):
+            corner, tet = [cube, 0, 0], [number[(cube, 0, 0)]]
+            for axis in order:
+                corner[axis] += 1
+                tet.append(number[tuple(corner)])
+            tets.append(tet)
+    shifted = [tuple(x * 0.75 + o for x, o in zip(p, offset)) for p in points]
+    return shifted, tets
+
+
+def gmsh(path, points, tets, kind=4):
+    with open(path, "w") as out:
+        out.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n" % len(points))
+        out.writelines("%d %r %r %r\n" % (n, *p) for n, p in enumerate(points, 1))
+        out.write("$EndNodes\n$Elements\n%d\n" % len(tets))
+        out.writelines("%d %d 2 0 0 %s\n" % (n, kind, " ".join(str(v + 1) for v in t)) for n, t in enumerate(tets, 1))
+        out.write("$EndElements\n")
+    return path
+
+
+class Case(unittest.TestCase):
+    """What every case needs: a folder, a good mesh in it, and readers of what the program writes."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.work = pathlib.Path(cls.folder.name)
+        cls.good = gmsh(cls.work / "good.msh", *bar(4, (0, 0, 0)))
+        schema = json.loads((SOURCE / "results/record.schema.json").read_text())
+        cls.validator = jsonschema.Draft7Validator(schema)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def records(self, path):
+        records = [json.loads(line) for line in path.read_text().splitlines()]
+        for record in records:
+            problems = ["/".join(map(str, e.absolute_path)) + ": " + e.message for e in self.validator.iter_errors(record)]
+            self.assertEqual(problems, [])
+        return records
+
+    def bad(self, expected, *arguments, code=2, environment=None):
+        status, out, errors = tandem(*arguments, environment=environment)
+        self.assertEqual(status, code, (arguments, out, errors))
+        self.assertEqual(len(errors), 1, (arguments, errors))
+        self.assertTrue(errors[0].startswith("tandem: "), errors)
+        for part in [expected] if isinstance(expected, str) else expected:
+            self.assertIn(part, errors[0])
+        print(f"\n  {status}: {errors[0]}", end="", file=sys.stderr)
+        return out
+
+    def dump(self, path, header):
+        """Rows of a dump below its header, which must be sorted by their first five numbers."""
+        rows = list(csv.reader(path.read_text().splitlines()))
+        self.assertEqual(",".join(rows[0]), header)
+        ids = [tuple(map(int, row[:5])) for row in rows[1:]]
+        self.assertEqual(ids, sorted(ids))
+        self.assertEqual({len(row) for row in rows}, {len(rows[0])})
+        return rows[1:], ids

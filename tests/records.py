@@ -1,0 +1,166 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""records.py PROGRAM SOURCE: what the program records: one line a cell, appended, and schemas that can fail."""
+import itertools
+import json
+import os
+import subprocess
+import sys
+import unittest
+
+from program import PROGRAM, SOURCE, Case, tandem
+
+
+def places(value, path=()):
+    """Every path to a value inside a JSON document, parents first."""
+    for name, child in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
+        yield (*path, name)
+        yield from places(child, (*path, name))
+
+
+def changed(record, path, change):
+    """A copy of `record` after change(parent of path, last name of path)."""
+    copy = json.loads(json.dumps(record))
+    parent = copy
+    for name in path[:-1]:
+        parent = parent[name]
+    change(parent, path[-1])
+    return copy
+
+
+class Records(Case):
+    def test_ceilings_are_measured_and_recorded(self):
+        out = self.work / "ceilings.jsonl"
+        status, text, errors = tandem("devices", "--measure", "--device", "opencl:0", "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertIn("read of device memory", text)
+        records = [json.loads(line) for line in out.read_text().splitlines()]
+        self.assertEqual([r["device"]["id"] for r in records], ["opencl:0"])
+        for name in ("copy_bytes_per_s", "launch_s", "overlap_tests_k8_per_s"):
+            self.assertGreater(records[0][name]["median"], 0)
+        # Eighteen planes take more comparisons than eight.
+        self.assertGreater(records[0]["overlap_tests_k8_per_s"]["median"], records[0]["overlap_tests_k18_per_s"]["median"])
+        script = [sys.executable, str(SOURCE / "tests/validate_records.py"), str(out)]
+        self.assertEqual(subprocess.run(script, capture_output=True).returncode, 0)
+        out.write_text(out.read_text().replace('"launch_s":{"median":', '"launch_s":{"median":-', 1))
+        self.assertEqual(subprocess.run(script, capture_output=True).returncode, 1)
+        self.bad("--measure", "devices", "--device", "opencl:0")
+        self.bad("the nearest is", "devices", "--measure", "--device", "opencl:77")
+
+    def test_run_records_and_appends(self):
+        out = self.work / "run.jsonl"
+        arguments = ("run", "plates", "--frames", "20:21", "--algorithm", "chunked,gproximity", "--device", "host,opencl:0",
+                     "--repeat", 2, "--out", out)
+        status, text, errors = tandem(*arguments)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual(text.count(": right: "), 4, text)
+        for word in ("method", "traverse", "launches", "total ms", "how many times chunked is faster", "narrow"):
+            self.assertIn(word, text)
+        first = out.read_bytes()
+        records = self.records(out)
+        self.assertEqual([(r["devices"][0]["id"], r["algorithm"]) for r in records],
+                         list(itertools.product(["host", "opencl:0"], ["chunked", "gproximity"])))
+        self.assertEqual({r["status"] for r in records}, {"ok"})
+        self.assertEqual(len({json.dumps(r["agreement"]["digest"]) for r in records}), 1)
+        self.assertEqual(len({json.dumps(r["agreement"]["contact_digest"]) for r in records}), 1)
+        for record in records:
+            self.assertGreater(record["agreement"]["digest"]["count"], 1000)
+            self.assertEqual(sum(record["work"]["candidate_pairs"]), record["agreement"]["digest"]["count"])
+            self.assertEqual([sum(frames) for frames in record["total_ns"]["frames"]], record["total_ns"]["samples"])
+            self.assertEqual(len(record["total_ns"]["samples"]), 2)
+            self.assertGreater(record["stages"]["traverse"]["device_ns"]["median"], 0)
+        self.assertEqual(tandem(*arguments)[0], 0)
+        self.assertTrue(out.read_bytes().startswith(first))
+        self.assertEqual([r["key"] for r in self.records(out)], [r["key"] for r in records] * 2)
+
+    def test_several_values_make_several_cells(self):
+        out = self.work / "cells.jsonl"
+        status, text, errors = tandem("run", "plates", "--frames", "0", "--algorithm", "chunked", "--set", "k=6,8",
+                                      "--set", "precision=float,double", "--repeat", 1, "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual([(r["settings"]["k"], r["settings"]["precision"]) for r in self.records(out)],
+                         list(itertools.product(["6", "8"], ["float", "double"])))
+
+    def test_schema_can_fail(self):
+        """Every field of a real record: taken away, of another type, null, or with another one beside it."""
+        out = self.work / "schema.jsonl"
+        tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "opencl:0", "--algorithm", "gproximity", "--out", out)
+        record = self.records(out)[0]
+        maps, nullable = {"settings", "defines"}, {"failure", "agreement", "commit", "processor", "clocks_mhz", "hardware", "device_span_ns",
+                                                   "registers", "local_bytes", "spill_bytes", "missed_upper95", "candidate_ratio", "decisions"}
+        nullable_paths = {("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift")}
+        since = {"unsure", "uncertain", "truth"}  # records of before setting decision and of before the truth lack them
+        seen = set()
+        for path in places(record):
+            shape = tuple(0 if isinstance(name, int) else name for name in path)
+            if shape in seen:
+                continue
+            seen.add(shape)
+            parent, name = path[-2] if len(path) > 1 else None, path[-1]
+            optional = parent in maps or parent == "stages" or isinstance(name, int) or name in since
+            with self.subTest(path=path):
+                gone = changed(record, path, lambda p, n: p.pop(n))
+                self.assertTrue(optional or not self.validator.is_valid(gone), "taken away")
+                self.assertFalse(self.validator.is_valid(changed(record, path, lambda p, n: p.update({n: {"x": []}})
+                                                                 if isinstance(p, dict) else p.append({"x": []}))), "type")
+                null = changed(record, path, lambda p, n: p.__setitem__(n, None))
+                self.assertEqual(self.validator.is_valid(null), name in nullable or path in nullable_paths, "null")
+                if not isinstance(name, int) and parent not in maps:
+                    more = changed(record, path, lambda p, n: p.update(surprise=1))
+                    self.assertFalse(self.validator.is_valid(more), "one more")
+        self.assertGreater(len(seen), 150)
+        for change in ({"status": "fine"}, {"status": "failed"}, {"failure": "device lost"}, {"failure": ""}, {"schema": 2},
+                       {"stages": {"travers": record["stages"]["traverse"]}}, {"breakdown_ns": {"samples": []}},
+                       {"total_ns": {**record["total_ns"], "samples": []}}, {"devices": []}, {"settings": {"k": 18}},
+                       {"scene": {**record["scene"], "digest": "0123456789ABCDEF"}},
+                       {"agreement": {**record["agreement"], "missing": 1}}):
+            self.assertFalse(self.validator.is_valid({**record, **change}), change)
+
+    def test_validate_records(self):
+        script = SOURCE / "tests/validate_records.py"
+
+        def validate(*files):
+            done = subprocess.run([sys.executable, str(script), *map(str, files)], capture_output=True, text=True)
+            return done.returncode, done.stdout + done.stderr
+
+        good, bad, empty = (self.work / name for name in ("good.jsonl", "bad.jsonl", "empty.jsonl"))
+        tandem("run", "--mesh", self.good, "--device", "host", "--out", good)
+        line = good.read_text().splitlines()[0]
+        bad.write_text(line + "\n" + line.replace('"count":0,', '"count":-1,', 1) + "\n" + line[:100] + "\n")
+        empty.write_text("")
+        self.assertEqual(validate(good), (0, "2 records valid\n"))
+        status, text = validate(good, bad)
+        self.assertEqual(status, 1, text)
+        self.assertRegex(text, r"bad\.jsonl:2: /agreement/\w*digest/count: ")
+        self.assertIn("bad.jsonl:3: not JSON", text)
+        for files in ([empty], [self.work / "none.jsonl"], [good, self.work / "none.jsonl"]):
+            self.assertEqual(validate(*files)[0], 1, files)
+        self.assertEqual(validate()[0], 0)
+
+    def test_a_failing_cell_keeps_what_is_recorded(self):
+        out = self.work / "fail.jsonl"
+        out.write_text("what was there before\n")
+        memory = min(d["memory_bytes"] for e in json.loads(tandem("devices", "--json")[1]) for d in e["devices"]
+                     if d["id"] == "opencl:0")
+        if memory >= 68719476720:
+            self.skipTest("the device has room for 4,294,967,295 pairs")
+        self.bad("68719476720", "run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "chunked", "--device", "opencl:0",
+                 "--set", "pair_capacity=64,4294967295,128", "--repeat", 1, "--out", out, code=3)
+        first, rest = out.read_text().split("\n", 1)
+        self.assertEqual(first, "what was there before")
+        out.write_text(rest)
+        records = self.records(out)
+        self.assertEqual([r["status"] for r in records], ["ok", "failed", "ok"])
+        self.assertIn("68719476720", records[1]["failure"])
+
+    def test_any_file_name_can_be_recorded(self):
+        path = os.path.join(os.fsencode(self.work), b"na\xffme.msh")
+        with open(path, "wb") as file:
+            file.write(self.good.read_bytes())
+        done = subprocess.run([os.fsencode(PROGRAM), b"run", b"--mesh", path, b"--device", b"host", b"--repeat", b"1", b"--out",
+                               os.fsencode(self.work / "name.jsonl")], capture_output=True, timeout=60)
+        self.assertIn(done.returncode, (0, 2), done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)
