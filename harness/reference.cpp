@@ -281,14 +281,21 @@ Method reference_method(const Scene& scene) {
 }
 
 Digest digest_of(std::span<const Pair> pairs) {
-    Digest digest;
-    digest.count = pairs.size();
-    for (const auto& p : pairs) {
-        const auto first = std::uint64_t{p.body_a} << 32 | p.tet_a;
-        const auto second = std::uint64_t{p.body_b} << 32 | p.tet_b;
-        const auto term = split_mix(split_mix(first) + second);
-        digest.a += term;
-        digest.b += split_mix(term + 0x9e3779b97f4a7c15u);
+    const auto parts = in_parts(pairs);
+    std::vector<Digest> found(parts.size());
+    parallel_for(parts.size(), [&](std::size_t i) {
+        for (const auto& p : parts[i]) {
+            const auto first = std::uint64_t{p.body_a} << 32 | p.tet_a;
+            const auto second = std::uint64_t{p.body_b} << 32 | p.tet_b;
+            const auto term = split_mix(split_mix(first) + second);
+            found[i].a += term;
+            found[i].b += split_mix(term + 0x9e3779b97f4a7c15u);
+        }
+    });
+    Digest digest{pairs.size(), 0, 0};
+    for (const auto& part : found) {
+        digest.a += part.a;
+        digest.b += part.b;
     }
     return digest;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <span>
 #include <thread>
 #include <vector>
 
@@ -17,8 +18,19 @@ void parallel_for(std::size_t count, Work work) {
         for (auto i = next++; i < count; i = next++) work(i);
     };
     std::vector<std::jthread> others;
-    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) others.emplace_back(drain);
+    const auto threads = std::min<std::size_t>(count, std::thread::hardware_concurrency());
+    for (std::size_t i = 1; i < threads; ++i) others.emplace_back(drain);
     drain();
+}
+
+/// Spans of `values` in order, none empty, small enough that all cores get some of a long list.
+template<class Value>
+std::vector<std::span<const Value>> in_parts(std::span<const Value> values) {
+    constexpr std::size_t part = 1 << 16;
+    std::vector<std::span<const Value>> parts;
+    for (std::size_t first = 0; first < values.size(); first += part)
+        parts.push_back(values.subspan(first, std::min(part, values.size() - first)));
+    return parts;
 }
 
 /// How many parts are worth sorting at once.

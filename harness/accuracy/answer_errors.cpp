@@ -30,6 +30,26 @@ std::span<const ContactPoint> contacts_of(std::span<const ContactPoint> contacts
     return {first, last};
 }
 
+/// The same for ascending pairs, by walking along the list.
+class ContactCursor {
+public:
+    /// Questions start at `first`.
+    ContactCursor(std::span<const ContactPoint> sorted, const Pair& first)
+        : rest_(contacts_of(sorted, first).data(), sorted.data() + sorted.size()) {}
+
+    std::span<const ContactPoint> of(const Pair& pair) {
+        std::size_t skipped = 0;
+        while (skipped < rest_.size() && rest_[skipped].pair < pair) ++skipped;
+        rest_ = rest_.subspan(skipped);
+        std::size_t count = 0;
+        while (count < rest_.size() && rest_[count].pair == pair) ++count;
+        return rest_.first(count);
+    }
+
+private:
+    std::span<const ContactPoint> rest_;
+};
+
 /// 0: no contact, 1: none inside, 2: one inside.
 unsigned answered(std::span<const ContactPoint> contacts) {
     if (contacts.empty()) return 0;
@@ -122,21 +142,29 @@ void AnswerErrors::add(const AnswerErrors& other) {
 DecisionMatrix decision_matrix(const FrameTruth& truth, std::span<const Pair> candidates,
                                std::span<const ContactPoint> contacts) {
     DecisionMatrix matrix{};
-    std::size_t next = 0;
-    const auto count_row = [&](unsigned row, const std::vector<Pair>& pairs) {
-        for (const auto& pair : pairs) ++matrix[row][answered(contacts_of(contacts, pair))];
+    const auto count_row = [&](unsigned row, std::span<const Pair> pairs, auto counts) {
+        const auto parts = in_parts(pairs);
+        std::vector<std::array<std::uint64_t, 3>> found(parts.size());
+        parallel_for(parts.size(), [&](std::size_t i) {
+            ContactCursor answers(contacts, parts[i].front());
+            auto counted = counts(parts[i].front());
+            for (const auto& pair : parts[i]) {
+                const auto own = answers.of(pair);
+                if (counted(pair)) ++found[i][answered(own)];
+            }
+        });
+        for (const auto& part : found)
+            for (unsigned column = 0; column < 3; ++column) matrix[row][column] += part[column];
     };
-    count_row(1, truth.touching);
-    count_row(2, truth.overlapping);
-    for (const auto& pair : candidates) {
-        while (next < contacts.size() && contacts[next].pair < pair) ++next;
-        auto end = next;
-        while (end < contacts.size() && contacts[end].pair == pair) ++end;
-        const bool meets = std::binary_search(truth.touching.begin(), truth.touching.end(), pair)
-                           || std::binary_search(truth.overlapping.begin(), truth.overlapping.end(), pair);
-        if (!meets) ++matrix[0][answered(contacts.subspan(next, end - next))];
-        next = end;
-    }
+    const auto every = [](const Pair&) { return [](const Pair&) { return true; }; };
+    count_row(0, candidates, [&](const Pair& first) {
+        return [touching = PairCursor(truth.touching, first),
+                overlapping = PairCursor(truth.overlapping, first)](const Pair& pair) mutable {
+            return !touching.holds(pair) && !overlapping.holds(pair);
+        };
+    });
+    count_row(1, truth.touching, every);
+    count_row(2, truth.overlapping, every);
     return matrix;
 }
 

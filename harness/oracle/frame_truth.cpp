@@ -87,8 +87,25 @@ std::vector<Pair> near_pairs(const std::vector<Boxes>& boxes,
     return result;
 }
 
-bool holds(std::span<const Pair> sorted, const Pair& pair) {
-    return std::binary_search(sorted.begin(), sorted.end(), pair);
+/// `candidates` ascending.
+PairErrors errors_of(const FrameTruth& truth, std::span<const Pair> candidates) {
+    PairErrors errors;
+    const auto invalid = [&](std::uint32_t body, std::uint32_t tetrahedron) {
+        return std::binary_search(truth.invalid.begin(), truth.invalid.end(), std::array{body, tetrahedron});
+    };
+    PairCursor touching(truth.touching, candidates.front()),
+        overlapping(truth.overlapping, candidates.front());
+    for (const auto& pair : candidates) {
+        if (touching.holds(pair))
+            ++errors.touching;
+        else if (overlapping.holds(pair))
+            ++errors.overlapping;
+        else if (invalid(pair.body_a, pair.tet_a) || invalid(pair.body_b, pair.tet_b))
+            ++errors.invalid;
+        else
+            ++errors.disjoint;
+    }
+    return errors;
 }
 
 } // namespace
@@ -114,8 +131,8 @@ FrameTruth frame_truth(const Scene& scene, const Frame& frame, Precision precisi
         });
         decided += pairs.size();
     }
-    std::sort(truth.touching.begin(), truth.touching.end());
-    std::sort(truth.overlapping.begin(), truth.overlapping.end());
+    parallel_sort(truth.touching);
+    parallel_sort(truth.overlapping);
     return truth;
 }
 
@@ -145,21 +162,12 @@ void PairErrors::add(const PairErrors& other) {
 }
 
 PairErrors pair_errors(const FrameTruth& truth, std::span<const Pair> candidates) {
+    const auto parts = in_parts(candidates);
+    std::vector<PairErrors> found(parts.size());
+    parallel_for(parts.size(), [&](std::size_t i) { found[i] = errors_of(truth, parts[i]); });
     PairErrors errors;
+    for (const auto& part : found) errors.add(part);
     errors.candidates = candidates.size();
-    const auto invalid = [&](std::uint32_t body, std::uint32_t tetrahedron) {
-        return std::binary_search(truth.invalid.begin(), truth.invalid.end(), std::array{body, tetrahedron});
-    };
-    for (const auto& pair : candidates) {
-        if (holds(truth.touching, pair))
-            ++errors.touching;
-        else if (holds(truth.overlapping, pair))
-            ++errors.overlapping;
-        else if (invalid(pair.body_a, pair.tet_a) || invalid(pair.body_b, pair.tet_b))
-            ++errors.invalid;
-        else
-            ++errors.disjoint;
-    }
     errors.missed_touching = truth.touching.size() - errors.touching;
     errors.missed_overlapping = truth.overlapping.size() - errors.overlapping;
     return errors;

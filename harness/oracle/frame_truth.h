@@ -6,6 +6,7 @@
 #include "scenes/contact.h"
 #include "scenes/scene.h"
 
+#include <algorithm>
 #include <functional>
 #include <span>
 #include <vector>
@@ -36,6 +37,22 @@ std::vector<Decision> decide_pairs(const Scene& scene, const Frame& frame, Preci
 /// The corners of the pairs' tetrahedra, in their order: as the decision takes them.
 std::vector<std::array<TetraCorners, 2>> pair_corners(const Scene& scene, const Frame& frame,
                                                       Precision precision, std::span<const Pair> pairs);
+
+/// Answers ascending questions by walking along a sorted list, which is much faster than a search for each.
+class PairCursor {
+public:
+    /// Questions start at `first`.
+    PairCursor(std::span<const Pair> sorted, const Pair& first)
+        : next_(std::lower_bound(sorted.begin(), sorted.end(), first)), end_(sorted.end()) {}
+
+    bool holds(const Pair& pair) {
+        while (next_ != end_ && *next_ < pair) ++next_;
+        return next_ != end_ && *next_ == pair;
+    }
+
+private:
+    std::span<const Pair>::iterator next_, end_;
+};
 
 /// How right a set of candidate pairs is.
 struct PairErrors {
