@@ -256,8 +256,14 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReference) {
     for (const ContactSettings settings : {ContactSettings{published, fp32},
                                            {sat, fp32},
                                            {clip, fp32},
+                                           {restricted, fp32},
+                                           {vertex, fp32},
+                                           {consistent, fp32},
+                                           {growth, fp32},
                                            {opposing, recheck},
                                            {clip, recheck},
+                                           {restricted, recheck},
+                                           {consistent, recheck},
                                            {sat, fp64}}) {
         const Expected<TypeParam> expected(pairs, settings);
         ASSERT_GT(expected.total, pairs.size() / 20);
