@@ -18,6 +18,8 @@ protected:
     const Corners<Real> block{{{-4, -4, 0}, {4, -4, 0}, {0, 4, 0}, {0, 0, -4}}};
     /// Corner 0 is 1/2 below the block's top, the others are above it.
     const Corners<Real> cone{{{0, 0, Real(-0.5)}, {-1, -1, 2}, {1, -1, 2}, {0, 1, 2}}};
+    /// The same of its corner 0, but before the block in canonical order.
+    const Corners<Real> leaning{{{0, 0, Real(-0.5)}, {-9, -1, 2}, {1, -1, 2}, {0, 1, 2}}};
     /// Corner 0 is 1/4 below the block's top, the others are out by its face 2.
     const Corners<Real> spike{{{0, -2, Real(-0.25)},
                                {Real(-0.25), -6, Real(-0.25)},
@@ -52,20 +54,24 @@ TYPED_TEST_SUITE(ContactsBoundary, Reals);
 
 TYPED_TEST(ContactsBoundary, AShallowCornerInALargeFaceIsOneVertex) {
     const auto half = TypeParam(-0.5);
-    const auto found = this->contacts(ContactRule::vertex, this->block, this->cone);
-    this->expect_all(found, {4}, this->up, half);
-    EXPECT_EQ(found.at(0).point, this->cone[0]);
-    this->expect_all(this->contacts(ContactRule::vertex, this->cone, this->block), {0}, this->down, half);
+    for (const auto& other : {this->cone, this->leaning}) {
+        const auto found = this->contacts(ContactRule::vertex, this->block, other);
+        this->expect_all(found, {4}, this->up, half);
+        EXPECT_EQ(found.at(0).point, other[0]);
+        this->expect_all(this->contacts(ContactRule::vertex, other, this->block), {0}, this->down, half);
+    }
     EXPECT_EQ(this->counts, ContactCounts{});
 }
 
 TYPED_TEST(ContactsBoundary, ConsistentHasAContactForEveryEdgeThatLeaves) {
     const auto half = TypeParam(-0.5);
-    const auto found = this->contacts(ContactRule::consistent, this->block, this->cone);
-    this->expect_all(found, {32 + 3, 32 + 7, 32 + 11}, this->up, half);
-    for (const auto& contact : found) EXPECT_EQ(contact.point, this->cone[0]);
-    this->expect_all(this->contacts(ContactRule::consistent, this->cone, this->block), {8 + 3, 8 + 7, 8 + 11},
-                     this->down, half);
+    for (const auto& other : {this->cone, this->leaning}) {
+        const auto found = this->contacts(ContactRule::consistent, this->block, other);
+        this->expect_all(found, {32 + 3, 32 + 7, 32 + 11}, this->up, half);
+        for (const auto& contact : found) EXPECT_EQ(contact.point, other[0]);
+        this->expect_all(this->contacts(ContactRule::consistent, other, this->block), {8 + 3, 8 + 7, 8 + 11},
+                         this->down, half);
+    }
 }
 
 TYPED_TEST(ContactsBoundary, VertexTakesTheNearestFaceAndConsistentTheOneTheEdgesLeaveBy) {
