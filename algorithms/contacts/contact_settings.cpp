@@ -10,12 +10,13 @@ namespace {
 const std::vector<Parameter> parameters{
     {"contact_rule",
      "opposing",
-     {"opposing", "published", "sat", "clip", "none"},
+     {"opposing", "published", "sat", "clip", "restricted", "vertex", "consistent", "growth", "none"},
      0,
      0,
      "opposing: the paper's most opposing boundary faces; published: with its code's tolerances and gaps; "
-     "sat: "
-     "the least translation; clip: the intersection"},
+     "sat: the least translation; clip: the intersection; restricted: sat along what boundary faces make; "
+     "vertex: corners inside, nearest boundary face; consistent: the one their edges leave by; growth: what "
+     "meets first when both grow"},
     {"decision",
      "fp32",
      {"fp32", "recheck", "fp64", "exact"},

@@ -8,7 +8,7 @@
 namespace tandem {
 
 /// How contacts are made of a pair that meets (setting contact_rule). README.md has the rules.
-enum class ContactRule { opposing, published, sat, clip };
+enum class ContactRule { opposing, published, sat, clip, restricted, vertex, consistent, growth };
 
 /// What decides whether a pair meets (setting decision).
 enum class DecisionPrecision {

@@ -3,10 +3,11 @@
 // README.md here has the rule.
 #include "backends/portable.h"
 
+#include "algorithms/contacts/axes.clh"
 #include "algorithms/contacts/candidates.clh"
 #include "algorithms/contacts/clipping.clh"
+#include "algorithms/contacts/consistent.clh"
 #include "algorithms/contacts/published.clh"
-#include "algorithms/contacts/separation.clh"
 
 // Whether filter.cl and recheck.cl have written verdicts.
 #ifndef DECIDED
@@ -19,8 +20,16 @@
 #define RULE_PUBLISHED 1
 #define RULE_SAT 2
 #define RULE_CLIP 3
-// Rules that take boundary faces of the bodies as they are named, or any two tetrahedra in canonical order.
-#define IS_CANONICAL (CONTACT_RULE == RULE_SAT || CONTACT_RULE == RULE_CLIP)
+#define RULE_RESTRICTED 4
+#define RULE_VERTEX 5
+#define RULE_CONSISTENT 6
+#define RULE_GROWTH 7
+// Rules that take the pair as it is named, or in canonical order.
+#define IS_CANONICAL (CONTACT_RULE >= RULE_SAT)
+// Rules whose contacts have a normal and a depth each.
+#define IS_POINTWISE (CONTACT_RULE == RULE_VERTEX || CONTACT_RULE == RULE_CONSISTENT)
+// Rules that want a boundary face of either; those that are not canonical want one of both.
+#define WANTS_A_BOUNDARY (IS_POINTWISE || CONTACT_RULE == RULE_RESTRICTED)
 
 #define CONTACT_WORDS 2
 #define CONTACT_REALS 8
@@ -47,20 +56,44 @@ DEVICE void write_contact(const Encounter* pair, Point normal, Point at, real de
     value[7] = 0;
 }
 
-// The features that can make a contact, a bit each.
-DEVICE ulong candidate_features(const Encounter* pair) {
+// The features that can make a contact, a bit each. `boundary`: bits 0..3 the boundary faces of A, 4..7 of B.
+DEVICE ulong candidate_features(const Encounter* pair, uint boundary) {
+    if (CONTACT_RULE == RULE_VERTEX) return vertex_features(pair, boundary);
+    if (CONTACT_RULE == RULE_CONSISTENT) return consistent_features(pair, boundary);
     return CONTACT_RULE == RULE_PUBLISHED ? published_features(pair) : features_of(pair);
 }
 
-// Finds which features make contacts, reserves room for all of them at once, and writes what fits.
-DEVICE void append_contacts(const Encounter* pair, const Support* support, Naming naming, uint index,
-                            const Sink* sink) {
-    Point p;
+// A contact as it will be written; its point is local.
+typedef struct {
+    Point point, normal;
     real depth;
+} Touch;
+
+// Whether one of candidate_features makes a contact, and which.
+DEVICE int touch_at(const Encounter* pair, const Support* support, uint boundary, int swapped, int feature,
+                    Touch* touch) {
+    if (!IS_POINTWISE) {
+        touch->normal = support->normal;
+        const int kept = contact_at(pair, support, feature, &touch->point, &touch->depth);
+        if (IS_CANONICAL) touch->depth = support->depth;
+        return kept;
+    }
+    if (CONTACT_RULE == RULE_VERTEX)
+        vertex_contact(pair, boundary, feature, &touch->point, &touch->normal, &touch->depth);
+    else
+        consistent_contact(pair, feature, &touch->point, &touch->normal, &touch->depth);
+    if (swapped) touch->normal = times(touch->normal, (real)-1);
+    return 1;
+}
+
+// Finds which features make contacts, reserves room for all of them at once, and writes what fits.
+DEVICE void append_contacts(const Encounter* pair, const Support* support, uint boundary, Naming naming,
+                            uint index, const Sink* sink) {
+    Touch touch;
     ulong kept = 0;
     uint count = 0;
-    for (ulong rest = candidate_features(pair); rest != 0; rest &= rest - 1) {
-        if (!contact_at(pair, support, lowest(rest), &p, &depth)) continue;
+    for (ulong rest = candidate_features(pair, boundary); rest != 0; rest &= rest - 1) {
+        if (!touch_at(pair, support, boundary, naming.swapped, lowest(rest), &touch)) continue;
         kept |= rest & (~rest + 1);
         ++count;
     }
@@ -68,11 +101,10 @@ DEVICE void append_contacts(const Encounter* pair, const Support* support, Namin
     ulong slot = counter_add(sink->status + STATUS_CONTACTS, count);
     for (ulong rest = kept; rest != 0 && slot < sink->capacity; rest &= rest - 1) {
         const int feature = lowest(rest);
-        contact_at(pair, support, feature, &p, &depth);
+        touch_at(pair, support, boundary, naming.swapped, feature, &touch);
         sink->ids[slot * CONTACT_WORDS] = index;
         sink->ids[slot * CONTACT_WORDS + 1] = (uint)(IS_CANONICAL ? given_feature(naming, feature) : feature);
-        write_contact(pair, support->normal, p, IS_CANONICAL ? support->depth : depth,
-                      sink->values + slot * CONTACT_REALS);
+        write_contact(pair, touch.normal, touch.point, touch.depth, sink->values + slot * CONTACT_REALS);
         ++slot;
     }
 }
@@ -96,9 +128,21 @@ DEVICE int try_normals(const Candidates* all, uint index) {
     return !DECIDED && (apart || normals_separate(&pair, normal)) ? REJECTED : UNDECIDED;
 }
 
-// Without boundary faces on both sides a rule that asks for them has no normal and nothing is left to do.
-DEVICE int try_edges(const Candidates* all, uint index) {
+// The boundary faces of A, then of B, a bit each.
+DEVICE uint boundaries_of(const Candidates* all, uint index) {
     GLOBAL const uint* row = all->found + (ulong)index * PAIR_WORDS;
+    return boundary_of(all, row[0], row[2]) | boundary_of(all, row[1], row[3]) << 4;
+}
+
+// Without the boundary faces that a rule asks for it has no normal and nothing is left to do.
+DEVICE int has_no_normal(const Candidates* all, uint index) {
+    if (WANTS_A_BOUNDARY) return boundaries_of(all, index) == 0u;
+    if (IS_CANONICAL) return 0;
+    const uint boundary = boundaries_of(all, index);
+    return (boundary & 15u) == 0u || boundary >> 4 == 0u;
+}
+
+DEVICE int try_edges(const Candidates* all, uint index) {
     Point a[4];
     Point b[4];
     Encounter pair;
@@ -108,35 +152,43 @@ DEVICE int try_edges(const Candidates* all, uint index) {
         meet(a, b, &pair);
         if (edges_separate(&pair)) return REJECTED;
     }
-    if (IS_CANONICAL) return UNDECIDED;
-    return boundary_of(all, row[0], row[2]) == 0u || boundary_of(all, row[1], row[3]) == 0u ? INNER
-                                                                                            : UNDECIDED;
+    return has_no_normal(all, index) ? INNER : UNDECIDED;
+}
+
+// What gives all contacts of a pair their normal, in its own order.
+DEVICE Support support_of(const Encounter* pair, const Point* a, const Point* b, uint boundary) {
+    if (IS_POINTWISE) return whole_support(pair);
+    if (!IS_CANONICAL) {
+        Support support = support_at(pair, opposing_face(pair, boundary & 15u, boundary >> 4));
+        if (CONTACT_RULE == RULE_PUBLISHED) loosen(pair, &support);
+        return support;
+    }
+    const Axes axes = CONTACT_RULE == RULE_RESTRICTED ? boundary_axes(boundary) : all_axes();
+    Support support = best_axis(pair, a, b, axes, CONTACT_RULE == RULE_GROWTH && !is_concentric(pair));
+    if (CONTACT_RULE == RULE_CLIP) clip_support(pair, &support);
+    if (CONTACT_RULE == RULE_GROWTH) support.depth = (real)0 - common_extent(pair, &support);
+    return support;
 }
 
 DEVICE void make_contacts(const Candidates* all, uint index, const Sink* sink) {
-    GLOBAL const uint* row = all->found + (ulong)index * PAIR_WORDS;
     Point a[4];
     Point b[4];
     Encounter pair;
     load_pair(all, index, a, b);
+    uint boundary = boundaries_of(all, index);
     Naming naming = {0u, 0u, 0};
-    if (IS_CANONICAL) naming = canonical(a, b);
+    if (IS_CANONICAL) {
+        naming = canonical(a, b);
+        boundary = canonical_faces(naming, boundary);
+    }
     meet(a, b, &pair);
     find_normals(a, pair.solid[0].normal);
     find_normals(b, pair.solid[1].normal);
     NO_UNROLL for (int i = 0; i < 8; ++i) pair.solid[i / 4].normal[i % 4] =
         unit(pair.solid[i / 4].normal[i % 4]);
-    Support support;
-    if (IS_CANONICAL) {
-        support = least_translation(&pair, a, b);
-        if (CONTACT_RULE == RULE_CLIP) clip_support(&pair, &support);
-        if (naming.swapped) support.normal = times(support.normal, (real)-1);
-    } else {
-        support = support_at(
-            &pair, opposing_face(&pair, boundary_of(all, row[0], row[2]), boundary_of(all, row[1], row[3])));
-        if (CONTACT_RULE == RULE_PUBLISHED) loosen(&pair, &support);
-    }
-    append_contacts(&pair, &support, naming, index, sink);
+    Support support = support_of(&pair, a, b, boundary);
+    if (naming.swapped) support.normal = times(support.normal, (real)-1);
+    append_contacts(&pair, &support, boundary, naming, index, sink);
 }
 
 // A work-group's pairs that wait for the next step, so that work-items which step together all have work.

@@ -35,7 +35,26 @@ unsigned given_feature(unsigned feature, const Sorted<Real>& own, const Sorted<R
     return 8 + 24 * given_owner + 4 * number + other.names[feature % 4];
 }
 
-bool is_canonical(ContactRule rule) { return rule == ContactRule::sat || rule == ContactRule::clip; }
+bool is_canonical(ContactRule rule) {
+    return rule != ContactRule::opposing && rule != ContactRule::published;
+}
+
+/// Bit i of the given faces as that of the sorted corner it is opposite to.
+template<class Real>
+unsigned sorted_faces(unsigned given, const Sorted<Real>& sorted) {
+    unsigned faces = 0;
+    for (unsigned i = 0; i < 4; ++i)
+        if ((given & 1u << sorted.names[i]) != 0) faces |= 1u << i;
+    return faces;
+}
+
+template<class Real>
+std::vector<Contact<Real>> sorted_contacts(const ReferencePair<Real>& pair, ContactRule rule,
+                                           const Boundaries& boundaries) {
+    if (rule == ContactRule::vertex) return vertex_contacts(pair, boundaries);
+    if (rule == ContactRule::consistent) return consistent_contacts(pair, boundaries);
+    return axis_contacts(pair, rule, boundaries);
+}
 
 template<class Real>
 Corners<double> widened(const Corners<Real>& corners) {
@@ -84,18 +103,23 @@ bool meets(ReferencePair<Real>& pair, const Corners<Real>& a, const Corners<Real
 
 template<class Real>
 std::vector<Contact<Real>> canonical_contacts(const Corners<Real>& a, const Corners<Real>& b,
-                                              const ContactSettings& settings, ContactCounts& counts) {
+                                              const Boundaries& given, const ContactSettings& settings,
+                                              ContactCounts& counts) {
     if (!finite(a) || !finite(b)) {
         ++counts.degenerate;
         return {};
     }
     Sorted<Real> first(a), second(b);
+    Boundaries boundaries{sorted_faces(given[0], first), sorted_faces(given[1], second)};
     const bool swapped = second.corners < first.corners;
-    if (swapped) std::swap(first, second);
+    if (swapped) {
+        std::swap(first, second);
+        std::swap(boundaries[0], boundaries[1]);
+    }
     ReferencePair<Real> pair;
     if (!meets(pair, first.corners, second.corners, settings.decision != DecisionPrecision::fp32, counts))
         return {};
-    auto contacts = translation_contacts(pair, settings.rule == ContactRule::clip);
+    auto contacts = sorted_contacts(pair, settings.rule, boundaries);
     for (auto& contact : contacts) {
         const unsigned owner = contact.feature < 8 ? contact.feature / 4 : contact.feature < 32 ? 0 : 1;
         const unsigned given_owner = swapped ? 1 - owner : owner;
@@ -119,11 +143,12 @@ std::vector<Contact<Real>> reference_contacts(const Corners<Real>& a, const Corn
         ++counts.rejected;
         return {};
     }
-    if (is_canonical(settings.rule)) return canonical_contacts(a, b, settings, counts);
+    const Boundaries boundaries{boundary_a, boundary_b};
+    if (is_canonical(settings.rule)) return canonical_contacts(a, b, boundaries, settings, counts);
     ReferencePair<Real> pair;
     if (!meets(pair, a, b, settings.decision != DecisionPrecision::fp32, counts)) return {};
-    return settings.rule == ContactRule::published ? published_contacts(pair, boundary_a, boundary_b)
-                                                   : opposing_contacts(pair, boundary_a, boundary_b);
+    return settings.rule == ContactRule::published ? published_contacts(pair, boundaries)
+                                                   : opposing_contacts(pair, boundaries);
 }
 
 template std::vector<Contact<float>> reference_contacts(const Corners<float>&, const Corners<float>&,

@@ -16,14 +16,16 @@ using Corners = std::array<std::array<Real, 3>, 4>;
 
 /// A point where two tetrahedra touch. `feature`: 0..3 corner of A in B, 4..7 corner of B in A,
 /// 8 + 4 edge + face: A's edge through B's face, 32 + 4 edge + face: B's edge through A's face, with edges
-/// 01 02 03 12 13 23 and a face named by the corner opposite it.
+/// 01 02 03 12 13 23 and a face named by the corner opposite it. Of rule consistent the edge's inner end,
+/// with the face that gives the normal.
 template<class Real>
 struct Contact {
     unsigned feature = 0;
     std::array<Real, 3> point{};
-    std::array<Real, 3> normal{}; ///< unit, out of A; the same for all contacts of a pair
-    /// Negative inside. Rules opposing and published: signed distance from A's face; sat and clip: of the
-    /// pair.
+    /// Unit, out of A; the same for all contacts of a pair but by rules vertex and consistent.
+    std::array<Real, 3> normal{};
+    /// Negative inside. Signed distance from the face that gives the normal by rules opposing, published,
+    /// vertex and consistent, of the pair by the others.
     Real depth = 0;
 
     bool operator==(const Contact&) const = default;

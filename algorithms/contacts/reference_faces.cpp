@@ -7,12 +7,12 @@ namespace tandem::contact_reference {
 namespace {
 
 template<class Real>
-std::optional<unsigned> opposing(const ReferencePair<Real>& pair, unsigned boundary_a, unsigned boundary_b) {
+std::optional<unsigned> opposing(const ReferencePair<Real>& pair, const Boundaries& boundaries) {
     std::optional<unsigned> best;
     Real least = 0;
     for (unsigned a = 0; a < 4; ++a)
         for (unsigned b = 0; b < 4; ++b) {
-            if ((boundary_a & 1u << a) == 0 || (boundary_b & 1u << b) == 0) continue;
+            if ((boundaries[0] & 1u << a) == 0 || (boundaries[1] & 1u << b) == 0) continue;
             const Real value = dot(pair.solids[0].normals[a], pair.solids[1].normals[b]);
             if (best && value >= least) continue;
             best = a;
@@ -38,17 +38,15 @@ std::vector<Contact<Real>> kept(const ReferencePair<Real>& pair, unsigned face,
 } // namespace
 
 template<class Real>
-std::vector<Contact<Real>> opposing_contacts(const ReferencePair<Real>& pair, unsigned boundary_a,
-                                             unsigned boundary_b) {
-    const auto face = opposing(pair, boundary_a, boundary_b);
+std::vector<Contact<Real>> opposing_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries) {
+    const auto face = opposing(pair, boundaries);
     if (!face) return {};
     return kept(pair, *face, pair.meetings(), Real(0));
 }
 
 template<class Real>
-std::vector<Contact<Real>> published_contacts(const ReferencePair<Real>& pair, unsigned boundary_a,
-                                              unsigned boundary_b) {
-    const auto face = opposing(pair, boundary_a, boundary_b);
+std::vector<Contact<Real>> published_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries) {
+    const auto face = opposing(pair, boundaries);
     if (!face) return {};
     const Real tolerance = 10 * std::ldexp(Real(1), -23) * pair.scale;
     std::vector<Meeting<Real>> meetings;
@@ -71,9 +69,9 @@ std::vector<Contact<Real>> published_contacts(const ReferencePair<Real>& pair, u
     return kept(pair, *face, meetings, tolerance);
 }
 
-template std::vector<Contact<float>> opposing_contacts(const ReferencePair<float>&, unsigned, unsigned);
-template std::vector<Contact<double>> opposing_contacts(const ReferencePair<double>&, unsigned, unsigned);
-template std::vector<Contact<float>> published_contacts(const ReferencePair<float>&, unsigned, unsigned);
-template std::vector<Contact<double>> published_contacts(const ReferencePair<double>&, unsigned, unsigned);
+template std::vector<Contact<float>> opposing_contacts(const ReferencePair<float>&, const Boundaries&);
+template std::vector<Contact<double>> opposing_contacts(const ReferencePair<double>&, const Boundaries&);
+template std::vector<Contact<float>> published_contacts(const ReferencePair<float>&, const Boundaries&);
+template std::vector<Contact<double>> published_contacts(const ReferencePair<double>&, const Boundaries&);
 
 } // namespace tandem::contact_reference

@@ -139,16 +139,23 @@ private:
     }
 };
 
-/// Contacts of a loaded pair by each rule, in ascending order of feature. Rules sat and clip want it in
+/// Bits of the boundary faces of A and of B.
+using Boundaries = std::array<unsigned, 2>;
+
+/// Contacts of a loaded pair by each rule, in ascending order of feature. All but the first two want it in
 /// canonical order.
 template<class Real>
-std::vector<Contact<Real>> opposing_contacts(const ReferencePair<Real>& pair, unsigned boundary_a,
-                                             unsigned boundary_b);
+std::vector<Contact<Real>> opposing_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
 template<class Real>
-std::vector<Contact<Real>> published_contacts(const ReferencePair<Real>& pair, unsigned boundary_a,
-                                              unsigned boundary_b);
+std::vector<Contact<Real>> published_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
+/// Rules sat, clip, restricted and growth, which have one normal and depth a pair.
 template<class Real>
-std::vector<Contact<Real>> translation_contacts(const ReferencePair<Real>& pair, bool clip);
+std::vector<Contact<Real>> axis_contacts(const ReferencePair<Real>& pair, ContactRule rule,
+                                         const Boundaries& boundaries);
+template<class Real>
+std::vector<Contact<Real>> vertex_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
+template<class Real>
+std::vector<Contact<Real>> consistent_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
 
 /// What arithmetic in Real is certain of: 1 apart, 2 they meet, 0 neither. Order of corners and of the two
 /// makes no difference.

@@ -91,6 +91,17 @@ TEST_P(ContactConformance, EveryDecisionEqualsTheReferenceInEveryResidency) {
                                  {"seed_threshold", "1"}});
 }
 
+TEST_P(ContactConformance, RulesThatAskForTheBoundaryEqualTheReference) {
+    const auto sat = expect_right("chunked", {{"contact_rule", "sat"}});
+    const auto restricted = expect_right("gproximity", {{"contact_rule", "restricted"}});
+    EXPECT_EQ(restricted.contacts, sat.contacts); // every tetrahedron of a stone has boundary faces
+    const auto vertex = expect_right("chunked", {{"contact_rule", "vertex"}, {"decision", "recheck"}});
+    EXPECT_LT(vertex.contacts, restricted.contacts);
+    expect_right("gproximity",
+                 {{"contact_rule", "consistent"}, {"precision", "double"}, {"contact_capacity", "1"}});
+    expect_right("chunked", {{"contact_rule", "growth"}, {"residency", "published"}});
+}
+
 TEST_P(ContactConformance, ExactTellsApartWhatTheOracleDoes) {
     const auto session = prepare("chunked", {{"decision", "exact"}});
     const auto result = session->run(frame, all_pairs(scene, *session));

@@ -56,7 +56,8 @@ void prepare_list(Device& device, Precision precision) {
 void prepare_contacts(Device& device) {
     const auto& traversal = algorithm("chunked");
     for (const std::string precision : {"float", "double"})
-        for (const std::string rule : {"opposing", "published", "sat", "clip"})
+        for (const std::string rule :
+             {"opposing", "published", "sat", "clip", "restricted", "vertex", "consistent", "growth"})
             for (const std::string decision : {"fp32", "recheck", "fp64", "exact"})
                 if (rule == "sat" || decision == "fp32" || decision == "recheck")
                     prepare(device, traversal, traversal.presets().front().values,

@@ -35,12 +35,12 @@ void add(Errors& errors, const OraclePair& pair, const ContactTruth& truth, Cont
     ++errors.pairs;
     errors.silent += contacts.empty() ? 1 : 0;
     if (contacts.empty()) return;
-    double depth = -1e300;
-    for (const auto& contact : contacts) depth = std::max(depth, -static_cast<double>(contact.depth));
+    const auto& deepest = *std::min_element(contacts.begin(), contacts.end(),
+                                            [](const auto& p, const auto& q) { return p.depth < q.depth; });
     std::array<double, 3> normal;
-    std::copy_n(contacts[0].normal.begin(), 3, normal.begin());
+    std::copy_n(deepest.normal.begin(), 3, normal.begin());
     const double size = std::max(longest_edge(pair.a), longest_edge(pair.b));
-    errors.depth.push_back(std::abs(depth - truth.depth) / (0x1p-24 * size));
+    errors.depth.push_back(std::abs(-static_cast<double>(deepest.depth) - truth.depth) / (0x1p-24 * size));
     errors.angle.push_back(nearest_angle(truth.normals, normal));
 }
 
@@ -70,7 +70,11 @@ void print(const char* family, const char* rule, const Errors& e) {
 constexpr std::pair<ContactRule, const char*> rules[] = {{ContactRule::opposing, "opposing"},
                                                          {ContactRule::published, "published"},
                                                          {ContactRule::sat, "sat"},
-                                                         {ContactRule::clip, "clip"}};
+                                                         {ContactRule::clip, "clip"},
+                                                         {ContactRule::restricted, "restricted"},
+                                                         {ContactRule::vertex, "vertex"},
+                                                         {ContactRule::consistent, "consistent"},
+                                                         {ContactRule::growth, "growth"}};
 
 TEST(ContactsAccuracy, SatFindsTheLeastTranslation) {
     for (const auto family : {Family::generic, Family::far_origin, Family::sliver, Family::scale_ratio})
@@ -78,7 +82,7 @@ TEST(ContactsAccuracy, SatFindsTheLeastTranslation) {
             const auto errors = errors_of(rule, family);
             print(name(family), name_of_rule, errors);
             ASSERT_GT(errors.pairs, 20u) << name(family);
-            if (rule != ContactRule::sat) continue;
+            if (rule != ContactRule::sat && rule != ContactRule::restricted) continue;
             EXPECT_LT(Errors::at(errors.depth, 1), 16) << name(family);
         }
     TouchMaker maker(3);

@@ -197,6 +197,19 @@ void add_close_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
             pairs.push_back({narrowed<Real>(pair.a), narrowed<Real>(pair.b)});
 }
 
+/// Pairs of one centre, exactly: of each the mirror image in its centre.
+template<class Real>
+void add_concentric_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
+    PairMaker<Real> maker;
+    for (unsigned i = 0; i < 200; ++i) {
+        const auto a = changed(maker.make(PairMaker<Real>::lattice).a, [](Real x) { return 2 * x; });
+        auto b = a;
+        for (unsigned k = 0; k < 3; ++k)
+            for (auto& corner : b) corner[k] = (a[0][k] + a[1][k] + a[2][k] + a[3][k]) / 2 - corner[k];
+        pairs.push_back({a, b});
+    }
+}
+
 template<class Real>
 class ContactsKernel : public testing::Test {
 protected:
@@ -246,12 +259,19 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReference) {
     using enum DecisionPrecision;
     auto pairs = random_pairs<TypeParam>(7000);
     add_close_pairs(pairs);
+    add_concentric_pairs(pairs);
     const auto count = static_cast<std::uint32_t>(pairs.size());
     for (const ContactSettings settings : {ContactSettings{published, fp32},
                                            {sat, fp32},
                                            {clip, fp32},
+                                           {restricted, fp32},
+                                           {vertex, fp32},
+                                           {consistent, fp32},
+                                           {growth, fp32},
                                            {opposing, recheck},
                                            {clip, recheck},
+                                           {restricted, recheck},
+                                           {consistent, recheck},
                                            {sat, fp64}}) {
         const Expected<TypeParam> expected(pairs, settings);
         ASSERT_GT(expected.total, pairs.size() / 20);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Rules sat and clip do not depend on how a pair is named, and tell bodies that only touch from bodies that
-// do not.
+// The rules in canonical order do not depend on how a pair is named, and tell bodies that only touch from
+// bodies that do not.
 #include "contacts_pairs.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 namespace tandem::test {
 namespace {
@@ -15,6 +16,13 @@ using Order = std::array<unsigned, 4>;
 template<class Real>
 Corners<Real> reordered(const Corners<Real>& c, const Order& order) {
     return {c[order[0]], c[order[1]], c[order[2]], c[order[3]]};
+}
+
+/// Bit i: the face opposite corner i of the reordered tetrahedron.
+unsigned reordered(unsigned faces, const Order& order) {
+    unsigned result = 0;
+    for (unsigned i = 0; i < 4; ++i) result |= (faces >> order[i] & 1u) << i;
+    return result;
 }
 
 constexpr unsigned edge_ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
@@ -54,7 +62,9 @@ protected:
 using Reals = testing::Types<float, double>;
 TYPED_TEST_SUITE(ContactsRules, Reals);
 
-constexpr ContactRule canonical_rules[] = {ContactRule::sat, ContactRule::clip};
+constexpr ContactRule canonical_rules[] = {ContactRule::sat,        ContactRule::clip,
+                                           ContactRule::restricted, ContactRule::vertex,
+                                           ContactRule::consistent, ContactRule::growth};
 
 TYPED_TEST(ContactsRules, OrderOfCornersChangesNamesOnly) {
     std::size_t seen = 0;
@@ -68,11 +78,13 @@ TYPED_TEST(ContactsRules, OrderOfCornersChangesNamesOnly) {
                 auto other = pair;
                 other.a = reordered(pair.a, a);
                 other.b = reordered(pair.b, b);
+                other.boundary_a = reordered(pair.boundary_a, a);
+                other.boundary_b = reordered(pair.boundary_b, b);
                 ContactCounts other_counts;
                 auto found = this->contacts(other, rule, other_counts);
                 for (auto& contact : found) contact.feature = original(contact.feature, a, b);
                 this->sort(found);
-                ASSERT_EQ(found, expected) << "pair " << i;
+                ASSERT_EQ(found, expected) << "pair " << i << " rule " << static_cast<int>(rule);
                 ASSERT_EQ(other_counts, counts) << "pair " << i;
                 std::next_permutation(a.begin(), a.end());
                 if (turn % 5 == 0) std::next_permutation(b.begin(), b.end());
@@ -90,14 +102,15 @@ TYPED_TEST(ContactsRules, SwappingTheTwoTurnsTheNormalAndNothingElse) {
         for (const auto rule : canonical_rules) {
             ContactCounts counts, other_counts;
             const auto expected = this->contacts(pair, rule, counts);
-            auto found = this->contacts({pair.b, pair.a}, rule, other_counts);
+            auto found =
+                this->contacts({pair.b, pair.a, pair.boundary_b, pair.boundary_a}, rule, other_counts);
             for (auto& contact : found) {
                 auto& f = contact.feature;
                 f = f < 8 ? (f + 4) % 8 : f < 32 ? f + 24 : f - 24;
                 for (auto& x : contact.normal) x = TypeParam(0) - x;
             }
             this->sort(found);
-            ASSERT_EQ(found, expected) << "pair " << i;
+            ASSERT_EQ(found, expected) << "pair " << i << " rule " << static_cast<int>(rule);
             ASSERT_EQ(other_counts, counts) << "pair " << i;
             seen += expected.size();
         }
@@ -127,14 +140,21 @@ TYPED_TEST(ContactsRules, PowersOfTwoScaleContactsExactly) {
     }
 }
 
-TYPED_TEST(ContactsRules, EveryNumberIsFiniteAndEveryNormalOfLengthOne) {
+TYPED_TEST(ContactsRules, EveryNumberIsFiniteEveryNormalOfLengthOneEveryFeatureOnce) {
+    constexpr ContactRule all[] = {ContactRule::published,  ContactRule::sat,    ContactRule::clip,
+                                   ContactRule::restricted, ContactRule::vertex, ContactRule::consistent,
+                                   ContactRule::growth};
     std::size_t seen = 0;
     for (int i = 0; i < 7000; ++i) {
         const auto pair = this->next(i);
-        for (const auto rule : {ContactRule::published, ContactRule::sat, ContactRule::clip}) {
+        for (const auto rule : all) {
             ContactCounts counts;
+            int last = -1;
             for (const auto& contact : this->contacts(pair, rule, counts)) {
                 const auto& n = contact.normal;
+                ASSERT_LT(last, static_cast<int>(contact.feature));
+                last = static_cast<int>(contact.feature);
+                ASSERT_LT(last, 56);
                 for (const auto x : contact.point) ASSERT_TRUE(std::isfinite(x));
                 ASSERT_TRUE(std::isfinite(contact.depth));
                 ASSERT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1,
@@ -151,13 +171,16 @@ TYPED_TEST(ContactsRules, DepthAndNormalOfABoxLikeOverlapAreKnown) {
     const Corners<TypeParam> block{{{-4, -4, 0}, {4, -4, 0}, {0, 4, 0}, {0, 0, -4}}};
     const Corners<TypeParam> wedge{
         {{0, 0, 3}, {-1, -1, TypeParam(-0.25)}, {1, -1, TypeParam(-0.25)}, {0, 1, TypeParam(-0.25)}}};
+    const std::map<ContactRule, std::size_t> sizes{{ContactRule::sat, 6},        {ContactRule::clip, 6},
+                                                   {ContactRule::restricted, 6}, {ContactRule::vertex, 3},
+                                                   {ContactRule::consistent, 3}, {ContactRule::growth, 6}};
     for (const auto rule : canonical_rules) {
         ContactCounts counts;
         const auto found = this->contacts({block, wedge}, rule, counts);
-        ASSERT_EQ(found.size(), 6u);
+        ASSERT_EQ(found.size(), sizes.at(rule));
         for (const auto& contact : found) {
             EXPECT_NEAR(contact.depth, -0.25, 1e-6);
-            EXPECT_NEAR(contact.normal[2], 1, rule == ContactRule::sat ? 1e-6 : 1e-3);
+            EXPECT_NEAR(contact.normal[2], 1, rule == ContactRule::clip ? 1e-3 : 1e-6);
         }
     }
 }
@@ -221,7 +244,7 @@ Real deepest_of_touching_cubes(ContactRule rule, std::size_t& sideways) {
 
 TYPED_TEST(ContactsRules, CubesThatTouchAreNotDeepBySatAndClip) {
     std::size_t sideways = 0;
-    for (const auto rule : canonical_rules)
+    for (const auto rule : {ContactRule::sat, ContactRule::clip, ContactRule::growth})
         EXPECT_LE(deepest_of_touching_cubes<TypeParam>(rule, sideways),
                   32 * std::numeric_limits<TypeParam>::epsilon());
     EXPECT_EQ(sideways, 0u);

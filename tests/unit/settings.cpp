@@ -80,10 +80,12 @@ TEST(Settings, DecisionsWithCertaintyNeedDouble) {
                     with({{"decision", "fp16"}});
                 }),
                 HasSubstr("choose one of fp32, recheck, fp64, exact"));
-    EXPECT_THAT(message_of([] {
-                    with({{"contact_rule", "clop"}});
-                }),
-                HasSubstr("choose one of opposing, published, sat, clip, none"));
+    EXPECT_THAT(
+        message_of([] {
+            with({{"contact_rule", "clop"}});
+        }),
+        HasSubstr("choose one of opposing, published, sat, clip, restricted, vertex, consistent, growth, "
+                  "none"));
 }
 
 TEST(Settings, EveryPresetResolves) {
