@@ -38,5 +38,5 @@ function(tandem_kernels target)
     # verdicts then differ from those of every other build. Addresses are still checked.
     list(APPEND options -fno-sanitize=bounds)
   endif()
-  set_source_files_properties(${generated} PROPERTIES COMPILE_OPTIONS "${options}")
+  set_source_files_properties(${generated} PROPERTIES COMPILE_OPTIONS "${options}" SKIP_PRECOMPILE_HEADERS ON)
 endfunction()

@@ -13,6 +13,7 @@
 #include <atomic>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <mutex>
 #include <optional>
 #include <thread>
 
@@ -34,6 +35,20 @@ const std::optional<cuda::Nvrtc>& nvrtc() {
         }
     }();
     return compiler;
+}
+
+/// What NVRTC makes of a program for sm_90, once for all tests: compiling is nearly all that they do.
+const cuda::Image& for_hopper(const KernelSource& source, const Defines& defines) {
+    static std::map<std::pair<std::string, Defines>, cuda::Image> images;
+    static std::mutex mutex;
+    const std::pair key{std::string(source.name), defines};
+    {
+        const std::lock_guard lock(mutex);
+        if (const auto known = images.find(key); known != images.end()) return known->second;
+    }
+    auto image = nvrtc()->compile(source, defines, 90);
+    const std::lock_guard lock(mutex);
+    return images.try_emplace(key, std::move(image)).first->second;
 }
 
 /// Compiles what the sessions of the given settings ask for.
@@ -139,7 +154,7 @@ TEST(Nvrtc, EveryProgramOfThePlanForHopper) {
     std::atomic<int> entries = 0;
     for_each(programs,
              [&](const KernelSource& source, const Defines& defines, const std::set<std::string>& names) {
-                 const auto image = nvrtc()->compile(source, defines, 90);
+                 const auto& image = for_hopper(source, defines);
                  EXPECT_EQ(image.target, "sm_90 cubin");
                  EXPECT_GT(image.bytes.size(), 1000u) << source.name;
                  for (const auto& name : names) {
@@ -161,7 +176,7 @@ TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
     if (!can_compile(programs)) return;
     for (const auto& [key, names] : programs) {
         const auto& [file, defines] = key;
-        const auto image = nvrtc()->compile(kernel_source(file), defines, 90);
+        const auto& image = for_hopper(kernel_source(file), defines);
         for (const auto& name : names) {
             const auto use = use_of(image.log, name);
             fmt::print("{:<40} {:<20} {:>3} registers {:>4} bytes spilled{}\n", file, name, use.registers,
@@ -187,7 +202,7 @@ TEST(Nvrtc, ContactRulesAndDecisionsKeepTheirBudget) {
     for_each(device.asked(),
              [&](const KernelSource& source, const Defines& defines, const std::set<std::string>& names) {
                  if (defines.contains("PRECISION") && defines.at("PRECISION") == "64") return;
-                 const auto image = nvrtc()->compile(source, defines, 90);
+                 const auto& image = for_hopper(source, defines);
                  for (const auto& name : names) {
                      const auto budget = budgets.find(name);
                      if (budget == budgets.end()) continue;
