@@ -180,7 +180,9 @@ Json contact_errors_json(const AnswerErrors& e) {
             {"depth_ulps", spread_json(c.depth_ulps)},
             {"normal_degrees", spread_json(c.normal_degrees)},
             {"point", spread_json(c.point)},
-            {"hausdorff", spread_json(c.hausdorff)}};
+            {"hausdorff", spread_json(c.hausdorff)},
+            {"volume_relative", spread_json(c.volume_relative)},
+            {"no_volume", c.no_volume}};
 }
 
 Json drift_json(const AnswerErrors& e) {

@@ -113,18 +113,18 @@ std::string p99(const std::vector<double>& samples) {
 }
 
 void print_header() {
-    fmt::print("{:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9}  cell\n", "ms/frame", "missed", "false",
-               "ratio", "no answer", "depth/uL", "degrees", "point/L");
+    fmt::print("{:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  cell\n", "ms/frame", "missed",
+               "false", "ratio", "no answer", "depth/uL", "degrees", "point/L", "volume");
 }
 
 /// Errors of contacts are 99th percentiles.
 void print_row(const Cell& cell, const Measurement& m) {
     const auto& e = *m.errors;
     const auto contacts = e.contacts.value_or(ContactErrors{});
-    fmt::print("{:>9.3g} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9}  {}{}\n", frame_ms(m), e.missed(),
+    fmt::print("{:>9.3g} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  {}{}\n", frame_ms(m), e.missed(),
                e.pairs.disjoint, number(e.candidate_ratio()), contacts.unanswered, p99(contacts.depth_ulps),
-               p99(contacts.normal_degrees), p99(contacts.point), describe(cell),
-               e.missed() > 0 ? "  MISSES" : "");
+               p99(contacts.normal_degrees), p99(contacts.point), p99(contacts.volume_relative),
+               describe(cell), e.missed() > 0 ? "  MISSES" : "");
 }
 
 /// All cells on one scene; the exit code.
@@ -179,7 +179,9 @@ int accuracy_command(const AccuracyOptions& options) {
         }
     fmt::print("ms of the whole frame; ratio: candidates per pair that meets; errors of contacts are 99th "
                "percentiles, u half a unit in the\n"
-               "last place of 1, L the longest edge; MISSES: pairs that meet are not among the candidates\n");
+               "last place of 1, L the longest edge; volume: of the points' hull against the exact "
+               "intersection's, / exact; MISSES: pairs\n"
+               "that meet are not among the candidates\n");
     return code;
 }
 
