@@ -196,14 +196,15 @@ class CommandLine(Case):
     def test_schema_can_fail(self):
         """Every field of a real record: taken away, of another type, null, or with another one beside it."""
         out = self.work / "schema.jsonl"
-        tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "opencl:0", "--algorithm", "gproximity",
-               "--truth", "contacts", "--out", out)
+        flat, _ = self.flawed("schema.msh")
+        tandem("run", "--mesh", flat, "--mesh", self.good, "--device", "opencl:0", "--algorithm", "gproximity", "--truth", "contacts",
+               "--out", out)
         record = self.records(out)[0]
         maps, nullable = {"settings", "defines"}, {"failure", "agreement", "commit", "processor", "clocks_mhz", "hardware", "device_span_ns",
                                                    "registers", "local_bytes", "spill_bytes", "missed_upper95", "candidate_ratio", "decisions",
                                                    "depth_relative", "depth_ulps", "normal_degrees", "point", "hausdorff", "volume_relative"}
         nullable_paths = {("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift")}
-        since = {"unsure", "uncertain", "truth", "volume_relative", "no_volume"}  # records from before each lack it
+        since = {"unsure", "uncertain", "truth", "inputs", "volume_relative", "no_volume"}  # records from before each lack it
         seen = set()
         for path in places(record):
             shape = tuple(0 if isinstance(name, int) else name for name in path)
@@ -348,13 +349,87 @@ class CommandLine(Case):
         status, out, errors = tandem("check", "hard:all:pairs=2,together=2", *fast)
         self.assertEqual((status, errors), (0, []), out)
         rows = [line for line in out.splitlines() if line.startswith("hard:")]
-        self.assertEqual(len(rows), 43)
-        self.assertIn("refused: body 0: vertex 0 is not finite", rows[9])
+        self.assertEqual(len(rows), 44)
+        refusal = "tetrahedra 2 not finite in 1 of 2 bodies: body 0 tetrahedron 0, 1 in frame 0; "
+        self.assertIn("refused: " + refusal, rows[9])
+        self.assertEqual(rows[10].split(), ["hard:not-finite", "1", "0", "0", "0", "0", "2", "0", "skipped:", "2"])
         self.assertIn("with rounding=safe nothing that meets is missed", out)
         self.bad("unknown family of hard cases 'tuch'; the nearest is 'touch'", "check", "hard:tuch")
         self.bad("difficulty=10 is impossible; give a number from 1 to 9", "run", "hard:touch:difficulty=10")
         self.bad("hard:all takes seed, pairs and together", "check", "hard:all:difficulty=1")
-        self.bad("body 0: vertex 0 is not finite", "run", "hard:not-finite")
+
+    def flawed(self, name):
+        """The bar with a flat tetrahedron across its first cube, the 25th, and its tetrahedra."""
+        points, tets = bar(4, (0, 0, 0))
+        tets = [*tets, [0, 1, 3, 2]]
+        return gmsh(self.work / name, points, tets), tets
+
+    def test_flawed_tetrahedra(self):
+        flat, _ = self.flawed("flat.msh")
+        meshes = ("--mesh", flat, "--mesh", self.good, "--pose", "0 0 0 1 0 0 0", "--pose", "-0.125 0.25 0 1 0 0 0")
+        found, inputs, keys = {}, {}, {}
+        for handling in ("flat", "skip"):
+            pairs, out = self.work / f"{handling}.csv", self.work / f"{handling}.jsonl"
+            for device in ("host", "opencl:0"):
+                status, text, errors = tandem("run", *meshes, "--degenerate", handling, "--device", device, "--algorithm", "chunked",
+                                              "--dump-pairs", pairs, "--out", out, "--repeat", 1)
+                self.assertEqual((status, errors), (0, []), text)
+                self.assertIn(": right: ", text)
+                part = {"flat": "take part as flat sets", "skip": "take no part"}[handling]
+                self.assertIn(f"tetrahedra 1 of zero volume in 1 of 2 bodies: body 0 tetrahedron 24 in frame 0; they {part}\n", text)
+                found[handling, device] = self.dump(pairs, "frame,body_a,tet_a,body_b,tet_b")[1]
+            record = self.records(out)[1]
+            inputs[handling], keys[handling] = record["error"]["inputs"], record["key"]
+            self.assertEqual(record["error"]["truth"]["missed_touching"] + record["error"]["truth"]["missed_overlapping"], 0)
+        self.assertEqual(found["flat", "host"], found["flat", "opencl:0"])
+        self.assertTrue(any(pair[2] == 24 for pair in found["flat", "host"]))
+        for device in ("host", "opencl:0"):
+            self.assertEqual(found["skip", device], [pair for pair in found["flat", "host"] if pair[2] != 24])
+        body = {"body": 0, "degenerate": 1, "non_finite": 0, "frame": 0, "first": [24]}
+        self.assertEqual(inputs["flat"], {"handling": "flat", "degenerate_elements": 1, "non_finite_elements": 0, "flawed_bodies": 1,
+                                          "bodies": [body]})
+        self.assertEqual(inputs["skip"], {**inputs["flat"], "handling": "skip"})
+        self.assertEqual(keys["skip"], keys["flat"].replace("|0:0|", "|0:0,degenerate=skip|"))
+        status, text, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--degenerate", "skip", "--device", "host",
+                                      "--repeat", 1, "--out", self.work / "none.jsonl")
+        self.assertEqual((status, errors), (0, []), text)
+        record = self.records(self.work / "none.jsonl")[0]
+        self.assertNotIn("degenerate", record["key"])
+        self.assertEqual((record["error"]["inputs"]["flawed_bodies"], record["error"]["inputs"]["bodies"]), (0, []))
+        out = self.work / "rejected.jsonl"
+        for command in ("run", "check", "accuracy"):
+            self.bad(["--degenerate reject: tetrahedra 1 of zero volume in 1 of 2 bodies: body 0 tetrahedron 24 in frame 0;", "flat or skip"],
+                     command, *meshes, "--degenerate", "reject", "--device", "host", "--out", out)
+        self.assertEqual(out.read_text() if out.exists() else "", "")
+        self.bad("--degenerate some: give flat, skip or reject", "run", "plates", "--degenerate", "some")
+        self.bad("--set degenerate=skip: it is said of frames, for all cells; give --degenerate skip", "run", "plates", "--set",
+                 "degenerate=skip")
+
+    def test_many_flawed_bodies_are_counted_and_the_first_named(self):
+        flat, _ = self.flawed("many.msh")
+        out = self.work / "many.jsonl"
+        meshes = [part for i in range(20) for part in ("--mesh", flat)]
+        status, text, errors = tandem("run", *meshes, "--device", "host", "--algorithm", "chunked", "--repeat", 1, "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        inputs = self.records(out)[0]["error"]["inputs"]
+        self.assertEqual((inputs["degenerate_elements"], inputs["flawed_bodies"]), (20, 20))
+        self.assertEqual([body["body"] for body in inputs["bodies"]], list(range(16)))
+        self.assertIn("body 3 tetrahedron 24 in frame 0; ...; they take part", text)
+
+    def test_numbers_that_are_not_finite(self):
+        scene = "hard:not-finite:pairs=4,together=2"
+        for command in ("run", "check", "accuracy"):
+            for handling in ((), ("--degenerate", "flat"), ("--degenerate", "reject")):
+                self.bad("4 not finite in 1 of 2 bodies: body 0 tetrahedron 0, 1, ... in frame 0;", command, scene, "--device", "host",
+                         *handling)
+        for arguments in (("check", scene), ("run", scene, "--repeat", 1)):
+            out = self.work / f"{arguments[0]}-finite.jsonl"
+            status, text, errors = tandem(*arguments, "--degenerate", "skip", "--out", out, "--truth", "contacts")
+            self.assertEqual((status, errors), (0, []), text)
+            self.assertIn("tetrahedra 4 not finite in 1 of 2 bodies: body 0 tetrahedron 0, 1, ... in frame 0; they take no part", text)
+            for record in self.records(out):
+                self.assertEqual((record["status"], sum(record["work"]["candidate_pairs"])), ("ok", 0))
+                self.assertEqual(record["error"]["inputs"]["non_finite_elements"], 4)
 
     def test_bad_scenes(self):
         empty = self.work / "empty.json"

@@ -82,14 +82,15 @@ std::vector<double> difficulties(const HardFamily& family) {
     return {sorted.begin(), sorted.end()};
 }
 
-/// hard:all as all families at several difficulties, less the one that is refused; other scenes as they are.
-std::vector<std::string> expand(const std::string& scene) {
+/// hard:all as all families at several difficulties, less the one that is refused unless what is not finite
+/// is skipped; other scenes as they are.
+std::vector<std::string> expand(const std::string& scene, Degenerate handling) {
     const auto families = expand_hard(scene);
     if (families.size() < 2) return {scene};
     std::vector<std::string> scenes;
     for (const auto& one : families) {
         const auto name = one.substr(5, one.find(':', 5) - 5); // hard:NAME or hard:NAME:...
-        if (name == "not-finite") continue;
+        if (name == "not-finite" && handling != Degenerate::skip) continue;
         for (const double difficulty : difficulties(hard_family(name)))
             scenes.push_back(fmt::format("{}{}difficulty={}", one,
                                          one.find(':', 5) == std::string::npos ? ":" : ",", difficulty));
@@ -172,7 +173,7 @@ int accuracy_command(const AccuracyOptions& options) {
     RecordFile file(options.run.out);
     int code = 0;
     for (const auto& given : scenes)
-        for (const auto& scene : expand(given)) {
+        for (const auto& scene : expand(given, options.run.degenerate)) {
             auto own = options.run;
             own.scene = scene;
             code = std::max(code, measure_scene(own, cells, file));

@@ -97,7 +97,9 @@ FrameTruth frame_truth(const Scene& scene, const Frame& frame, Precision precisi
     FrameTruth truth;
     const auto world = world_of(scene, frame, precision);
     std::vector<Boxes> boxes(world.size());
-    parallel_for(world.size(), [&](std::size_t body) { boxes[body] = Boxes(world[body]); });
+    parallel_for(world.size(), [&](std::size_t body) {
+        boxes[body] = frame.skipped.empty() ? Boxes(world[body]) : Boxes(world[body], frame.skipped[body]);
+    });
     for (std::uint32_t body = 0; body < boxes.size(); ++body)
         for (const auto tetrahedron : boxes[body].invalid) truth.invalid.push_back({body, tetrahedron});
     const auto bodies = near_bodies(scene, boxes);

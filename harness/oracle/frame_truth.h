@@ -24,8 +24,9 @@ struct FrameTruth {
 /// Called on the calling thread, now and then; `share` of the work done, in 0..1.
 using Report = std::function<void(double share, std::uint64_t decided)>;
 
-/// Decides every pair of tetrahedra of different bodies (not both fixed) on all cores. A pair it does not
-/// list does not meet: pairs are left out only where boxes, found without rounding, are apart.
+/// Decides every pair of tetrahedra of different bodies (not both fixed) on all cores, those that the frame
+/// skips left out. A pair it does not list does not meet: pairs are left out only where boxes, found without
+/// rounding, are apart.
 FrameTruth frame_truth(const Scene& scene, const Frame& frame, Precision precision,
                        const Report& report = {});
 

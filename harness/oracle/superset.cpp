@@ -35,9 +35,10 @@ bool boxes_meet(const Box& p, const Box& q) {
     return p[0] <= q[3] && q[0] <= p[3] && p[1] <= q[4] && q[1] <= p[4] && p[2] <= q[5] && q[2] <= p[5];
 }
 
-Boxes::Boxes(std::span<const TetraCorners> corners)
+Boxes::Boxes(std::span<const TetraCorners> corners, std::span<const std::uint32_t> skipped)
     : tetrahedra(corners.size(), empty_box), whole(empty_box) {
     for (std::uint32_t i = 0; i < corners.size(); ++i) {
+        if (std::binary_search(skipped.begin(), skipped.end(), i)) continue;
         bool finite = true;
         for (const auto& corner : corners[i])
             for (const double x : corner) finite &= std::isfinite(x);

@@ -15,14 +15,15 @@ using Box = std::array<double, 6>;
 bool boxes_meet(const Box& p, const Box& q);
 
 /// Boxes of a body's tetrahedra, and of all of them. Those with a coordinate that is not finite are empty
-/// boxes and listed.
+/// boxes and listed; those that are skipped are empty boxes.
 struct Boxes {
     std::vector<Box> tetrahedra;
     Box whole{};
     std::vector<std::uint32_t> invalid;
 
     Boxes() = default;
-    explicit Boxes(std::span<const TetraCorners> tetrahedra);
+    /// `skipped`: ascending.
+    explicit Boxes(std::span<const TetraCorners> tetrahedra, std::span<const std::uint32_t> skipped = {});
 };
 
 /// Adds every pair of valid tetrahedra of two bodies whose closed boxes meet: a superset of those that meet,
