@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import subprocess
 import sys
 import tempfile
@@ -20,10 +21,11 @@ PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
 
 
-def tandem(*arguments, environment=None, timeout=300):
-    """(exit code, standard output, lines of standard error less PoCL's own)."""
+def tandem(*arguments, environment=None, timeout=300, address_space=None):
+    """(exit code, standard output, lines of standard error less PoCL's own); with so many bytes of address space."""
+    limit = (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space))) if address_space else None
     done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, timeout=timeout,
-                          env={**os.environ, **(environment or {})})
+                          env={**os.environ, **(environment or {})}, preexec_fn=limit)
     lines = [line for line in done.stderr.splitlines() if line.strip() and not line.rstrip().endswith("generated.")]
     return done.returncode, done.stdout, lines
 
@@ -430,6 +432,36 @@ class CommandLine(Case):
             for record in self.records(out):
                 self.assertEqual((record["status"], sum(record["work"]["candidate_pairs"])), ("ok", 0))
                 self.assertEqual(record["error"]["inputs"]["non_finite_elements"], 4)
+
+    def test_a_truth_too_large_for_memory(self):
+        """Slivers along a diagonal: their boxes meet, all with all, and take more than there is; their 18-DOPs do not. Then
+        many frames of which each has room, but not all have."""
+        count = 9000
+
+        def slivers(path, shift):
+            points, tets = [], []
+            for i in range(count):
+                x, y = 1e-4 * i + shift, -1e-4 * i - shift
+                tets.append(list(range(len(points), len(points) + 4)))
+                points += [(x, y, 0), (x + 1e-6, y, 0), (x, y + 1e-6, 0), (x + 10, y + 10, 10)]
+            return gmsh(path, points, tets)
+
+        meshes = ("--mesh", slivers(self.work / "slivers.msh", 0), "--mesh", slivers(self.work / "others.msh", 5e-5))
+        environment = {"OCL_ICD_VENDORS": str(self.work), "MALLOC_ARENA_MAX": "1"}
+        limited = lambda *more: tandem("run", *meshes, "--device", "host", "--algorithm", "chunked", "--repeat", 1, "--no-check", *more,
+                                       environment=environment, address_space=3 << 30)
+        status, _, errors = limited()
+        self.assertEqual((status, len(errors)), (2, 1), errors)
+        self.assertRegex(errors[0], r"the exact truth of 18000 tetrahedra with at least \d+ pairs near each other may take \d.\d\d GiB, "
+                                    r"and [12].\d\d GiB are free; choose --truth none, fewer frames or fewer bodies")
+        self.assertEqual(limited("--truth", "none")[::2], (0, []))
+        frames = ("run", "hard:ties:pairs=300000,together=1000", "--device", "host", "--algorithm", "chunked", "--repeat", 1,
+                  "--no-check", "--set", "contact_rule=none")
+        status, _, errors = tandem(*frames, environment=environment, address_space=3 << 30)
+        self.assertEqual((status, len(errors)), (2, 1), errors)
+        self.assertIn("the exact truth of 300 frames like the first takes", errors[0])
+        status, _, errors = tandem(*frames, "--frames", "0:1", environment=environment, address_space=3 << 30)
+        self.assertEqual((status, errors), (0, []))
 
     def test_bad_scenes(self):
         empty = self.work / "empty.json"
