@@ -2,6 +2,7 @@
 #pragma once
 
 #include "harness/accuracy/truths.h"
+#include "harness/flaws.h"
 #include "harness/plan.h"
 
 #include <string>
@@ -25,6 +26,7 @@ struct RunOptions {
     bool count = true;                      ///< replay once more with kernels that count their work
     TruthAmount truth = TruthAmount::pairs; ///< compare answers with the exact truth
     std::size_t truth_contacts = 0;         ///< of this many pairs a frame at most; 0: all
+    Degenerate degenerate = Degenerate::flat;
     bool quiet = false;
 };
 

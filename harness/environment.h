@@ -19,4 +19,8 @@ struct Environment {
 
 Environment environment();
 
+/// Bytes that this process can still get: the least of what Linux calls available, the rest of its control
+/// group, and the rest of its address space (ulimit -v).
+std::uint64_t free_memory();
+
 } // namespace tandem

@@ -17,6 +17,7 @@ Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells) {
     Job job;
     job.scene = std::move(scene);
     job.range = open_frames(options, job.scene);
+    job.range.flaws = handle_flaws(job.scene, job.range.first, job.range.frames, options.degenerate);
     job.cells = std::move(cells);
     check_outputs(options, job.cells);
     check_coordinates(job.cells, job.scene, job.range);
@@ -43,14 +44,11 @@ void print_scene(const Scene& scene, const FrameRange& range) {
                scene.bodies.size(), vertex_count(scene), tetrahedron_count(scene), range.first, range.last,
                scene.digest);
     std::size_t inverted = 0;
-    std::size_t degenerate = 0;
-    for (const auto& mesh : scene.meshes) {
-        inverted += mesh.inverted;
-        degenerate += mesh.degenerate;
-    }
-    if (inverted + degenerate > 0)
-        fmt::print("its meshes have {} inverted and {} zero-volume tetrahedra; they are kept\n", inverted,
-                   degenerate);
+    for (const auto& mesh : scene.meshes) inverted += mesh.inverted;
+    if (inverted > 0) fmt::print("its meshes have {} inverted tetrahedra; they are kept\n", inverted);
+    if (range.flaws.any())
+        fmt::print("tetrahedra {}; they {}\n", describe(range.flaws, scene),
+                   range.flaws.handling == Degenerate::skip ? "take no part" : "take part as flat sets");
 }
 
 bool misses_against_its_promise(const Measurement& m) {

@@ -14,8 +14,8 @@ struct Job {
     std::vector<Cell> cells;
 };
 
-/// Opens the scene and its frames; throws InputError when they, the outputs or the cells do not fit each
-/// other.
+/// Opens the scene and its frames and handles their flaws; throws InputError when they, the outputs or the
+/// cells do not fit each other.
 Job open_job(const RunOptions& options, std::vector<Cell> cells);
 Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells);
 
@@ -24,7 +24,7 @@ Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells);
 int run_cell(const Cell& cell, const Job& job, References& references, const SampleOptions& sampling,
              RecordFile& file, const Progress& progress, Measurement& out);
 
-/// A line that says what scene it is, and one for tetrahedra of no or negative volume.
+/// A line that says what scene it is, one for tetrahedra of negative volume and one for flawed ones.
 void print_scene(const Scene& scene, const FrameRange& range);
 
 /// Safe and directed bounds miss nothing that meets (theorems of algorithms/kdop); the others promise

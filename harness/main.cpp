@@ -19,6 +19,10 @@ parse_sets(const std::vector<std::string>& texts) {
         const auto equals = text.find('=');
         if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
             throw InputError(fmt::format("--set {}: give NAME=VALUE or NAME=VALUE,VALUE", text));
+        if (text.starts_with("degenerate="))
+            throw InputError(
+                fmt::format("--set {0}: it is said of frames, for all cells; give --degenerate {1}", text,
+                            text.substr(equals + 1)));
         sets.emplace_back(text.substr(0, equals), CLI::detail::split(text.substr(equals + 1), ','));
     }
     return sets;
@@ -60,6 +64,13 @@ void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string
     app.add_option("--truth-contacts", options.truth_contacts,
                    "exact contacts of at most so many pairs a frame; all when left out")
         ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40));
+    app.add_option_function<std::string>(
+           "--degenerate",
+           [&options](const std::string& text) { options.degenerate = tandem::degenerate_named(text); },
+           "tetrahedra of zero volume and with coordinates that are not finite: flat (the first take part, "
+           "the "
+           "second are refused; the default), skip (neither takes part) or reject (both are refused)")
+        ->option_text("flat|skip|reject");
     app.add_flag("--quiet", options.quiet, "no progress line");
 }
 

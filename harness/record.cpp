@@ -180,7 +180,9 @@ Json contact_errors_json(const AnswerErrors& e) {
             {"depth_ulps", spread_json(c.depth_ulps)},
             {"normal_degrees", spread_json(c.normal_degrees)},
             {"point", spread_json(c.point)},
-            {"hausdorff", spread_json(c.hausdorff)}};
+            {"hausdorff", spread_json(c.hausdorff)},
+            {"volume_relative", spread_json(c.volume_relative)},
+            {"no_volume", c.no_volume}};
 }
 
 Json drift_json(const AnswerErrors& e) {
@@ -215,8 +217,33 @@ Json truth_json(const AnswerErrors& e) {
     return json;
 }
 
-Json error_json(const Measurement& m) {
-    return {{"degenerate_pairs", m.degenerate}, {"truth", m.errors ? truth_json(*m.errors) : Json()}};
+/// As many bodies as a record names; it says of how many there are.
+constexpr std::size_t most_flawed_bodies = 16;
+
+Json inputs_json(const Flaws& flaws) {
+    Json bodies = Json::array();
+    for (const auto& body : std::span(flaws.bodies).first(std::min(flaws.bodies.size(), most_flawed_bodies)))
+        bodies.push_back({{"body", body.body},
+                          {"degenerate", body.degenerate},
+                          {"non_finite", body.non_finite},
+                          {"frame", body.frame},
+                          {"first", body.first}});
+    return {{"handling", name_of(flaws.handling)},
+            {"degenerate_elements", flaws.degenerate},
+            {"non_finite_elements", flaws.non_finite},
+            {"flawed_bodies", flaws.bodies.size()},
+            {"bodies", bodies}};
+}
+
+Json error_json(const Measurement& m, const Flaws& flaws) {
+    return {{"degenerate_pairs", m.degenerate},
+            {"inputs", inputs_json(flaws)},
+            {"truth", m.errors ? truth_json(*m.errors) : Json()}};
+}
+
+/// What was done with flawed tetrahedra, where that changes the answer.
+std::string handling_key(const Flaws& flaws) {
+    return flaws.handling == Degenerate::skip && flaws.any() ? ",degenerate=skip" : "";
 }
 
 std::string status_of(const Measurement& m, const std::string& failure) {
@@ -231,8 +258,9 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     const auto& settings = m.settings.empty() ? cell.settings : m.settings;
     Json json;
     json["schema"] = 1;
-    json["key"] = fmt::format("{}|{}|{}@{}|{}:{}|{}", cell.algorithm->name(), cell.device->info().id,
-                              scene.key, hex(scene.digest), range.first, range.last, settings_key(settings));
+    json["key"] = fmt::format("{}|{}|{}@{}|{}:{}{}|{}", cell.algorithm->name(), cell.device->info().id,
+                              scene.key, hex(scene.digest), range.first, range.last,
+                              handling_key(range.flaws), settings_key(settings));
     json["status"] = status_of(m, failure);
     json["failure"] = known(failure);
     json["algorithm"] = cell.algorithm->name();
@@ -251,7 +279,7 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["preparation"] =
         measured ? Json{{"host_ns", m.prepare_ns}, {"device_bytes", m.device_bytes}} : Json();
     json["agreement"] = agreement_json(m, scene);
-    json["error"] = measured ? error_json(m) : Json();
+    json["error"] = measured ? error_json(m, range.flaws) : Json();
     json["environment"] = record_environment();
     return json;
 }

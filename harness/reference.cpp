@@ -127,11 +127,15 @@ Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& g
     bounds.slabs.resize(tetrahedra.size() * 2 * axes.size());
     bounds.whole.assign(axes.size(), std::numeric_limits<Real>::infinity());
     bounds.whole.insert(bounds.whole.end(), axes.size(), -std::numeric_limits<Real>::infinity());
+    std::vector<bool> skipped(tetrahedra.size());
+    if (!frame.skipped.empty())
+        for (const auto t : frame.skipped[body]) skipped[t] = true;
     for (std::size_t axis = 0; axis < axes.size(); ++axis) {
         for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
             Real lower = std::numeric_limits<Real>::infinity();
             Real upper = -lower;
             for (const auto vertex : tetrahedra[t]) {
+                if (skipped[t]) break; // an empty slab, apart from all
                 const auto [low, high] = project(bounds.vertices[vertex], axes[axis], geometry.rounding,
                                                  drifts ? &drift : nullptr);
                 lower = std::min(lower, low);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "harness/accuracy/truths.h"
+#include "harness/flaws.h"
 #include "harness/plan.h"
 #include "harness/reference.h"
 
@@ -16,6 +17,7 @@ struct FrameRange {
     std::size_t first = 0;
     std::size_t last = 0;
     std::vector<Frame> frames;
+    Flaws flaws{}; ///< of these frames, and how they were handled
 };
 
 /// Throws InputError when the scene has no such frames, which says why.

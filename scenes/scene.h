@@ -30,6 +30,9 @@ struct Body {
 struct Frame {
     std::vector<Pose> poses;                            ///< one per body
     std::vector<std::vector<Eigen::Vector3d>> deformed; ///< one per body; empty for rigid bodies
+    /// Tetrahedra that take no part: they are in no pair and in no bound. One ascending list a body; no lists
+    /// where all take part.
+    std::vector<std::vector<std::uint32_t>> skipped{};
 };
 
 /// Meshes, bodies and their motion. Immutable once made. A scene with dynamics has one frame, its start.

@@ -50,6 +50,12 @@ class Accuracy(Case):
         self.assertEqual(contacts["overlapping"], records[0]["error"]["truth"]["overlapping"])
         self.assertLess(contacts["point"]["max"], 1e-6)
         self.assertEqual(records[0]["error"]["truth"]["drift"]["max"], 0)  # poses that move nothing
+        for rule in ("sat", "clip"):  # all vertices of every intersection
+            records, _ = self.run_two(rule, "--algorithm", "chunked", "--truth", "contacts", "--set", f"contact_rule={rule}")
+            own = records[0]["error"]["truth"]["contacts"]
+            self.assertEqual((own["no_volume"], own["unanswered"]), (0, 0))
+            self.assertLess(own["volume_relative"]["max"], 1e-4)
+        self.assertEqual(contacts["volume_relative"]["max"], 1)  # opposing drops some for being deep
         records, _ = self.run_two("sample", "--algorithm", "chunked", "--truth", "contacts", "--truth-contacts", 5)
         contacts = records[0]["error"]["truth"]["contacts"]
         self.assertEqual((contacts["complete"], contacts["overlapping"]), (False, 5))
@@ -101,6 +107,9 @@ class Accuracy(Case):
         records, text = self.run_two("given", "--set", "k=8,18", "--repeat", 1, command="accuracy")
         self.assertEqual([r["settings"]["k"] for r in records], ["8", "18"])
         self.assertEqual(text.count("on host"), 2)
+        header, row = (next(line for line in text.splitlines() if mark in line) for mark in ("  cell", "k=8 on host"))
+        shown = row.split()[header.split().index("volume") - 1]  # "no answer" is two words
+        self.assertEqual(float(shown), float(f"{records[0]['error']['truth']['contacts']['volume_relative']['p99']:.3g}"))
         self.assertEqual(text.count("MISSES"), 1)  # in the legend
 
     def test_figures_draw_records(self):
@@ -114,6 +123,8 @@ class Accuracy(Case):
             rows = list(csv.DictReader((folder / f"{name}.csv").read_text().splitlines()))
             self.assertEqual([row["k"] for row in rows], ["8", "18"])
             self.assertEqual([int(row["candidates"]) for row in rows], [r["error"]["truth"]["candidates"] for r in records])
+            self.assertEqual([float(row["volume_p99_relative"]) for row in rows],
+                             [r["error"]["truth"]["contacts"]["volume_relative"]["p99"] for r in records])
         empty = self.work / "no.jsonl"
         empty.write_text("")
         done = subprocess.run(["/usr/bin/python3", SOURCE / "scripts/figures", empty, folder], capture_output=True, text=True)

@@ -136,13 +136,14 @@ class CommandLine(Case):
         status, out, errors = tandem("check", "hard:all:pairs=2,together=2", *fast)
         self.assertEqual((status, errors), (0, []), out)
         rows = [line for line in out.splitlines() if line.startswith("hard:")]
-        self.assertEqual(len(rows), 43)
-        self.assertIn("refused: body 0: vertex 0 is not finite", rows[9])
+        self.assertEqual(len(rows), 44)
+        refusal = "tetrahedra 2 not finite in 1 of 2 bodies: body 0 tetrahedron 0, 1 in frame 0; "
+        self.assertIn("refused: " + refusal, rows[9])
+        self.assertEqual(rows[10].split(), ["hard:not-finite", "1", "0", "0", "0", "0", "2", "0", "skipped:", "2"])
         self.assertIn("with rounding=safe nothing that meets is missed", out)
         self.bad("unknown family of hard cases 'tuch'; the nearest is 'touch'", "check", "hard:tuch")
         self.bad("difficulty=10 is impossible; give a number from 1 to 9", "run", "hard:touch:difficulty=10")
         self.bad("hard:all takes seed, pairs and together", "check", "hard:all:difficulty=1")
-        self.bad("body 0: vertex 0 is not finite", "run", "hard:not-finite")
 
     def test_bad_scenes(self):
         empty = self.work / "empty.json"

@@ -5,6 +5,7 @@ import itertools
 import json
 import os
 import pathlib
+import resource
 import subprocess
 import sys
 import tempfile
@@ -18,10 +19,11 @@ PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
 
 
-def tandem(*arguments, environment=None, timeout=300):
-    """(exit code, standard output, lines of standard error less PoCL's own)."""
+def tandem(*arguments, environment=None, timeout=300, address_space=None):
+    """(exit code, standard output, lines of standard error less PoCL's own); with so many bytes of address space."""
+    limit = (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space))) if address_space else None
     done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, timeout=timeout,
-                          env={**os.environ, **(environment or {})})
+                          env={**os.environ, **(environment or {})}, preexec_fn=limit)
     lines = [line for line in done.stderr.splitlines() if line.strip() and not line.rstrip().endswith("generated.")]
     return done.returncode, done.stdout, lines
 
@@ -92,3 +94,9 @@ class Case(unittest.TestCase):
         self.assertEqual(ids, sorted(ids))
         self.assertEqual({len(row) for row in rows}, {len(rows[0])})
         return rows[1:], ids
+
+    def flawed(self, name):
+        """The bar with a flat tetrahedron across its first cube, the 25th, and its tetrahedra."""
+        points, tets = bar(4, (0, 0, 0))
+        tets = [*tets, [0, 1, 3, 2]]
+        return gmsh(self.work / name, points, tets), tets

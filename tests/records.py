@@ -84,12 +84,15 @@ class Records(Case):
     def test_schema_can_fail(self):
         """Every field of a real record: taken away, of another type, null, or with another one beside it."""
         out = self.work / "schema.jsonl"
-        tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "opencl:0", "--algorithm", "gproximity", "--out", out)
+        flat, _ = self.flawed("schema.msh")
+        tandem("run", "--mesh", flat, "--mesh", self.good, "--device", "opencl:0", "--algorithm", "gproximity", "--truth", "contacts",
+               "--out", out)
         record = self.records(out)[0]
         maps, nullable = {"settings", "defines"}, {"failure", "agreement", "commit", "processor", "clocks_mhz", "hardware", "device_span_ns",
-                                                   "registers", "local_bytes", "spill_bytes", "missed_upper95", "candidate_ratio", "decisions"}
+                                                   "registers", "local_bytes", "spill_bytes", "missed_upper95", "candidate_ratio", "decisions",
+                                                   "depth_relative", "depth_ulps", "normal_degrees", "point", "hausdorff", "volume_relative"}
         nullable_paths = {("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift")}
-        since = {"unsure", "uncertain", "truth"}  # records of before setting decision and of before the truth lack them
+        since = {"unsure", "uncertain", "truth", "inputs", "volume_relative", "no_volume"}  # records from before each lack it
         seen = set()
         for path in places(record):
             shape = tuple(0 if isinstance(name, int) else name for name in path)

@@ -58,15 +58,17 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const Geometry& geo
     }
     lay_out();
     plan_strips();
-    auto defines = geometry_defines(geometry, refit_group_);
-    const auto& source = kernel_source("algorithms/kdop/refit.cl");
-    defines["LEAF_BITS"] = std::to_string(ceil_log2(leaves));
-    defines["TILE_NODES"] = std::to_string(tile_nodes(geometry, refit_group_));
-    strips_kernel_ = device.compile(source, "refit_strips", defines);
-    tops_kernel_ = device.compile(source, "refit_tops", defines);
-    if (residency == Residency::published)
-        transform_kernel_ = device.compile(source, "transform_vertices", defines);
+    strips_kernel_ = compile("refit_strips");
+    tops_kernel_ = compile("refit_tops");
+    if (residency == Residency::published) transform_kernel_ = compile("transform_vertices");
     upload_static();
+}
+
+Kernel DeviceScene::compile(std::string_view entry) const {
+    auto defines = geometry_defines(geometry_, refit_group_);
+    defines["LEAF_BITS"] = std::to_string(ceil_log2(leaves_));
+    defines["TILE_NODES"] = std::to_string(tile_nodes(geometry_, refit_group_));
+    return device_.compile(kernel_source("algorithms/kdop/refit.cl"), entry, defines);
 }
 
 bool DeviceScene::in_world(std::size_t body) const {
@@ -254,12 +256,53 @@ void DeviceScene::refit(bool all) {
                                                  jobs,        s.level,   s.height};
         device_.launch(strips_kernel_, {groups_for(jobs, per_group), refit_group_}, arguments);
     }
+    if (emptied_.bodies > 0) {
+        const std::array<Argument, 4> arguments{nodes_, emptied_rows_, emptied_starts_, emptied_.rounds};
+        device_.launch(empty_kernel_, {emptied_.bodies, refit_group_}, arguments);
+    }
     const std::array<Argument, 5> arguments{nodes_, bodies_, levels_, body_order_, first_top_level_};
     const auto bodies = all ? body_count() : moving_bodies_;
     if (bodies > 0) device_.launch(tops_kernel_, {bodies, refit_group_}, arguments);
 }
 
+void DeviceScene::upload_emptied() {
+    const auto put = [&](Buffer& buffer, const std::vector<std::uint32_t>& words, std::string_view label) {
+        if (!buffer || buffer.bytes() < words.size() * 4) {
+            buffer = {};
+            buffer = device_.allocate(words.size() * 4, label);
+        }
+        device_.upload(buffer, bytes_of(words));
+    };
+    const StageScope scope(device_, Stage::write);
+    put(emptied_rows_, emptied_.rows, "emptied nodes");
+    put(emptied_starts_, emptied_.starts, "rounds of emptied nodes");
+}
+
+/// Plans the nodes that tetrahedra skipped by the frame change, when it skips others than the one before.
+void DeviceScene::leave_out(const Frame& frame) {
+    if (frame.skipped == skipped_) return;
+    {
+        const HostWork work(device_, Stage::preprocess, "skipped tetrahedra");
+        EmptiedPlan plan(leaves_, first_top_level_);
+        positions_.resize(meshes_.size());
+        for (std::size_t body = 0; body < frame.skipped.size(); ++body) {
+            if (frame.skipped[body].empty()) continue;
+            const auto mesh = scene_.bodies[body].mesh;
+            if (positions_[mesh].empty()) positions_[mesh] = inverse(meshes_[mesh].ids);
+            plan.add(body_rows_[body * body_words + 2], mesh_levels_[mesh], frame.skipped[body],
+                     positions_[mesh]);
+        }
+        emptied_ = plan.take();
+        skipped_ = frame.skipped;
+        fresh_ = true;
+    }
+    if (emptied_.bodies == 0) return;
+    if (!emptied_rows_) empty_kernel_ = compile("empty_nodes");
+    upload_emptied();
+}
+
 void DeviceScene::update(const Frame& frame) {
+    leave_out(frame);
     if (residency_ == Residency::published) {
         update_published(frame);
         return;

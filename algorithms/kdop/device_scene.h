@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/kdop/emptied.h"
 #include "algorithms/kdop/kdop_settings.h"
 #include "algorithms/kdop/tree.h"
 #include "scenes/scene.h"
@@ -29,7 +30,8 @@ public:
     DeviceScene(Device& device, const Scene& scene, const Geometry& geometry, std::uint32_t leaves,
                 std::uint32_t group_size, Residency residency);
 
-    /// Enqueues upload, transform and refit of a frame.
+    /// Enqueues upload, transform and refit of a frame. Tetrahedra that it skips are in no node; the kernel
+    /// for that is compiled with the first such frame.
     void update(const Frame& frame);
 
     Device& device() const { return device_; }
@@ -65,6 +67,7 @@ private:
         std::uint32_t level, height, first_job, jobs, dynamic_jobs;
     };
 
+    Kernel compile(std::string_view entry) const;
     void lay_out();
     void plan_strips();
     void plan_strip(std::uint32_t level, bool fixed, std::uint32_t top);
@@ -74,6 +77,8 @@ private:
     void pack_poses(std::vector<std::byte>& bytes, const Frame& frame) const;
     void upload_poses(const Frame& frame);
     void upload_deformed(const Frame& frame);
+    void leave_out(const Frame& frame);
+    void upload_emptied();
     void refit(bool all);
     void update_published(const Frame& frame);
     bool in_world(std::size_t body) const;
@@ -98,10 +103,15 @@ private:
     std::uint64_t slots_ = 0;
     std::uint64_t vertex_total_ = 0;
     std::uint64_t tetrahedron_total_ = 0;
-    bool fresh_ = true; ///< no frame yet: fixed bodies need their first refit
+    bool fresh_ = true; ///< fixed bodies need a refit: there was no frame yet, or it skipped others of theirs
+    std::vector<std::vector<std::uint32_t>> skipped_; ///< by the last frame
+    std::vector<std::vector<std::uint32_t>>
+        positions_;   ///< by mesh: the inverse of its ids, once it is needed
+    Emptied emptied_; ///< for skipped_
     Buffer nodes_, bodies_, levels_, tetrahedra_, ids_, boundary_, vertices_, poses_, job_table_, body_order_;
     Buffer local_vertices_, vertex_bodies_; ///< published: vertices before the transform, and whose they are
-    Kernel strips_kernel_, tops_kernel_, transform_kernel_;
+    Buffer emptied_rows_, emptied_starts_;
+    Kernel strips_kernel_, tops_kernel_, transform_kernel_, empty_kernel_;
 };
 
 } // namespace tandem

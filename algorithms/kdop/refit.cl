@@ -307,6 +307,36 @@ KERNEL void refit_tops(GLOBAL real* nodes, GLOBAL const uint* bodies, GLOBAL con
     }
 }
 
+// Rows of three slots: a node and the two it is over; HOLDS_NOTHING twice for a tetrahedron that takes no
+// part.
+#define EMPTIED_WORDS 3
+#define HOLDS_NOTHING 0xffffffffu
+
+DEVICE real emptied_word(GLOBAL const real* nodes, uint a, uint b, uint word) {
+    if (a == HOLDS_NOTHING) return word < SLABS ? REAL_INFINITY : -REAL_INFINITY;
+    return MERGED(word, node_at(nodes, a)[word], node_at(nodes, b)[word]);
+}
+
+// Between the strips and the tops, in frames where some tetrahedra take no part: their leaves become slabs
+// that end before they start, which overlap nothing and widen nothing, and the nodes above are made again. A
+// work-group a body, whose rows come in `rounds` (some of them empty), each over nodes of earlier ones:
+// starts[body * rounds + round] is a round's first row.
+KERNEL void empty_nodes(GLOBAL real* nodes, GLOBAL const uint* rows, GLOBAL const uint* starts, uint rounds) {
+    GLOBAL const uint* own = starts + (ulong)GROUP_ID * rounds;
+    uint round = 0;
+    do { // once at least: see refit_strips
+        const ulong first = (ulong)own[round] * K;
+        const ulong end = (ulong)own[round + 1u] * K;
+        for (ulong i = first + LOCAL_ID; i < end; i += GROUP_SIZE) {
+            GLOBAL const uint* row = rows + i / K * EMPTIED_WORDS;
+            const uint word = (uint)(i % K);
+            nodes[(ulong)row[0] * K + word] = emptied_word(nodes, row[1], row[2], word);
+        }
+        BARRIER_GLOBAL;
+        ++round;
+    } while (round < rounds);
+}
+
 // World vertices as the paper's code makes them: a stage of its own, read back and uploaded again by the
 // host.
 KERNEL void transform_vertices(GLOBAL const real* vertices, GLOBAL real* world,

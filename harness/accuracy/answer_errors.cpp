@@ -2,6 +2,7 @@
 #include "harness/accuracy/answer_errors.h"
 
 #include "harness/accuracy/hull.h"
+#include "harness/oracle/volume.h"
 #include "scenes/parallel.h"
 
 #include <algorithm>
@@ -95,6 +96,10 @@ void compare(const ContactTruth& truth, double size, std::span<const ContactPoin
     }
     errors.point.push_back(farthest / size);
     errors.hausdorff.push_back(hausdorff_distance(points, truth.vertices) / size);
+    if (truth.volume > 0)
+        errors.volume_relative.push_back(std::abs(hull_volume(points) - truth.volume) / truth.volume);
+    else
+        ++errors.no_volume;
 }
 
 } // namespace
@@ -108,6 +113,8 @@ void ContactErrors::add(const ContactErrors& other) {
     append(normal_degrees, other.normal_degrees);
     append(point, other.point);
     append(hausdorff, other.hausdorff);
+    append(volume_relative, other.volume_relative);
+    no_volume += other.no_volume;
 }
 
 std::optional<double> AnswerErrors::candidate_ratio() const {

@@ -22,6 +22,11 @@ struct ContactErrors {
     std::vector<double> normal_degrees; ///< angle of the deepest contact's normal to the nearest optimal one
     std::vector<double> point;          ///< farthest contact point from the exact intersection, / L
     std::vector<double> hausdorff;      ///< contact points against the exact intersection's vertices, / L
+    /// |hull - exact| / exact: the volume of the contact points' convex hull against the exact
+    /// intersection's. Every rule's points are corners of one inside the other and edges through faces, which
+    /// are that intersection's vertices; what a rule leaves out of them is missing here.
+    std::vector<double> volume_relative;
+    std::uint64_t no_volume = 0; ///< answered pairs whose exact volume rounds to 0; in no sample of volume
 
     void add(const ContactErrors& other);
 };

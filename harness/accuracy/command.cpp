@@ -82,14 +82,15 @@ std::vector<double> difficulties(const HardFamily& family) {
     return {sorted.begin(), sorted.end()};
 }
 
-/// hard:all as all families at several difficulties, less the one that is refused; other scenes as they are.
-std::vector<std::string> expand(const std::string& scene) {
+/// hard:all as all families at several difficulties, less the one that is refused unless what is not finite
+/// is skipped; other scenes as they are.
+std::vector<std::string> expand(const std::string& scene, Degenerate handling) {
     const auto families = expand_hard(scene);
     if (families.size() < 2) return {scene};
     std::vector<std::string> scenes;
     for (const auto& one : families) {
         const auto name = one.substr(5, one.find(':', 5) - 5); // hard:NAME or hard:NAME:...
-        if (name == "not-finite") continue;
+        if (name == "not-finite" && handling != Degenerate::skip) continue;
         for (const double difficulty : difficulties(hard_family(name)))
             scenes.push_back(fmt::format("{}{}difficulty={}", one,
                                          one.find(':', 5) == std::string::npos ? ":" : ",", difficulty));
@@ -113,18 +114,18 @@ std::string p99(const std::vector<double>& samples) {
 }
 
 void print_header() {
-    fmt::print("{:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9}  cell\n", "ms/frame", "missed", "false",
-               "ratio", "no answer", "depth/uL", "degrees", "point/L");
+    fmt::print("{:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  cell\n", "ms/frame", "missed",
+               "false", "ratio", "no answer", "depth/uL", "degrees", "point/L", "volume");
 }
 
 /// Errors of contacts are 99th percentiles.
 void print_row(const Cell& cell, const Measurement& m) {
     const auto& e = *m.errors;
     const auto contacts = e.contacts.value_or(ContactErrors{});
-    fmt::print("{:>9.3g} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9}  {}{}\n", frame_ms(m), e.missed(),
+    fmt::print("{:>9.3g} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  {}{}\n", frame_ms(m), e.missed(),
                e.pairs.disjoint, number(e.candidate_ratio()), contacts.unanswered, p99(contacts.depth_ulps),
-               p99(contacts.normal_degrees), p99(contacts.point), describe(cell),
-               e.missed() > 0 ? "  MISSES" : "");
+               p99(contacts.normal_degrees), p99(contacts.point), p99(contacts.volume_relative),
+               describe(cell), e.missed() > 0 ? "  MISSES" : "");
 }
 
 /// All cells on one scene; the exit code.
@@ -172,14 +173,16 @@ int accuracy_command(const AccuracyOptions& options) {
     RecordFile file(options.run.out);
     int code = 0;
     for (const auto& given : scenes)
-        for (const auto& scene : expand(given)) {
+        for (const auto& scene : expand(given, options.run.degenerate)) {
             auto own = options.run;
             own.scene = scene;
             code = std::max(code, measure_scene(own, cells, file));
         }
     fmt::print("ms of the whole frame; ratio: candidates per pair that meets; errors of contacts are 99th "
                "percentiles, u half a unit in the\n"
-               "last place of 1, L the longest edge; MISSES: pairs that meet are not among the candidates\n");
+               "last place of 1, L the longest edge; volume: of the points' hull against the exact "
+               "intersection's, / exact; MISSES: pairs\n"
+               "that meet are not among the candidates\n");
     return code;
 }
 

@@ -1,13 +1,35 @@
 // SPDX-License-Identifier: MIT
 #include "harness/accuracy/truths.h"
 
+#include "harness/environment.h"
+#include "scenes/error.h"
+
+#include <fmt/format.h>
+
 namespace tandem {
+
+namespace {
+
+/// Refuses early what there will be no room for if the frames to come are like the first.
+void check_room(const FrameTruth& first, std::size_t frames) {
+    const auto bytes = (first.touching.size() + first.overlapping.size()) * sizeof(Pair) * (frames - 1);
+    const auto memory = free_memory();
+    constexpr double gib = 1 << 30;
+    if (bytes > memory)
+        throw InputError(
+            fmt::format("the exact truth of {} frames like the first takes {:.2f} GiB more, and {:.2f} GiB "
+                        "are free; choose --truth none or fewer frames",
+                        frames, static_cast<double>(bytes) / gib, static_cast<double>(memory) / gib));
+}
+
+} // namespace
 
 Truths::Known& Truths::known(Precision precision, std::size_t index, const Report& report) {
     const auto [found, added] = known_.try_emplace({precision, index});
     auto& known = found->second;
     if (!added) return known;
-    known.truth = frame_truth(scene_, frames_[index], precision, report);
+    known.truth = frame_truth(scene_, frames_[index], precision, report, free_memory());
+    if (known_.size() == 1) check_room(known.truth, frames_.size());
     if (amount_ != TruthAmount::contacts) return known;
     known.contacts = contact_truths(scene_, frames_[index], precision, known.truth, most_contacts_);
     if (index == 0) known.drift = vertex_drift(scene_, frames_[index], precision);

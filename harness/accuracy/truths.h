@@ -35,7 +35,8 @@ public:
 
     TruthAmount amount() const { return amount_; }
 
-    /// Errors of an answer of frame number `index` of the span.
+    /// Errors of an answer of frame number `index` of the span. Throws InputError when there is too little
+    /// memory for the truth of that frame, or, with the first, of as many like it.
     const AnswerErrors& errors(Precision precision, std::size_t index, const FrameAnswer& answer,
                                const Report& report = {});
 

@@ -169,4 +169,16 @@ Filtered filter(const TetraCorners& a, const TetraCorners& b) {
     return result;
 }
 
+int certain_orientation(const TetraCorners& corners) {
+    const auto u = minus(corners[1], corners[0]);
+    const auto v = minus(corners[2], corners[0]);
+    const auto w = minus(corners[3], corners[0]);
+    double size = 0;
+    for (const auto* edge : {&u, &v, &w})
+        for (const double x : *edge) size = std::max(size, std::fabs(x));
+    if (size > largest) return 0;
+    const Normal normal(u, v);
+    return certain(dot(normal.vector, w), normal.bound(size));
+}
+
 } // namespace tandem::oracle

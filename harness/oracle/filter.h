@@ -21,4 +21,7 @@ struct Filtered {
 /// Coordinates must be finite; larger ones are left undecided.
 Filtered filter(const TetraCorners& a, const TetraCorners& b);
 
+/// The sign of facets.h's orientation where double arithmetic is certain of it; 0: unsure. The same bound.
+int certain_orientation(const TetraCorners& corners);
+
 } // namespace tandem::oracle

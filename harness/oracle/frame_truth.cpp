@@ -2,10 +2,14 @@
 #include "harness/oracle/frame_truth.h"
 
 #include "harness/oracle/superset.h"
-#include "scenes/parallel.h"
 #include "harness/world_vertices.h"
+#include "scenes/error.h"
+#include "scenes/parallel.h"
 
 #include <algorithm>
+#include <atomic>
+#include <fmt/format.h>
+#include <numeric>
 
 namespace tandem {
 
@@ -47,9 +51,11 @@ std::vector<Decision> decide_all(const World& world, std::span<const Pair> pairs
     return result;
 }
 
+using BodyNumbers = std::array<std::uint32_t, 2>;
+
 /// Pairs of bodies, not both fixed, whose boxes meet.
-std::vector<std::array<std::uint32_t, 2>> near_bodies(const Scene& scene, const std::vector<Boxes>& boxes) {
-    std::vector<std::array<std::uint32_t, 2>> result;
+std::vector<BodyNumbers> near_bodies(const Scene& scene, const std::vector<Boxes>& boxes) {
+    std::vector<BodyNumbers> result;
     for (std::uint32_t a = 0; a < boxes.size(); ++a)
         for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
             if (!(scene.bodies[a].fixed && scene.bodies[b].fixed)
@@ -74,17 +80,46 @@ void keep_meeting(const World& world, std::span<const Pair> pairs, FrameTruth& t
     }
 }
 
-/// Pairs of tetrahedra near each other, of some pairs of bodies.
-std::vector<Pair> near_pairs(const std::vector<Boxes>& boxes,
-                             std::span<const std::array<std::uint32_t, 2>> bodies) {
-    std::vector<std::vector<Pair>> found(bodies.size());
+/// Of each pair of bodies how many pairs of tetrahedra are near each other. Ends early with too few once they
+/// are more than `most` together.
+std::vector<std::uint64_t> count_near(const std::vector<Boxes>& boxes, std::span<const BodyNumbers> bodies,
+                                      std::uint64_t most) {
+    std::vector<std::uint64_t> counts(bodies.size());
+    std::atomic<std::uint64_t> total = 0;
+    parallel_for(bodies.size(), [&](std::size_t i) {
+        if (total > most) return;
+        const auto [a, b] = bodies[i];
+        for_near_pairs(boxes[a], boxes[b], [&](auto, auto) { ++counts[i]; });
+        total += counts[i];
+    });
+    return counts;
+}
+
+/// The near pairs of some pairs of bodies, which have so many each.
+std::vector<Pair> near_pairs(const std::vector<Boxes>& boxes, std::span<const BodyNumbers> bodies,
+                             std::span<const std::uint64_t> counts) {
+    std::vector<std::uint64_t> starts(bodies.size() + 1);
+    std::partial_sum(counts.begin(), counts.end(), starts.begin() + 1);
+    std::vector<Pair> pairs(starts.back());
     parallel_for(bodies.size(), [&](std::size_t i) {
         const auto [a, b] = bodies[i];
-        add_near_pairs(boxes[a], boxes[b], a, b, found[i]);
+        auto* next = pairs.data() + starts[i];
+        for_near_pairs(boxes[a], boxes[b], [&, a = a, b = b](auto ta, auto tb) { *next++ = {a, ta, b, tb}; });
     });
-    std::vector<Pair> result;
-    for (const auto& part : found) result.insert(result.end(), part.begin(), part.end());
-    return result;
+    return pairs;
+}
+
+/// A near pair as it is decided, and as it is kept when it meets, in a list that grows by doubling.
+constexpr std::uint64_t pair_bytes = 3 * sizeof(Pair);
+
+[[noreturn]] void refuse(std::uint64_t tetrahedra, std::string_view more, std::uint64_t pairs,
+                         std::uint64_t bytes, std::uint64_t memory) {
+    constexpr double gib = 1 << 30;
+    throw InputError(fmt::format("the exact truth of {} tetrahedra with {}{} pairs near each other may take "
+                                 "{:.2f} GiB, and {:.2f} GiB are free; choose --truth none, fewer frames or "
+                                 "fewer bodies",
+                                 tetrahedra, more, pairs, static_cast<double>(bytes) / gib,
+                                 static_cast<double>(memory) / gib));
 }
 
 /// `candidates` ascending.
@@ -110,24 +145,34 @@ PairErrors errors_of(const FrameTruth& truth, std::span<const Pair> candidates) 
 
 } // namespace
 
-FrameTruth frame_truth(const Scene& scene, const Frame& frame, Precision precision, const Report& report) {
+FrameTruth frame_truth(const Scene& scene, const Frame& frame, Precision precision, const Report& report,
+                       std::uint64_t memory) {
+    const auto tetrahedra = tetrahedron_count(scene);
+    const auto own = tetrahedra * (sizeof(TetraCorners) + sizeof(Box));
+    if (own > memory) refuse(tetrahedra, "", 0, own, memory);
     FrameTruth truth;
     const auto world = world_of(scene, frame, precision);
     std::vector<Boxes> boxes(world.size());
-    parallel_for(world.size(), [&](std::size_t body) { boxes[body] = Boxes(world[body]); });
+    parallel_for(world.size(), [&](std::size_t body) {
+        boxes[body] = frame.skipped.empty() ? Boxes(world[body]) : Boxes(world[body], frame.skipped[body]);
+    });
     for (std::uint32_t body = 0; body < boxes.size(); ++body)
         for (const auto tetrahedron : boxes[body].invalid) truth.invalid.push_back({body, tetrahedron});
     const auto bodies = near_bodies(scene, boxes);
+    const auto most = (memory - own) / pair_bytes;
+    const auto counts = count_near(boxes, bodies, most);
+    const auto total = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+    if (total > most) refuse(tetrahedra, "at least ", total, own + total * pair_bytes, memory);
     constexpr std::size_t round =
         256; // pairs of bodies at a time, so that not all their pairs are kept at once
     std::uint64_t decided = 0;
     for (std::size_t first = 0; first < bodies.size(); first += round) {
         const auto count = std::min(round, bodies.size() - first);
-        const auto pairs = near_pairs(boxes, std::span(bodies).subspan(first, count));
+        const auto pairs = near_pairs(boxes, std::span(bodies).subspan(first, count),
+                                      std::span(counts).subspan(first, count));
         keep_meeting(world, pairs, truth, [&](std::size_t done) {
-            const auto share = static_cast<double>(done) / static_cast<double>(pairs.size());
-            const auto past = static_cast<double>(first) + share * static_cast<double>(count);
-            if (report) report(past / static_cast<double>(bodies.size()), decided + done);
+            const auto share = static_cast<double>(decided + done) / static_cast<double>(total);
+            if (report) report(share, decided + done);
         });
         decided += pairs.size();
     }

@@ -25,10 +25,12 @@ struct FrameTruth {
 /// Called on the calling thread, now and then; `share` of the work done, in 0..1.
 using Report = std::function<void(double share, std::uint64_t decided)>;
 
-/// Decides every pair of tetrahedra of different bodies (not both fixed) on all cores. A pair it does not
-/// list does not meet: pairs are left out only where boxes, found without rounding, are apart.
-FrameTruth frame_truth(const Scene& scene, const Frame& frame, Precision precision,
-                       const Report& report = {});
+/// Decides every pair of tetrahedra of different bodies (not both fixed) on all cores, those that the frame
+/// skips left out. A pair it does not list does not meet: pairs are left out only where boxes, found without
+/// rounding, are apart. Throws InputError before it takes more than `memory` bytes, as far as pairs whose
+/// boxes meet tell.
+FrameTruth frame_truth(const Scene& scene, const Frame& frame, Precision precision, const Report& report = {},
+                       std::uint64_t memory = ~std::uint64_t{0});
 
 /// The same decision for a list of pairs, in its order.
 std::vector<Decision> decide_pairs(const Scene& scene, const Frame& frame, Precision precision,

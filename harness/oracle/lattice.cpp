@@ -54,6 +54,11 @@ Lattice<Number> lattice(int exponent, Make number) {
     return result;
 }
 
+mpz_class in_units(const Parts& part, int exponent) {
+    if (part.mantissa == 0) return 0;
+    return mpz_class(static_cast<long>(part.mantissa)) << static_cast<unsigned>(part.exponent - exponent);
+}
+
 /// Coordinates in these units fit 2^61.
 bool fits(const Scattered& all, int exponent) {
     for (const auto& body : all)
@@ -87,13 +92,26 @@ std::optional<Lattice<Int128>> small_lattice(const TetraCorners& a, const TetraC
 
 Lattice<mpz_class> big_lattice(const TetraCorners& a, const TetraCorners& b) {
     const auto [all, exponent] = scattered(a, b);
-    return lattice<mpz_class>(
-        exponent, [&all = all, exponent = exponent](unsigned body, unsigned i, unsigned axis) -> mpz_class {
-            const auto& part = all[body][i][axis];
-            if (part.mantissa == 0) return 0;
-            return mpz_class(static_cast<long>(part.mantissa))
-                   << static_cast<unsigned>(part.exponent - exponent);
-        });
+    return lattice<mpz_class>(exponent,
+                              [&all = all, exponent = exponent](unsigned body, unsigned i, unsigned axis) {
+                                  return in_units(all[body][i][axis], exponent);
+                              });
+}
+
+LatticePoints lattice_points(std::span<const std::array<double, 3>> points) {
+    LatticePoints result;
+    result.exponent = std::numeric_limits<int>::max();
+    for (const auto& point : points)
+        for (const double x : point)
+            if (x != 0) result.exponent = std::min(result.exponent, parts(x).exponent);
+    if (result.exponent == std::numeric_limits<int>::max()) result.exponent = 0;
+    for (const auto& point : points) {
+        auto& own = result.points.emplace_back();
+        for (unsigned axis = 0; axis < 3; ++axis) own[axis] = in_units(parts(point[axis]), result.exponent);
+    }
+    for (auto i = result.points.size(); i-- > 0;)
+        result.points[i] = minus(result.points[i], result.points.front());
+    return result;
 }
 
 } // namespace tandem::oracle

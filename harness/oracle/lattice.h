@@ -5,6 +5,8 @@
 #include "harness/oracle/facets.h"
 
 #include <gmpxx.h>
+#include <span>
+#include <vector>
 
 namespace tandem::oracle {
 
@@ -23,5 +25,12 @@ std::optional<Lattice<Int128>> small_lattice(const TetraCorners& a, const TetraC
 
 /// For all finite coordinates.
 Lattice<mpz_class> big_lattice(const TetraCorners& a, const TetraCorners& b);
+
+/// Finite points in units of 2^exponent, relative to the first one: exact.
+struct LatticePoints {
+    std::vector<Vector<mpz_class>> points;
+    int exponent = 0;
+};
+LatticePoints lattice_points(std::span<const std::array<double, 3>> points);
 
 } // namespace tandem::oracle

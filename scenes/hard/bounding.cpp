@@ -284,7 +284,8 @@ std::vector<HardFamily> bounding_families() {
              {"corner, 0..3 of a, 4..7 of b", 0, 7, 0},
              HardTruth::construction,
              "detected",
-             "minima and maxima drop what is not a number: bounds look sound. Scenes of it are refused",
+             "minima and maxima drop what is not a number: bounds look sound. Scenes of it are refused, or "
+             "skipped",
              not_finite}};
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Every algorithm on every device: nothing that meets is missed, in any family, with rounding=safe.
+#include "harness/flaws.h"
 #include "harness/oracle/frame_truth.h"
 #include "scenes/error.h"
 #include "scenes/hard/hard.h"
 #include "tests/support/cells.h"
+#include "tests/support/flawed.h"
 
 #include <gtest/gtest.h>
 
@@ -28,19 +30,21 @@ constexpr std::array tested{"8", "18", "26"};
 
 class HardAlgorithms : public testing::TestWithParam<std::string> {
 protected:
-    /// Runs first and last frame.
-    void expect_none_missed(const Traversal& traversal, const Scene& scene, const Settings& given) {
+    void expect_none_missed(const Traversal& traversal, const Scene& scene, std::span<const Frame> frames,
+                            Settings given) {
+        if (traversal.name() == "gproximity") given["queue_bytes"] = "1048576";
         const std::array devices{&device(GetParam())};
         const auto session =
             traversal.prepare(devices, scene, resolve(traversal.parameters(), {}, given, traversal.name()));
-        for (const std::size_t index : {std::size_t{0}, scene.frame_count - 1}) {
-            const auto frame = scene.frame(index);
+        for (const auto& frame : frames) {
             const auto truth = frame_truth(scene, frame, Precision::single);
             const auto result = session->run(frame, all_pairs(scene, *session));
-            const auto errors = pair_errors(truth, session->download(result));
+            const auto pairs = session->download(result);
+            const auto errors = pair_errors(truth, pairs);
             EXPECT_EQ(errors.missed_touching, 0u) << "of " << truth.touching.size();
             EXPECT_EQ(errors.missed_overlapping, 0u) << "of " << truth.overlapping.size();
             met_ += truth.touching.size() + truth.overlapping.size();
+            for (const auto& pair : pairs) ASSERT_FALSE(is_skipped(frame, pair));
         }
     }
 
@@ -55,13 +59,37 @@ TEST_P(HardAlgorithms, MissNothing) {
             for (const std::string k : tested) {
                 if (k == "26" && GetParam() != "host") continue; // compiling takes longest there
                 SCOPED_TRACE(fmt::format("{} {} k={}", family.name, traversal->name(), k));
-                Settings given{
-                    {"k", k}, {"work_items", "64"}, {"pair_capacity", "8192"}, {"contact_rule", "none"}};
-                if (traversal->name() == "gproximity") given["queue_bytes"] = "1048576";
-                expect_none_missed(*traversal, scene, given);
+                expect_none_missed(
+                    *traversal, scene, std::array{scene.frame(0), scene.frame(scene.frame_count - 1)},
+                    {{"k", k}, {"work_items", "64"}, {"pair_capacity", "8192"}, {"contact_rule", "none"}});
             }
     }
     EXPECT_GT(met_, 10000u);
+}
+
+/// Families with flat tetrahedra and with coordinates that are not finite, under --degenerate skip: what is
+/// skipped is in no pair, what meets of the rest in all.
+TEST_P(HardAlgorithms, MissNothingOfWhatIsNotSkipped) {
+    std::uint64_t skipped = 0, flat = 0;
+    const auto run = [&](const Scene& scene) {
+        std::vector<Frame> frames;
+        for (std::size_t i = 0; i < scene.frame_count; ++i) frames.push_back(scene.frame(i));
+        const auto flaws = handle_flaws(scene, 0, frames, Degenerate::skip);
+        EXPECT_TRUE(flaws.any()) << scene.key;
+        skipped += flaws.non_finite;
+        flat += flaws.degenerate;
+        for (const auto* traversal : algorithms()) {
+            SCOPED_TRACE(fmt::format("{} {}", scene.key, traversal->name()));
+            expect_none_missed(*traversal, scene, frames, {{"contact_rule", "none"}});
+        }
+    };
+    for (const std::string family : {"zero-volume", "collapsing:difficulty=4,pairs=64,together=64"})
+        run(make_scene("hard:" + family));
+    EXPECT_GT(flat, 20u);
+    EXPECT_GT(met_, 100u);
+    for (int corner = 0; corner < 8; ++corner)
+        run(make_scene(fmt::format("hard:not-finite:pairs=9,together=9,difficulty={}", corner)));
+    EXPECT_EQ(skipped, 72u);
 }
 
 /// One too few, just right, one too many: counted in full, and run again where it did not fit.

@@ -119,6 +119,43 @@ TEST(Accuracy, ARightContactHasNoError) {
     EXPECT_TRUE(e.every_contact);
 }
 
+/// The tetrahedron of legs 1/4, all of it, half of it, and a face of it only.
+TEST(Accuracy, VolumesAreThoseOfTheContactPointsHull) {
+    const auto with = [](const std::vector<Point>& points) {
+        std::vector<ContactPoint> contacts;
+        for (const auto& p : points)
+            contacts.push_back({the_pair, static_cast<std::uint32_t>(contacts.size()), p, {1, 0, 0}, -0.1});
+        return errors_of(0.75, {the_pair}, contacts);
+    };
+    const Point corner{0.75, 0, 0}, x{1, 0, 0}, y{0.75, 0.25, 0}, z{0.75, 0, 0.25};
+    EXPECT_EQ(with({corner, x, y, z}).contacts->volume_relative.at(0), 0);
+    EXPECT_NEAR(with({corner, x, y, {0.75, 0, 0.125}}).contacts->volume_relative.at(0), 0.5, 1e-15);
+    EXPECT_NEAR(with({corner, x, y, {0.75, 0, 0.75}}).contacts->volume_relative.at(0), 2, 1e-15);
+    EXPECT_EQ(with({corner, x, y}).contacts->volume_relative.at(0), 1);
+    EXPECT_EQ(with({corner, x, y, z}).contacts->no_volume, 0u);
+    EXPECT_TRUE(with({}).contacts->volume_relative.empty()); // unanswered
+}
+
+/// 1e-120 is a size whose cube no double holds.
+TEST(Accuracy, PairsWhoseVolumeRoundsToZeroAreCountedApart) {
+    auto scene = two_units(0.75e-120);
+    for (auto& v : scene.meshes[0].vertices) v *= 1e-120;
+    const std::vector<Frame> frames{scene.frame(0)};
+    Truths truths(scene, frames, TruthAmount::contacts, 0);
+    FrameAnswer answer;
+    answer.makes_contacts = true;
+    answer.download = [] { return std::vector<Pair>{the_pair}; };
+    answer.download_contacts = [] {
+        return std::vector<ContactPoint>{{the_pair, 0, {0.8e-120, 0, 0}, {1, 0, 0}, -0.1e-120}};
+    };
+    const auto& e = truths.errors(Precision::twice, 0, answer);
+    ASSERT_TRUE(e.contacts);
+    EXPECT_EQ(e.contacts->overlapping, 1u);
+    EXPECT_EQ(e.contacts->no_volume, 1u);
+    EXPECT_TRUE(e.contacts->volume_relative.empty());
+    EXPECT_EQ(e.contacts->depth_relative.size(), 1u);
+}
+
 TEST(Accuracy, AWrongContactHasTheErrorItHas) {
     const auto e = errors_of(0.75, {the_pair}, {{the_pair, 0, {0.75, 0, -1}, {1, 0, 0}, -0.25}});
     const double exact = 0.25 / std::sqrt(3.0);

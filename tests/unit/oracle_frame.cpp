@@ -2,11 +2,13 @@
 #include "harness/oracle/frame_truth.h"
 #include "harness/reference.h"
 #include "harness/world_vertices.h"
+#include "scenes/error.h"
 #include "tests/support/scenes.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <limits>
+#include <numeric>
 
 namespace tandem {
 namespace {
@@ -153,6 +155,29 @@ TEST(OracleFrame, VerticesSurviveTheRoundTripThroughFloat) {
                 differ |= wide != twice[i][axis];
             }
         EXPECT_TRUE(differ);
+    }
+}
+
+/// As many bytes as it says are enough, one pair less is not; what is found does not depend on it.
+TEST(OracleFrame, RefusesWhatIsTooLargeForMemory) {
+    const auto scene = crowd(3, 9, 1.2);
+    const auto frame = scene.frame(0);
+    const auto expected = frame_truth(scene, frame, Precision::single);
+    ASSERT_GT(expected.overlapping.size(), 20u);
+    const auto near = std::accumulate(expected.decisions.relations.begin(),
+                                      expected.decisions.relations.end(), std::uint64_t{0});
+    const auto needed = tetrahedron_count(scene) * (4 * 3 + 6) * sizeof(double) + near * 3 * sizeof(Pair);
+    const auto enough = frame_truth(scene, frame, Precision::single, {}, needed);
+    EXPECT_EQ(enough.overlapping, expected.overlapping);
+    EXPECT_EQ(enough.touching, expected.touching);
+    for (const std::uint64_t memory : {needed - 1, needed / 2, std::uint64_t{1000}, std::uint64_t{0}}) {
+        try {
+            frame_truth(scene, frame, Precision::single, {}, memory);
+            ADD_FAILURE() << memory;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("--truth none, fewer frames"), std::string::npos)
+                << error.what();
+        }
     }
 }
 

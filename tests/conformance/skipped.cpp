@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+// Tetrahedra that a frame skips: in no pair of any algorithm, in no bound, and back in the next frame.
+#include "algorithms/kdop/device_scene.h"
+#include "harness/flaws.h"
+#include "harness/oracle/frame_truth.h"
+#include "tests/support/cells.h"
+#include "tests/support/flawed.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+using Skipped = std::vector<std::vector<std::uint32_t>>;
+
+/// Every n-th tetrahedron of each body, from the `first` on; n = 0: none.
+Skipped every(const Scene& scene, const std::array<std::uint32_t, 3>& n, std::uint32_t first) {
+    Skipped result(scene.bodies.size());
+    for (std::size_t body = 0; body < result.size(); ++body)
+        for (auto t = first; n[body] != 0 && t < scene.meshes[scene.bodies[body].mesh].tetrahedra.size();
+             t += n[body])
+            result[body].push_back(t);
+    return result;
+}
+
+/// Frames that skip nothing, some of each body, others, all of one body, and nothing again.
+std::vector<Frame> frames_of(const Scene& scene) {
+    const std::vector<Skipped> skipped{
+        {}, every(scene, {7, 3, 2}, 0), every(scene, {0, 5, 1}, 3), every(scene, {0, 1, 0}, 0), {}};
+    std::vector<Frame> frames;
+    for (std::size_t i = 0; i < skipped.size(); ++i) {
+        frames.push_back(scene.frame(i % scene.frame_count));
+        frames.back().skipped = skipped[i];
+    }
+    return frames;
+}
+
+/// What is left of the pairs of all tetrahedra.
+std::vector<Pair> expected(const Scene& scene, const Frame& frame, const Geometry& geometry) {
+    auto whole = frame;
+    whole.skipped.clear();
+    auto pairs = reference(scene, whole, geometry, false, Method::brute_force).pairs;
+    std::erase_if(pairs, [&](const auto& pair) { return is_skipped(frame, pair); });
+    return pairs;
+}
+
+class Skipping : public testing::TestWithParam<std::string> {
+protected:
+    static void expect_the_rest(const Traversal& traversal, const Preset& preset, const Settings& given,
+                                const Scene& scene) {
+        auto settings = resolve(traversal.parameters(), preset.values, given, traversal.name());
+        SCOPED_TRACE(fmt::format("{} {}{}", traversal.name(), preset.name, text(given)));
+        const std::array devices{&device(GetParam())};
+        const auto session = traversal.prepare(devices, scene, settings);
+        const auto geometry = geometry_of(session->settings());
+        std::size_t left_out = 0;
+        for (const auto& frame : frames_of(scene)) {
+            const auto pairs = expected(scene, frame, geometry);
+            const auto result = session->run(frame, all_pairs(scene, *session));
+            EXPECT_EQ(session->download(result), pairs);
+            EXPECT_EQ(session->digest(result), digest_of(pairs));
+            for (const auto method : {Method::brute_force, Method::sweep})
+                EXPECT_EQ(reference(scene, frame, geometry, false, method).pairs, pairs);
+            EXPECT_GT(pairs.size(), 100u);
+            left_out += frame.skipped.empty() ? 0 : 1;
+        }
+        EXPECT_EQ(left_out, 3u);
+    }
+};
+
+TEST_P(Skipping, LeavesTheRestAsItIsWithEveryPreset) {
+    const auto scene = boxes_scene(3, 4);
+    for (const auto* traversal : algorithms())
+        for (const auto& preset : traversal->presets()) {
+            Settings given{{"contact_rule", "none"}};
+            if (traversal->name() == "gproximity") given["queue_bytes"] = "1048576";
+            expect_the_rest(*traversal, preset, given, scene);
+        }
+}
+
+/// Small chunks make many levels, of which empty_nodes does more than the first.
+TEST_P(Skipping, LeavesTheRestAsItIsAtEveryLevel) {
+    const auto scene = boxes_scene(7, 4); // 2058 tetrahedra: two levels of more than 1024 items
+    const auto& traversal = algorithm("chunked");
+    for (const std::string leaves : {"2", "4"})
+        for (const std::string broad : {"device", "tight"})
+            expect_the_rest(traversal, preset(traversal, "resident"),
+                            {{"leaves", leaves}, {"k", "8"}, {"broad", broad}, {"contact_rule", "none"}},
+                            scene);
+}
+
+TEST_P(Skipping, WorksInEveryRoundingAndPrecision) {
+    const auto scene = boxes_scene(2, 4);
+    for (const auto* traversal : algorithms())
+        for (const std::string precision : {"float", "double"})
+            for (const std::string rounding : {"safe", "nearest", "published"})
+                expect_the_rest(
+                    *traversal, traversal->presets().front(),
+                    {{"k", "18"}, {"precision", precision}, {"rounding", rounding}, {"contact_rule", "none"}},
+                    scene);
+}
+
+/// Every inner node is what its children are, skipped leaves hold nothing, and nothing else is empty.
+template<class Real>
+std::size_t check_nodes(const Scene& scene, const Frame& frame, const DeviceScene& on_device) {
+    const auto k = static_cast<std::size_t>(on_device.geometry().k);
+    std::vector<Real> nodes(on_device.slots() * k);
+    on_device.device().download(on_device.nodes(), std::as_writable_bytes(std::span(nodes)));
+    std::size_t empty = 0;
+    for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) {
+        const auto base = on_device.body_rows()[body * 8 + 2];
+        const auto node = [&](std::uint32_t slot) { return &nodes[slot * k]; };
+        std::vector<Real> whole(k);
+        std::fill_n(whole.begin(), k / 2, std::numeric_limits<Real>::infinity());
+        std::fill(whole.begin() + static_cast<std::ptrdiff_t>(k / 2), whole.end(),
+                  -std::numeric_limits<Real>::infinity());
+        const auto nothing = whole;
+        std::vector<bool> skipped(on_device.ids(body).size());
+        if (!frame.skipped.empty())
+            for (const auto t : frame.skipped[body]) skipped[t] = true;
+        std::uint32_t number = 0;
+        for (const auto& level : on_device.levels(body)) {
+            for (std::uint32_t chunk = 0; chunk < level.chunks; ++chunk) {
+                const auto first = chunk * on_device.leaves();
+                const auto items = std::min(on_device.leaves(), level.items - first);
+                const auto slot = base + level.slot + 2 * first;
+                for (std::uint32_t i = 1; i < items; ++i)
+                    for (std::size_t word = 0; word < k; ++word) {
+                        const auto a = node(slot + 2 * i)[word], b = node(slot + 2 * i + 1)[word];
+                        EXPECT_EQ(node(slot + i)[word], word < k / 2 ? std::min(a, b) : std::max(a, b));
+                    }
+                for (std::uint32_t leaf = items; leaf < 2 * items && number == 0; ++leaf) {
+                    const auto width = std::bit_ceil(items);
+                    const auto item = first + (leaf >= width ? leaf - width : leaf + items - width);
+                    const bool is_empty = std::equal(nothing.begin(), nothing.end(), node(slot + leaf));
+                    EXPECT_EQ(is_empty, skipped[on_device.ids(body)[item]]) << body << " " << item;
+                    empty += is_empty ? 1 : 0;
+                    for (std::size_t word = 0; word < k; ++word)
+                        whole[word] = word < k / 2 ? std::min(whole[word], node(slot + leaf)[word])
+                                                   : std::max(whole[word], node(slot + leaf)[word]);
+                }
+            }
+            ++number;
+        }
+        EXPECT_TRUE(std::equal(whole.begin(), whole.end(), node(base))) << "volume of body " << body;
+    }
+    return empty;
+}
+
+TEST_P(Skipping, NodesHoldTheRestOnly) {
+    for (const std::uint32_t cells : {2u, 7u}) {
+        const auto scene = boxes_scene(cells, 4);
+        for (const std::uint32_t leaves : {2u, 32u, 4096u})
+            for (const auto residency : {Residency::resident, Residency::published}) {
+                SCOPED_TRACE(fmt::format("{} cells, {} leaves", cells, leaves));
+                DeviceScene on_device(device(GetParam()), scene, {.k = 18}, leaves,
+                                      device(GetParam()).info().max_group_size == 1 ? 1 : 64, residency);
+                for (const auto& frame : frames_of(scene)) {
+                    on_device.update(frame);
+                    std::size_t count = 0;
+                    for (const auto& body : frame.skipped) count += body.size();
+                    EXPECT_EQ(check_nodes<float>(scene, frame, on_device), count);
+                    on_device.device().finish();
+                }
+            }
+    }
+}
+
+/// A body whose only near part is skipped is far from everything: bounds have shrunk, on the device too.
+TEST_P(Skipping, BodiesWithoutTheirNearPartsAreNoBodyPairs) {
+    auto scene = boxes_scene(2, 4);
+    const auto still = scene.frame(0);
+    scene.frame = [still](std::size_t) {
+        auto frame = still;
+        frame.poses[1].translation = {50, 0, 0};
+        for (auto& v : frame.deformed[2]) v += Eigen::Vector3d(100, 0, 0);
+        return frame;
+    };
+    auto frame = scene.frame(0);
+    const auto vertex = scene.meshes[1].tetrahedra[5][3];
+    frame.deformed[2][vertex] = {0, 0, 0}; // a spike through body 1 and into body 0
+    const auto& traversal = algorithm("chunked");
+    const std::array devices{&device(GetParam())};
+    const auto session = traversal.prepare(
+        devices, scene, resolve(traversal.parameters(), {{"broad", "device"}}, {}, "chunked"));
+    const auto with = session->run(frame, {});
+    EXPECT_GT(with.body_pairs, 0u);
+    EXPECT_GT(with.count, 0u);
+    frame.skipped = {{}, {}, around(scene.meshes[1], vertex)};
+    const auto without = session->run(frame, {});
+    EXPECT_EQ(without.body_pairs, 0u);
+    EXPECT_EQ(without.count, 0u);
+}
+
+/// What is not finite and what is flat, through the door that the commands use, against the truth.
+TEST_P(Skipping, AgreesWithTheTruth) {
+    const auto scene = boxes_scene(3, 4);
+    std::vector<Frame> frames{scene.frame(0), scene.frame(1)};
+    const auto& mesh = scene.meshes[1];
+    make_flat(mesh, frames[0].deformed[2], 40);
+    frames[1].deformed[2][mesh.tetrahedra[80][1]].z() = std::numeric_limits<double>::quiet_NaN();
+    const auto flaws = handle_flaws(scene, 0, frames, Degenerate::skip);
+    EXPECT_GT(flaws.degenerate, 0u);
+    EXPECT_GT(flaws.non_finite, 0u);
+    for (const auto& frame : frames) {
+        const auto truth = frame_truth(scene, frame, Precision::single);
+        EXPECT_GT(truth.overlapping.size(), 100u);
+        EXPECT_TRUE(truth.invalid.empty());
+        for (const auto& list : {truth.touching, truth.overlapping})
+            for (const auto& pair : list) EXPECT_FALSE(is_skipped(frame, pair));
+        for (const auto* traversal : algorithms()) {
+            const std::array devices{&device(GetParam())};
+            const auto session = traversal->prepare(
+                devices, scene, resolve(traversal->parameters(), {}, {}, traversal->name()));
+            const auto pairs = session->download(session->run(frame, all_pairs(scene, *session)));
+            const auto errors = pair_errors(truth, pairs);
+            EXPECT_EQ(errors.missed_touching + errors.missed_overlapping, 0u) << traversal->name();
+            EXPECT_EQ(errors.invalid, 0u) << traversal->name();
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, Skipping, testing::ValuesIn(device_names()),
+                         [](const auto& name) { return device_label(name.param); });
+
+} // namespace
+} // namespace tandem
