@@ -109,7 +109,7 @@ KdopSession::KdopSession(Device& device, const Scene& scene, Settings settings, 
     reserve_pairs(output_ == Output::pairs ? static_cast<std::uint64_t>(integer(settings_, "pair_capacity"))
                                            : 1);
     digest_kernel_ = device.compile(kernel_source("algorithms/digest.cl"), "digest_pairs",
-                                    geometry_defines(scene_.geometry(), scene_.group_size()));
+                                    row_defines(scene_.geometry(), scene_.group_size()));
     if (settings_.at("broad") == "device") {
         broad_ = std::make_unique<BroadStage>(scene_, scene, groups_);
         const auto first = static_cast<std::uint64_t>(integer(settings_, "body_pair_capacity"));

@@ -41,11 +41,20 @@ def sources(kernels):
     return "\n".join(out)
 
 
-def host_variant(kernels, geometry, identifier):
-    fixed = dict(pair.split("=") for pair in geometry.split(","))
+def named(text, geometry):
+    """The part of a geometry that the text names."""
+    return [pair for pair in geometry.split(",") if re.search(rf"\b{pair.split('=')[0]}\b", text)]
+
+
+def host_variant(kernels, geometry, geometries, identifier):
+    """Kernels of one geometry; one that does not name all of it is in the first variant of what it does name."""
     out = ['#include "backends/host/dialect.h"']
     rows = []
     for index, (name, text) in enumerate(kernels.items()):
+        own = named(text, geometry)
+        if geometry != next(g for g in geometries if named(text, g) == own):
+            continue
+        fixed = dict(pair.split("=") for pair in own)
         defaults = {key: value for key, value in DEFAULT.findall(text) if key not in fixed and key != "GROUP_SIZE"}
         names = sorted(defaults)
         # A namespace of this variant's own: types of one name differ between variants.
@@ -60,7 +69,7 @@ def host_variant(kernels, geometry, identifier):
         out += [f"#undef {macro}" for macro in sorted(macros)]
         for entry in ENTRY.findall(text):
             call = f"tandem::host::Invoke<&{scope}::{entry}>"
-            rows.append(f'{{"{name}", "{entry}", "{geometry.replace(",", ";")}", {call}::run, {call}::count, '
+            rows.append(f'{{"{name}", "{entry}", "{";".join(own)}", {call}::run, {call}::count, '
                         f"{{{scope}::runtime, {len(names)}}}}},")
     out += [f"extern const std::span<const tandem::host::HostKernel> {identifier};",
             "static const tandem::host::HostKernel rows[] = {", *rows, "};",
@@ -94,7 +103,7 @@ def main():
     identifiers = []
     for geometry in arguments.geometries:
         identifiers.append("host_" + re.sub(r"\W", "_", geometry))
-        write(arguments.out / f"{identifiers[-1]}.cpp", host_variant(kernels, geometry, identifiers[-1]))
+        write(arguments.out / f"{identifiers[-1]}.cpp", host_variant(kernels, geometry, arguments.geometries, identifiers[-1]))
     write(arguments.out / "host_table.cpp", host_table(identifiers))
 
 

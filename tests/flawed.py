@@ -35,9 +35,9 @@ class Flawed(Case):
         self.assertEqual(inputs["skip"], {**inputs["flat"], "handling": "skip"})
         self.assertEqual(keys["skip"], keys["flat"].replace("|0:0|", "|0:0,degenerate=skip|"))
         status, text, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--degenerate", "skip", "--device", "host",
-                                      "--repeat", 1, "--out", self.work / "none.jsonl")
+                                      "--repeat", 1, "--out", self.work / "unflawed.jsonl")
         self.assertEqual((status, errors), (0, []), text)
-        record = self.records(self.work / "none.jsonl")[0]
+        record = self.records(self.work / "unflawed.jsonl")[0]
         self.assertNotIn("degenerate", record["key"])
         self.assertEqual((record["error"]["inputs"]["flawed_bodies"], record["error"]["inputs"]["bodies"]), (0, []))
         out = self.work / "rejected.jsonl"

@@ -8,7 +8,7 @@ namespace tandem {
 ContactStage::ContactStage(const DeviceScene& scene, const ContactSettings& settings, std::uint64_t capacity,
                            std::uint32_t groups)
     : scene_(scene), groups_(groups) {
-    auto defines = geometry_defines(scene.geometry(), scene.group_size());
+    auto defines = row_defines(scene.geometry(), scene.group_size());
     const auto& source = kernel_source("algorithms/contacts/contacts.cl");
     digest_ = scene.device().compile(source, "digest_contacts", defines);
     defines["CONTACT_RULE"] = std::to_string(static_cast<int>(settings.rule));

@@ -33,7 +33,7 @@ std::vector<std::uint8_t> verdicts_of(const std::vector<std::byte>& bytes) {
 
 DecisionStage::DecisionStage(const DeviceScene& scene, DecisionPrecision decision, std::uint32_t groups)
     : scene_(scene), decision_(decision), groups_(groups) {
-    auto defines = geometry_defines(scene.geometry(), scene.group_size());
+    auto defines = row_defines(scene.geometry(), scene.group_size());
     auto& device = scene.device();
     if (decision != DecisionPrecision::fp64)
         filter_ = device.compile(kernel_source("algorithms/contacts/filter.cl"), "filter_pairs", defines);

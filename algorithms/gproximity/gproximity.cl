@@ -5,7 +5,8 @@
 // evens the queues out.
 #include "backends/portable.h"
 #include "algorithms/broad/body_pairs.clh"
-#include "algorithms/pairs.clh"
+#include "algorithms/emit.clh"
+#include "algorithms/kdop/node.clh"
 
 #ifndef LOCAL_QUEUE
 #define LOCAL_QUEUE 600

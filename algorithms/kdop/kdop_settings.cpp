@@ -91,13 +91,18 @@ Geometry geometry_of(const Settings& settings) {
     return geometry;
 }
 
-Defines geometry_defines(const Geometry& geometry, std::uint32_t group_size) {
-    return {{"K", std::to_string(geometry.k)},
-            {"AXES", geometry.coordinate_axes ? "1" : "0"},
-            {"PRECISION", geometry.precision == Precision::twice ? "64" : "32"},
-            {"ROUNDING", std::to_string(static_cast<int>(geometry.rounding))},
+Defines row_defines(const Geometry& geometry, std::uint32_t group_size) {
+    return {{"PRECISION", geometry.precision == Precision::twice ? "64" : "32"},
             {"TRUTH", std::to_string(static_cast<int>(geometry.truth))},
             {"GROUP_SIZE", std::to_string(group_size)}};
+}
+
+Defines geometry_defines(const Geometry& geometry, std::uint32_t group_size) {
+    auto defines = row_defines(geometry, group_size);
+    defines["K"] = std::to_string(geometry.k);
+    defines["AXES"] = geometry.coordinate_axes ? "1" : "0";
+    defines["ROUNDING"] = std::to_string(static_cast<int>(geometry.rounding));
+    return defines;
 }
 
 } // namespace tandem

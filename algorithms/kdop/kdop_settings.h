@@ -43,7 +43,10 @@ std::span<const Parameter> geometry_parameters();
 /// Throws InputError when axes does not fit k, or truth not rounding.
 Geometry geometry_of(const Settings& settings);
 
-/// The geometry as kernel defines, with the group size.
+/// What kernels need that read rows only (rows.clh): precision and truth as defines, with the group size.
+Defines row_defines(const Geometry& geometry, std::uint32_t group_size);
+
+/// The whole geometry as defines, with the group size.
 Defines geometry_defines(const Geometry& geometry, std::uint32_t group_size);
 
 /// Reals of a pose on devices: body.clh.

@@ -3,7 +3,7 @@
 // constructed cases reach the overlap test of the walks, over nodes that refit has made, without a walk.
 #include "backends/portable.h"
 #include "algorithms/kdop/node.clh"
-#include "algorithms/pairs.clh"
+#include "algorithms/emit.clh"
 
 // Bits of an answer.
 #define LEAVES_OVERLAP 1u        // as nodes_overlap has it, from registers

@@ -6,6 +6,7 @@
 // vertices; inner nodes are the exact min/max of their children.
 #include "backends/portable.h"
 #include "algorithms/kdop/body.clh"
+#include "algorithms/kdop/node.clh"
 
 // Nodes a work-group has room for: a power of two, at least those of one strip for each of its teams.
 #ifndef TILE_NODES

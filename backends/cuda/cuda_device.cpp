@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "backends/defines.h"
 #include "backends/cuda/cuda_device.h"
 
 #include "backends/cuda/driver.h"
@@ -324,7 +323,7 @@ const LoadedModule& CudaDevice::module(const KernelSource& source, const Defines
 std::shared_ptr<Kernel::Impl> CudaDevice::do_compile(const KernelSource& source, std::string_view entry,
                                                      const Defines& defines) {
     make_current();
-    const auto& loaded = module(source, defines_in(source, defines));
+    const auto& loaded = module(source, defines);
     auto kernel = std::make_shared<CudaKernel>();
     const std::string name(entry);
     check(driver().cuModuleGetFunction(&kernel->function, loaded.module, name.c_str()), "cuModuleGetFunction",

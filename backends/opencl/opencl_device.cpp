@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #define CL_TARGET_OPENCL_VERSION 120
-#include "backends/defines.h"
 #include "backends/opencl/opencl_device.h"
 
 #include "backends/hardware.h"
@@ -282,8 +281,7 @@ std::shared_ptr<Kernel::Impl> OpenclDevice::do_compile(const KernelSource& sourc
     const bool verbose =
         device_text(device_, CL_DEVICE_EXTENSIONS).find("cl_nv_compiler_options") != std::string::npos;
     if (verbose) options += " -cl-nv-verbose";
-    for (const auto& [name, value] : defines_in(source, defines))
-        options += fmt::format(" -D{}={}", name, value);
+    for (const auto& [name, value] : defines) options += fmt::format(" -D{}={}", name, value);
     auto kernel = std::make_shared<OpenclKernel>();
     cl_int code = CL_SUCCESS;
     auto* made = program(source, options);

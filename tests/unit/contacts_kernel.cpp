@@ -73,10 +73,7 @@ public:
 
     Outcome<Real> run(std::uint32_t first, std::uint32_t pairs, std::uint32_t high,
                       std::uint32_t pair_capacity, std::uint32_t capacity, ContactSettings settings = {}) {
-        Defines defines{{"K", "18"},
-                        {"AXES", "0"},
-                        {"ROUNDING", "1"},
-                        {"PRECISION", sizeof(Real) == 8 ? "64" : "32"},
+        Defines defines{{"PRECISION", sizeof(Real) == 8 ? "64" : "32"},
                         {"GROUP_SIZE", std::to_string(group_size_)}};
         const auto& source = kernel_source("algorithms/contacts/contacts.cl");
         Outcome<Real> outcome{std::vector<std::uint32_t>(status_words),
