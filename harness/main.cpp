@@ -125,7 +125,11 @@ void add_simulate_options(CLI::App& app, SimulateOptions& options, std::vector<s
     app.add_option("--algorithm", options.request.algorithms, "that finds contacts; chunked when left out");
     app.add_option("--preset", options.request.presets, "of it (see 'tandem algorithms')");
     app.add_option("--device", options.request.devices, "where contacts are found; opencl:0 when left out");
-    app.add_option("--set", sets, "NAME=VALUE: a setting of the algorithm")->expected(1)->take_all();
+    app.add_option(
+           "--set", sets,
+           "NAME=VALUE: a setting of the algorithm; contact_rule=sat and decision=recheck when left out")
+        ->expected(1)
+        ->take_all();
     app.add_option("--require", options.require, "devices or backends whose absence is a failure")
         ->delimiter(',');
     app.add_flag("--quiet", options.quiet, "no progress line");

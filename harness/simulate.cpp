@@ -35,11 +35,26 @@ Scene open_scene(const SimulateOptions& options) {
     return scene;
 }
 
+/// A body moves by its contacts: unless asked for others, the least translation for pairs that surely meet.
+/// What cells are measured with is the paper's rule, which pushes bodies that only touch metres sideways.
+void prefer_certain_contacts(Request& request, std::span<Device* const> devices) {
+    const auto prefer = [&](const char* name, const char* value) {
+        const auto given = std::any_of(request.sets.begin(), request.sets.end(),
+                                       [&](const auto& set) { return set.first == name; });
+        if (!given) request.sets.push_back({name, {value}});
+    };
+    prefer("contact_rule", "sat");
+    const auto has_double = [](const auto* device) { return device->info().has_double; };
+    if (std::all_of(devices.begin(), devices.end(), has_double)) prefer("decision", "recheck");
+}
+
 Cell only_cell(const SimulateOptions& options, const std::vector<BackendReport>& backends) {
     auto request = options.request;
     if (request.algorithms.empty()) request.algorithms = {"chunked"};
     if (request.devices.empty()) request.devices = {"opencl:0"};
-    const auto cells = plan(request, choose_devices(backends, request.devices));
+    const auto devices = choose_devices(backends, request.devices);
+    prefer_certain_contacts(request, devices);
+    const auto cells = plan(request, devices);
     if (cells.size() != 1)
         throw InputError(fmt::format("a simulation takes one algorithm, preset, device and value of each "
                                      "setting; this asks for {} cells",

@@ -119,6 +119,21 @@ class Simulations(Case):
         self.assertLess(lost("arch"), 1e-3)
         self.assertGreater(lost("arch:keystone=0"), 0.05)
 
+    def test_stones_that_only_touch_stay_where_they_are(self):
+        """By the least translation of pairs that surely meet; the paper's rule pushes them a metre sideways."""
+        def deepest(*settings):
+            record = self.work / "simulation-stones.jsonl"
+            record.unlink(missing_ok=True)
+            self.simulate("colosseum:slices=6,layers=1", "--steps", 20, "--record", record, *settings)
+            steps, runs = self.lines(record)
+            return max(step["deepest_m"] for step in steps), runs[0]["settings"]
+        depth, settings = deepest()
+        self.assertEqual((settings["contact_rule"], settings["decision"]), ("sat", "recheck"))
+        self.assertLess(depth, 0.005)
+        depth, settings = deepest("--set", "contact_rule=opposing", "--set", "decision=fp32")
+        self.assertEqual((settings["contact_rule"], settings["decision"]), ("opposing", "fp32"))
+        self.assertGreater(depth, 0.5)
+
     def test_divergence_is_told(self):
         record, file = self.work / "simulation-bad.jsonl", self.work / "bad.frames"
         self.bad(["step ", "body ", "J"], "simulate", "tower:segments=1,slices=3", "--device", "host", "--steps", 200, "-o", file,
