@@ -109,26 +109,31 @@ void expect_right(Device& on, const Traversal& traversal, const Scene& scene, co
 
 class Conformance : public testing::TestWithParam<std::string> {};
 
-void cover(const std::string& device_id, const std::string& algorithm_name, std::uint64_t seed) {
-    const auto& traversal = algorithm(algorithm_name);
-    auto& on = device(device_id);
-    const auto rows = possible(pairwise(axes_of(traversal)));
-    std::uint64_t cells = 0;
-    for (const auto& row : rows) {
-        std::uint64_t pairs = 0;
-        std::uint64_t contacts = 0;
-        expect_right(on, traversal, crowd(seed + cells, 7, 0.8), row, pairs, contacts);
-        EXPECT_GT(pairs, 0u) << text(row);
-        EXPECT_GT(contacts, 0u) << text(row);
-        ++cells;
-        if (testing::Test::HasFailure()) return;
-    }
-    EXPECT_GE(cells, 12u);
-    fmt::print("{} cells of {} on {}\n", cells, algorithm_name, device_id);
-}
+/// A device and a part of the rows: compiling them takes most of the time, and parts can run side by side.
+class CoveringArray : public testing::TestWithParam<std::tuple<std::string, std::size_t>> {
+public:
+    static constexpr std::size_t parts = 6;
 
-TEST_P(Conformance, ChunkedOverCoveringArray) { cover(GetParam(), "chunked", 100); }
-TEST_P(Conformance, GproximityOverCoveringArray) { cover(GetParam(), "gproximity", 200); }
+protected:
+    static void cover(std::string_view algorithm_name, std::uint64_t seed) {
+        const auto& [device_id, part] = GetParam();
+        const auto& traversal = algorithm(algorithm_name);
+        auto& on = device(device_id);
+        const auto rows = possible(pairwise(axes_of(traversal)));
+        ASSERT_GE(rows.size(), 2 * parts);
+        for (auto i = part; i < rows.size(); i += parts) {
+            std::uint64_t pairs = 0;
+            std::uint64_t contacts = 0;
+            expect_right(on, traversal, crowd(seed + i, 7, 0.8), rows[i], pairs, contacts);
+            EXPECT_GT(pairs, 0u) << text(rows[i]);
+            EXPECT_GT(contacts, 0u) << text(rows[i]);
+            if (HasFailure()) return;
+        }
+    }
+};
+
+TEST_P(CoveringArray, Chunked) { cover("chunked", 100); }
+TEST_P(CoveringArray, Gproximity) { cover("gproximity", 200); }
 
 TEST_P(Conformance, EveryPreset) {
     auto& on = device(GetParam());
@@ -309,6 +314,14 @@ TEST_P(Conformance, ResidentChunkedWaitsOnce) {
 
 INSTANTIATE_TEST_SUITE_P(Devices, Conformance, testing::ValuesIn(device_names()),
                          [](const auto& test) { return device_label(test.param); });
+
+INSTANTIATE_TEST_SUITE_P(Devices, CoveringArray,
+                         testing::Combine(testing::ValuesIn(device_names()),
+                                          testing::Range<std::size_t>(0, CoveringArray::parts)),
+                         [](const auto& test) {
+                             return fmt::format("{}Part{}", device_label(std::get<0>(test.param)),
+                                                std::get<1>(test.param));
+                         });
 
 TEST(Reference, SweepEqualsBruteForce) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
