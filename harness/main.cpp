@@ -89,6 +89,7 @@ void add_accuracy_options(CLI::App& app, tandem::AccuracyOptions& options, std::
     app.get_option("--truth-contacts")
         ->description("exact contacts of at most so many pairs a frame; 1000 when left out");
     app.add_option("--repeat", options.run.repeat, "samples per cell")->check(CLI::Range(1, 1000));
+    app.add_flag("!--no-check", options.run.check, "do not compare with the reference; the truth stays");
 }
 
 void add_export_options(CLI::App& app, tandem::ExportOptions& options) {

@@ -112,6 +112,12 @@ class Accuracy(Case):
         self.assertEqual(float(shown), float(f"{records[0]['error']['truth']['contacts']['volume_relative']['p99']:.3g}"))
         self.assertEqual(text.count("MISSES"), 1)  # in the legend
 
+    def test_the_reference_can_be_left_out_and_the_truth_stays(self):
+        for arguments, checked in ((), True), (("--no-check",), False):
+            records, _ = self.run_two(f"checked{checked}", "--set", "k=8", "--repeat", 1, *arguments, command="accuracy")
+            self.assertEqual([r["agreement"] is not None for r in records], [checked])
+            self.assertGreater(records[0]["error"]["truth"]["candidates"], 0)
+
     def test_figures_draw_records(self):
         records, _ = self.run_two("drawn", "--set", "k=8,18", "--repeat", 1, command="accuracy")
         folder = self.work / "figures"

@@ -140,6 +140,7 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
     const Progress progress(options.quiet);
     SampleOptions sampling;
     sampling.repeat = options.repeat;
+    sampling.check = options.check;
     sampling.count_work = false;
     sampling.truths = &truths;
     int code = 0;
