@@ -84,6 +84,7 @@ int check_refusal(RunOptions options, const std::vector<Cell>& cells) {
         open_job(options, cells);
     } catch (const InputError& error) {
         refusal = error.what();
+        if (refusal.find("not finite") == std::string::npos) throw; // refused for another reason
     }
     fmt::print("{:<26} {}\n", "hard:not-finite", refusal.empty() ? "NOT refused" : "refused: " + refusal);
     return refusal.empty() ? 1 : 0;

@@ -68,7 +68,11 @@ Cell only_cell(const SimulateOptions& options, const std::vector<BackendReport>&
 /// simulation behind a digest of its settings, so that nothing goes on with other settings.
 class Journal {
 public:
-    Journal(const SimulateOptions& options, const Scene& scene) : settings_(describe(*scene.dynamics)) {
+    Journal(const SimulateOptions& options, const Scene& scene, const Cell& cell)
+        : settings_(describe(*scene.dynamics)) {
+        // What contacts depend on; devices and schedules find the same ones.
+        for (const auto* name : {"k", "axes", "precision", "rounding", "truth", "contact_rule", "decision"})
+            settings_ += fmt::format(" {}={}", name, cell.settings.at(name));
         if (options.recording.empty()) {
             if (options.resume) throw InputError("--resume goes with -o FILE, the recording to go on with");
             return;
@@ -90,7 +94,7 @@ public:
         if (checkpoint->state.size() < sizeof own
             || std::memcmp(checkpoint->state.data(), &own, sizeof own) != 0)
             throw InputError(
-                fmt::format("{}: was simulated with other dynamics than {}; resume it with those "
+                fmt::format("{}: was simulated with other settings than {}; resume it with those "
                             "it was begun with",
                             writer_->path(), settings_));
         simulation.restore(std::span(checkpoint->state).subspan(sizeof own));
@@ -170,7 +174,7 @@ int simulate_command(const SimulateOptions& options) {
     const auto cell = only_cell(options, backends);
     check_coordinates({&cell, 1}, scene, {0, 0, {scene.frame(0)}});
     Simulation simulation(scene);
-    Journal journal(options, scene);
+    Journal journal(options, scene, cell);
     journal.restore(simulation);
     RecordFile file(options.record);
     const auto last = options.steps > 0 ? options.steps : scene.dynamics->steps;

@@ -4,23 +4,36 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <exception>
+#include <mutex>
 #include <span>
 #include <thread>
 #include <vector>
 
 namespace tandem {
 
-/// Calls work(i) for i < count on all cores. `work` must not throw.
+/// Calls work(i) for i < count on all cores. When a call throws, no further ones are begun, and the first
+/// exception is thrown after those that run have ended.
 template<class Work>
 void parallel_for(std::size_t count, Work work) {
     std::atomic<std::size_t> next = 0;
+    std::exception_ptr failure;
+    std::once_flag failed;
     const auto drain = [&] {
-        for (auto i = next++; i < count; i = next++) work(i);
+        try {
+            for (auto i = next++; i < count; i = next++) work(i);
+        } catch (...) {
+            next = count;
+            std::call_once(failed, [&] { failure = std::current_exception(); });
+        }
     };
-    std::vector<std::jthread> others;
-    const auto threads = std::min<std::size_t>(count, std::thread::hardware_concurrency());
-    for (std::size_t i = 1; i < threads; ++i) others.emplace_back(drain);
-    drain();
+    {
+        std::vector<std::jthread> others;
+        const auto threads = std::min<std::size_t>(count, std::thread::hardware_concurrency());
+        for (std::size_t i = 1; i < threads; ++i) others.emplace_back(drain);
+        drain();
+    }
+    if (failure) std::rethrow_exception(failure);
 }
 
 /// Spans of `values` in order, none empty, small enough that all cores get some of a long list.

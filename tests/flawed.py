@@ -95,7 +95,7 @@ class Flawed(Case):
         status, _, errors = limited()
         self.assertEqual((status, len(errors)), (2, 1), errors)
         self.assertRegex(errors[0], r"the exact truth of 18000 tetrahedra with at least \d+ pairs near each other may take \d.\d\d GiB, "
-                                    r"and [12].\d\d GiB are free; choose --truth none, fewer frames or fewer bodies")
+                                    r"and \d.\d\d GiB are free; choose --truth none, fewer frames or fewer bodies")
         self.assertEqual(limited("--truth", "none")[::2], (0, []))
         frames = ("run", "hard:ties:pairs=300000,together=1000", "--device", "host", "--algorithm", "chunked", "--repeat", 1,
                   "--no-check", "--set", "contact_rule=none")

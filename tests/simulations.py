@@ -89,7 +89,8 @@ class Simulations(Case):
         self.assertEqual((status, errors), (0, []), text)
         self.assertIn("goes on after step 60", text)
         self.assertEqual(broken.read_bytes(), whole.read_bytes())
-        self.bad("was simulated with other dynamics", "simulate", ARCH, "--device", "host", "-o", broken, "--resume", "--dynamics", "iterations=10")
+        for other in (("--dynamics", "iterations=10"), ("--set", "contact_rule=clip")):
+            self.bad("was simulated with other settings", "simulate", ARCH, "--device", "host", "-o", broken, "--resume", *other)
         self.bad("broken.frames", "simulate", ARCH, "--device", "host", "-o", broken)
         self.bad("broken.frames", "simulate", "arch", "--device", "host", "-o", broken, "--resume")
         self.assertEqual(broken.read_bytes(), whole.read_bytes())

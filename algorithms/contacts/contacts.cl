@@ -24,7 +24,7 @@
 #define RULE_VERTEX 5
 #define RULE_CONSISTENT 6
 #define RULE_GROWTH 7
-// Rules that take the pair as it is named, or in canonical order.
+// Rules that take the pair in canonical order; the others take it as it is named.
 #define IS_CANONICAL (CONTACT_RULE >= RULE_SAT)
 // Rules whose contacts have a normal and a depth each.
 #define IS_POINTWISE (CONTACT_RULE == RULE_VERTEX || CONTACT_RULE == RULE_CONSISTENT)

@@ -24,39 +24,44 @@ void check_room(const FrameTruth& first, std::size_t frames) {
 
 } // namespace
 
-Truths::Known& Truths::known(Precision precision, std::size_t index, const Report& report) {
-    const auto [found, added] = known_.try_emplace({precision, index});
-    auto& known = found->second;
-    if (!added) return known;
+const Truths::Known& Truths::known(Precision precision, std::size_t index, const Report& report) {
+    const Place place{precision, index};
+    if (const auto found = known_.find(place); found != known_.end()) return found->second;
+    Known known;
     known.truth = frame_truth(scene_, frames_[index], precision, report, free_memory());
-    if (known_.size() == 1) check_room(known.truth, frames_.size());
-    if (amount_ != TruthAmount::contacts) return known;
-    known.contacts = contact_truths(scene_, frames_[index], precision, known.truth, most_contacts_);
-    if (index == 0) known.drift = vertex_drift(scene_, frames_[index], precision);
-    return known;
+    if (index == 0) check_room(known.truth, frames_.size());
+    if (amount_ == TruthAmount::contacts) {
+        known.contacts = contact_truths(scene_, frames_[index], precision, known.truth, most_contacts_);
+        if (index == 0) known.drift = vertex_drift(scene_, frames_[index], precision);
+    }
+    return known_.emplace(place, std::move(known)).first->second;
 }
 
 const AnswerErrors& Truths::errors(Precision precision, std::size_t index, const FrameAnswer& answer,
                                    const Report& report) {
-    const Numbers numbers{answer.pairs.count,    answer.pairs.a,    answer.pairs.b,
-                          answer.contacts.count, answer.contacts.a, answer.contacts.b};
-    const auto [found, added] = errors_.try_emplace({{precision, index}, numbers});
-    auto& errors = found->second;
-    if (!added) return errors;
-    const auto& truth = known(precision, index, report);
+    const std::pair key{Place{precision, index},
+                        Numbers{answer.pairs.count, answer.pairs.a, answer.pairs.b, answer.contacts.count,
+                                answer.contacts.a, answer.contacts.b}};
+    if (const auto found = errors_.find(key); found != errors_.end()) return found->second;
+    return errors_.emplace(key, errors_of(known(precision, index, report), precision, answer)).first->second;
+}
+
+/// Kept by the caller only when nothing has thrown: a download may fail, and the next cell asks again.
+AnswerErrors Truths::errors_of(const Known& known, Precision precision, const FrameAnswer& answer) {
+    AnswerErrors errors;
     const auto pairs = answer.download();
     errors.frames = 1;
-    errors.pairs = pair_errors(truth.truth, pairs);
-    errors.decided = truth.truth.decisions;
-    errors.drift = truth.drift;
-    errors.invalid_tetrahedra = truth.truth.invalid.size();
+    errors.pairs = pair_errors(known.truth, pairs);
+    errors.decided = known.truth.decisions;
+    errors.drift = known.drift;
+    errors.invalid_tetrahedra = known.truth.invalid.size();
     if (!answer.makes_contacts) return errors;
     const auto contacts = answer.download_contacts();
-    errors.decisions = decision_matrix(truth.truth, pairs, contacts);
-    if (!truth.contacts) return errors;
-    errors.every_contact = truth.contacts->every;
+    errors.decisions = decision_matrix(known.truth, pairs, contacts);
+    if (!known.contacts) return errors;
+    errors.every_contact = known.contacts->every;
     errors.contacts =
-        contact_errors(*truth.contacts, contacts, precision == Precision::twice ? 0x1p-53 : 0x1p-24);
+        contact_errors(*known.contacts, contacts, precision == Precision::twice ? 0x1p-53 : 0x1p-24);
     return errors;
 }
 

@@ -46,7 +46,8 @@ private:
         std::optional<ContactTruths> contacts;
         std::optional<Drift> drift; ///< first frame only
     };
-    Known& known(Precision precision, std::size_t index, const Report& report);
+    const Known& known(Precision precision, std::size_t index, const Report& report);
+    static AnswerErrors errors_of(const Known& known, Precision precision, const FrameAnswer& answer);
 
     using Place = std::pair<Precision, std::size_t>;
     using Numbers = std::array<std::uint64_t, 6>; ///< of the digests

@@ -89,7 +89,9 @@ std::vector<std::uint64_t> count_near(const std::vector<Boxes>& boxes, std::span
     parallel_for(bodies.size(), [&](std::size_t i) {
         if (total > most) return;
         const auto [a, b] = bodies[i];
-        for_near_pairs(boxes[a], boxes[b], [&](auto, auto) { ++counts[i]; });
+        std::uint64_t count = 0; // not in the vector: other threads write beside
+        for_near_pairs(boxes[a], boxes[b], [&](auto, auto) { ++count; });
+        counts[i] = count;
         total += counts[i];
     });
     return counts;
@@ -149,7 +151,7 @@ FrameTruth frame_truth(const Scene& scene, const Frame& frame, Precision precisi
                        std::uint64_t memory) {
     const auto tetrahedra = tetrahedron_count(scene);
     const auto own = tetrahedra * (sizeof(TetraCorners) + sizeof(Box));
-    if (own > memory) refuse(tetrahedra, "", 0, own, memory);
+    if (own > memory) refuse(tetrahedra, "at least ", 0, own, memory);
     FrameTruth truth;
     const auto world = world_of(scene, frame, precision);
     std::vector<Boxes> boxes(world.size());

@@ -217,6 +217,18 @@ TEST(Accuracy, EqualAnswersAreComparedOnceAndASampleSaysSo) {
     EXPECT_EQ(downloads, 2);
 }
 
+TEST(Accuracy, AnAnswerThatCouldNotBeReadIsAskedForAgain) {
+    const auto scene = crowd(3, 9, 1.2);
+    const std::vector<Frame> frames{scene.frame(0)};
+    const auto truth = frame_truth(scene, frames[0], Precision::single);
+    FrameAnswer answer;
+    answer.download = []() -> std::vector<Pair> { throw DeviceError("lost"); };
+    Truths truths(scene, frames, TruthAmount::pairs, 0);
+    EXPECT_THROW(truths.errors(Precision::single, 0, answer), DeviceError);
+    answer.download = [&] { return truth.overlapping; };
+    EXPECT_EQ(truths.errors(Precision::single, 0, answer).pairs.overlapping, truth.overlapping.size());
+}
+
 TEST(Accuracy, ErrorsOfFramesAddUp) {
     AnswerErrors one, other, sum;
     one.pairs = {1, 2, 3, 4, 5, 6, 7};

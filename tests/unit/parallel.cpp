@@ -15,6 +15,18 @@ TEST(Parallel, EveryIndexIsWorkedOnOnce) {
     EXPECT_EQ(std::count(times.begin(), times.end(), 1), std::ssize(times));
 }
 
+TEST(Parallel, ThrowsWhatACallThrew) {
+    std::atomic<int> begun = 0;
+    EXPECT_THROW(parallel_for(1 << 20,
+                              [&](std::size_t i) {
+                                  ++begun;
+                                  if (i == 100) throw std::bad_alloc();
+                              }),
+                 std::bad_alloc);
+    EXPECT_GT(begun, 100);
+    EXPECT_LT(begun, 1 << 20);
+}
+
 TEST(Parallel, SortsListsOfAnyLengthInAnyNumberOfParts) {
     Random random(3);
     for (const std::size_t count : {0, 1, 2, 5, 100, 4099}) {
