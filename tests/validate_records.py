@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""validate_records.py [FILE.jsonl ...]: checks records against results/record.schema.json, those of files named
+"""validate_records.py [FILE.jsonl|FILE.jsonl.xz ...]: checks records against results/record.schema.json, those of files named
 ceilings*.jsonl against results/ceilings.schema.json and simulation*.jsonl against results/simulation.schema.json;
 without files, all committed ones. Exit 1 names file:line and the place of the first problems."""
 import json
+import lzma
 import pathlib
 import sys
 
@@ -29,8 +30,9 @@ def problems_of(line, validator):
 def problems_in(path, validator):
     """(line number, text) of everything wrong in a file, and how many lines it has."""
     try:
-        lines = path.read_bytes().decode("utf-8").removesuffix("\n").split("\n")
-    except (OSError, UnicodeDecodeError) as error:
+        data = lzma.open(path).read() if path.suffix == ".xz" else path.read_bytes()
+        lines = data.decode("utf-8").removesuffix("\n").split("\n")
+    except (OSError, EOFError, lzma.LZMAError, UnicodeDecodeError) as error:
         return [(1, str(error))], 0
     lines = [] if lines == [""] else lines
     return [(n, text) for n, line in enumerate(lines, 1) for text in problems_of(line, validator)], len(lines)
@@ -60,7 +62,7 @@ def validator_of(name):
 
 def main(names):
     validators = {kind: validator_of(kind + ".schema.json") for kind in ("record", "ceilings", "simulation")}
-    files = [pathlib.Path(name) for name in names] or sorted((ROOT / "results").glob("**/*.jsonl"))
+    files = [pathlib.Path(name) for name in names] or sorted([*(ROOT / "results").glob("**/*.jsonl"), *(ROOT / "results").glob("**/*.jsonl.xz")])
     if not files:
         print("no records are committed yet")
         return 0
