@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every algorithm and preset against brute force, on the host and on OpenCL, over a pairwise covering array
 // of settings and group sizes. Iterates the list of algorithms: a new one is covered by being listed.
-#include "algorithms/broad/broad.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
 
