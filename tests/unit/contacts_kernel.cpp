@@ -4,6 +4,7 @@
 
 #include "algorithms/sources.h"
 #include "backends/registry.h"
+#include "scenes/hard/hard.h"
 #include "tests/support/oracle_pairs.h"
 
 #include <gtest/gtest.h>
@@ -207,6 +208,34 @@ void add_concentric_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
     }
 }
 
+/// Pairs of every family of hard cases, and one whose faces rounding cuts into polygons of more than seven
+/// corners.
+template<class Real>
+void add_hard_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
+    const auto add = [&pairs](const FloatCorners& a, const FloatCorners& b) {
+        const auto real = [](const FloatCorners& corners) {
+            Corners<Real> result;
+            for (unsigned i = 0; i < 4; ++i)
+                std::copy(corners[i].begin(), corners[i].end(), result[i].begin());
+            return result;
+        };
+        pairs.push_back({real(a), real(b)});
+    };
+    for (const auto& family : hard_families())
+        for (std::uint64_t i = 0; family.pair != nullptr && i < 200; ++i) {
+            const auto pair = hard_pair(family, 1, i, family.knob.initial);
+            add(pair.a, pair.b);
+        }
+    add({{{-0x1.167fc4p-1f, -0x1.46264cp-3f, 0x1.6e0774p-1f},
+          {-0x1.fdd7p-9f, -0x1.cb92bep-1f, 0x1.e5dd48p-1f},
+          {0x1.1bf32p-7f, -0x1.33522ap+0f, 0x1.1b0ee4p+0f},
+          {0x1.031a8p-4f, -0x1.2d293p-1f, 0x1.9ccabap-1f}}},
+        {{{-0x1.54b3a4p-2f, -0x1.bb52dp-1f, 0x1.7670fcp-1f},
+          {0x1.031a8p-4f, -0x1.2d293p-1f, 0x1.9ccabap-1f},
+          {-0x1.0408c8p-2f, -0x1.2b97cp-1f, 0x1.17cf34p+0f},
+          {0x1.d292p-5f, -0x1.c236dp-1f, 0x1.9cc4p-2f}}});
+}
+
 template<class Real>
 class ContactsKernel : public testing::Test {
 protected:
@@ -257,6 +286,7 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReference) {
     auto pairs = random_pairs<TypeParam>(7000);
     add_close_pairs(pairs);
     add_concentric_pairs(pairs);
+    add_hard_pairs(pairs);
     const auto count = static_cast<std::uint32_t>(pairs.size());
     for (const ContactSettings settings : {ContactSettings{published, fp32},
                                            {sat, fp32},
