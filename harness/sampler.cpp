@@ -114,7 +114,7 @@ void Sampler::add_errors(Truths& truths, std::size_t index, const FrameResult& r
     answer.download = [&] { return session_->download(result); };
     answer.download_contacts = [&] { return session_->download_contacts(result); };
     if (!out_.errors) out_.errors.emplace();
-    out_.errors->add(truths.errors(geometry_.precision, index, answer, report));
+    out_.errors->add(truths.errors(geometry_, index, answer, report));
 }
 
 void Sampler::check(References& references, const SampleOptions& options, const std::string& name) {

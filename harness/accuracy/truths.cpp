@@ -24,44 +24,57 @@ void check_room(const FrameTruth& first, std::size_t frames) {
 
 } // namespace
 
-const Truths::Known& Truths::known(Precision precision, std::size_t index, const Report& report) {
-    const Place place{precision, index};
-    if (const auto found = known_.find(place); found != known_.end()) return found->second;
-    Known known;
-    known.truth = frame_truth(scene_, frames_[index], precision, report, free_memory());
-    if (index == 0) check_room(known.truth, frames_.size());
-    if (amount_ == TruthAmount::contacts) {
-        known.contacts = contact_truths(scene_, frames_[index], precision, known.truth, most_contacts_);
-        if (index == 0) known.drift = vertex_drift(scene_, frames_[index], precision);
-    }
-    return known_.emplace(place, std::move(known)).first->second;
+const FrameTruth& Truths::truth_of(const Place& place, const Report& report) {
+    if (const auto found = truths_.find(place); found != truths_.end()) return found->second;
+    const auto& [positions, index] = place;
+    auto truth = frame_truth(scene_, frames_[index], positions, report, free_memory());
+    if (index == 0) check_room(truth, frames_.size());
+    return truths_.emplace(place, std::move(truth)).first->second;
 }
 
-const AnswerErrors& Truths::errors(Precision precision, std::size_t index, const FrameAnswer& answer,
+const ContactTruths& Truths::contact_truths_of(const Place& place, const Report& report) {
+    if (const auto found = contact_truths_.find(place); found != contact_truths_.end()) return found->second;
+    const auto& [positions, index] = place;
+    auto truths =
+        contact_truths(scene_, frames_[index], positions.precision, truth_of(place, report), most_contacts_);
+    return contact_truths_.emplace(place, std::move(truths)).first->second;
+}
+
+const AnswerErrors& Truths::errors(const Geometry& geometry, std::size_t index, const FrameAnswer& answer,
                                    const Report& report) {
-    const std::pair key{Place{precision, index},
-                        Numbers{answer.pairs.count, answer.pairs.a, answer.pairs.b, answer.contacts.count,
-                                answer.contacts.a, answer.contacts.b}};
+    const auto precision = geometry.precision;
+    const Place place{{precision, geometry.truth}, index};
+    const std::tuple key{precision, place,
+                         Numbers{answer.pairs.count, answer.pairs.a, answer.pairs.b, answer.contacts.count,
+                                 answer.contacts.a, answer.contacts.b}};
     if (const auto found = errors_.find(key); found != errors_.end()) return found->second;
-    return errors_.emplace(key, errors_of(known(precision, index, report), precision, answer)).first->second;
+    return errors_.emplace(key, errors_of(precision, place, answer, report)).first->second;
 }
 
 /// Kept by the caller only when nothing has thrown: a download may fail, and the next cell asks again.
-AnswerErrors Truths::errors_of(const Known& known, Precision precision, const FrameAnswer& answer) {
+AnswerErrors Truths::errors_of(Precision precision, const Place& place, const FrameAnswer& answer,
+                               const Report& report) {
+    const auto index = place.second;
+    const auto& truth = truth_of(place, report);
     AnswerErrors errors;
     const auto pairs = answer.download();
     errors.frames = 1;
-    errors.pairs = pair_errors(known.truth, pairs);
-    errors.decided = known.truth.decisions;
-    errors.drift = known.drift;
-    errors.invalid_tetrahedra = known.truth.invalid.size();
+    errors.pairs = pair_errors(truth, pairs);
+    errors.decided = truth.decisions;
+    errors.invalid_tetrahedra = truth.invalid.size();
+    if (amount_ == TruthAmount::contacts && index == 0) {
+        if (!drifts_.contains(precision))
+            drifts_.emplace(precision, vertex_drift(scene_, frames_[index], precision));
+        errors.drift = drifts_.at(precision);
+    }
     if (!answer.makes_contacts) return errors;
+    const Place rounded{{precision, Truth::vertices}, index};
     const auto contacts = answer.download_contacts();
-    errors.decisions = decision_matrix(known.truth, pairs, contacts);
-    if (!known.contacts) return errors;
-    errors.every_contact = known.contacts->every;
-    errors.contacts =
-        contact_errors(*known.contacts, contacts, precision == Precision::twice ? 0x1p-53 : 0x1p-24);
+    errors.decisions = decision_matrix(truth_of(rounded, report), pairs, contacts);
+    if (amount_ != TruthAmount::contacts) return errors;
+    const auto& exact = contact_truths_of(rounded, report);
+    errors.every_contact = exact.every;
+    errors.contacts = contact_errors(exact, contacts, precision == Precision::twice ? 0x1p-53 : 0x1p-24);
     return errors;
 }
 

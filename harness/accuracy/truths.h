@@ -5,6 +5,7 @@
 #include "harness/accuracy/answer_errors.h"
 
 #include <map>
+#include <tuple>
 
 namespace tandem {
 
@@ -24,8 +25,10 @@ struct FrameAnswer {
     std::function<std::vector<ContactPoint>()> download_contacts; ///< sorted
 };
 
-/// The truth of a scene's frames, found once for each precision, and the errors of answers, found once for
-/// each answer: cells that give the same have the same errors.
+/// The truth of a scene's frames, found once for all cells of the same positions, and the errors of answers,
+/// found once for each answer: cells that give the same have the same errors. Candidate pairs are compared
+/// with the truth that the cell's bounds promise to hold (its setting `truth`); contacts and decisions with
+/// that of the vertices they are made from, in the cell's precision.
 class Truths {
 public:
     /// `scene` and `frames` must outlive it. `most_contacts`: of this many pairs of a frame at most the exact
@@ -35,28 +38,28 @@ public:
 
     TruthAmount amount() const { return amount_; }
 
-    /// Errors of an answer of frame number `index` of the span. Throws InputError when there is too little
+    /// Errors of a cell's answer of frame number `index` of the span. Of its geometry the precision and the
+    /// truth count. Throws InputError when there is too little
     /// memory for the truth of that frame, or, with the first, of as many like it.
-    const AnswerErrors& errors(Precision precision, std::size_t index, const FrameAnswer& answer,
+    const AnswerErrors& errors(const Geometry& geometry, std::size_t index, const FrameAnswer& answer,
                                const Report& report = {});
 
 private:
-    struct Known {
-        FrameTruth truth;
-        std::optional<ContactTruths> contacts;
-        std::optional<Drift> drift; ///< first frame only
-    };
-    const Known& known(Precision precision, std::size_t index, const Report& report);
-    static AnswerErrors errors_of(const Known& known, Precision precision, const FrameAnswer& answer);
-
-    using Place = std::pair<Precision, std::size_t>;
+    using Place = std::pair<Positions, std::size_t>;
     using Numbers = std::array<std::uint64_t, 6>; ///< of the digests
+    const FrameTruth& truth_of(const Place& place, const Report& report);
+    const ContactTruths& contact_truths_of(const Place& place, const Report& report);
+    AnswerErrors errors_of(Precision precision, const Place& place, const FrameAnswer& answer,
+                           const Report& report);
+
     const Scene& scene_;
     std::span<const Frame> frames_;
     TruthAmount amount_;
     std::size_t most_contacts_;
-    std::map<Place, Known> known_;
-    std::map<std::pair<Place, Numbers>, AnswerErrors> errors_;
+    std::map<Place, FrameTruth> truths_;
+    std::map<Place, ContactTruths> contact_truths_; ///< of Truth::vertices
+    std::map<Precision, Drift> drifts_;             ///< of the first frame
+    std::map<std::tuple<Precision, Place, Numbers>, AnswerErrors> errors_;
 };
 
 } // namespace tandem

@@ -14,12 +14,6 @@ namespace {
 
 using namespace oracle;
 
-bool finite(const TetraCorners& corners) {
-    return std::ranges::all_of(corners, [](const auto& corner) {
-        return std::isfinite(corner[0]) && std::isfinite(corner[1]) && std::isfinite(corner[2]);
-    });
-}
-
 bool boxes_apart(const TetraCorners& a, const TetraCorners& b) {
     for (unsigned axis = 0; axis < 3; ++axis) {
         const auto low = [axis](const TetraCorners& c) {
@@ -67,8 +61,14 @@ Decision by_integers(const TetraCorners& a, const TetraCorners& b, const Filtere
 
 } // namespace
 
+bool all_finite(const TetraCorners& corners) {
+    return std::ranges::all_of(corners, [](const auto& corner) {
+        return std::isfinite(corner[0]) && std::isfinite(corner[1]) && std::isfinite(corner[2]);
+    });
+}
+
 Decision decide(const TetraCorners& a, const TetraCorners& b, Tier first) {
-    if (!finite(a) || !finite(b)) return {Relation::invalid, Tier::screen};
+    if (!all_finite(a) || !all_finite(b)) return {Relation::invalid, Tier::screen};
     if (first <= Tier::screen && boxes_apart(a, b)) return {Relation::disjoint, Tier::screen};
     Filtered filtered;
     if (first <= Tier::filter) filtered = filter(a, b);

@@ -37,6 +37,9 @@ struct Decision {
     bool operator==(const Decision&) const = default;
 };
 
+/// Whether no coordinate is infinite or no number.
+bool all_finite(const TetraCorners& corners);
+
 /// Decides from tier `first` on: tests force the slower ones. The answer does not depend on `first`, on the
 /// order of the corners, or on which tetrahedron is named first. Never throws.
 Decision decide(const TetraCorners& a, const TetraCorners& b, Tier first = Tier::screen);

@@ -14,13 +14,18 @@ constexpr double largest = 0x1p300;
 
 using Vector3 = Vector<double>;
 
+double taxicab(const Vector3& p) { return std::fabs(p[0]) + std::fabs(p[1]) + std::fabs(p[2]); }
+
 /// A computed cross product and the sum of its terms' magnitudes over all components.
 struct Normal {
     Vector3 vector;
     double magnitude;
+    double slack;  ///< how far a component of a factor may be off
+    double spread; ///< by how much the magnitude may then be larger
 
     Normal() = default;
-    Normal(const Vector3& p, const Vector3& q) {
+    Normal(const Vector3& p, const Vector3& q, double s)
+        : slack(s), spread(s * (2 * (taxicab(p) + taxicab(q)) + 6 * s)) {
         const double terms[6] = {p[1] * q[2], p[2] * q[1], p[2] * q[0],
                                  p[0] * q[2], p[0] * q[1], p[1] * q[0]};
         vector = {terms[0] - terms[1], terms[2] - terms[3], terms[4] - terms[5]};
@@ -28,7 +33,9 @@ struct Normal {
         for (const double term : terms) magnitude += std::fabs(term);
     }
     /// Of the error of a product with a difference of components of at most `size`.
-    double bound(double size) const { return relative * magnitude * size + absolute; }
+    double bound(double size) const {
+        return relative * magnitude * size + absolute + (magnitude * slack + spread * (size + slack));
+    }
 };
 
 /// The sign of x when its error is at most `bound`; 0: unsure.
@@ -41,13 +48,13 @@ struct Outline {
     double size = 0;              ///< largest component of an edge
     int orientation = 0;          ///< certain sign of the volume
 
-    explicit Outline(const TetraCorners& corner) {
+    Outline(const TetraCorners& corner, double slack) {
         for (unsigned i = 0; i < 6; ++i) {
             edge[i] = minus(corner[edges[i].to], corner[edges[i].from]);
             for (const double x : edge[i]) size = std::max(size, std::fabs(x));
         }
-        normal = {Normal(edge[3], edge[4]), Normal(edge[1], edge[2]), Normal(edge[0], edge[2]),
-                  Normal(edge[0], edge[1])};
+        normal = {Normal(edge[3], edge[4], slack), Normal(edge[1], edge[2], slack),
+                  Normal(edge[0], edge[2], slack), Normal(edge[0], edge[1], slack)};
         orientation = certain(dot(normal[3].vector, edge[2]), normal[3].bound(size));
     }
     /// On which side of its face's normal corner i lies.
@@ -116,7 +123,7 @@ Side facet_side(const Signs& on_a, const Signs& on_b, unsigned i, unsigned j) {
 
 /// The unsure products of edges, bit 6 i + j each; nothing when one tells the two apart.
 std::optional<FacetSet> try_products(const Outline& a, const Outline& b, const TetraCorners& corners_a,
-                                     const TetraCorners& corners_b, double size) {
+                                     const TetraCorners& corners_b, double size, double slack) {
     const auto on_a = signs(a, b);
     const auto on_b = signs(b, a);
     FacetSet unsure = 0;
@@ -124,7 +131,7 @@ std::optional<FacetSet> try_products(const Outline& a, const Outline& b, const T
         for (unsigned j = 0; j < 6; ++j) {
             const auto side = facet_side(on_a, on_b, i, j);
             if (!side.possible) continue;
-            const Normal normal(a.edge[i], b.edge[j]);
+            const Normal normal(a.edge[i], b.edge[j], slack);
             const auto between = minus(corners_b[edges[j].from], corners_a[edges[i].from]);
             const int gap = -side.sign * certain(dot(normal.vector, between), normal.bound(size));
             if (gap > 0 && side.certain) return std::nullopt;
@@ -150,11 +157,12 @@ double extent(const TetraCorners& a, const TetraCorners& b) {
 
 } // namespace
 
-Filtered filter(const TetraCorners& a, const TetraCorners& b) {
+Filtered filter(const TetraCorners& a, const TetraCorners& b, double off) {
     Filtered result;
     const double size = extent(a, b);
-    if (size > largest) return result;
-    const Outline outline_a(a), outline_b(b);
+    const double slack = 2 * off * (1 + 0x1p-40);
+    if (!(size + slack <= largest)) return result;
+    const Outline outline_a(a, slack), outline_b(b, slack);
     result.volume[0] = outline_a.orientation != 0;
     result.volume[1] = outline_b.orientation != 0;
     result.disjoint = true;
@@ -162,7 +170,7 @@ Filtered filter(const TetraCorners& a, const TetraCorners& b) {
     if (!faces_a) return result;
     const auto faces_b = try_faces(outline_b, b, a, size);
     if (!faces_b) return result;
-    const auto products = try_products(outline_a, outline_b, a, b, size);
+    const auto products = try_products(outline_a, outline_b, a, b, size, slack);
     if (!products) return result;
     result.disjoint = false;
     result.unsure = *faces_a | *faces_b << 4 | *products << 8;
@@ -177,7 +185,7 @@ int certain_orientation(const TetraCorners& corners) {
     for (const auto* edge : {&u, &v, &w})
         for (const double x : *edge) size = std::max(size, std::fabs(x));
     if (size > largest) return 0;
-    const Normal normal(u, v);
+    const Normal normal(u, v, 0);
     return certain(dot(normal.vector, w), normal.bound(size));
 }
 

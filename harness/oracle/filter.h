@@ -19,7 +19,13 @@ struct Filtered {
 /// sum is at most |n|_1, taken with magnitudes, times the largest difference; 12 u covers gamma_8 = 8 u and
 /// the roundings of the bound itself, and 2^-700 all underflow as long as differences are below 2^300.
 /// Coordinates must be finite; larger ones are left undecided.
-Filtered filter(const TetraCorners& a, const TetraCorners& b);
+///
+/// What is certain is so for all tetrahedra whose coordinates differ from these by at most `off`. Differences
+/// then differ by s = 2 off at most, and a sign by the sum over its six terms p q d of
+/// (|p| + s)(|q| + s)(|d| + s) - |p q d|. With m the sum of |p q| and m' that of (|p| + s)(|q| + s), which is
+/// m + 2 s (|p|_1 + |q|_1) + 6 s^2, this is at most m s + (m' - m)(size + s); every part of it has a factor
+/// s, so that its roundings are covered by an s that is 2^-40 larger.
+Filtered filter(const TetraCorners& a, const TetraCorners& b, double off = 0);
 
 /// The sign of facets.h's orientation where double arithmetic is certain of it; 0: unsure. The same bound.
 int certain_orientation(const TetraCorners& corners);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/oracle/frame_truth.h"
 
+#include "algorithms/kdop/drift.h"
+#include "harness/oracle/posed.h"
 #include "harness/oracle/superset.h"
 #include "harness/world_vertices.h"
 #include "scenes/error.h"
@@ -39,14 +41,62 @@ World world_of(const Scene& scene, const Frame& frame, Precision precision) {
     return precision == Precision::twice ? world_in<double>(scene, frame) : world_in<float>(scene, frame);
 }
 
-std::vector<Decision> decide_all(const World& world, std::span<const Pair> pairs) {
+/// What the decision takes.
+class Bodies {
+public:
+    Bodies(const Scene& scene, const Frame& frame, Positions positions)
+        : scene_(scene),
+          frame_(frame),
+          world_(world_of(scene, frame, positions.precision)),
+          off_(world_.size()),
+          posed_(positions.truth == Truth::pose) {
+        if (!posed_) return;
+        parallel_for(world_.size(), [&](std::size_t body) {
+            if (is_rigid(body))
+                off_[body] = std::ranges::max(
+                    drift_bound(frame.poses[body], reach_of(mesh(body).vertices), positions.precision));
+        });
+    }
+
+    std::size_t count() const { return world_.size(); }
+    Boxes boxes(std::size_t body) const {
+        const std::span<const std::uint32_t> none;
+        return Boxes(world_[body], frame_.skipped.empty() ? none : frame_.skipped[body], off_[body]);
+    }
+    Decision decided(const Pair& pair) const {
+        if (posed_) return decide(posed(pair.body_a, pair.tet_a), posed(pair.body_b, pair.tet_b));
+        return decide(world_[pair.body_a][pair.tet_a], world_[pair.body_b][pair.tet_b]);
+    }
+
+private:
+    bool is_rigid(std::size_t body) const { return !scene_.bodies[body].deformable; }
+    const Mesh& mesh(std::size_t body) const { return scene_.meshes[scene_.bodies[body].mesh]; }
+
+    Posed posed(std::uint32_t body, std::uint32_t tetrahedron) const {
+        Posed result{world_[body][tetrahedron], off_[body], {}, nullptr};
+        result.own = result.near; // of a deformable body: world vertices in double are the frame's own
+        if (!is_rigid(body)) return result;
+        result.pose = &frame_.poses[body];
+        for (unsigned i = 0; i < 4; ++i) {
+            const auto& v = mesh(body).vertices[mesh(body).tetrahedra[tetrahedron][i]];
+            result.own[i] = {v.x(), v.y(), v.z()};
+        }
+        return result;
+    }
+
+    const Scene& scene_;
+    const Frame& frame_;
+    World world_;
+    std::vector<double> off_; ///< by body, of its coordinates in `world_`
+    bool posed_;
+};
+
+std::vector<Decision> decide_all(const Bodies& bodies, std::span<const Pair> pairs) {
     std::vector<Decision> result(pairs.size());
     constexpr std::size_t part = 1024;
     parallel_for((pairs.size() + part - 1) / part, [&](std::size_t index) {
         const auto end = std::min(pairs.size(), (index + 1) * part);
-        for (auto i = index * part; i < end; ++i)
-            result[i] =
-                decide(world[pairs[i].body_a][pairs[i].tet_a], world[pairs[i].body_b][pairs[i].tet_b]);
+        for (auto i = index * part; i < end; ++i) result[i] = bodies.decided(pairs[i]);
     });
     return result;
 }
@@ -65,12 +115,12 @@ std::vector<BodyNumbers> near_bodies(const Scene& scene, const std::vector<Boxes
 }
 
 /// Decides pairs in blocks and keeps those that meet.
-void keep_meeting(const World& world, std::span<const Pair> pairs, FrameTruth& truth,
+void keep_meeting(const Bodies& bodies, std::span<const Pair> pairs, FrameTruth& truth,
                   const std::function<void(std::size_t)>& after) {
     constexpr std::size_t block = 1 << 18;
     for (std::size_t first = 0; first < pairs.size(); first += block) {
         const auto part = pairs.subspan(first, std::min(block, pairs.size() - first));
-        const auto decisions = decide_all(world, part);
+        const auto decisions = decide_all(bodies, part);
         for (std::size_t i = 0; i < part.size(); ++i) {
             truth.decisions.add(decisions[i]);
             if (decisions[i].relation == Relation::touching) truth.touching.push_back(part[i]);
@@ -147,17 +197,15 @@ PairErrors errors_of(const FrameTruth& truth, std::span<const Pair> candidates) 
 
 } // namespace
 
-FrameTruth frame_truth(const Scene& scene, const Frame& frame, Precision precision, const Report& report,
+FrameTruth frame_truth(const Scene& scene, const Frame& frame, Positions positions, const Report& report,
                        std::uint64_t memory) {
     const auto tetrahedra = tetrahedron_count(scene);
     const auto own = tetrahedra * (sizeof(TetraCorners) + sizeof(Box));
     if (own > memory) refuse(tetrahedra, "at least ", 0, own, memory);
     FrameTruth truth;
-    const auto world = world_of(scene, frame, precision);
-    std::vector<Boxes> boxes(world.size());
-    parallel_for(world.size(), [&](std::size_t body) {
-        boxes[body] = frame.skipped.empty() ? Boxes(world[body]) : Boxes(world[body], frame.skipped[body]);
-    });
+    const Bodies world(scene, frame, positions);
+    std::vector<Boxes> boxes(world.count());
+    parallel_for(boxes.size(), [&](std::size_t body) { boxes[body] = world.boxes(body); });
     for (std::uint32_t body = 0; body < boxes.size(); ++body)
         for (const auto tetrahedron : boxes[body].invalid) truth.invalid.push_back({body, tetrahedron});
     const auto bodies = near_bodies(scene, boxes);
@@ -183,9 +231,9 @@ FrameTruth frame_truth(const Scene& scene, const Frame& frame, Precision precisi
     return truth;
 }
 
-std::vector<Decision> decide_pairs(const Scene& scene, const Frame& frame, Precision precision,
+std::vector<Decision> decide_pairs(const Scene& scene, const Frame& frame, Positions positions,
                                    std::span<const Pair> pairs) {
-    return decide_all(world_of(scene, frame, precision), pairs);
+    return decide_all(Bodies(scene, frame, positions), pairs);
 }
 
 std::vector<std::array<TetraCorners, 2>> pair_corners(const Scene& scene, const Frame& frame,

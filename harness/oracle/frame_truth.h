@@ -13,8 +13,21 @@
 
 namespace tandem {
 
-/// Which tetrahedra of a frame meet, exactly. The vertices are the cell's: moved in its precision by
-/// world_vertices, then taken as they are. Worth keeping: it is the same for all cells of one precision.
+/// Where the vertices are. Truth::vertices: where a cell's precision has them, moved by world_vertices and
+/// then taken as they are. Truth::pose: where the poses put the scene's own doubles exactly, whatever the
+/// precision.
+struct Positions {
+    Precision precision = Precision::single;
+    Truth truth = Truth::vertices;
+
+    // NOLINTNEXTLINE(*-explicit-*): most questions are about the vertices of a precision
+    Positions(Precision cell, Truth level = Truth::vertices)
+        : precision(level == Truth::pose ? Precision::twice : cell), truth(level) {}
+    auto operator<=>(const Positions&) const = default;
+};
+
+/// Which tetrahedra of a frame meet, exactly. Worth keeping: it is the same for all cells of the same
+/// positions.
 struct FrameTruth {
     std::vector<Pair> touching, overlapping; ///< sorted
     /// (body, tetrahedron) with a coordinate that is not finite, sorted; they are in no pair above.
@@ -27,16 +40,16 @@ using Report = std::function<void(double share, std::uint64_t decided)>;
 
 /// Decides every pair of tetrahedra of different bodies (not both fixed) on all cores, those that the frame
 /// skips left out. A pair it does not list does not meet: pairs are left out only where boxes, found without
-/// rounding, are apart. Throws InputError before it takes more than `memory` bytes, as far as pairs whose
-/// boxes meet tell.
-FrameTruth frame_truth(const Scene& scene, const Frame& frame, Precision precision, const Report& report = {},
+/// rounding or wide enough for it, are apart. Throws InputError before it takes more than `memory` bytes, as
+/// far as pairs whose boxes meet tell.
+FrameTruth frame_truth(const Scene& scene, const Frame& frame, Positions positions, const Report& report = {},
                        std::uint64_t memory = ~std::uint64_t{0});
 
 /// The same decision for a list of pairs, in its order.
-std::vector<Decision> decide_pairs(const Scene& scene, const Frame& frame, Precision precision,
+std::vector<Decision> decide_pairs(const Scene& scene, const Frame& frame, Positions positions,
                                    std::span<const Pair> pairs);
 
-/// The corners of the pairs' tetrahedra, in their order: as the decision takes them.
+/// The corners of the pairs' tetrahedra, in their order: as the decision of Truth::vertices takes them.
 std::vector<std::array<TetraCorners, 2>> pair_corners(const Scene& scene, const Frame& frame,
                                                       Precision precision, std::span<const Pair> pairs);
 
@@ -68,7 +81,7 @@ struct PairErrors {
     bool operator==(const PairErrors&) const = default;
 };
 
-/// `candidates` sorted, without repetition, of the frame and precision of `truth`.
+/// `candidates` sorted, without repetition, of the frame and positions of `truth`.
 PairErrors pair_errors(const FrameTruth& truth, std::span<const Pair> candidates);
 
 } // namespace tandem

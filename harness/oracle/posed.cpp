@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "harness/oracle/posed.h"
 
+#include "harness/oracle/filter.h"
 #include "harness/oracle/program.h"
+
+#include <algorithm>
 
 namespace tandem::oracle {
 
@@ -19,6 +22,14 @@ std::array<Points<mpz_class>, 2> on_lattice(const Points<mpq_class>& a, const Po
             result[0][i][axis] = a[i][axis].get_num() * (unit / a[i][axis].get_den());
             result[1][i][axis] = b[i][axis].get_num() * (unit / b[i][axis].get_den());
         }
+    return result;
+}
+
+Points<mpq_class> exactly(const Posed& posed) {
+    if (posed.pose != nullptr) return posed_corners(*posed.pose, posed.own);
+    Points<mpq_class> result;
+    for (unsigned i = 0; i < 4; ++i)
+        for (unsigned axis = 0; axis < 3; ++axis) result[i][axis] = mpq_class(posed.own[i][axis]);
     return result;
 }
 
@@ -43,17 +54,26 @@ Points<mpq_class> posed_corners(const Pose& pose, const TetraCorners& corners) {
     return result;
 }
 
-Relation relation(const Points<mpq_class>& a, const Points<mpq_class>& b) {
+Decision decide(const Points<mpq_class>& a, const Points<mpq_class>& b, FacetSet unsure) {
     const auto [p, q] = on_lattice(a, b);
     if (orientation(p) == 0 || orientation(q) == 0)
-        return hulls_meet(p, q) ? Relation::touching : Relation::disjoint;
+        return {hulls_meet(p, q) ? Relation::touching : Relation::disjoint, Tier::program};
     auto found = Relation::overlapping;
-    for_each_facet(p, q, all_facets, [&](const Facet<mpz_class>& facet) {
+    for_each_facet(p, q, unsure, [&](const Facet<mpz_class>& facet) {
         if (facet.gap == 0) found = Relation::touching;
         if (facet.gap > 0) found = Relation::disjoint;
         return found != Relation::disjoint;
     });
-    return found;
+    return {found, Tier::big_integers};
+}
+
+Decision decide(const Posed& a, const Posed& b) {
+    if (!all_finite(a.near) || !all_finite(b.near)) return {Relation::invalid, Tier::screen};
+    const auto filtered = filter(a.near, b.near, std::max(a.off, b.off));
+    if (filtered.disjoint) return {Relation::disjoint, Tier::filter};
+    if (filtered.unsure == 0 && filtered.volume[0] && filtered.volume[1])
+        return {Relation::overlapping, Tier::filter};
+    return decide(exactly(a), exactly(b), filtered.unsure);
 }
 
 } // namespace tandem::oracle

@@ -19,9 +19,17 @@ void add(Box& box, const std::array<double, 3>& point) {
     }
 }
 
+/// By `off` and, where that is rounded, a little more.
+void widen(Box& box, double off) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        box[axis] = std::nextafter(box[axis] - off, -infinity);
+        box[3 + axis] = std::nextafter(box[3 + axis] + off, infinity);
+    }
+}
+
 } // namespace
 
-Boxes::Boxes(std::span<const TetraCorners> corners, std::span<const std::uint32_t> skipped)
+Boxes::Boxes(std::span<const TetraCorners> corners, std::span<const std::uint32_t> skipped, double off)
     : tetrahedra(corners.size(), empty_box), whole(empty_box) {
     for (std::uint32_t i = 0; i < corners.size(); ++i) {
         if (std::binary_search(skipped.begin(), skipped.end(), i)) continue;
@@ -32,10 +40,11 @@ Boxes::Boxes(std::span<const TetraCorners> corners, std::span<const std::uint32_
             invalid.push_back(i);
             continue;
         }
-        for (const auto& corner : corners[i]) {
-            add(tetrahedra[i], corner);
-            add(whole, corner);
-        }
+        auto& box = tetrahedra[i];
+        for (const auto& corner : corners[i]) add(box, corner);
+        if (off > 0) widen(box, off);
+        add(whole, {box[0], box[1], box[2]});
+        add(whole, {box[3], box[4], box[5]});
     }
 }
 

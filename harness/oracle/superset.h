@@ -16,7 +16,7 @@ inline bool boxes_meet(const Box& p, const Box& q) {
 }
 
 /// Boxes of a body's tetrahedra, and of all of them. Those with a coordinate that is not finite are empty
-/// boxes and listed; those that are skipped are empty boxes.
+/// boxes and listed; those that are skipped are empty boxes. Boxes are wider by `off` at all sides.
 struct Boxes {
     std::vector<Box> tetrahedra;
     Box whole{};
@@ -24,14 +24,16 @@ struct Boxes {
 
     Boxes() = default;
     /// `skipped`: ascending.
-    explicit Boxes(std::span<const TetraCorners> tetrahedra, std::span<const std::uint32_t> skipped = {});
+    explicit Boxes(std::span<const TetraCorners> tetrahedra, std::span<const std::uint32_t> skipped = {},
+                   double off = 0);
 };
 
 /// Valid tetrahedra of a body whose boxes meet the other body's, by their lower bounds along x.
 std::vector<std::uint32_t> near(const Boxes& body, const Box& other);
 
 /// Calls visit(tetrahedron of a, of b) for every two whose closed boxes meet: a superset of those that meet,
-/// since boxes are minima and maxima of the very coordinates the decision takes and nothing is rounded.
+/// since boxes are minima and maxima of the very coordinates the decision takes and nothing is rounded but
+/// what makes them wider, outwards.
 template<class Visit>
 void for_near_pairs(const Boxes& a, const Boxes& b, Visit visit) {
     const auto list_a = near(a, b.whole);

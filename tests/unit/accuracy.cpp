@@ -99,7 +99,7 @@ AnswerErrors errors_of(double x, std::vector<Pair> pairs, std::vector<ContactPoi
     answer.makes_contacts = true;
     answer.download = [&] { return pairs; };
     answer.download_contacts = [&] { return contacts; };
-    return truths.errors(Precision::single, 0, answer);
+    return truths.errors(Geometry{}, 0, answer);
 }
 
 /// Moved by 3/4 along x the two share the tetrahedron of legs 1/4 at (3/4, 0, 0); the least way apart is
@@ -136,6 +136,34 @@ TEST(Accuracy, VolumesAreThoseOfTheContactPointsHull) {
     EXPECT_TRUE(with({}).contacts->volume_relative.empty()); // unanswered
 }
 
+/// Float takes a gap or an overlap of 2^-30 for a touch. Bounds for t2 are judged by what the poses say,
+/// contacts always by the vertices they are made from.
+TEST(Accuracy, PairsAreJudgedByTheTruthThatTheirBoundsAreFor) {
+    const Geometry vertices, poses{.truth = Truth::pose};
+    for (const double gap : {0x1p-30, -0x1p-30}) {
+        const auto scene = two_units(1 + gap);
+        const std::vector<Frame> frames{scene.frame(0)};
+        Truths truths(scene, frames, TruthAmount::contacts, 0);
+        FrameAnswer answer;
+        answer.makes_contacts = true;
+        answer.download = [] { return std::vector<Pair>{the_pair}; };
+        answer.download_contacts = [] { return std::vector<ContactPoint>{}; };
+        const auto of_vertices = truths.errors(vertices, 0, answer);
+        const auto of_poses = truths.errors(poses, 0, answer);
+        EXPECT_EQ(of_vertices.pairs.touching, 1u);
+        EXPECT_EQ(of_poses.pairs.disjoint, gap > 0 ? 1u : 0u);
+        EXPECT_EQ(of_poses.pairs.overlapping, gap > 0 ? 0u : 1u);
+        EXPECT_EQ((*of_poses.decisions)[1][0], 1u);
+        EXPECT_EQ(of_poses.decisions, of_vertices.decisions);
+        EXPECT_EQ(of_poses.contacts->overlapping, 0u);
+        answer.download = [] { return std::vector<Pair>{}; };
+        answer.pairs.count = 7; // another answer
+        EXPECT_EQ(truths.errors(vertices, 0, answer).pairs.missed_touching, 1u);
+        EXPECT_EQ(truths.errors(poses, 0, answer).pairs.missed_overlapping, gap > 0 ? 0u : 1u);
+        EXPECT_EQ(truths.errors(poses, 0, answer).missed(), gap > 0 ? 0u : 1u);
+    }
+}
+
 /// 1e-120 is a size whose cube no double holds.
 TEST(Accuracy, PairsWhoseVolumeRoundsToZeroAreCountedApart) {
     auto scene = two_units(0.75e-120);
@@ -148,7 +176,7 @@ TEST(Accuracy, PairsWhoseVolumeRoundsToZeroAreCountedApart) {
     answer.download_contacts = [] {
         return std::vector<ContactPoint>{{the_pair, 0, {0.8e-120, 0, 0}, {1, 0, 0}, -0.1e-120}};
     };
-    const auto& e = truths.errors(Precision::twice, 0, answer);
+    const auto& e = truths.errors({.precision = Precision::twice}, 0, answer);
     ASSERT_TRUE(e.contacts);
     EXPECT_EQ(e.contacts->overlapping, 1u);
     EXPECT_EQ(e.contacts->no_volume, 1u);
@@ -206,14 +234,14 @@ TEST(Accuracy, EqualAnswersAreComparedOnceAndASampleSaysSo) {
     };
     answer.download_contacts = [] { return std::vector<ContactPoint>{}; };
     Truths truths(scene, frames, TruthAmount::contacts, 10);
-    const auto first = truths.errors(Precision::single, 0, answer);
-    truths.errors(Precision::single, 0, answer);
+    const auto first = truths.errors(Geometry{}, 0, answer);
+    truths.errors(Geometry{}, 0, answer);
     EXPECT_EQ(downloads, 1);
     EXPECT_EQ(first.pairs.missed_touching, truth.touching.size());
     EXPECT_FALSE(first.every_contact);
     EXPECT_EQ(first.contacts->overlapping, 10u);
     answer.pairs.a = 1;
-    truths.errors(Precision::single, 0, answer);
+    truths.errors(Geometry{}, 0, answer);
     EXPECT_EQ(downloads, 2);
 }
 
@@ -224,9 +252,9 @@ TEST(Accuracy, AnAnswerThatCouldNotBeReadIsAskedForAgain) {
     FrameAnswer answer;
     answer.download = []() -> std::vector<Pair> { throw DeviceError("lost"); };
     Truths truths(scene, frames, TruthAmount::pairs, 0);
-    EXPECT_THROW(truths.errors(Precision::single, 0, answer), DeviceError);
+    EXPECT_THROW(truths.errors(Geometry{}, 0, answer), DeviceError);
     answer.download = [&] { return truth.overlapping; };
-    EXPECT_EQ(truths.errors(Precision::single, 0, answer).pairs.overlapping, truth.overlapping.size());
+    EXPECT_EQ(truths.errors(Geometry{}, 0, answer).pairs.overlapping, truth.overlapping.size());
 }
 
 TEST(Accuracy, ErrorsOfFramesAddUp) {

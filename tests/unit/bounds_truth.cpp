@@ -4,6 +4,7 @@
 #include "algorithms/kdop/drift.h"
 #include "algorithms/kdop/pack.h"
 #include "harness/oracle/drift.h"
+#include "harness/oracle/frame_truth.h"
 #include "harness/oracle/posed.h"
 #include "tests/support/cells.h"
 #include "tests/support/leaf_slabs.h"
@@ -125,6 +126,28 @@ TEST(Truth, T2KeepsWhatThePosesMakeTouchAndT1DoesNot) {
     EXPECT_EQ(lost["t2 double"], 0u);
     EXPECT_GT(lost["t1"], 0u);
     EXPECT_GT(lost["t1 double"], 0u);
+}
+
+/// The truth of a frame knows them all, in any precision; that of the rounded vertices does not.
+TEST(Truth, OfPosesKnowsWhatTheyMakeTouch) {
+    Random random(10);
+    std::uint64_t lost = 0, known = 0, exact = 0;
+    for (int i = 0; i < 6; ++i) {
+        const auto turned = turned_pairs(random, std::pow(10.0, i - 1), 60);
+        const PairScene scene(turned.pairs, turned.poses);
+        const auto of_poses = frame_truth(scene.scene(), scene.frame(), {Precision::single, Truth::pose});
+        const auto of_vertices = frame_truth(scene.scene(), scene.frame(), Precision::single);
+        for (std::uint32_t j = 0; j < turned.pairs.size(); ++j) {
+            const Pair pair{0, j, 1, j};
+            known += std::ranges::binary_search(of_poses.touching, pair);
+            lost += !std::ranges::binary_search(of_vertices.touching, pair)
+                    && !std::ranges::binary_search(of_vertices.overlapping, pair);
+        }
+        exact += of_poses.decisions[Tier::big_integers];
+    }
+    EXPECT_EQ(known, 360u);
+    EXPECT_GE(exact, 360u);
+    EXPECT_GT(lost, 10u);
 }
 
 /// Deformable bodies have no pose; what float drops of their vertices counts as drift.
