@@ -70,7 +70,7 @@ TEST_P(OracleSlack, WhatIsCertainHoldsForAllCornersWithinIt) {
 
 INSTANTIATE_TEST_SUITE_P(Families, OracleSlack,
                          testing::Values(Family::generic, Family::far_origin, Family::sliver,
-                                         Family::near_touch),
+                                         Family::scale_ratio, Family::near_touch),
                          [](const auto& instance) {
                              std::string text = name(instance.param);
                              std::replace(text.begin(), text.end(), ' ', '_');
@@ -111,6 +111,22 @@ TEST(OraclePosed, DecisionsAreThoseOfRationals) {
     EXPECT_GT(counts[Tier::filter], 500u);
     EXPECT_GT(counts[Tier::big_integers], 400u);
     EXPECT_GT(counts[Tier::program], 10u);
+}
+
+/// A body of one tetrahedron that touches another where the frame puts its vertices, and overlaps it at rest.
+TEST(OraclePosed, DeformableBodiesAreWhereTheFramePutsThem) {
+    Scene scene;
+    scene.meshes.resize(1);
+    for (const auto& c : unit) scene.meshes[0].vertices.emplace_back(c[0], c[1], c[2]);
+    scene.meshes[0].tetrahedra = {{0, 1, 2, 3}};
+    scene.bodies = {{}, {.mesh = 0, .fixed = false, .deformable = true}};
+    Frame frame;
+    frame.poses.resize(2);
+    frame.deformed.resize(2);
+    for (const auto& v : scene.meshes[0].vertices) frame.deformed[1].push_back(v + Eigen::Vector3d(1, 0, 0));
+    const auto truth = frame_truth(scene, frame, {Precision::single, Truth::pose});
+    EXPECT_EQ(truth.touching.size(), 1u);
+    EXPECT_TRUE(truth.overlapping.empty());
 }
 
 TEST(OraclePosed, WhatIsNoNumberIsInvalid) {
