@@ -5,6 +5,7 @@
 #include "harness/oracle/frame_truth.h"
 #include "harness/oracle/lattice.h"
 #include "harness/oracle/posed.h"
+#include "harness/oracle/superset.h"
 #include "scenes/parallel.h"
 #include "tests/support/oracle_pairs.h"
 #include "tests/support/scenes.h"
@@ -127,6 +128,24 @@ TEST(OraclePosed, DeformableBodiesAreWhereTheFramePutsThem) {
     const auto truth = frame_truth(scene, frame, {Precision::single, Truth::pose});
     EXPECT_EQ(truth.touching.size(), 1u);
     EXPECT_TRUE(truth.overlapping.empty());
+}
+
+TEST(OraclePosed, BoxesAreWiderByWhatCornersAreOff) {
+    const std::vector<TetraCorners> a{unit}, b{moved(unit, 1 + 0x1p-10, 0, 0)};
+    const std::span<const std::uint32_t> none;
+    const auto near = [&](double off) {
+        unsigned found = 0;
+        oracle::for_near_pairs(oracle::Boxes(a, none, off), oracle::Boxes(b, none, off),
+                               [&](auto, auto) { ++found; });
+        return found;
+    };
+    EXPECT_EQ(near(0), 0u);
+    EXPECT_EQ(near(0x1p-12), 0u);
+    EXPECT_EQ(near(0x1p-11), 1u);
+    const oracle::Boxes box(b, none, 0x1p-80); // less than the distance to the next double
+    EXPECT_LT(box.tetrahedra[0][0], 1 + 0x1p-10);
+    EXPECT_LT(box.whole[0], 1 + 0x1p-10);
+    EXPECT_GT(box.whole[3], 2 + 0x1p-10);
 }
 
 TEST(OraclePosed, WhatIsNoNumberIsInvalid) {
