@@ -40,9 +40,15 @@ Library open_nvrtc(int driver_version) {
     }
 }
 
+std::filesystem::path cache_folder() {
+    const auto* folder = std::getenv("TANDEM_KERNEL_CACHE");
+    return folder == nullptr ? "" : folder;
+}
+
 } // namespace
 
-Nvrtc::Nvrtc(int driver_version) : library_(open_nvrtc(driver_version)) {
+Nvrtc::Nvrtc(int driver_version, std::optional<std::filesystem::path> cache)
+    : library_(open_nvrtc(driver_version)), cache_(cache ? *cache : cache_folder()) {
     const auto load = [&](auto*& entry, const char* name) {
         entry = reinterpret_cast<std::remove_reference_t<decltype(entry)>>(library_.find(name));
         if (entry == nullptr)
@@ -85,6 +91,18 @@ Image Nvrtc::compile(const KernelSource& source, const Defines& defines, int arc
         "-diag-suppress=177"}; // a kernel file has more functions than each entry needs
     if (machine_code) options.emplace_back("--ptxas-options=-v");
     for (const auto& [name, value] : defines) options.push_back(fmt::format("-D{}={}", name, value));
+    const auto key = fmt::format("NVRTC {} {}\n{}\n{}\n{}", version_, library_.name(),
+                                 fmt::join(options, " "), source.name, source.text);
+    if (auto known = cache_.find(key)) return *known;
+    auto image = compile_anew(
+        source, options, machine_code,
+        fmt::format("{}_{} {}", machine_code ? "sm" : "compute", target, machine_code ? "cubin" : "ptx"));
+    cache_.keep(key, image);
+    return image;
+}
+
+Image Nvrtc::compile_anew(const KernelSource& source, const std::vector<std::string>& options,
+                          bool machine_code, std::string target) const {
     std::vector<const char*> texts;
     std::transform(options.begin(), options.end(), std::back_inserter(texts),
                    [](auto& o) { return o.c_str(); });
@@ -95,8 +113,7 @@ Image Nvrtc::compile(const KernelSource& source, const Defines& defines, int arc
     nvrtcCreateProgram(&program, text.c_str(), name.c_str(), 0, nullptr, nullptr);
     const auto code = nvrtcCompileProgram(program, static_cast<int>(texts.size()), texts.data());
     Image image;
-    image.target =
-        fmt::format("{}_{} {}", machine_code ? "sm" : "compute", target, machine_code ? "cubin" : "ptx");
+    image.target = std::move(target);
     std::size_t size = 0;
     nvrtcGetProgramLogSize(program, &size);
     image.log.resize(size);

@@ -2,6 +2,7 @@
 // NVRTC, the compiler of CUDA at run time; it needs no driver and no GPU. Names: NVRTC documentation, 13.0.
 #pragma once
 
+#include "backends/cuda/image_cache.h"
 #include "backends/device.h"
 #include "backends/library.h"
 
@@ -30,18 +31,12 @@ using Program = _nvrtcProgram*;
     ENTRY(nvrtcGetCUBINSize, (Program, std::size_t*))                                                        \
     ENTRY(nvrtcGetCUBIN, (Program, char*))
 
-/// What a compilation gave.
-struct Image {
-    std::string bytes;  ///< CUBIN or PTX, ready to be loaded as a module
-    std::string target; ///< "sm_90 cubin" or "compute_90 ptx"
-    std::string log;
-};
-
 class Nvrtc {
 public:
     /// Loads $TANDEM_NVRTC or the newest NVRTC whose major version is at most that of `driver_version` (0:
-    /// any). Throws DeviceError that says what was looked for.
-    explicit Nvrtc(int driver_version = 0);
+    /// any). Throws DeviceError that says what was looked for. `cache`: where images are kept;
+    /// $TANDEM_KERNEL_CACHE unless said otherwise, empty: nowhere.
+    explicit Nvrtc(int driver_version = 0, std::optional<std::filesystem::path> cache = std::nullopt);
 
     int version() const { return version_; } ///< 13000 is 13.0
     const std::string& library() const { return library_.name(); }
@@ -49,7 +44,7 @@ public:
     const std::vector<int>& architectures() const { return architectures_; }
 
     /// Compiles for compute capability `architecture`: machine code where NVRTC knows it, else PTX of the
-    /// newest lower one. Throws DeviceError with the log.
+    /// newest lower one. An image in the cache is taken as it is. Throws DeviceError with the log.
     Image compile(const KernelSource& source, const Defines& defines, int architecture,
                   bool ptx = false) const;
 
@@ -58,7 +53,11 @@ private:
     TANDEM_NVRTC_ENTRIES(TANDEM_DECLARE)
 #undef TANDEM_DECLARE
 
+    Image compile_anew(const KernelSource& source, const std::vector<std::string>& options, bool machine_code,
+                       std::string target) const;
+
     Library library_;
+    ImageCache cache_;
     int version_ = 0;
     std::vector<int> architectures_;
 };

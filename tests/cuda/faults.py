@@ -90,6 +90,30 @@ class Faults(unittest.TestCase):
     def test_a_kernel_that_does_not_compile(self):
         self.assertRegex(self.failed(STUB_BROKEN=1), r"\.cl does not compile with NVRTC 13\.0 for sm_90 cubin")
 
+    def test_kept_images_are_not_compiled_again(self):
+        with tempfile.TemporaryDirectory() as folder:
+            cache = pathlib.Path(folder) / "made" / "here"
+            run = lambda **options: tandem(*RUN, "--device", "cuda:0", TANDEM_KERNEL_CACHE=cache, **options)[0]
+            self.assertEqual(run(STUB_BROKEN=1), 3)
+            self.assertEqual(list(cache.iterdir()), [])
+            self.assertEqual(run(), 1)
+            files = sorted(cache.iterdir())
+            self.assertGreater(len(files), 5)
+            self.assertEqual(run(STUB_BROKEN=1), 1)
+            self.assertEqual(run(STUB_BROKEN=1, STUB_NVRTC=12, STUB_VERSION=12000), 3, "another compiler")
+            for damage in (lambda b: b[:-1], lambda b: b[:100] + b"?" + b[101:], lambda b: b"", lambda b: b"other" + b):
+                whole = files[0].read_bytes()
+                files[0].write_bytes(damage(whole))
+                self.assertEqual(run(STUB_BROKEN=1), 3)
+                self.assertEqual(run(), 1)
+                self.assertEqual(files[0].read_bytes(), whole)
+            files[0].write_bytes(files[1].read_bytes())  # as if two programs had one name
+            self.assertEqual(run(STUB_BROKEN=1), 3)
+
+    def test_a_folder_for_images_that_cannot_be_made(self):
+        text = reason(TANDEM_KERNEL_CACHE="/dev/null/images")
+        self.assertIn("TANDEM_KERNEL_CACHE: cannot make /dev/null/images: Not a directory", text)
+
     def test_wrong_answers_are_found(self):
         """The stub's kernels do nothing: every pair is missing."""
         status, out, errors = tandem(*RUN, "--device", "cuda:0")

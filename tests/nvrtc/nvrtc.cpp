@@ -8,6 +8,7 @@
 #include "backends/ptxas_log.h"
 #include "scenes/builtin.h"
 #include "tests/nvrtc/compiling_device.h"
+#include "tests/support/folder.h"
 
 #include <algorithm>
 #include <atomic>
@@ -266,6 +267,32 @@ TEST(Nvrtc, AnUnknownNewerArchitectureGetsPtx) {
     EXPECT_NE(image.target.find(" ptx"), std::string::npos);
     EXPECT_NE(image.bytes.find(".version"), std::string::npos);
     EXPECT_THROW(nvrtc()->compile(kernel_source("algorithms/digest.cl"), {}, 10), DeviceError);
+}
+
+using NvrtcCache = testing_support::FolderTest;
+
+/// Equal to what is compiled anew, and told apart by source, defines and architecture.
+TEST_F(NvrtcCache, KeptImagesAreThoseOfTheirProgram) {
+    if (!can_compile(defaults())) return;
+    const KernelSource one{"one.cl", "extern \"C\" __global__ void f(int* a) { *a = K; }\n"};
+    const KernelSource other{"one.cl", "extern \"C\" __global__ void f(int* a) { *a = K + 10; }\n"};
+    const auto all = [&](const cuda::Nvrtc& compiler) {
+        return std::vector{compiler.compile(one, {{"K", "8"}}, 90), compiler.compile(one, {{"K", "9"}}, 90),
+                           compiler.compile(other, {{"K", "8"}}, 90), compiler.compile(one, {{"K", "8"}}, 80),
+                           compiler.compile(one, {{"K", "8"}}, 90, true)};
+    };
+    const auto expected = all(cuda::Nvrtc(0, ""));
+    EXPECT_EQ(std::set<std::string>({expected[0].bytes, expected[1].bytes, expected[2].bytes,
+                                     expected[3].bytes, expected[4].bytes})
+                  .size(),
+              5u);
+    const auto made = all(cuda::Nvrtc(0, path("images"))), kept = all(cuda::Nvrtc(0, path("images")));
+    EXPECT_TRUE(made == kept);
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        EXPECT_EQ(kept[i].bytes, expected[i].bytes);
+        EXPECT_EQ(kept[i].target, expected[i].target); // logs tell times
+    }
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("images")), {}), 5);
 }
 
 TEST(Nvrtc, ErrorsHaveTheLogInOneLine) {
