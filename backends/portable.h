@@ -13,9 +13,9 @@
 #define PRECISION 32
 #endif
 
-// A team is a part of a work-group that waits for its own work-items only: a warp where the compiler has a
-// barrier for one, elsewhere the whole group.
-#if (defined(__CUDACC__) || defined(__NV_CL_C_VERSION)) && GROUP_SIZE % 32 == 0
+// A team is a part of a work-group that needs to wait for its own work-items only: a warp. Where the compiler
+// has no barrier for one the whole group waits, so that every dialect runs the same teams.
+#if GROUP_SIZE % 32 == 0
 #define TEAM_SIZE 32
 #else
 #define TEAM_SIZE GROUP_SIZE
@@ -27,8 +27,10 @@
 #define TEAM_BARRIER BARRIER
 #elif defined(__CUDACC__)
 #define TEAM_BARRIER __syncwarp()
-#else
+#elif defined(__NV_CL_C_VERSION)
 #define TEAM_BARRIER asm volatile("bar.warp.sync 0xffffffff;" ::: "memory")
+#else
+#define TEAM_BARRIER BARRIER
 #endif
 
 #if defined(__OPENCL_C_VERSION__)

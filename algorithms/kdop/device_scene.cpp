@@ -6,7 +6,6 @@
 #include "algorithms/sources.h"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 #include <numeric>
 
@@ -18,26 +17,10 @@ constexpr std::uint32_t body_words = 8;
 constexpr std::uint32_t level_words = 4;
 constexpr std::uint32_t job_words = 8;
 constexpr std::uint32_t in_world_flag = 1;
-constexpr std::uint32_t strip = 5;             ///< depths of a strip below its root, at most
-constexpr std::uint32_t most_refitting = 128;  ///< work-items of a group: of more, too few groups fit
 constexpr std::uint32_t most_top_items = 1024; ///< of a level that one work-group refits
-constexpr std::uint64_t tile_bytes = 32 << 10; ///< local memory that every device has (OpenCL 1.2, 4.2)
 
 std::uint64_t groups_for(std::uint64_t items, std::uint64_t per_group) {
     return (items + per_group - 1) / per_group;
-}
-
-/// TILE_NODES of refit.cl: for every work-item two leaves (IN_PAIRS there) or one, but one strip at least and
-/// no more than fits.
-std::uint32_t tile_nodes(const Geometry& geometry, std::uint32_t group_size) {
-    const auto node = static_cast<std::uint64_t>(geometry.k + 2) * real_bytes(geometry) + 8;
-    const auto wanted = std::max(2u << strip, std::bit_floor((geometry.k <= 8 ? 4 : 2) * group_size));
-    return std::min(wanted, static_cast<std::uint32_t>(std::bit_floor(tile_bytes / node)));
-}
-
-/// Strips that a work-group takes: as many as its tile has room for, but no more than refit.cl's MOST_STRIPS.
-std::uint32_t strips_of_group(std::uint32_t tile, std::uint32_t height) {
-    return std::min(tile >> (height + 1), tile / 16);
 }
 
 } // namespace
@@ -49,7 +32,7 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const Geometry& geo
       geometry_(geometry),
       leaves_(leaves),
       group_size_(group_size),
-      refit_group_(std::min(group_size, most_refitting)),
+      refit_shape_(refit_shape(geometry, group_size)),
       residency_(residency) {
     for (const auto& mesh : scene.meshes) {
         meshes_.push_back(ordered(mesh));
@@ -65,9 +48,9 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const Geometry& geo
 }
 
 Kernel DeviceScene::compile(std::string_view entry) const {
-    auto defines = geometry_defines(geometry_, refit_group_);
+    auto defines = geometry_defines(geometry_, refit_shape_.group_size);
     defines["LEAF_BITS"] = std::to_string(ceil_log2(leaves_));
-    defines["TILE_NODES"] = std::to_string(tile_nodes(geometry_, refit_group_));
+    defines["TILE_NODES"] = std::to_string(refit_shape_.tile_nodes);
     return device_.compile(kernel_source("algorithms/kdop/refit.cl"), entry, defines);
 }
 
@@ -113,8 +96,8 @@ void DeviceScene::lay_out() {
         throw DeviceError("scene: more than 2^32 nodes, vertices or tetrahedra; leave bodies out");
 }
 
-/// Level by level, each from its deepest nodes up, in strips of at most `strip` + 1 depths. The small levels
-/// above them are left to refit_tops.
+/// Level by level, each from its deepest nodes up, in strips of at most strip_height + 1 depths. The small
+/// levels above them are left to refit_tops.
 void DeviceScene::plan_strips() {
     const auto is_small = [&](const std::vector<Level>& levels) {
         return first_top_level_ >= levels.size() || levels[first_top_level_].items <= most_top_items;
@@ -126,7 +109,7 @@ void DeviceScene::plan_strips() {
             if (level < levels.size())
                 deepest = std::max(deepest, ceil_log2(std::min(levels[level].items, leaves_)));
         for (std::uint32_t bottom = deepest;;) {
-            const auto top = bottom > strip ? bottom - strip : 0;
+            const auto top = bottom > strip_height ? bottom - strip_height : 0;
             strips_.push_back(
                 {level, bottom - top, static_cast<std::uint32_t>(jobs_.size() / job_words), 0, 0});
             plan_strip(level, false, top);
@@ -248,21 +231,21 @@ void DeviceScene::upload_deformed(const Frame& frame) {
 void DeviceScene::refit(bool all) {
     const StageScope scope(device_, Stage::refit);
     for (const auto& s : strips_) {
-        const auto per_group = strips_of_group(tile_nodes(geometry_, refit_group_), s.height);
+        const auto per_group = strips_of_group(refit_shape_, s.height);
         const auto jobs = all ? s.jobs : s.dynamic_jobs;
         if (jobs == 0) continue;
         const std::array<Argument, 11> arguments{nodes_,      bodies_,   levels_,    poses_,
                                                  tetrahedra_, vertices_, job_table_, s.first_job,
                                                  jobs,        s.level,   s.height};
-        device_.launch(strips_kernel_, {groups_for(jobs, per_group), refit_group_}, arguments);
+        device_.launch(strips_kernel_, {groups_for(jobs, per_group), refit_shape_.group_size}, arguments);
     }
     if (emptied_.bodies > 0) {
         const std::array<Argument, 4> arguments{nodes_, emptied_rows_, emptied_starts_, emptied_.rounds};
-        device_.launch(empty_kernel_, {emptied_.bodies, refit_group_}, arguments);
+        device_.launch(empty_kernel_, {emptied_.bodies, refit_shape_.group_size}, arguments);
     }
     const std::array<Argument, 5> arguments{nodes_, bodies_, levels_, body_order_, first_top_level_};
     const auto bodies = all ? body_count() : moving_bodies_;
-    if (bodies > 0) device_.launch(tops_kernel_, {bodies, refit_group_}, arguments);
+    if (bodies > 0) device_.launch(tops_kernel_, {bodies, refit_shape_.group_size}, arguments);
 }
 
 void DeviceScene::upload_emptied() {

@@ -3,6 +3,7 @@
 
 #include "algorithms/kdop/emptied.h"
 #include "algorithms/kdop/kdop_settings.h"
+#include "algorithms/kdop/strips.h"
 #include "algorithms/kdop/tree.h"
 #include "scenes/scene.h"
 
@@ -89,7 +90,7 @@ private:
     Geometry geometry_;
     std::uint32_t leaves_;
     std::uint32_t group_size_;
-    std::uint32_t refit_group_;
+    RefitShape refit_shape_;
     Residency residency_;
     std::vector<OrderedMesh> meshes_;
     std::vector<double> reaches_; ///< by mesh: reach_of; truth = pose only

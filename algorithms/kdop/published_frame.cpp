@@ -65,8 +65,8 @@ void DeviceScene::update_published(const Frame& frame) {
             const auto count = static_cast<std::uint32_t>(vertex_total_);
             const std::array<Argument, 5> arguments{local_vertices_, vertices_, vertex_bodies_, poses_,
                                                     count};
-            device_.launch(transform_kernel_, {(count + refit_group_ - 1) / refit_group_, refit_group_},
-                           arguments);
+            const auto group = refit_shape_.group_size;
+            device_.launch(transform_kernel_, {(count + group - 1) / group, group}, arguments);
         }
         download(vertices_, vertices);
     }

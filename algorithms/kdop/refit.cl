@@ -11,6 +11,8 @@
 // Nodes a work-group has room for: a power of two, at least those of one strip for each of its teams.
 #ifndef TILE_NODES
 #define TILE_NODES 128
+#elif (defined(__CUDACC__) || defined(__OPENCL_C_VERSION__)) && TILE_NODES / TEAM_COUNT < 64 // strips.h
+#error "a team has no room for a strip of the greatest height, 5"
 #endif
 
 // Nodes are moved in units as wide as their alignment allows. Those of neighbouring work-items lie an odd
