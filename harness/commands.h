@@ -33,7 +33,8 @@ struct RunOptions {
 /// Options of `tandem accuracy`, as given: those of `tandem run` for every one of several scenes.
 struct AccuracyOptions {
     std::vector<std::string> scenes;
-    RunOptions run; ///< its scene is not used
+    RunOptions run;      ///< its scene is not used
+    std::string figures; ///< the folder of the figures; empty: none are drawn
 };
 
 /// Options of `tandem devices`.

@@ -90,6 +90,9 @@ void add_accuracy_options(CLI::App& app, tandem::AccuracyOptions& options, std::
         ->description("exact contacts of at most so many pairs a frame; 1000 when left out");
     app.add_option("--repeat", options.run.repeat, "samples per cell")->check(CLI::Range(1, 1000));
     app.add_flag("!--no-check", options.run.check, "do not compare with the reference; the truth stays");
+    app.add_option("--figures", options.figures,
+                   "draw the records of --out, or of FOLDER/accuracy.jsonl without it, into this folder")
+        ->option_text("FOLDER");
 }
 
 void add_export_options(CLI::App& app, tandem::ExportOptions& options) {

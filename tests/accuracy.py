@@ -137,6 +137,31 @@ class Accuracy(Case):
         self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1))
         self.assertIn("tandem accuracy", done.stderr)
 
+    def test_accuracy_draws(self):
+        """With --out the records of that file, without it those beside the figures, old ones included."""
+        folder = self.work / "drawn figures" / "here"
+        rows = lambda: [row["k"] for row in csv.DictReader((folder / "pareto.csv").read_text().splitlines())]
+        draw = lambda *more: tandem("accuracy", *self.two, "--device", "host", "--quiet", "--repeat", 1, "--figures", folder, *more)
+        status, text, errors = draw("--set", "k=8,14")
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertRegex(text.splitlines()[-1], r"^2 records drawn: bars\.svg, pareto\.svg in ")
+        self.assertEqual(rows(), ["8", "14"])
+        self.assertEqual(draw("--set", "k=18")[0], 0)
+        self.assertEqual(rows(), ["8", "14", "18"])
+        self.assertEqual(len(self.records(folder / "accuracy.jsonl")), 3)
+        self.assertEqual(draw("--set", "k=26", "--out", self.work / "beside.jsonl")[0], 0)
+        self.assertEqual(rows(), ["26"])
+        (self.work / "beside.jsonl").write_text("no record\n")
+        status, _, errors = draw("--set", "k=26", "--out", self.work / "beside.jsonl")
+        self.assertEqual((status, len(errors)), (2, 2), errors)
+        self.assertIn("beside.jsonl:1 is no record", errors[0])
+        self.assertIn("nothing drawn; the records are in", errors[1])
+        (self.work / "broken").mkdir()
+        (self.work / "broken/matplotlib.py").write_text("raise ImportError\n")
+        self.bad("--figures needs python3 with matplotlib; install python3-matplotlib", "accuracy", *self.two, "--device", "host",
+                 "--figures", folder, environment={"PYTHONPATH": str(self.work / "broken")})
+        self.bad("--figures: cannot make /dev/null/figures", "accuracy", *self.two, "--device", "host", "--figures", "/dev/null/figures")
+
     def test_bad_use(self):
         self.bad("no scene", "accuracy", "--device", "host")
         self.bad("--truth some: give none, pairs or contacts", "run", "plates", "--truth", "some")

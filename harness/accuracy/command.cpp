@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // tandem accuracy: error beside speed, over the settings that either depends on.
+#include "harness/accuracy/figures.h"
 #include "harness/adversarial.h"
 #include "harness/inputs.h"
 #include "harness/job.h"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <numeric>
+#include <optional>
 #include <set>
 
 namespace tandem {
@@ -171,7 +173,11 @@ int accuracy_command(const AccuracyOptions& options) {
     const auto cells = request.sets.empty() ? sweep(request, devices) : plan(request, devices);
     auto scenes = options.scenes;
     if (scenes.empty()) scenes.emplace_back(); // of --mesh, or the message that there is none
-    RecordFile file(options.run.out);
+    std::optional<Figures> figures;
+    if (!options.figures.empty()) figures.emplace(options.figures);
+    const auto records =
+        figures && options.run.out.empty() ? options.figures + "/accuracy.jsonl" : options.run.out;
+    RecordFile file(records);
     int code = 0;
     for (const auto& given : scenes)
         for (const auto& scene : expand(given, options.run.degenerate)) {
@@ -184,6 +190,7 @@ int accuracy_command(const AccuracyOptions& options) {
                "last place of 1, L the longest edge; volume: of the points' hull against the exact "
                "intersection's, / exact; MISSES: pairs\n"
                "that meet are not among the candidates\n");
+    if (figures) figures->draw(records);
     return code;
 }
 
