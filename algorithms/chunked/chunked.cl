@@ -77,7 +77,8 @@ DEVICE ulong seed_total(ulong own, GLOBAL const uint* status, uint level, uint h
     return own + (above < handed_capacity ? above : handed_capacity);
 }
 
-// Every expansion pops one node pair and pushes at most four, and a walk expands at most LEAF_BITS deep.
+// An expansion pops one node pair and pushes at most four a depth lower in both, or two a depth lower in one
+// of them: of a walk of LEAF_BITS depths in both at most three for each depth wait.
 #define STACK_DEPTH (3 * LEAF_BITS + 1)
 
 // Schedule `item`, the paper's: every work-item walks seed after seed, a fixed stride apart, each to its end,
@@ -101,30 +102,23 @@ KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL
     Walk walk = {{0u, 0u}, {0u, 0u}, 0u, 0u, 0u};
     Tally tally = empty_tally();
     while (top != 0u || seed < total) {
-        uint first_a = 1u;
-        uint first_b = 1u;
-        uint inner_a = 0u;
-        uint inner_b = 0u;
+        Descent to = {1u, 1u, 0u, 0u};
         if (top == 0u) {
             const uint near = seed < own ? pair_between(starts, 0u, pair_count, seed) : 0u;
             walk = walk_of_seed(&job, pair_count, starts, own, near, handed, seed);
             seed += GLOBAL_COUNT;
             if (COUNT_WORK) tally.seeds += 1;
         } else {
-            const uint pair = stack[--top * GROUP_SIZE];
-            inner_a = is_leaf(pair >> 16, walk.a.items) ? 0u : 1u;
-            inner_b = is_leaf(pair & 0xffffu, walk.b.items) ? 0u : 1u;
-            first_a = pair >> 16 << inner_a;
-            first_b = (pair & 0xffffu) << inner_b;
+            to = descent_of(&walk, stack[--top * GROUP_SIZE]);
         }
-        for (uint a = first_a; a <= first_a + inner_a; ++a) {
-            for (uint b = first_b; b <= first_b + inner_b; ++b) {
+        for (uint a = to.first_a; a <= to.first_a + to.inner_a; ++a) {
+            for (uint b = to.first_b; b <= to.first_b + to.inner_b; ++b) {
                 if (COUNT_WORK) tally.tests += 1;
                 if (!overlap(node_at(nodes, walk.a.base + a), node_at(nodes, walk.b.base + b))) continue;
                 if (is_leaf(a, walk.a.items) && is_leaf(b, walk.b.items))
                     settle(&job, &walk, a, b, &tally);
                 else
-                    stack[top++ * GROUP_SIZE] = a << 16 | b;
+                    stack[top++ * GROUP_SIZE] = waiting(&job, &walk, a, b);
             }
         }
     }
@@ -210,7 +204,7 @@ KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* bodi
                 if (COUNT_WORK) tally.tests += 1;
                 if (roots_overlap(&job, &walk))
                     push_row(rows, count, pushed + turn, walk.pair, walk.first_a / CHUNK_ITEMS,
-                             walk.first_b / CHUNK_ITEMS, 1u << 16 | 1u);
+                             walk.first_b / CHUNK_ITEMS, waiting(&job, &walk, 1u, 1u));
             }
             start += (ulong)GROUP_COUNT * batch;
         } else if (LOCAL_ID < taken) {

@@ -39,6 +39,14 @@ const std::vector<Parameter> own{
      0,
      "who walks: a work-group the seeds of its batches that overlap, or, as the paper's code, a work-item "
      "every seed a stride apart"},
+    {"descent",
+     "larger",
+     {"larger", "both"},
+     0,
+     0,
+     "what a step of a walk descends: of two nodes of unlike size the larger alone, or always both at once, "
+     "as the "
+     "paper's code"},
     {"root_test",
      "yes",
      {"yes", "no"},
@@ -60,6 +68,7 @@ const std::vector<Preset> all_presets{
      {{"k", "8"},
       {"residency", "published"},
       {"schedule", "item"},
+      {"descent", "both"},
       {"seed_threshold", "10000000"},
       {"group_size", "64"},
       {"root_test", "no"}}},
@@ -116,6 +125,7 @@ void ChunkedSession::do_compile(const Defines& common) {
     auto defines = common;
     defines["SEED_THRESHOLD"] = std::to_string(threshold_);
     defines["SEED_TARGET"] = std::to_string(target_);
+    defines["DESCEND_LARGER"] = settings().at("descent") == "larger" ? "1" : "0";
     // Body pairs found on the device have passed the same test.
     defines["ROOT_TEST"] = settings().at("root_test") == "yes" && !finds_pairs() ? "1" : "0";
     const auto& source = kernel_source("algorithms/chunked/chunked.cl");

@@ -2,6 +2,7 @@
 // Every algorithm and preset against brute force, on the host and on OpenCL, over a pairwise covering array
 // of settings and group sizes. Iterates the list of algorithms: a new one is covered by being listed.
 #include "tests/support/cells.h"
+#include "tests/support/flawed.h"
 #include "tests/support/scenes.h"
 
 #include <fmt/format.h>
@@ -47,6 +48,7 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
         axes.push_back(of("seed_capacity", {"1", "65536"}));
         axes.push_back(of("root_test", {"yes", "no"}));
         axes.push_back(of("schedule", {"group", "item"}));
+        axes.push_back(of("descent", {"larger", "both"}));
     }
     if (traversal.name() == "gproximity") {
         axes.push_back(of("groups", {"8", "13"}));
@@ -289,6 +291,38 @@ TEST_P(Conformance, ChunkedSharesItsTargetOfSeeds) {
     EXPECT_EQ(seeds("0", "1", pairs), coarse);
     EXPECT_EQ(seeds("0", std::to_string(40 * pairs), pairs), middle);
     EXPECT_EQ(seeds("0", "1e9", pairs), fine);
+}
+
+/// Boxes of 1296 tetrahedra beside others a tenth of their size: descending both at once meets many small
+/// parts of the small one with large parts of the large one. Both schedules count the same tests.
+TEST_P(Conformance, DescendingTheLargerOfUnlikeNodesNeedsFewerTests) {
+    auto& on = device(GetParam());
+    auto scene = boxes_scene(6, 4);
+    scene.meshes.push_back(scene.meshes[0]);
+    for (auto& vertex : scene.meshes.back().vertices) vertex *= 0.1;
+    for (std::uint32_t body = 0; body < scene.bodies.size(); body += 2)
+        scene.bodies[body].mesh = static_cast<std::uint32_t>(scene.meshes.size() - 1);
+    const auto& traversal = algorithm("chunked");
+    const auto tests = [&](const std::string& descent, const std::string& schedule, Digest& digest) {
+        const auto settings = resolve(
+            traversal.parameters(), {},
+            {{"descent", descent}, {"schedule", schedule}, {"contact_rule", "none"}}, traversal.name());
+        const std::array devices{&on};
+        const auto session = traversal.prepare(devices, scene, settings);
+        session->count_work(true);
+        const auto result = session->run(scene.frame(0), all_pairs(scene, *session));
+        digest = session->digest(result);
+        return result.work.bvtt_nodes;
+    };
+    Digest of_larger, of_both, again;
+    const auto larger = tests("larger", "group", of_larger);
+    const auto both = tests("both", "group", of_both);
+    EXPECT_GT(of_both.count, 1000u);
+    EXPECT_EQ(of_larger, of_both);
+    EXPECT_LT(5 * larger, 4 * both);
+    EXPECT_EQ(tests("larger", "item", again), larger);
+    EXPECT_EQ(tests("both", "item", again), both);
+    EXPECT_EQ(again, of_both);
 }
 
 TEST_P(Conformance, ResidentChunkedWaitsOnce) {

@@ -72,6 +72,9 @@ void expect_everywhere(const Scene& scene, std::uint64_t at_least) {
                     if (traversal->name() == "chunked") {
                         all.push_back(all.front());
                         all.back()["schedule"] = "item";
+                        all.insert(all.end(), 2, all.front());
+                        all[2]["descent"] = all[3]["descent"] = "both";
+                        all[3]["schedule"] = "item";
                         for (auto& settings : all) settings["leaves"] = "32";
                     }
                     for (const auto& given : all) {
