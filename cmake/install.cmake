@@ -8,7 +8,7 @@ install(TARGETS tandem-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 set(public_headers
   backends/device.h backends/trace.h backends/registry.h backends/host/host_device.h backends/opencl/opencl_device.h
   algorithms/traversal.h algorithms/settings.h algorithms/kdop/device_scene.h algorithms/kdop/emptied.h
-  algorithms/kdop/kdop_settings.h
+  algorithms/kdop/kdop_settings.h algorithms/kdop/strips.h
   algorithms/kdop/tree.h algorithms/kdop/range.h algorithms/broad/broad.h scenes/scene.h scenes/dynamics.h
   scenes/contact.h scenes/simulate/simulation.h scenes/mesh.h scenes/builtin.h scenes/error.h)
 foreach(header ${public_headers})
