@@ -168,6 +168,9 @@ void KdopSession::launch_frame(std::span<const BodyPair> pairs) {
 FrameResult KdopSession::run(const Frame& frame, std::span<const BodyPair> pairs) {
     if (broad_ && !pairs.empty())
         throw InputError("run() was given body pairs, which setting broad=device finds; give none");
+    if (pairs.size() > word_limit)
+        throw InputError(
+            fmt::format("run() was given {} body pairs; kernels number at most 2^32 - 1", pairs.size()));
     scene_.update(frame);
     if (broad_)
         sort_bodies(frame);

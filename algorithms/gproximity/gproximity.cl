@@ -6,6 +6,7 @@
 #include "backends/portable.h"
 #include "algorithms/broad/body_pairs.clh"
 #include "algorithms/emit.clh"
+#include "algorithms/gproximity/queues.clh"
 #include "algorithms/kdop/node.clh"
 
 #ifndef LOCAL_QUEUE
@@ -203,8 +204,12 @@ KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* bodies,
     flush(&tally, status);
 }
 
-// Sums the queues and decides whether to balance: totals = {items, balance}, starts = exclusive sums. One
-// group.
+DEVICE uint add_items(uint sum, uint more) {
+    return more < MOST_QUEUE_ITEMS - sum ? sum + more : MOST_QUEUE_ITEMS;
+}
+
+// Sums the queues and decides whether to balance: totals = {items, balance}, starts = exclusive sums. Sums
+// end at MOST_QUEUE_ITEMS, of which nothing is moved. One group.
 KERNEL void plan_balance(GLOBAL const uint* counts, uint queues, uint low, uint high, GLOBAL uint* starts,
                          GLOBAL uint* totals) {
     LOCAL_ARRAY(uint, sums, GROUP_SIZE);
@@ -215,7 +220,7 @@ KERNEL void plan_balance(GLOBAL const uint* counts, uint queues, uint low, uint 
     uint sum = 0;
     uint want = 0;
     for (uint i = first; i < last; ++i) {
-        sum += counts[i];
+        sum = add_items(sum, counts[i]);
         want |= counts[i] < low || counts[i] >= high ? 1u : 0u;
     }
     sums[LOCAL_ID] = sum;
@@ -227,18 +232,18 @@ KERNEL void plan_balance(GLOBAL const uint* counts, uint queues, uint low, uint 
         for (uint i = 0; i < (uint)GROUP_SIZE; ++i) {
             const uint own = sums[i];
             sums[i] = start;
-            start += own;
+            start = add_items(start, own);
             any |= wanted[i];
         }
         starts[queues] = start;
         totals[0] = start;
-        totals[1] = start != 0u ? any : 0u;
+        totals[1] = start != 0u && start < MOST_QUEUE_ITEMS ? any : 0u;
     }
     BARRIER;
     uint start = sums[LOCAL_ID];
     for (uint i = first; i < last; ++i) {
         starts[i] = start;
-        start += counts[i];
+        start = add_items(start, counts[i]);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "algorithms/gproximity/gproximity.h"
 
 #include "algorithms/gproximity/gproximity_settings.h"
+#include "algorithms/gproximity/queues.clh"
 #include "algorithms/kdop_session.h"
 #include "algorithms/sources.h"
 #include "algorithms/status.clh"
@@ -16,6 +17,8 @@ namespace tandem {
 namespace {
 
 constexpr std::uint64_t item_words = 3;
+constexpr auto too_many_items =
+    "gproximity: 2^31 node pairs or more wait in its queues, past what it counts; set batch, or take chunked";
 
 /// One chunk over all tetrahedra of the largest mesh: a plain hierarchy per body.
 std::uint32_t whole_mesh(const Scene& scene) {
@@ -112,6 +115,7 @@ bool GproximitySession::do_grow(const Status& status) {
     if (finds_pairs() && status.counter(STATUS_BODY_PAIRS) > queue_room()) short_of_queue_ = true;
     if (!short_of_queue_) return false;
     short_of_queue_ = false;
+    if (sizes_.queue_capacity > MOST_QUEUE_ITEMS / 2) throw DeviceError(too_many_items);
     sizes_.queue_capacity *= 2;
     reserve_queues();
     return true;
@@ -171,8 +175,8 @@ void GproximitySession::traverse() {
     device().launch(traverse_, {sizes_.groups, scene().group_size()}, arguments);
 }
 
-/// Plans and moves; returns {items left, whether they moved}. The thresholds are those of both originals: any
-/// queue below its initial load, or nearly full.
+/// Plans and moves; returns {items left, at most MOST_QUEUE_ITEMS, and whether they moved}. The thresholds
+/// are those of both originals: any queue below its initial load, or nearly full.
 std::array<std::uint32_t, 2> GproximitySession::balance() {
     const auto margin = std::uint64_t{4} * scene().group_size() + sizes_.local_queue;
     const auto high =
@@ -213,6 +217,7 @@ bool GproximitySession::walk_batch(std::uint32_t first, std::uint32_t count) {
         traverse();
         if (published()) read_counts();
         const auto [left, moved] = balance();
+        if (left >= MOST_QUEUE_ITEMS) throw DeviceError(too_many_items);
         if (left == 0) return true;
         if (moved != 0) {
             std::swap(items_[0], items_[1]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/gproximity/gproximity_settings.h"
 
+#include "algorithms/gproximity/queues.clh"
 #include "scenes/error.h"
 
 #include <algorithm>
@@ -105,7 +106,7 @@ QueueSizes queue_sizes(const Settings& settings, const DeviceInfo& info, std::ui
     if (sizes.queue_capacity == 0)
         sizes.queue_capacity = static_cast<std::uint32_t>(std::min<std::uint64_t>(
             static_cast<std::uint64_t>(integer(settings, "queue_bytes")) / (item_bytes * sizes.groups),
-            0xffffffffu));
+            MOST_QUEUE_ITEMS));
     sizes.queue_capacity = std::max(sizes.queue_capacity, 2u);
     sizes.idle_limit = number(settings, "idle_limit");
     if (sizes.idle_limit == 0) sizes.idle_limit = std::max(1u, sizes.groups * 2 / 3);

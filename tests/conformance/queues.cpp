@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// Numbers past 32 bits, where no scene is large enough: gProximity's sum of its queues, and body pairs given.
+#include "algorithms/gproximity/queues.clh"
+#include "algorithms/sources.h"
+#include "tests/support/cells.h"
+#include "tests/support/scenes.h"
+
+#include <array>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+class Queues : public testing::TestWithParam<std::string> {
+protected:
+    /// {items, whether to balance} of queues that hold `counts`, by a group of `group_size`; the sums before
+    /// each queue and behind the last in `starts`. Queues below 2 items ask for balance.
+    std::array<std::uint32_t, 2> plan(std::uint32_t group_size, const std::vector<std::uint32_t>& counts,
+                                      std::vector<std::uint32_t>& starts) {
+        auto& on = device(GetParam());
+        const auto queues = static_cast<std::uint32_t>(counts.size());
+        const auto kernel = on.compile(kernel_source("algorithms/gproximity/gproximity.cl"), "plan_balance",
+                                       {{"K", "8"},
+                                        {"AXES", "0"},
+                                        {"PRECISION", "32"},
+                                        {"GROUP_SIZE", std::to_string(group_size)},
+                                        {"ROUNDING", "1"},
+                                        {"OUTPUT", "0"},
+                                        {"COUNT_WORK", "0"}});
+        const auto counts_on = on.allocate(queues * 4, "counts");
+        const auto starts_on = on.allocate((queues + 1) * 4, "starts");
+        const auto totals_on = on.allocate(8, "totals");
+        on.upload(counts_on, bytes_of(counts));
+        const std::array<Argument, 6> arguments{counts_on, queues, 2u, 0xffffffffu, starts_on, totals_on};
+        on.launch(kernel, {1, group_size}, arguments);
+        std::array<std::uint32_t, 2> totals{};
+        on.download(totals_on, std::as_writable_bytes(std::span(totals)));
+        starts.resize(queues + 1);
+        on.download(starts_on, std::as_writable_bytes(std::span(starts)));
+        return totals;
+    }
+
+    std::vector<std::uint32_t> group_sizes() const {
+        return device(GetParam()).info().max_group_size == 1 ? std::vector<std::uint32_t>{1}
+                                                             : std::vector<std::uint32_t>{1, 2, 32};
+    }
+};
+
+using Totals = std::array<std::uint32_t, 2>;
+using Starts = std::vector<std::uint32_t>;
+
+TEST_P(Queues, AreSummed) {
+    for (const auto group_size : group_sizes()) {
+        Starts starts;
+        EXPECT_EQ(plan(group_size, {3, 0, 5, 2, 9}, starts), (Totals{19, 1}));
+        EXPECT_EQ(starts, (Starts{0, 3, 3, 8, 10, 19}));
+        EXPECT_EQ(plan(group_size, {3, 4, 5}, starts), (Totals{12, 0}));
+        EXPECT_EQ(plan(group_size, {0, 0, 0}, starts), (Totals{0, 0}));
+    }
+}
+
+/// One less than counting reaches; exactly as many; sums that would be 0, 4 and 2^31 + 4 in 32 bits.
+TEST_P(Queues, SumsEndWhereCountingDoes) {
+    const auto most = MOST_QUEUE_ITEMS;
+    for (const auto group_size : group_sizes()) {
+        Starts starts;
+        EXPECT_EQ(plan(group_size, {most - 8, 7, 0}, starts), (Totals{most - 1, 1}));
+        EXPECT_EQ(starts, (Starts{0, most - 8, most - 1, most - 1}));
+        for (const auto& counts : {Starts{most - 8, 8, 0}, Starts{0, most, most}, Starts{most, 0, most, 4},
+                                   Starts{1, most, most, most, 3}})
+            EXPECT_EQ(plan(group_size, counts, starts), (Totals{most, 0})) << counts.size();
+    }
+}
+
+TEST_P(Queues, BodyPairsThatCannotBeNumberedAreRefused) {
+    auto& on = device(GetParam());
+    const auto scene = crowd(3, 2, 0.5);
+    const BodyPair pair{0, 1};
+    for (const auto* traversal : algorithms()) {
+        const auto settings = resolve(traversal->parameters(), {}, {{"broad", "sphere"}}, traversal->name());
+        const std::array devices{&on};
+        const auto session = traversal->prepare(devices, scene, settings);
+        // Refused before the first of them is read.
+        EXPECT_THROW(session->run(scene.frame(0), {&pair, std::size_t{1} << 32}), InputError);
+        EXPECT_GT(session->run(scene.frame(0), {&pair, 1}).count, 0u);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, Queues, testing::ValuesIn(device_names()),
+                         [](const auto& test) { return device_label(test.param); });
+
+} // namespace
+} // namespace tandem
