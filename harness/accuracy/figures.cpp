@@ -3,6 +3,7 @@
 
 #include "scenes/error.h"
 
+#include <cerrno>
 #include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
@@ -31,7 +32,9 @@ bool succeeds(std::vector<std::string> words, bool quiet) {
     pid_t process = 0;
     int status = ::posix_spawnp(&process, arguments[0], &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
-    if (status == 0) ::waitpid(process, &status, 0);
+    if (status != 0) return false;
+    while (::waitpid(process, &status, 0) < 0)
+        if (errno != EINTR) return false;
     return status == 0;
 }
 
