@@ -100,7 +100,8 @@ Samples Bench::overlaps(int k) {
     device_.upload(nodes, bytes_of(slabs));
     const std::uint32_t turns = device_.info().is_gpu ? rounds : rounds / 20;
     const std::array<Argument, 4> arguments{nodes, counts, turns, 1u};
-    const auto tests = static_cast<double>(groups_) * group_ * turns * (k / 2);
+    const int axes = k / 2;
+    const auto tests = static_cast<double>(groups_) * group_ * turns * axes;
     const auto entry = kernel("test_overlaps", k);
     return per_second(tests, [&] { launch(entry, arguments); });
 }

@@ -79,6 +79,7 @@ struct Driver {
     /// Loads libcuda.so.1 and starts it. Throws DeviceError: one sentence on what is missing.
     Driver();
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a declaration
 #define TANDEM_DECLARE(name, arguments) Result(*name) arguments = nullptr;
     TANDEM_CUDA_ENTRIES(TANDEM_DECLARE)
 #undef TANDEM_DECLARE

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-struct _nvrtcProgram;
+struct _nvrtcProgram; // NOLINT(bugprone-reserved-identifier): NVIDIA's
 
 namespace tandem::cuda {
 
@@ -49,6 +49,7 @@ public:
                   bool ptx = false) const;
 
 private:
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a declaration
 #define TANDEM_DECLARE(name, arguments) NvrtcResult(*name) arguments = nullptr;
     TANDEM_NVRTC_ENTRIES(TANDEM_DECLARE)
 #undef TANDEM_DECLARE

@@ -21,9 +21,8 @@ namespace {
 
 /// Whether the program ended with 0; one that is not there ends otherwise.
 bool succeeds(std::vector<std::string> words, bool quiet) {
-    std::vector<char*> arguments;
-    for (auto& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
+    std::vector<char*> arguments(words.size() + 1); // the last one stays null
+    for (std::size_t i = 0; i < words.size(); ++i) arguments[i] = words[i].data();
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     if (quiet)
@@ -40,7 +39,7 @@ bool succeeds(std::vector<std::string> words, bool quiet) {
 
 /// The system's, which has the system's packages, or the first one in PATH.
 std::string python_with_matplotlib() {
-    for (const std::string python : {"/usr/bin/python3", "python3"})
+    for (const char* python : {"/usr/bin/python3", "python3"})
         if (succeeds({python, "-c", "import matplotlib"}, true)) return python;
     throw InputError("--figures needs python3 with matplotlib; install python3-matplotlib");
 }

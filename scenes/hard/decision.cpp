@@ -23,15 +23,14 @@ Vector whole_offset(Random& random, int largest) {
     return by;
 }
 
-HardPair mapped_pair(Random& random, std::pair<Corners, Corners> pair, double bits, Known known) {
+HardPair mapped_pair(Random& random, const std::pair<Corners, Corners>& pair, double bits, Known known) {
     const auto map = integer_map(random, static_cast<int>(bits));
     const Vector by = whole_offset(random, 1000);
     return exact_pair(random, mapped(map, pair.first, by), mapped(map, pair.second, by), known);
 }
 
 HardPair touch(Random& random, double bits, std::uint64_t index) {
-    auto pair = by_index(random, index);
-    return mapped_pair(random, std::move(pair), bits, Known::touching);
+    return mapped_pair(random, by_index(random, index), bits, Known::touching);
 }
 
 /// Two faces in one plane around a common point, mapped to numbers about 2^23 + 2^22, where one unit is that
