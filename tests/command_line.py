@@ -204,8 +204,10 @@ class CommandLine(Case):
         for device in ("host", "opencl:0"):
             out = self.work / f"memory{device}.jsonl"
             arguments = ("run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "gproximity", "--device", device,
-                         "--repeat", 1, "--out", out)
+                         "--repeat", 1, "--out", out, "--set", "groups=64")
             self.assertEqual(tandem(*arguments)[0], 0)
+            self.bad("of 5726623061 items and 2147483648 is the most; lower it, or raise groups", *arguments[:-1], "groups=16",
+                     "--set", "queue_bytes=1099511627776")
             before = out.read_bytes()
             self.bad("queues", *arguments, "--set", "queue_bytes=67108864,1099511627776", code=3)
             self.assertTrue(out.read_bytes().startswith(before))

@@ -103,10 +103,16 @@ QueueSizes queue_sizes(const Settings& settings, const DeviceInfo& info, std::ui
     sizes.initial_items = number(settings, "initial_items");
     if (sizes.initial_items == 0) sizes.initial_items = 3 * group_size;
     sizes.queue_capacity = number(settings, "queue_capacity");
-    if (sizes.queue_capacity == 0)
-        sizes.queue_capacity = static_cast<std::uint32_t>(std::min<std::uint64_t>(
-            static_cast<std::uint64_t>(integer(settings, "queue_bytes")) / (item_bytes * sizes.groups),
-            MOST_QUEUE_ITEMS));
+    if (sizes.queue_capacity == 0) {
+        const auto items =
+            static_cast<std::uint64_t>(integer(settings, "queue_bytes")) / (item_bytes * sizes.groups);
+        if (items > MOST_QUEUE_ITEMS)
+            throw InputError(
+                fmt::format("setting queue_bytes={} makes {} queues of {} items and {} is the most; "
+                            "lower it, or raise groups",
+                            settings.at("queue_bytes"), sizes.groups, items, MOST_QUEUE_ITEMS));
+        sizes.queue_capacity = static_cast<std::uint32_t>(items);
+    }
     sizes.queue_capacity = std::max(sizes.queue_capacity, 2u);
     sizes.idle_limit = number(settings, "idle_limit");
     if (sizes.idle_limit == 0) sizes.idle_limit = std::max(1u, sizes.groups * 2 / 3);

@@ -23,7 +23,7 @@ struct QueueSizes {
 };
 
 /// `group_size` is the effective one. Throws InputError when the local queue does not fit the device or a
-/// queue would hold less than one round.
+/// queue would hold more than MOST_QUEUE_ITEMS.
 QueueSizes queue_sizes(const Settings& settings, const DeviceInfo& info, std::uint32_t group_size);
 
 } // namespace tandem
