@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// What single algorithms are made of: that each of their mechanisms is at work, and does what it is there
+// for.
+#include "tests/support/cells.h"
+#include "tests/support/flawed.h"
+#include "tests/support/scenes.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+class Mechanisms : public testing::TestWithParam<std::string> {};
+
+/// Eight queues, tiny local queues and a low idle limit: balancing, refills, spills and growth all have to
+/// happen.
+TEST_P(Mechanisms, GproximityIsForcedThroughEveryMechanism) {
+    auto& on = device(GetParam());
+    const auto scene = crowd(41, 12, 0.6);
+    const auto frame = scene.frame(0);
+    const auto expected = reference(scene, frame, {}, true, Method::brute_force);
+    const auto& traversal = algorithm("gproximity");
+    for (const std::string balance : {"parallel", "serial"}) {
+        const auto settings = resolve(traversal.parameters(), {},
+                                      {{"groups", "8"},
+                                       {"group_size", "8"},
+                                       {"local_queue", "4"},
+                                       {"initial_items", "2"},
+                                       {"queue_capacity", "16"},
+                                       {"idle_limit", "8"},
+                                       {"balance", balance},
+                                       {"balance_group_size", "8"}},
+                                      traversal.name());
+        const std::array devices{&on};
+        const auto session = traversal.prepare(devices, scene, settings);
+        const auto timed = session->run(frame, all_pairs(scene, *session));
+        EXPECT_EQ(session->digest(timed), expected.digest);
+        EXPECT_EQ(session->contact_digest(timed), expected.contact_digest);
+        EXPECT_GT(timed.retries, 0u);
+        session->count_work(true); // the counting build makes no contacts
+        const auto result = session->run(frame, all_pairs(scene, *session));
+        EXPECT_EQ(session->digest(result), expected.digest);
+        EXPECT_GT(result.work.balances, 0u);
+        EXPECT_GT(result.work.refills, 0u);
+        EXPECT_GT(result.work.spills, 0u);
+        fmt::print("{} balances, {} refills, {} spills, {} retries\n", result.work.balances,
+                   result.work.refills, result.work.spills, timed.retries);
+    }
+}
+
+/// A target shared by the pairs of a frame seeds as the threshold that is each pair's share does.
+TEST_P(Mechanisms, ChunkedSharesItsTargetOfSeeds) {
+    auto& on = device(GetParam());
+    const auto scene = crowd(53, 10, 0.9);
+    const auto& traversal = algorithm("chunked");
+    const auto seeds = [&](const std::string& threshold, const std::string& target, std::uint64_t& pairs) {
+        const auto settings = resolve(
+            traversal.parameters(), {},
+            {{"leaves", "2"}, {"seed_threshold", threshold}, {"seed_target", target}}, traversal.name());
+        const std::array devices{&on};
+        const auto session = traversal.prepare(devices, scene, settings);
+        session->count_work(true);
+        const auto body_pairs = all_pairs(scene, *session);
+        pairs = body_pairs.size();
+        return session->run(scene.frame(0), body_pairs).work.seeds;
+    };
+    std::uint64_t pairs = 0;
+    const auto coarse = seeds("1", "1", pairs);
+    const auto middle = seeds("40", "1", pairs);
+    const auto fine = seeds("1e7", "1", pairs);
+    ASSERT_GT(pairs, 1u);
+    ASSERT_NE(coarse, middle);
+    ASSERT_NE(middle, fine);
+    EXPECT_EQ(seeds("0", "1", pairs), coarse);
+    EXPECT_EQ(seeds("0", std::to_string(40 * pairs), pairs), middle);
+    EXPECT_EQ(seeds("0", "1e9", pairs), fine);
+}
+
+/// Boxes of 1296 tetrahedra beside others a tenth of their size: descending both at once meets many small
+/// parts of the small one with large parts of the large one. Both schedules count the same tests.
+TEST_P(Mechanisms, DescendingTheLargerOfUnlikeNodesNeedsFewerTests) {
+    auto& on = device(GetParam());
+    auto scene = boxes_scene(6, 4);
+    scene.meshes.push_back(scene.meshes[0]);
+    for (auto& vertex : scene.meshes.back().vertices) vertex *= 0.1;
+    for (std::uint32_t body = 0; body < scene.bodies.size(); body += 2)
+        scene.bodies[body].mesh = static_cast<std::uint32_t>(scene.meshes.size() - 1);
+    const auto& traversal = algorithm("chunked");
+    const auto tests = [&](const std::string& descent, const std::string& schedule, Digest& digest) {
+        const auto settings = resolve(
+            traversal.parameters(), {},
+            {{"descent", descent}, {"schedule", schedule}, {"contact_rule", "none"}}, traversal.name());
+        const std::array devices{&on};
+        const auto session = traversal.prepare(devices, scene, settings);
+        session->count_work(true);
+        const auto result = session->run(scene.frame(0), all_pairs(scene, *session));
+        digest = session->digest(result);
+        return result.work.bvtt_nodes;
+    };
+    Digest of_larger, of_both, again;
+    const auto larger = tests("larger", "group", of_larger);
+    const auto both = tests("both", "group", of_both);
+    EXPECT_GT(of_both.count, 1000u);
+    EXPECT_EQ(of_larger, of_both);
+    EXPECT_LT(5 * larger, 4 * both);
+    EXPECT_EQ(tests("larger", "item", again), larger);
+    EXPECT_EQ(tests("both", "item", again), both);
+    EXPECT_EQ(again, of_both);
+}
+
+TEST_P(Mechanisms, ResidentChunkedWaitsOnce) {
+    auto& on = device(GetParam());
+    const auto scene = crowd(51, 10, 0.9);
+    const auto& traversal = algorithm("chunked");
+    for (const std::string threshold : {"1", "1e7"}) {
+        const auto settings = resolve(traversal.parameters(), {},
+                                      {{"leaves", "4"}, {"seed_threshold", threshold}}, traversal.name());
+        const std::array devices{&on};
+        const auto session = traversal.prepare(devices, scene, settings);
+        for (std::size_t i = 0; i < scene.frame_count; ++i) {
+            on.finish();
+            ASSERT_GT(session->run(scene.frame(i), all_pairs(scene, *session)).count, 0u);
+            const auto trace = on.finish();
+            EXPECT_EQ(std::count_if(trace.events.begin(), trace.events.end(),
+                                    [](const auto& e) { return e.blocked; }),
+                      1);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, Mechanisms, testing::ValuesIn(device_names()),
+                         [](const auto& test) { return device_label(test.param); });
+
+} // namespace
+} // namespace tandem
