@@ -45,8 +45,7 @@ const std::vector<Parameter> own{
      0,
      0,
      "what a step of a walk descends: of two nodes of unlike size the larger alone, or always both at once, "
-     "as the "
-     "paper's code"},
+     "as the paper's code"},
     {"root_test",
      "yes",
      {"yes", "no"},

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // adversarial [--pairs N] [--device D,E] [--family F,G] ...: N pairs in all, spread over the families of hard
 // cases, bounded and tested on every device by the kernels of the walks and compared with the exact truth.
-// One line a family and a last one; exit 1 when a pair is missed. adversarial --counter E [--algorithm A,B]
+// First the commit, then one line a family and a last one; exit 1 when a pair is missed. adversarial
+// --counter E [--algorithm A,B]
 // [--device D,E]: 2^E pairs, counted by every algorithm; exit 1 when a count is wrong. --help lists all
 // options.
 #include "backends/registry.h"
 #include "harness/adversarial.h"
+#include "harness/environment.h"
 #include "harness/plan.h"
 #include "harness/sampler.h"
 #include "harness/walk.h"
@@ -138,6 +140,9 @@ int dispatch(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 2;
     }
+    const auto made_by = environment();
+    fmt::print("commit {}{}, {}\n", made_by.commit.empty() ? "unknown" : made_by.commit,
+               made_by.dirty ? " and changes" : "", made_by.date);
     return options.exponent > 0 ? count(options) : run(options);
 }
 
