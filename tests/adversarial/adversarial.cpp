@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // adversarial [--pairs N] [--device D,E] [--family F,G] ...: N pairs in all, spread over the families of hard
 // cases, bounded and tested on every device by the kernels of the walks and compared with the exact truth.
-// First the commit, then one line a family and a last one; exit 1 when a pair is missed. adversarial
-// --counter E [--algorithm A,B]
-// [--device D,E]: 2^E pairs, counted by every algorithm; exit 1 when a count is wrong. --help lists all
-// options.
+// First the commit, then one line a family and a last one; exit 1 when a pair is missed.
+// adversarial --counter E [--algorithm A,B] [--device D,E]: 2^E pairs, counted by every algorithm; exit 1
+// when a count is wrong. --help lists all options.
 #include "backends/registry.h"
 #include "harness/adversarial.h"
 #include "harness/environment.h"
