@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "backends/device.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <utility>
 
@@ -26,6 +27,16 @@ std::string kernel_key(const KernelSource& source, std::string_view entry, const
     return key;
 }
 
+/// A vendor's code for it is one for many mistakes and names no kernel.
+void check_group_size(const DeviceInfo& device, const KernelFacts& kernel, std::uint32_t group_size) {
+    const auto most =
+        kernel.max_group_size >= 0 ? kernel.max_group_size : std::int64_t{device.max_group_size};
+    if (group_size > 0 && group_size <= most) return;
+    throw DeviceError(
+        fmt::format("{} ({}): kernel '{}' cannot run in groups of {} work-items; {} is the most", device.id,
+                    device.name, kernel.entry, group_size, most));
+}
+
 /// Keeps the device's count of live bytes right, whoever drops the last handle.
 std::shared_ptr<Buffer::Impl> counted(std::shared_ptr<Buffer::Impl> impl,
                                       const std::shared_ptr<std::size_t>& count) {
@@ -40,19 +51,46 @@ std::shared_ptr<Buffer::Impl> counted(std::shared_ptr<Buffer::Impl> impl,
 } // namespace
 
 void Device::record(Event event, Clock::time_point begin) {
-    event.stage = stage_;
     event.host_ns = nanoseconds_since(begin);
+    event.stage = stage_;
     trace_.events.push_back(std::move(event));
 }
 
-Buffer Device::allocate(std::size_t bytes, std::string_view label) {
+template<class Work>
+void Device::submit(Event event, std::string_view label, const Work& work) {
+    if (clocks_ == Clocks::off) {
+        work();
+        return;
+    }
+    waited_ = false;
+    const auto begin = Clock::now();
+    event.ticket = work();
+    event.blocked |= waited_;
+    event.label = label;
+    record(std::move(event), begin);
+}
+
+void Device::check_room(std::size_t bytes, std::string_view label) const {
     const auto& has = info();
+    const auto refuse = [&](std::string_view why, std::uint64_t most) {
+        throw OutOfMemory(fmt::format("{} ({}): buffer '{}' needs {} bytes, {} are in use, and {} {}", has.id,
+                                      has.name, label, bytes, bytes_allocated(), why, most));
+    };
+    const auto exceeds = [&](std::uint64_t most) {
+        return bytes_allocated() > most || bytes > most - bytes_allocated();
+    };
+    if (bytes > has.max_allocation)
+        throw OutOfMemory(
+            fmt::format("{} ({}): buffer '{}' needs {} bytes, and one allocation holds at most {}", has.id,
+                        has.name, label, bytes, has.max_allocation));
+    if (exceeds(memory_limit_)) refuse("the limit is", memory_limit_);
+    if (has.allocates_late && exceeds(has.global_bytes)) refuse("the device has", has.global_bytes);
+}
+
+Buffer Device::allocate(std::size_t bytes, std::string_view label) {
     // Zero-sized buffers are not allowed by OpenCL; one word keeps callers free of special cases.
     const auto size = std::max<std::size_t>(bytes, 16);
-    if (size > has.max_allocation)
-        throw DeviceError(
-            fmt::format("{} ({}): buffer '{}' needs {} bytes, and one allocation holds at most {}", has.id,
-                        has.name, label, size, has.max_allocation));
+    check_room(size, label);
     auto impl = do_allocate(size);
     impl->bytes = size;
     impl->label = label;
@@ -69,50 +107,33 @@ Buffer Device::adopt(void* native, std::size_t bytes, std::string_view label) {
 void Device::upload(const Buffer& to, std::span<const std::byte> from, std::size_t offset, bool blocking) {
     check_range(to, offset, from.size(), "upload");
     if (from.empty()) return;
-    const auto begin = Clock::now();
-    const auto ticket = do_upload(to.impl(), from, offset, blocking);
-    record({.command = Command::upload,
-            .stage = stage_,
-            .label = to.impl().label,
-            .bytes = from.size(),
-            .ticket = ticket,
-            .blocked = blocking},
-           begin);
+    submit({.command = Command::upload, .bytes = from.size(), .blocked = blocking}, to.impl().label,
+           [&] { return do_upload(to.impl(), from, offset, blocking); });
 }
 
 void Device::download(const Buffer& from, std::span<std::byte> to, std::size_t offset) {
     check_range(from, offset, to.size(), "download");
     if (to.empty()) return;
-    const auto begin = Clock::now();
-    const auto ticket = do_download(from.impl(), to, offset);
-    record({.command = Command::download,
-            .stage = stage_,
-            .label = from.impl().label,
-            .bytes = to.size(),
-            .ticket = ticket,
-            .blocked = true},
-           begin);
+    submit({.command = Command::download, .bytes = to.size(), .blocked = true}, from.impl().label,
+           [&] { return do_download(from.impl(), to, offset); });
 }
 
 void Device::clear(const Buffer& buffer, std::size_t bytes, std::size_t offset) {
     check_range(buffer, offset, bytes, "clear");
     if (bytes == 0) return;
-    const auto begin = Clock::now();
-    const auto ticket = do_clear(buffer.impl(), bytes, offset);
-    record({.command = Command::clear,
-            .stage = stage_,
-            .label = buffer.impl().label,
-            .bytes = bytes,
-            .ticket = ticket},
-           begin);
+    submit({.command = Command::clear, .bytes = bytes}, buffer.impl().label,
+           [&] { return do_clear(buffer.impl(), bytes, offset); });
 }
 
 Kernel Device::compile(const KernelSource& source, std::string_view entry, const Defines& defines) {
     const auto key = kernel_key(source, entry, defines);
     if (const auto found = kernels_.find(key); found != kernels_.end()) {
-        asked_.push_back(found->second.facts());
-        asked_.back().compile_ms = 0;
-        return found->second;
+        auto& known = found->second;
+        if (!std::exchange(known.asked, true)) {
+            asked_.push_back(known.kernel.facts());
+            asked_.back().compile_ms = 0;
+        }
+        return known.kernel;
     }
     const auto begin = Clock::now();
     auto impl = do_compile(source, entry, defines);
@@ -120,28 +141,25 @@ Kernel Device::compile(const KernelSource& source, std::string_view entry, const
     impl->facts.defines = defines;
     impl->facts.compile_ms = static_cast<double>(nanoseconds_since(begin)) * 1e-6;
     asked_.push_back(impl->facts);
-    return kernels_.emplace(key, Kernel(std::move(impl))).first->second;
+    return kernels_.emplace(key, Compiled{Kernel(std::move(impl)), true}).first->second.kernel;
 }
 
 void Device::launch(const Kernel& kernel, Grid grid, std::span<const Argument> arguments) {
     if (grid.groups == 0) return;
-    const auto begin = Clock::now();
-    const auto ticket = do_launch(kernel.impl(), grid, arguments);
-    record({.command = Command::launch,
-            .stage = stage_,
-            .label = kernel.facts().entry,
-            .groups = grid.groups,
-            .group_size = grid.group_size,
-            .ticket = ticket},
-           begin);
+    check_group_size(info(), kernel.facts(), grid.group_size);
+    submit({.command = Command::launch, .groups = grid.groups, .group_size = grid.group_size},
+           kernel.facts().entry, [&] { return do_launch(kernel.impl(), grid, arguments); });
 }
 
 Trace Device::finish() {
+    if (clocks_ == Clocks::off) {
+        do_finish();
+        return {};
+    }
     const auto begin = Clock::now();
     const bool pending = !trace_.events.empty() && !trace_.events.back().blocked;
     do_finish();
-    if (pending)
-        record({.command = Command::wait, .stage = stage_, .label = "finish", .blocked = true}, begin);
+    if (pending) record({.command = Command::wait, .label = "finish", .blocked = true}, begin);
     for (auto& event : trace_.events)
         if (event.ticket != 0) std::tie(event.begin_ns, event.device_ns) = do_interval(event.ticket);
     return std::exchange(trace_, {});
@@ -150,21 +168,27 @@ Trace Device::finish() {
 Stage Device::set_stage(Stage stage) { return std::exchange(stage_, stage); }
 
 void Device::set_clocks(Clocks clocks) {
-    do_finish();
+    finish();
     do_set_clocks(clocks);
     clocks_ = clocks;
 }
 
-std::vector<KernelFacts> Device::take_kernels() { return std::exchange(asked_, {}); }
+std::vector<KernelFacts> Device::take_kernels() {
+    for (auto& [key, known] : kernels_) known.asked = false;
+    return std::exchange(asked_, {});
+}
 
 std::size_t Device::bytes_allocated() const { return *allocated_; }
 
 HostWork::HostWork(Device& device, Stage stage, std::string_view label)
-    : device_(device), stage_(stage), label_(label), begin_(Clock::now()) {}
+    : device_(device), stage_(stage), timed_(device.clocks() == Clocks::on), label_(label) {
+    if (timed_) begin_ = Clock::now();
+}
 
 HostWork::~HostWork() {
+    if (!timed_ || device_.clocks() == Clocks::off) return;
     const StageScope scope(device_, stage_);
-    device_.record({.command = Command::host_work, .stage = stage_, .label = std::move(label_)}, begin_);
+    device_.record({.command = Command::host_work, .label = std::string(label_)}, begin_);
 }
 
 } // namespace tandem

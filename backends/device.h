@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <memory>
 #include <span>
@@ -18,10 +19,19 @@
 namespace tandem {
 
 /// A device failed or cannot do what was asked: backend, call, code and what was being done, in one line.
+/// Nothing is in flight on an OpenCL queue that one came from.
 struct DeviceError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// Memory does not suffice: what was asked for and what there is. Comes from allocate(), and from later
+/// commands where memory is taken at first use (DeviceInfo::allocates_late) or a kernel needs some of its
+/// own. The device works on; dropping buffers helps.
+struct OutOfMemory : DeviceError {
+    using DeviceError::DeviceError;
+};
+
+/// What a device is; sizes in bytes.
 struct DeviceInfo {
     std::string id;       ///< "host", "opencl:0", "cuda:0"
     std::string name;     ///< as the vendor calls it
@@ -29,11 +39,12 @@ struct DeviceInfo {
     std::string compiler; ///< what compiles kernels
     std::string hardware; ///< PCI address or UUID; empty when unknown
     bool is_gpu = false;
-    std::uint32_t compute_units = 1;
-    std::uint32_t max_group_size = 1;
-    std::uint64_t global_bytes = 0;
-    std::uint64_t max_allocation = 0;
-    std::uint64_t local_bytes = 0;
+    std::uint32_t compute_units = 1;  ///< what runs work-groups side by side: multiprocessors, cores
+    std::uint32_t max_group_size = 1; ///< work-items; a kernel may take fewer
+    std::uint64_t global_bytes = 0;   ///< device memory in all, whoever uses it
+    std::uint64_t max_allocation = 0; ///< the most that one buffer holds
+    std::uint64_t local_bytes = 0;    ///< memory of a work-group
+    bool allocates_late = false;      ///< memory is taken at first use, so that allocate() has to count
     bool has_double = true;
     bool has_directed_rounding = false; ///< kernels can add rounding down and up
     bool stages_pinned = false;         ///< uploads that do not block go through page-locked memory
@@ -48,13 +59,14 @@ struct KernelSource {
     std::string_view text;
 };
 
-/// Device memory. Move-only in spirit: copies share it; dies before its device.
+/// Device memory, freed with the last copy of its handle; dies before its device. Freeing never fails.
 class Buffer {
 public:
+    /// What an adaptor adds its handle to.
     struct Impl {
         virtual ~Impl() = default;
-        std::size_t bytes = 0;
-        std::string label;
+        std::size_t bytes = 0; ///< at least what was asked for
+        std::string label;     ///< names it in traces and errors
     };
 
     Buffer() = default;
@@ -62,7 +74,7 @@ public:
 
     explicit operator bool() const { return impl_ != nullptr; }
     std::size_t bytes() const { return impl_ ? impl_->bytes : 0; }
-    Impl& impl() const { return *impl_; }
+    Impl& impl() const { return *impl_; } ///< not of an empty handle
 
 private:
     std::shared_ptr<Impl> impl_;
@@ -72,14 +84,14 @@ private:
 struct KernelFacts {
     std::string entry;
     Defines defines;
-    double compile_ms = 0;
-    std::int64_t registers = -1;
-    std::int64_t local_bytes = -1;
-    std::int64_t spill_bytes = -1;
-    std::int64_t max_group_size = -1;
+    double compile_ms = 0;            ///< 0 when it was there already
+    std::int64_t registers = -1;      ///< a work-item's
+    std::int64_t local_bytes = -1;    ///< a work-group's
+    std::int64_t spill_bytes = -1;    ///< stores and loads of a work-item
+    std::int64_t max_group_size = -1; ///< work-items; more are refused by launch()
 };
 
-/// A compiled entry point; a cheap handle.
+/// A compiled entry point of one device; a cheap handle.
 class Kernel {
 public:
     struct Impl {
@@ -97,7 +109,8 @@ private:
     std::shared_ptr<Impl> impl_;
 };
 
-/// A buffer or a scalar of at most 8 bytes.
+/// A kernel's argument: a buffer, which has to outlive the call, or a scalar of at most 8 bytes, whose type
+/// has the size of the kernel's parameter.
 class Argument {
 public:
     struct Scalar {
@@ -120,18 +133,20 @@ private:
     std::variant<Buffer::Impl*, Scalar> value_;
 };
 
-/// One-dimensional grid: groups x group_size work-items.
+/// One-dimensional grid: groups x group_size work-items. `group_size` is the define GROUP_SIZE of the kernel.
 struct Grid {
     std::uint64_t groups = 1;
     std::uint32_t group_size = 1;
 };
 
-/// Whether commands carry device timestamps. Without them nothing but the span of a frame is timed.
+/// Whether commands are recorded, with device timestamps. Off, which is the default: no clock is read, no
+/// event made and nothing kept from one command to the next.
 enum class Clocks { off, on };
 
-/// One device of one backend. The public functions record what they do in the trace and leave the doing to
-/// the private ones, so that a command cannot run unrecorded nor be recorded twice. Commands run in order.
-/// Not thread-safe. Every function may throw DeviceError.
+/// One device of one backend. The public functions record what they do in the trace, where clocks are on, and
+/// leave the doing to the private ones, so that a command cannot run unrecorded nor be recorded twice.
+/// Commands run in order. A device is used from one thread at a time; two devices may be used from two.
+/// A thread's current CUDA context is left as it was. Every function may throw DeviceError.
 class Device {
 public:
     virtual ~Device() = default;
@@ -140,43 +155,68 @@ public:
 
     virtual const DeviceInfo& info() const = 0;
 
-    /// Throws DeviceError that says how much was asked for and how much there is.
+    /// Memory of at least `bytes` bytes, their values unknown. Throws OutOfMemory that says how much was
+    /// asked for, what is in use and how much there is.
     Buffer allocate(std::size_t bytes, std::string_view label);
     /// Wraps memory of a host application's context: a cl_mem or a device pointer, which must outlive the
-    /// buffer.
+    /// buffer. It does not count as allocated.
     Buffer adopt(void* native, std::size_t bytes, std::string_view label);
 
-    /// Copies `from` to `to` at `offset`. Returns at once (the bytes are copied first) unless `blocking`.
+    /// Copies `from` to `to` at byte `offset`. Unless `blocking` it returns at once with the bytes copied; it
+    /// waits where copies of uploads in flight have come to fill their memory (tens of MiB).
     void upload(const Buffer& to, std::span<const std::byte> from, std::size_t offset = 0,
                 bool blocking = false);
-    /// Copies from `from` at `offset`; waits for it.
+    /// Copies from `from` at byte `offset`; waits for it.
     void download(const Buffer& from, std::span<std::byte> to, std::size_t offset = 0);
     /// Sets `bytes` bytes at `offset` to zero.
     void clear(const Buffer& buffer, std::size_t bytes, std::size_t offset = 0);
 
-    /// Compiles once per (source, entry, defines) and device.
+    /// Compiles once per (source, entry, defines) and device. Throws DeviceError with the compiler's log in
+    /// one line.
     Kernel compile(const KernelSource& source, std::string_view entry, const Defines& defines);
+    /// Runs a kernel with its arguments in order; no groups are no launch. Throws DeviceError when the groups
+    /// are larger than the kernel can take.
     void launch(const Kernel& kernel, Grid grid, std::span<const Argument> arguments);
 
-    /// Waits for everything submitted so far and returns its trace, with device times filled in.
+    /// Waits for everything submitted so far and returns its trace, with device times filled in; an empty one
+    /// where clocks are off.
     Trace finish();
 
     /// Books what follows under `stage`; returns the stage before.
     Stage set_stage(Stage stage);
-    /// Waits, then switches timestamps on or off.
+    /// Waits, drops what was recorded since the last finish(), then switches clocks on or off.
     void set_clocks(Clocks clocks);
     Clocks clocks() const { return clocks_; }
 
-    /// The facts of every kernel asked for since the last call; compile_ms is 0 for those that were there
-    /// already.
+    /// The facts of every kernel asked for since the last call, each once; compile_ms is 0 for those that
+    /// were there already.
     std::vector<KernelFacts> take_kernels();
+
+    /// Bytes of the buffers that live, without adopted ones.
     std::size_t bytes_allocated() const;
+    /// From now on allocate() throws OutOfMemory where bytes_allocated() would exceed `bytes`. What is
+    /// allocated already stays.
+    void set_memory_limit(std::size_t bytes) { memory_limit_ = bytes; }
+    /// no_memory_limit unless one was set.
+    std::size_t memory_limit() const { return memory_limit_; }
+    static constexpr std::size_t no_memory_limit = std::numeric_limits<std::size_t>::max();
 
 protected:
     Device() = default;
 
+    /// For an adaptor whose command had to wait although it need not have: the trace says so.
+    void host_waited() { waited_ = true; }
+
 private:
     friend class HostWork;
+
+    struct Compiled {
+        Kernel kernel;
+        bool asked = false; ///< its facts stand in asked_
+    };
+
+    // What an adaptor does. A command returns the ticket of its timestamps, 0 where clocks are off; ranges
+    // and group sizes have been checked. Text is made of failures only.
 
     virtual std::shared_ptr<Buffer::Impl> do_allocate(std::size_t bytes) = 0;
     virtual std::shared_ptr<Buffer::Impl> do_adopt(void* native) = 0;
@@ -193,14 +233,20 @@ private:
     /// Begin and duration in device nanoseconds of a finished command; releases the ticket.
     virtual std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) = 0;
 
+    void check_room(std::size_t bytes, std::string_view label) const;
+    /// Runs `work`, which returns a ticket, and records it where clocks are on.
+    template<class Work>
+    void submit(Event event, std::string_view label, const Work& work);
     void record(Event event, std::chrono::steady_clock::time_point begin);
 
-    std::map<std::string, Kernel> kernels_;
+    std::map<std::string, Compiled> kernels_;
     std::vector<KernelFacts> asked_;
     std::shared_ptr<std::size_t> allocated_ = std::make_shared<std::size_t>(0);
+    std::size_t memory_limit_ = no_memory_limit;
     Trace trace_;
     Stage stage_ = Stage::write;
     Clocks clocks_ = Clocks::off;
+    bool waited_ = false;
 };
 
 /// Books commands of its lifetime under a stage.
@@ -216,7 +262,8 @@ private:
     Stage before_;
 };
 
-/// Times host work that belongs to a stage; the only clock outside the device's commands.
+/// Times host work that belongs to a stage; the only clock outside the device's commands. Does nothing where
+/// clocks are off. `label` has to outlive it.
 class HostWork {
 public:
     HostWork(Device& device, Stage stage, std::string_view label);
@@ -227,10 +274,12 @@ public:
 private:
     Device& device_;
     Stage stage_;
-    std::string label_;
+    bool timed_;
+    std::string_view label_;
     std::chrono::steady_clock::time_point begin_;
 };
 
+/// The bytes of a vector's elements, to upload them.
 template<class T>
 std::span<const std::byte> bytes_of(const std::vector<T>& values) {
     return std::as_bytes(std::span(values));

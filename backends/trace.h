@@ -33,9 +33,9 @@ enum class Command { launch, upload, download, clear, wait, host_work };
 
 /// One command, or one stretch of host work, as it ran. Times in nanoseconds.
 struct Event {
-    Command command;
-    Stage stage;
-    std::string label;        ///< kernel entry, buffer label or name of the host work
+    Command command = Command::launch;
+    Stage stage = Stage::write;
+    std::string label = {};   ///< kernel entry, buffer label or name of the host work
     std::uint64_t bytes = 0;  ///< moved by transfers and clears
     std::uint64_t groups = 0; ///< launches: work-groups
     std::uint32_t group_size = 0;

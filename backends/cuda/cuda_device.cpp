@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "backends/cuda/cuda_device.h"
 
+#include "backends/cuda/current_context.h"
 #include "backends/cuda/driver.h"
 #include "backends/cuda/nvrtc.h"
-#include "backends/cuda/staging.h"
 #include "backends/hardware.h"
 #include "backends/ptxas_log.h"
+#include "backends/staging.h"
 
 #include <array>
 #include <cstdio>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
+#include <type_traits>
 
 namespace tandem::cuda {
 
@@ -82,7 +84,7 @@ struct CudaBuffer : Buffer::Impl {
     CudaBuffer& operator=(const CudaBuffer&) = delete;
     ~CudaBuffer() override {
         if (!owned || pointer == 0) return;
-        driver->cuCtxSetCurrent(context);
+        const CurrentContext current(*driver, context);
         driver->cuMemFree_v2(pointer);
     }
 };
@@ -96,6 +98,21 @@ struct LoadedModule {
     Module module = nullptr;
     Image image; ///< without its bytes
 };
+
+/// Page-locked memory for uploads in flight; more than that waits.
+constexpr std::size_t most_staged = std::size_t{256} << 20;
+
+/// The context has to be current wherever it is used.
+Staging::Source page_locked(const Driver& driver) {
+    const auto allocate = [&driver](std::size_t bytes) -> std::byte* {
+        void* memory = nullptr;
+        return driver.cuMemHostAlloc(&memory, bytes, 0) == 0 ? static_cast<std::byte*>(memory) : nullptr;
+    };
+    return {allocate, [&driver](std::byte* memory) { driver.cuMemFreeHost(memory); }};
+}
+
+/// More than any kernel has, so that a launch needs no memory from the heap.
+constexpr std::size_t most_arguments = 32;
 
 class CudaDevice : public Device {
 public:
@@ -121,12 +138,25 @@ private:
 
     void describe();
     int attribute(DeviceAttribute what) const;
-    void check(Result result, std::string_view call, std::string_view what) const;
-    /// The context belongs to the thread; an application or another device may have set its own.
-    void make_current() const {
-        check(driver().cuCtxSetCurrent(context_), "cuCtxSetCurrent", "starting a command");
+    /// `what` is text or a callable that makes it, called on failure only.
+    template<class What>
+    void check(Result result, std::string_view call, const What& what) const {
+        if (result == 0) return;
+        if constexpr (std::is_invocable_v<What>)
+            fail(result, call, what());
+        else
+            fail(result, call, what);
     }
-    void wait(std::string_view what);
+    [[noreturn]] void fail(Result result, std::string_view call, std::string_view what) const;
+    /// Every operation has one: what it calls needs the context, and the caller gets back its own.
+    struct Scope {
+        explicit Scope(const CudaDevice& device) : current(device.driver(), device.context_) {
+            device.check(current.result(), "cuCtxSetCurrent", "starting a command");
+        }
+        CurrentContext current;
+    };
+    template<class What>
+    void wait(const What& what);
     const LoadedModule& module(const KernelSource& source, const Defines& defines);
     const Driver& driver() const { return libraries_->driver; }
     /// Runs `submit` between two events when timestamps are on; the ticket.
@@ -144,7 +174,7 @@ private:
     bool timed_ = false;
     int capability_ = 0;
     std::map<std::string, LoadedModule> modules_;
-    Staging staging_;
+    Staging staging_{page_locked(libraries_->driver), most_staged};
     std::vector<EventHandle>
         events_; ///< begin and end of each command since the last reading, then spare ones
     std::size_t events_used_ = 0;
@@ -152,30 +182,26 @@ private:
 };
 
 CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index)
-    : libraries_(std::move(libraries)), handle_(handle), staging_(libraries_->driver) {
+    : libraries_(std::move(libraries)), handle_(handle) {
     info_.id = fmt::format("cuda:{}", index);
     describe();
     check(primary_.retain(driver(), handle_, context_), "cuDevicePrimaryCtxRetain", "opening the device");
-    make_current();
+    const Scope scope(*this);
     constexpr unsigned non_blocking = 1; // CU_STREAM_NON_BLOCKING: no ordering with the default stream
     check(driver().cuStreamCreate(&stream_, non_blocking), "cuStreamCreate", "opening the device");
 }
 
 CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, Context context,
                        Stream stream)
-    : libraries_(std::move(libraries)),
-      handle_(handle),
-      context_(context),
-      stream_(stream),
-      owned_(false),
-      staging_(libraries_->driver) {
+    : libraries_(std::move(libraries)), handle_(handle), context_(context), stream_(stream), owned_(false) {
     info_.id = "cuda:adopted";
     describe();
 }
 
 CudaDevice::~CudaDevice() {
-    driver().cuCtxSetCurrent(context_);
+    const CurrentContext current(driver(), context_);
     driver().cuStreamSynchronize(stream_);
+    staging_.drop();
     for (auto* event : events_) driver().cuEventDestroy_v2(event);
     for (const auto& [key, loaded] : modules_) driver().cuModuleUnload(loaded.module);
     if (owned_) driver().cuStreamDestroy_v2(stream_);
@@ -210,11 +236,12 @@ void CudaDevice::describe() {
     info_.global_bytes = info_.max_allocation = memory;
 }
 
-void CudaDevice::check(Result result, std::string_view call, std::string_view what) const {
-    if (result == 0) return;
-    throw DeviceError(fmt::format("{} ({}): {} failed with {} while {}; driver for CUDA {}, NVRTC {}",
+void CudaDevice::fail(Result result, std::string_view call, std::string_view what) const {
+    const auto text = fmt::format("{} ({}): {} failed with {} while {}; driver for CUDA {}, NVRTC {}",
                                   info_.id, info_.name, call, driver().describe(result), what,
-                                  version_text(driver().version), version_text(libraries_->nvrtc.version())));
+                                  version_text(driver().version), version_text(libraries_->nvrtc.version()));
+    if (result == out_of_memory) throw OutOfMemory(text);
+    throw DeviceError(text);
 }
 
 EventHandle CudaDevice::next_event() {
@@ -232,19 +259,26 @@ std::uint64_t CudaDevice::timed(const Submit& submit) {
         submit();
         return 0;
     }
-    check(driver().cuEventRecord(next_event(), stream_), "cuEventRecord", "timing a command");
-    submit();
-    check(driver().cuEventRecord(next_event(), stream_), "cuEventRecord", "timing a command");
+    const auto used = events_used_;
+    try {
+        check(driver().cuEventRecord(next_event(), stream_), "cuEventRecord", "timing a command");
+        submit();
+        check(driver().cuEventRecord(next_event(), stream_), "cuEventRecord", "timing a command");
+    } catch (...) {
+        events_used_ = used; // events come in pairs
+        throw;
+    }
     return events_used_ / 2;
 }
 
-void CudaDevice::wait(std::string_view what) {
+template<class What>
+void CudaDevice::wait(const What& what) {
     check(driver().cuStreamSynchronize(stream_), "cuStreamSynchronize", what);
     staging_.release();
 }
 
 std::shared_ptr<Buffer::Impl> CudaDevice::do_allocate(std::size_t bytes) {
-    make_current();
+    const Scope scope(*this);
     auto buffer = std::make_shared<CudaBuffer>();
     buffer->driver = &driver();
     buffer->context = context_;
@@ -252,7 +286,7 @@ std::shared_ptr<Buffer::Impl> CudaDevice::do_allocate(std::size_t bytes) {
     std::size_t total = 0;
     driver().cuMemGetInfo_v2(&free, &total);
     check(driver().cuMemAlloc_v2(&buffer->pointer, bytes), "cuMemAlloc",
-          fmt::format("allocating {} bytes with {} free of {}", bytes, free, total));
+          [&] { return fmt::format("allocating {} bytes with {} free of {}", bytes, free, total); });
     return buffer;
 }
 
@@ -265,7 +299,7 @@ std::shared_ptr<Buffer::Impl> CudaDevice::do_adopt(void* native) {
 
 std::uint64_t CudaDevice::do_upload(Buffer::Impl& to, std::span<const std::byte> from, std::size_t offset,
                                     bool blocking) {
-    make_current();
+    const Scope scope(*this);
     const auto target = static_cast<CudaBuffer&>(to).pointer + offset;
     const auto what = [&] { return fmt::format("uploading '{}'", to.label); };
     // A blocking upload reads the caller's pageable memory, as the paper's code did.
@@ -273,34 +307,36 @@ std::uint64_t CudaDevice::do_upload(Buffer::Impl& to, std::span<const std::byte>
     if (staged != nullptr) std::memcpy(staged, from.data(), from.size());
     const void* source = staged != nullptr ? staged : from.data();
     const auto ticket = timed([&] {
-        check(driver().cuMemcpyHtoDAsync_v2(target, source, from.size(), stream_), "cuMemcpyHtoDAsync",
-              what());
+        check(driver().cuMemcpyHtoDAsync_v2(target, source, from.size(), stream_), "cuMemcpyHtoDAsync", what);
     });
-    if (staged == nullptr) wait(what());
+    if (staged == nullptr) {
+        wait(what);
+        host_waited();
+    }
     return ticket;
 }
 
 std::uint64_t CudaDevice::do_download(const Buffer::Impl& from, std::span<std::byte> to, std::size_t offset) {
-    make_current();
+    const Scope scope(*this);
     constexpr std::size_t small = 65536;
     const auto source = static_cast<const CudaBuffer&>(from).pointer + offset;
     const auto what = [&] { return fmt::format("downloading '{}'", from.label); };
     auto* staged = to.size() <= small ? staging_.take(to.size()) : nullptr;
     void* target = staged != nullptr ? staged : to.data();
     const auto ticket = timed([&] {
-        check(driver().cuMemcpyDtoHAsync_v2(target, source, to.size(), stream_), "cuMemcpyDtoHAsync", what());
+        check(driver().cuMemcpyDtoHAsync_v2(target, source, to.size(), stream_), "cuMemcpyDtoHAsync", what);
     });
-    wait(what());
+    wait(what);
     if (staged != nullptr) std::memcpy(to.data(), staged, to.size());
     return ticket;
 }
 
 std::uint64_t CudaDevice::do_clear(Buffer::Impl& buffer, std::size_t bytes, std::size_t offset) {
-    make_current();
+    const Scope scope(*this);
     const auto target = static_cast<CudaBuffer&>(buffer).pointer + offset;
     return timed([&] {
         check(driver().cuMemsetD8Async(target, 0, bytes, stream_), "cuMemsetD8Async",
-              fmt::format("clearing '{}'", buffer.label));
+              [&] { return fmt::format("clearing '{}'", buffer.label); });
     });
 }
 
@@ -315,19 +351,19 @@ const LoadedModule& CudaDevice::module(const KernelSource& source, const Defines
         throw DeviceError(fmt::format("{} ({}): {}", info_.id, info_.name, error.what()));
     }
     check(driver().cuModuleLoadData(&loaded.module, loaded.image.bytes.data()), "cuModuleLoadData",
-          fmt::format("loading {} ({})", source.name, loaded.image.target));
+          [&] { return fmt::format("loading {} ({})", source.name, loaded.image.target); });
     loaded.image.bytes.clear();
     return modules_[key] = std::move(loaded);
 }
 
 std::shared_ptr<Kernel::Impl> CudaDevice::do_compile(const KernelSource& source, std::string_view entry,
                                                      const Defines& defines) {
-    make_current();
+    const Scope scope(*this);
     const auto& loaded = module(source, defines);
     auto kernel = std::make_shared<CudaKernel>();
     const std::string name(entry);
     check(driver().cuModuleGetFunction(&kernel->function, loaded.module, name.c_str()), "cuModuleGetFunction",
-          fmt::format("looking for '{}' in {}", entry, source.name));
+          [&] { return fmt::format("looking for '{}' in {}", entry, source.name); });
     const auto ask = [&](FunctionAttribute what) -> std::int64_t {
         int value = -1;
         return driver().cuFuncGetAttribute(&value, what, kernel->function) == 0 ? value : -1;
@@ -340,9 +376,12 @@ std::shared_ptr<Kernel::Impl> CudaDevice::do_compile(const KernelSource& source,
 }
 
 std::uint64_t CudaDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) {
-    make_current();
-    std::vector<DevicePointer> pointers(arguments.size());
-    std::vector<void*> parameters(arguments.size());
+    const Scope scope(*this);
+    if (arguments.size() > most_arguments)
+        throw DeviceError(fmt::format("{}: '{}' with {} arguments; a launch takes at most {}", info_.id,
+                                      kernel.facts.entry, arguments.size(), most_arguments));
+    std::array<DevicePointer, most_arguments> pointers;
+    std::array<void*, most_arguments> parameters;
     for (std::size_t i = 0; i < arguments.size(); ++i) {
         const auto& value = arguments[i].value();
         if (const auto* const* buffer = std::get_if<Buffer::Impl*>(&value)) {
@@ -359,20 +398,22 @@ std::uint64_t CudaDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span<c
         throw DeviceError(fmt::format("{}: '{}' with {} groups; a launch takes at most 2147483647", info_.id,
                                       kernel.facts.entry, grid.groups));
     return timed([&] {
-        check(
-            driver().cuLaunchKernel(function, groups, 1, 1, grid.group_size, 1, 1, 0, stream_,
-                                    parameters.data(), nullptr),
-            "cuLaunchKernel",
-            fmt::format("launching '{}' with {} groups of {}", kernel.facts.entry, groups, grid.group_size));
+        check(driver().cuLaunchKernel(function, groups, 1, 1, grid.group_size, 1, 1, 0, stream_,
+                                      parameters.data(), nullptr),
+              "cuLaunchKernel", [&] {
+                  return fmt::format("launching '{}' with {} groups of {}", kernel.facts.entry, groups,
+                                     grid.group_size);
+              });
     });
 }
 
 void CudaDevice::do_finish() {
-    make_current();
+    const Scope scope(*this);
     wait("waiting");
 }
 
 std::pair<std::int64_t, std::int64_t> CudaDevice::do_interval(std::uint64_t ticket) {
+    const Scope scope(*this);
     float begin = 0;
     float length = 0;
     auto* const first = events_.at(2 * ticket - 2);
@@ -421,8 +462,10 @@ Found discover() {
 std::unique_ptr<Device> adopt(void* context, void* stream) {
     const auto loaded = libraries();
     DeviceHandle handle = 0;
-    loaded->driver.cuCtxSetCurrent(static_cast<Context>(context));
-    if (const auto code = loaded->driver.cuCtxGetDevice(&handle); code != 0)
+    const CurrentContext current(loaded->driver, static_cast<Context>(context));
+    auto code = current.result();
+    if (code == 0) code = loaded->driver.cuCtxGetDevice(&handle);
+    if (code != 0)
         throw DeviceError(
             fmt::format("cuda: the context cannot be adopted: {}", loaded->driver.describe(code)));
     return std::make_unique<CudaDevice>(loaded, handle, static_cast<Context>(context),

@@ -18,6 +18,7 @@ struct CUevent_st;
 namespace tandem::cuda {
 
 using Result = int; ///< CUresult; 0 is success
+inline constexpr Result out_of_memory = 2;
 using DeviceHandle = int;
 using DevicePointer = unsigned long long;
 using Context = CUctx_st*;
@@ -50,6 +51,7 @@ enum FunctionAttribute : int { function_max_threads = 0, function_shared_bytes =
     ENTRY(cuDeviceTotalMem_v2, (std::size_t*, DeviceHandle))                                                 \
     ENTRY(cuDevicePrimaryCtxRetain, (Context*, DeviceHandle))                                                \
     ENTRY(cuDevicePrimaryCtxRelease_v2, (DeviceHandle))                                                      \
+    ENTRY(cuCtxGetCurrent, (Context*))                                                                       \
     ENTRY(cuCtxSetCurrent, (Context))                                                                        \
     ENTRY(cuCtxGetDevice, (DeviceHandle*))                                                                   \
     ENTRY(cuMemGetInfo_v2, (std::size_t*, std::size_t*))                                                     \

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <new>
+#include <stdexcept>
 #include <thread>
 #include <unistd.h>
 
@@ -47,8 +48,9 @@ private:
         try {
             buffer->storage.resize(bytes);
         } catch (const std::bad_alloc&) {
-            throw DeviceError(
-                fmt::format("host: {} bytes asked for, and the machine has {}", bytes, info_.global_bytes));
+            refuse(bytes);
+        } catch (const std::length_error&) {
+            refuse(bytes);
         }
         buffer->data = buffer->storage.data();
         return buffer;
@@ -98,6 +100,11 @@ private:
         const auto interval = intervals_.at(ticket - 1);
         if (ticket == intervals_.size()) intervals_.clear();
         return interval;
+    }
+
+    [[noreturn]] void refuse(std::size_t bytes) const {
+        throw OutOfMemory(fmt::format("host: {} bytes asked for, {} in use, and the machine has {}", bytes,
+                                      bytes_allocated(), info_.global_bytes));
     }
 
     template<class Work>

@@ -4,12 +4,15 @@
 
 #include "backends/hardware.h"
 #include "backends/ptxas_log.h"
+#include "backends/staging.h"
 
 #include <CL/cl.h>
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <new>
+#include <type_traits>
 
 namespace tandem::opencl {
 
@@ -30,6 +33,12 @@ std::string error_name(cl_int code) {
     const auto found = names.find(code);
     return found == names.end() ? fmt::format("code {}", code)
                                 : fmt::format("code {}, {}", code, found->second);
+}
+
+/// Of clCreateBuffer: a size beyond the device's is refused as invalid.
+bool says_out_of_memory(cl_int code) {
+    return code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES
+           || code == CL_OUT_OF_HOST_MEMORY || code == CL_INVALID_BUFFER_SIZE;
 }
 
 template<class T>
@@ -70,6 +79,7 @@ DeviceInfo describe(cl_device_id device, std::size_t index) {
     info.global_bytes = device_value<cl_ulong>(device, CL_DEVICE_GLOBAL_MEM_SIZE);
     info.max_allocation = device_value<cl_ulong>(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
     info.local_bytes = device_value<cl_ulong>(device, CL_DEVICE_LOCAL_MEM_SIZE);
+    info.allocates_late = true; // the standard lets drivers, and those of GPUs do
     info.has_double = device_value<cl_device_fp_config>(device, CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
     return info;
 }
@@ -103,6 +113,14 @@ struct OpenclKernel : Kernel::Impl {
     }
 };
 
+/// Copies of uploads in flight; more than that waits.
+constexpr std::size_t most_staged = std::size_t{64} << 20;
+
+Staging::Source host_memory() {
+    return {[](std::size_t bytes) { return new (std::nothrow) std::byte[bytes]; },
+            [](std::byte* memory) { delete[] memory; }};
+}
+
 class OpenclDevice : public Device {
 public:
     OpenclDevice(cl_device_id device, std::size_t index);
@@ -125,15 +143,25 @@ private:
     void do_set_clocks(Clocks clocks) override { active_ = clocks == Clocks::on ? timed_queue() : queue_; }
     std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) override;
 
-    void check(cl_int code, std::string_view call, std::string_view what) const;
+    /// `what` is text or a callable that makes it, called on failure only.
+    template<class What>
+    void check(cl_int code, std::string_view call, const What& what) {
+        if (code == CL_SUCCESS) return;
+        if constexpr (std::is_invocable_v<What>)
+            fail(code, call, what());
+        else
+            fail(code, call, what);
+    }
+    [[noreturn]] void fail(cl_int code, std::string_view call, std::string_view what);
+    /// Enqueues by `call`, which is handed the place for the command's event or null; the ticket.
+    template<class Call, class What>
+    std::uint64_t submit(std::string_view name, const Call& call, const What& what);
     cl_command_queue make_queue(cl_command_queue_properties properties);
     cl_command_queue timed_queue();
-    /// Where the API puts its event, or null when timestamps are off.
-    cl_event* event_slot();
-    std::uint64_t ticket() const { return clocks() == Clocks::on ? events_.size() : 0; }
     /// Builds once per text and options; entries of one file share the program.
     cl_program program(const KernelSource& source, const std::string& options);
     void set_arguments(cl_kernel kernel, std::span<const Argument> arguments, std::string_view entry);
+    bool settle();
 
     DeviceInfo info_;
     cl_device_id device_ = nullptr;
@@ -144,7 +172,7 @@ private:
     bool owned_ = true;
     std::map<std::string, cl_program> programs_;
     std::vector<cl_event> events_;
-    std::vector<std::vector<std::byte>> staged_; ///< copies of uploads in flight
+    Staging staged_{host_memory(), most_staged}; ///< copies of uploads in flight
 };
 
 OpenclDevice::OpenclDevice(cl_device_id device, std::size_t index)
@@ -167,6 +195,8 @@ OpenclDevice::OpenclDevice(cl_context context, cl_device_id device, cl_command_q
 }
 
 OpenclDevice::~OpenclDevice() {
+    // Commands in flight read what is staged; memory that may still be read is better lost than freed.
+    if (!settle()) staged_.abandon();
     for (auto* event : events_)
         if (event) clReleaseEvent(event);
     for (const auto& [key, made] : programs_) clReleaseProgram(made);
@@ -176,10 +206,30 @@ OpenclDevice::~OpenclDevice() {
     if (context_) clReleaseContext(context_);
 }
 
-void OpenclDevice::check(cl_int code, std::string_view call, std::string_view what) const {
-    if (code == CL_SUCCESS) return;
-    throw DeviceError(fmt::format("{} ({}): {} failed with {} while {}", info_.id, info_.name, call,
-                                  error_name(code), what));
+/// Waits until nothing is in flight; false when the driver cannot tell.
+bool OpenclDevice::settle() {
+    if (active_ == nullptr) return true;
+    if (clFinish(active_) != CL_SUCCESS) return false;
+    staged_.release();
+    return true;
+}
+
+void OpenclDevice::fail(cl_int code, std::string_view call, std::string_view what) {
+    // Whoever catches the error may free what commands in flight still read or write.
+    settle();
+    const auto text = fmt::format("{} ({}): {} failed with {} while {}", info_.id, info_.name, call,
+                                  error_name(code), what);
+    if (code == CL_MEM_OBJECT_ALLOCATION_FAILURE) throw OutOfMemory(text);
+    throw DeviceError(text);
+}
+
+template<class Call, class What>
+std::uint64_t OpenclDevice::submit(std::string_view name, const Call& call, const What& what) {
+    cl_event event = nullptr;
+    check(call(clocks() == Clocks::on ? &event : nullptr), name, what);
+    if (event == nullptr) return 0;
+    events_.push_back(event);
+    return events_.size();
 }
 
 cl_command_queue OpenclDevice::make_queue(cl_command_queue_properties properties) {
@@ -194,19 +244,20 @@ cl_command_queue OpenclDevice::timed_queue() {
     return timed_;
 }
 
-cl_event* OpenclDevice::event_slot() {
-    if (clocks() == Clocks::off) return nullptr;
-    events_.push_back(nullptr);
-    return &events_.back();
-}
-
 std::shared_ptr<Buffer::Impl> OpenclDevice::do_allocate(std::size_t bytes) {
     auto buffer = std::make_shared<OpenclBuffer>();
     cl_int code = CL_SUCCESS;
     buffer->memory = clCreateBuffer(context_, CL_MEM_READ_WRITE, bytes, nullptr, &code);
-    check(code, "clCreateBuffer",
-          fmt::format("allocating {} bytes of {} with {} in use", bytes, info_.global_bytes,
-                      bytes_allocated()));
+    const auto what = [&] {
+        return fmt::format("allocating {} bytes of {} with {} in use", bytes, info_.global_bytes,
+                           bytes_allocated());
+    };
+    try {
+        check(code, "clCreateBuffer", what);
+    } catch (const DeviceError& error) {
+        if (says_out_of_memory(code)) throw OutOfMemory(error.what());
+        throw;
+    }
     return buffer;
 }
 
@@ -219,39 +270,56 @@ std::shared_ptr<Buffer::Impl> OpenclDevice::do_adopt(void* native) {
 
 std::uint64_t OpenclDevice::do_upload(Buffer::Impl& to, std::span<const std::byte> from, std::size_t offset,
                                       bool blocking) {
-    const void* source = from.data();
-    if (!blocking) source = staged_.emplace_back(from.begin(), from.end()).data();
-    check(clEnqueueWriteBuffer(active_, static_cast<OpenclBuffer&>(to).memory, blocking ? CL_TRUE : CL_FALSE,
-                               offset, from.size(), source, 0, nullptr, event_slot()),
-          "clEnqueueWriteBuffer", fmt::format("uploading '{}'", to.label));
-    if (blocking) staged_.clear();
-    return ticket();
+    auto* copy = blocking ? nullptr : staged_.take(from.size());
+    if (copy != nullptr) std::memcpy(copy, from.data(), from.size());
+    const void* source = copy != nullptr ? copy : from.data();
+    const auto ticket = submit(
+        "clEnqueueWriteBuffer",
+        [&](cl_event* event) {
+            return clEnqueueWriteBuffer(active_, static_cast<OpenclBuffer&>(to).memory,
+                                        copy != nullptr ? CL_FALSE : CL_TRUE, offset, from.size(), source, 0,
+                                        nullptr, event);
+        },
+        [&] { return fmt::format("uploading '{}'", to.label); });
+    if (copy != nullptr) return ticket;
+    host_waited();
+    staged_.release(); // the queue is in order: what came before has been read as well
+    return ticket;
 }
 
 std::uint64_t OpenclDevice::do_download(const Buffer::Impl& from, std::span<std::byte> to,
                                         std::size_t offset) {
-    check(clEnqueueReadBuffer(active_, static_cast<const OpenclBuffer&>(from).memory, CL_TRUE, offset,
-                              to.size(), to.data(), 0, nullptr, event_slot()),
-          "clEnqueueReadBuffer", fmt::format("downloading '{}'", from.label));
-    staged_.clear();
-    return ticket();
+    const auto ticket = submit(
+        "clEnqueueReadBuffer",
+        [&](cl_event* event) {
+            return clEnqueueReadBuffer(active_, static_cast<const OpenclBuffer&>(from).memory, CL_TRUE,
+                                       offset, to.size(), to.data(), 0, nullptr, event);
+        },
+        [&] { return fmt::format("downloading '{}'", from.label); });
+    staged_.release();
+    return ticket;
 }
 
 std::uint64_t OpenclDevice::do_clear(Buffer::Impl& buffer, std::size_t bytes, std::size_t offset) {
     // Small clears are writes: Oclgrind 21.10 takes what clEnqueueFillBuffer fills for uninitialised.
     static const std::array<std::byte, 65536> zeros{};
-    auto* memory = static_cast<OpenclBuffer&>(buffer).memory;
-    const auto what = fmt::format("clearing '{}'", buffer.label);
-    if (bytes <= zeros.size()) {
-        check(clEnqueueWriteBuffer(active_, memory, CL_FALSE, offset, bytes, zeros.data(), 0, nullptr,
-                                   event_slot()),
-              "clEnqueueWriteBuffer", what);
-        return ticket();
-    }
     const cl_uchar zero = 0;
-    check(clEnqueueFillBuffer(active_, memory, &zero, 1, offset, bytes, 0, nullptr, event_slot()),
-          "clEnqueueFillBuffer", what);
-    return ticket();
+    auto* memory = static_cast<OpenclBuffer&>(buffer).memory;
+    const auto what = [&] { return fmt::format("clearing '{}'", buffer.label); };
+    if (bytes <= zeros.size())
+        return submit(
+            "clEnqueueWriteBuffer",
+            [&](cl_event* event) {
+                return clEnqueueWriteBuffer(active_, memory, CL_FALSE, offset, bytes, zeros.data(), 0,
+                                            nullptr, event);
+            },
+            what);
+    return submit(
+        "clEnqueueFillBuffer",
+        [&](cl_event* event) {
+            return clEnqueueFillBuffer(active_, memory, &zero, 1, offset, bytes, 0, nullptr, event);
+        },
+        what);
 }
 
 cl_program OpenclDevice::program(const KernelSource& source, const std::string& options) {
@@ -286,7 +354,7 @@ std::shared_ptr<Kernel::Impl> OpenclDevice::do_compile(const KernelSource& sourc
     cl_int code = CL_SUCCESS;
     auto* made = program(source, options);
     kernel->kernel = clCreateKernel(made, std::string(entry).c_str(), &code);
-    check(code, "clCreateKernel", fmt::format("looking for '{}' in {}", entry, source.name));
+    check(code, "clCreateKernel", [&] { return fmt::format("looking for '{}' in {}", entry, source.name); });
     cl_ulong local = 0;
     std::size_t group = 0;
     clGetKernelWorkGroupInfo(kernel->kernel, device_, CL_KERNEL_LOCAL_MEM_SIZE, sizeof(local), &local,
@@ -315,7 +383,7 @@ void OpenclDevice::set_arguments(cl_kernel kernel, std::span<const Argument> arg
             const auto& scalar = std::get<Argument::Scalar>(value);
             code = clSetKernelArg(kernel, i, scalar.size, scalar.bytes.data());
         }
-        check(code, "clSetKernelArg", fmt::format("setting argument {} of '{}'", i, entry));
+        check(code, "clSetKernelArg", [&] { return fmt::format("setting argument {} of '{}'", i, entry); });
     }
 }
 
@@ -324,15 +392,19 @@ std::uint64_t OpenclDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span
     set_arguments(handle, arguments, kernel.facts.entry);
     const std::size_t local = grid.group_size;
     const std::size_t global = grid.groups * local;
-    check(clEnqueueNDRangeKernel(active_, handle, 1, nullptr, &global, &local, 0, nullptr, event_slot()),
-          "clEnqueueNDRangeKernel",
-          fmt::format("launching '{}' with {} groups of {}", kernel.facts.entry, grid.groups, local));
-    return ticket();
+    return submit(
+        "clEnqueueNDRangeKernel",
+        [&](cl_event* event) {
+            return clEnqueueNDRangeKernel(active_, handle, 1, nullptr, &global, &local, 0, nullptr, event);
+        },
+        [&] {
+            return fmt::format("launching '{}' with {} groups of {}", kernel.facts.entry, grid.groups, local);
+        });
 }
 
 void OpenclDevice::do_finish() {
     check(clFinish(active_), "clFinish", "waiting");
-    staged_.clear();
+    staged_.release();
 }
 
 std::pair<std::int64_t, std::int64_t> OpenclDevice::do_interval(std::uint64_t ticket) {

@@ -60,6 +60,7 @@ TEST(Declarations, Attributes) {
     EXPECT_EQ(int{cuda::function_shared_bytes}, int{CU_FUNC_ATTRIBUTE_SHARED_SIZE_BYTES});
     EXPECT_EQ(int{cuda::function_registers}, int{CU_FUNC_ATTRIBUTE_NUM_REGS});
     EXPECT_EQ(0, int{CUDA_SUCCESS});
+    EXPECT_EQ(cuda::out_of_memory, int{CUDA_ERROR_OUT_OF_MEMORY});
     EXPECT_EQ(0, int{NVRTC_SUCCESS});
 }
 

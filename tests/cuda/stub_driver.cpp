@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A libcuda.so.1 without a GPU: memory is the host's, kernels do nothing. What goes wrong is chosen by
-// variables: STUB_INIT (code of cuInit), STUB_VERSION, STUB_MEMORY (bytes there are), STUB_FAULT (launches
-// fault).
+// A libcuda.so.1 without a GPU: memory is the host's, kernels do nothing. As with a driver, the current
+// context is the thread's, what needs one fails without, and a stream goes with its own only. What goes wrong
+// is chosen by variables: STUB_INIT (code of cuInit), STUB_VERSION, STUB_MEMORY (bytes there are), STUB_FAULT
+// (launches fault), STUB_LAUNCH (code of cuLaunchKernel).
 #include "backends/cuda/driver.h"
+#include "tests/cuda/stub_driver.h"
 
 #include <cstdlib>
 #include <cstring>
@@ -20,6 +22,25 @@ long number(const char* name, long otherwise) {
 bool launched = false;
 std::size_t in_use = 0;
 std::map<DevicePointer, std::size_t> sizes;
+
+constexpr Result invalid_context = 201;
+constexpr Result invalid_handle = 400;
+
+char primary; ///< stands for the device's primary context
+thread_local Context current = nullptr;
+std::map<Stream, Context> streams; ///< of each that was made, its context
+std::map<std::pair<Stream, Context>, unsigned long> calls;
+
+/// Of a call that needs a context.
+Result in_context() { return current != nullptr ? 0 : invalid_context; }
+
+/// Of a call on a stream.
+Result on(Stream stream) {
+    ++calls[{stream, current}];
+    if (current == nullptr) return invalid_context;
+    const auto found = streams.find(stream);
+    return stream == nullptr || (found != streams.end() && found->second == current) ? 0 : invalid_handle;
+}
 
 std::size_t memory() { return static_cast<std::size_t>(number("STUB_MEMORY", 1L << 32)); }
 
@@ -39,8 +60,11 @@ Result cuDriverGetVersion(int* version) {
     return 0;
 }
 Result cuGetErrorName(Result code, const char** name) {
-    static const std::map<Result, const char*> names{
-        {2, "CUDA_ERROR_OUT_OF_MEMORY"}, {100, "CUDA_ERROR_NO_DEVICE"}, {700, "CUDA_ERROR_ILLEGAL_ADDRESS"}};
+    static const std::map<Result, const char*> names{{out_of_memory, "CUDA_ERROR_OUT_OF_MEMORY"},
+                                                     {100, "CUDA_ERROR_NO_DEVICE"},
+                                                     {invalid_context, "CUDA_ERROR_INVALID_CONTEXT"},
+                                                     {invalid_handle, "CUDA_ERROR_INVALID_HANDLE"},
+                                                     {700, "CUDA_ERROR_ILLEGAL_ADDRESS"}};
     *name = names.contains(code) ? names.at(code) : nullptr;
     return *name != nullptr ? 0 : 1;
 }
@@ -77,26 +101,47 @@ Result cuDeviceTotalMem_v2(std::size_t* bytes, DeviceHandle) {
     *bytes = memory();
     return 0;
 }
-Result cuDevicePrimaryCtxRetain(Context* context, DeviceHandle) { return make(context); }
+Result cuDevicePrimaryCtxRetain(Context* context, DeviceHandle) {
+    *context = reinterpret_cast<Context>(&primary);
+    return 0;
+}
 Result cuDevicePrimaryCtxRelease_v2(DeviceHandle) { return 0; }
-Result cuCtxSetCurrent(Context) { return 0; }
+Result cuCtxCreate_v2(Context* context, unsigned, DeviceHandle) {
+    *context = current = reinterpret_cast<Context>(new char);
+    return 0;
+}
+Result cuCtxDestroy_v2(Context context) {
+    if (current == context) current = nullptr;
+    delete reinterpret_cast<char*>(context);
+    return 0;
+}
+Result cuCtxGetCurrent(Context* context) {
+    *context = current;
+    return 0;
+}
+Result cuCtxSetCurrent(Context context) {
+    current = context;
+    return 0;
+}
 Result cuCtxGetDevice(DeviceHandle* device) {
     *device = 0;
-    return 0;
+    return in_context();
 }
 Result cuMemGetInfo_v2(std::size_t* free, std::size_t* total) {
     *total = memory();
     *free = *total - in_use;
-    return 0;
+    return in_context();
 }
 Result cuMemAlloc_v2(DevicePointer* pointer, std::size_t bytes) {
-    if (in_use + bytes > memory()) return 2;
+    if (current == nullptr) return invalid_context;
+    if (in_use + bytes > memory()) return out_of_memory;
     *pointer = reinterpret_cast<DevicePointer>(std::calloc(1, bytes));
     sizes[*pointer] = bytes;
     in_use += bytes;
     return 0;
 }
 Result cuMemFree_v2(DevicePointer pointer) {
+    if (current == nullptr) return invalid_context;
     in_use -= sizes.at(pointer);
     sizes.erase(pointer);
     std::free(reinterpret_cast<void*>(pointer));
@@ -104,46 +149,71 @@ Result cuMemFree_v2(DevicePointer pointer) {
 }
 Result cuMemHostAlloc(void** memory, std::size_t bytes, unsigned) {
     *memory = std::malloc(bytes);
-    return 0;
+    return in_context();
 }
 Result cuMemFreeHost(void* memory) {
     std::free(memory);
-    return 0;
+    return in_context();
 }
-Result cuMemcpyHtoDAsync_v2(DevicePointer to, const void* from, std::size_t bytes, Stream) {
+Result cuMemcpyHtoDAsync_v2(DevicePointer to, const void* from, std::size_t bytes, Stream stream) {
     std::memcpy(reinterpret_cast<void*>(to), from, bytes);
-    return 0;
+    return on(stream);
 }
-Result cuMemcpyDtoHAsync_v2(void* to, DevicePointer from, std::size_t bytes, Stream) {
+Result cuMemcpyDtoHAsync_v2(void* to, DevicePointer from, std::size_t bytes, Stream stream) {
     std::memcpy(to, reinterpret_cast<const void*>(from), bytes);
-    return 0;
+    return on(stream);
 }
-Result cuMemsetD8Async(DevicePointer to, unsigned char value, std::size_t bytes, Stream) {
+Result cuMemsetD8Async(DevicePointer to, unsigned char value, std::size_t bytes, Stream stream) {
     std::memset(reinterpret_cast<void*>(to), value, bytes);
-    return 0;
+    return on(stream);
 }
-Result cuStreamCreate(Stream* stream, unsigned) { return make(stream); }
-Result cuStreamDestroy_v2(Stream) { return 0; }
-Result cuStreamSynchronize(Stream) { return launched && number("STUB_FAULT", 0) != 0 ? 700 : 0; }
-Result cuEventCreate(EventHandle* event, unsigned) { return make(event); }
-Result cuEventDestroy_v2(EventHandle) { return 0; }
-Result cuEventRecord(EventHandle, Stream) { return 0; }
+Result cuStreamCreate(Stream* stream, unsigned) {
+    *stream = reinterpret_cast<Stream>(new char);
+    streams[*stream] = current;
+    return in_context();
+}
+Result cuStreamDestroy_v2(Stream stream) {
+    streams.erase(stream);
+    delete reinterpret_cast<char*>(stream);
+    return in_context();
+}
+Result cuStreamSynchronize(Stream stream) {
+    return launched && number("STUB_FAULT", 0) != 0 ? 700 : on(stream);
+}
+Result cuEventCreate(EventHandle* event, unsigned) {
+    return current != nullptr ? make(event) : invalid_context;
+}
+Result cuEventDestroy_v2(EventHandle) { return in_context(); }
+Result cuEventRecord(EventHandle, Stream stream) { return on(stream); }
 Result cuEventElapsedTime(float* ms, EventHandle, EventHandle) {
     *ms = 0.001f;
-    return 0;
+    return in_context();
 }
-Result cuModuleLoadData(Module* module, const void*) { return make(module); }
-Result cuModuleUnload(Module) { return 0; }
+Result cuModuleLoadData(Module* module, const void*) {
+    return current != nullptr ? make(module) : invalid_context;
+}
+Result cuModuleUnload(Module) { return in_context(); }
 Result cuModuleGetFunction(Function* function, Module, const char*) { return make(function); }
-Result cuFuncGetAttribute(int* value, int, Function) {
-    *value = 1;
+Result cuFuncGetAttribute(int* value, int what, Function) {
+    *value = what == function_max_threads ? 1024 : 1;
     return 0;
 }
 #ifndef STUB_OLD
-Result cuLaunchKernel(Function, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, Stream,
-                      void**, void**) {
+Result cuLaunchKernel(Function, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned,
+                      Stream stream, void**, void**) {
     launched = true;
-    return 0;
+    const auto code = on(stream);
+    return code != 0 ? code : static_cast<Result>(number("STUB_LAUNCH", 0));
 }
 #endif
+
+unsigned long stub_calls(Stream stream, Context context) {
+    const auto found = calls.find({stream, context});
+    return found == calls.end() ? 0 : found->second;
+}
+unsigned long stub_all_calls() {
+    unsigned long sum = 0;
+    for (const auto& [where, count] : calls) sum += count;
+    return sum;
+}
 }

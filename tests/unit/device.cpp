@@ -1,31 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The Device contract, on every device there is; PoCL has to be there.
-#include "algorithms/sources.h"
-#include "backends/registry.h"
+#include "tests/unit/device_support.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <numeric>
 
 namespace tandem {
 namespace {
 
-std::vector<Device*> devices() {
-    static const auto backends = discover();
-    std::vector<Device*> all;
-    for (const auto& backend : backends)
-        for (const auto& device : backend.devices) all.push_back(device.get());
-    return all;
-}
-
-std::string message_of(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const DeviceError& error) {
-        return error.what();
-    }
-    return "no error";
-}
+using test::devices;
+using test::message_of;
 
 TEST(Registry, HasHostAndOpencl) {
     const auto backends = discover();
@@ -91,6 +75,7 @@ TEST(Device, TracesEveryCommandOnceUnderItsStage) {
 TEST(Device, SaysWhatDoesNotFit) {
     for (auto* device : devices()) {
         const auto too_much = device->info().max_allocation + 1;
+        EXPECT_THROW(device->allocate(too_much, "everything"), OutOfMemory);
         EXPECT_THAT(message_of([&] { device->allocate(too_much, "everything"); }),
                     testing::AllOf(testing::HasSubstr(std::to_string(too_much)),
                                    testing::HasSubstr("everything"),

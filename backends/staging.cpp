@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "backends/cuda/staging.h"
+#include "backends/staging.h"
 
 #include <algorithm>
 
-namespace tandem::cuda {
+namespace tandem {
 
 namespace {
 
@@ -12,11 +12,8 @@ constexpr std::size_t alignment = 256;
 
 } // namespace
 
-Staging::~Staging() {
-    for (const auto& block : blocks_) driver_.cuMemFreeHost(block.memory);
-}
-
 std::byte* Staging::take(std::size_t bytes) {
+    if (bytes > limit_) return nullptr;
     const auto rounded = (bytes + alignment - 1) / alignment * alignment;
     for (auto& block : blocks_) {
         if (block.size - block.used < rounded) continue;
@@ -24,15 +21,23 @@ std::byte* Staging::take(std::size_t bytes) {
         block.used += rounded;
         return memory;
     }
-    void* memory = nullptr;
     const auto size = std::max(rounded, block_bytes);
-    if (driver_.cuMemHostAlloc(&memory, size, 0) != 0) return nullptr;
-    blocks_.push_back({static_cast<std::byte*>(memory), size, rounded});
-    return blocks_.back().memory;
+    if (size > limit_ - held_) return nullptr;
+    auto* memory = source_.allocate(size);
+    if (memory == nullptr) return nullptr;
+    blocks_.push_back({memory, size, rounded});
+    held_ += size;
+    return memory;
 }
 
 void Staging::release() {
     for (auto& block : blocks_) block.used = 0;
 }
 
-} // namespace tandem::cuda
+void Staging::drop() {
+    for (const auto& block : blocks_) source_.free(block.memory);
+    blocks_.clear();
+    held_ = 0;
+}
+
+} // namespace tandem

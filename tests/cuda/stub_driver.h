@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// What the stub of the driver tells a test beside what a driver does; looked up by name, since only a stub
+// has it.
+#pragma once
+
+struct CUctx_st;
+struct CUstream_st;
+
+extern "C" {
+/// The calls so far that name this stream, made while this context was current.
+unsigned long stub_calls(CUstream_st* stream, CUctx_st* context);
+/// The calls so far that name any stream.
+unsigned long stub_all_calls();
+}

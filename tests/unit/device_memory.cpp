@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// Errors of memory and of sizes: which, and what they say.
+#include "tests/unit/device_support.h"
+
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+
+namespace tandem {
+namespace {
+
+using test::devices;
+using test::message_of;
+using testing::HasSubstr;
+
+TEST(DeviceMemory, ALimitIsKeptAndNamed) {
+    for (auto* device : devices()) {
+        ASSERT_EQ(device->memory_limit(), Device::no_memory_limit);
+        const auto held = device->allocate(4096, "held");
+        const auto in_use = device->bytes_allocated();
+        const auto limit = in_use + 1000;
+        device->set_memory_limit(limit);
+        EXPECT_EQ(device->memory_limit(), limit);
+        EXPECT_THROW(device->allocate(1001, "too much"), OutOfMemory) << device->info().id;
+        const auto message = message_of([&] { device->allocate(1001, "too much"); });
+        EXPECT_THAT(message, testing::AllOf(HasSubstr("'too much' needs 1001 bytes"),
+                                            HasSubstr(std::to_string(in_use) + " are in use"),
+                                            HasSubstr("the limit is " + std::to_string(limit))));
+        EXPECT_EQ(message.find('\n'), std::string::npos);
+        EXPECT_EQ(device->allocate(1000, "all of it").bytes(), 1000u);
+        device->set_memory_limit(10); // below what lives: nothing more, and what is there works
+        EXPECT_THROW(device->allocate(1, "anything"), OutOfMemory);
+        device->clear(held, 4096);
+        device->set_memory_limit(Device::no_memory_limit);
+        EXPECT_EQ(device->allocate(100000, "more").bytes(), 100000u);
+        EXPECT_EQ(device->bytes_allocated(), in_use);
+    }
+}
+
+TEST(DeviceMemory, NoMoreIsPromisedThanThereIs) {
+    for (auto* device : devices()) {
+        const auto& info = device->info();
+        if (!info.allocates_late) continue;
+        std::vector<Buffer> held;
+        const auto part = static_cast<std::size_t>(std::min(info.max_allocation, info.global_bytes / 4));
+        const auto message = message_of([&] {
+            while (device->bytes_allocated() <= info.global_bytes)
+                held.push_back(device->allocate(part, "part"));
+        });
+        EXPECT_THAT(message,
+                    testing::AllOf(HasSubstr("'part' needs " + std::to_string(part)),
+                                   HasSubstr(std::to_string(device->bytes_allocated()) + " are in use"),
+                                   HasSubstr("has " + std::to_string(info.global_bytes))));
+        EXPECT_THROW(device->allocate(part, "part"), OutOfMemory) << info.id;
+    }
+}
+
+#if !defined(__SANITIZE_ADDRESS__)
+/// 0 where the host's failing allocation is an OutOfMemory.
+int allocate_in_a_small_process() {
+    const auto device = std::move(discover().front().devices.front());
+    const rlimit limit{std::size_t{1} << 30, std::size_t{1} << 30};
+    setrlimit(RLIMIT_AS, &limit);
+    try {
+        device->allocate(std::size_t{1} << 30, "what does not fit");
+    } catch (const OutOfMemory& error) {
+        return std::string_view(error.what()).find("1073741824 bytes asked for") != std::string_view::npos
+                   ? 0
+                   : 2;
+    } catch (const std::exception&) {
+        return 3;
+    }
+    return 4;
+}
+
+TEST(DeviceMemoryDeathTest, TheHostsIsAnErrorOfMemoryToo) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    EXPECT_EXIT(std::_Exit(allocate_in_a_small_process()), testing::ExitedWithCode(0), "");
+}
+#endif
+
+TEST(DeviceGroups, ThatAreTooLargeAreRefused) {
+    for (auto* device : devices()) {
+        const auto kernel = test::compile(*device, "do_nothing");
+        const auto words = device->allocate(64, "words");
+        const std::array<Argument, 1> arguments{words};
+        const auto told = kernel.facts().max_group_size;
+        const auto most = told >= 0 ? told : std::int64_t{device->info().max_group_size};
+        const auto wanted = static_cast<std::uint32_t>(most + 1);
+        const auto message = message_of([&] { device->launch(kernel, {1, wanted}, arguments); });
+        EXPECT_THAT(message, testing::AllOf(HasSubstr(device->info().id), HasSubstr("'do_nothing'"),
+                                            HasSubstr("groups of " + std::to_string(wanted)),
+                                            HasSubstr(std::to_string(most) + " is the most")));
+        EXPECT_EQ(message.find('\n'), std::string::npos);
+        EXPECT_NE(message_of([&] { device->launch(kernel, {1, 0}, arguments); }), "no error");
+        device->launch(kernel, {1, 1}, arguments);
+        device->finish();
+    }
+}
+
+} // namespace
+} // namespace tandem

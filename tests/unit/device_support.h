@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// What tests of the Device contract share.
+#pragma once
+
+#include "algorithms/sources.h"
+#include "backends/registry.h"
+
+#include <gtest/gtest.h>
+
+namespace tandem::test {
+
+/// Every device there is.
+inline std::vector<Device*> devices() {
+    static const auto backends = discover();
+    std::vector<Device*> all;
+    for (const auto& backend : backends)
+        for (const auto& device : backend.devices) all.push_back(device.get());
+    return all;
+}
+
+/// What a DeviceError of `call` says.
+template<class Call>
+std::string message_of(const Call& call) {
+    try {
+        call();
+    } catch (const DeviceError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+/// The kernel of that name, in whichever file it is, for groups of one work-item and the defaults otherwise.
+inline Kernel compile(Device& device, const std::string& entry, Defines defines = {}) {
+    defines.merge(Defines{{"K", "8"}, {"AXES", "0"}, {"PRECISION", "32"}, {"GROUP_SIZE", "1"}});
+    for (const auto& source : kernel_sources())
+        if (source.text.find("KERNEL void " + entry + "(") != std::string_view::npos)
+            return device.compile(source, entry, defines);
+    throw DeviceError("no kernel " + entry);
+}
+
+template<class T>
+std::vector<T> downloaded(Device& device, const Buffer& buffer, std::size_t count) {
+    std::vector<T> values(count);
+    device.download(buffer, std::as_writable_bytes(std::span(values)));
+    return values;
+}
+
+} // namespace tandem::test
