@@ -108,7 +108,7 @@ typedef unsigned long ulong; // 64 bits where CUDA runs on Linux, as glibc has i
 #define GLOBAL
 #define LOCAL
 #define LOCAL_ARRAY(type, name, count)                                                                       \
-    static std::vector<type> name##_storage;                                                                 \
+    static thread_local std::vector<type> name##_storage;                                                    \
     name##_storage.resize(count);                                                                            \
     type* const name = name##_storage.data()
 #define DEVICE static inline

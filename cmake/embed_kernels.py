@@ -62,9 +62,9 @@ def host_variant(kernels, geometry, geometries, identifier):
         out += [f"namespace {scope} {{", "#undef TANDEM_PORTABLE_H"]
         out += [f"#define {key} {value}" for key, value in fixed.items()] + ["#define GROUP_SIZE 1"]
         for key in names:
-            out += [f"static long runtime_{key} = {defaults[key]};", f"#define {key} runtime_{key}"]
+            out += [f"static constinit thread_local long runtime_{key} = {defaults[key]};", f"#define {key} runtime_{key}"]
         out += [text, f'#line 1 "{identifier}"', "static const tandem::host::RuntimeDefine runtime[] = {"]
-        out += [f'{{"{key}", &runtime_{key}, {defaults[key]}}},' for key in names] + ["{nullptr, nullptr, 0}};", "}"]
+        out += [f'{{"{key}", [](long value) {{ runtime_{key} = value; }}, {defaults[key]}}},' for key in names] + ["{nullptr, nullptr, 0}};", "}"]
         macros = set(re.findall(r"^#\s*define (\w+)", text, re.M)) | set(fixed) | set(names) | {"GROUP_SIZE"}
         out += [f"#undef {macro}" for macro in sorted(macros)]
         for entry in ENTRY.findall(text):

@@ -17,9 +17,10 @@ using ulong = unsigned long;
 
 namespace tandem::host {
 
-/// The work-group that runs; groups run one after the other on the calling thread.
-inline uint group_id = 0;
-inline uint group_count = 1;
+/// The work-group that runs; groups run one after the other on the calling thread, and each thread has its
+/// own.
+inline constinit thread_local uint group_id = 0;
+inline constinit thread_local uint group_count = 1;
 
 inline uint fetch_add(uint* pointer, uint value) { return std::exchange(*pointer, *pointer + value); }
 
@@ -52,8 +53,8 @@ struct HostBuffer : Buffer::Impl {
 /// A define that the host reads at run time instead of compiling a variant of it.
 struct RuntimeDefine {
     const char* name;
-    long* value;
-    long initial; ///< the kernel's default
+    void (*set)(long value); ///< for kernels that the calling thread runs from now on
+    long initial;            ///< the kernel's default
 };
 
 /// One kernel of one variant. `defines` are the compiled ones, "AXES=0;K=18;PRECISION=32".

@@ -16,7 +16,7 @@ namespace {
 
 struct HostKernelImpl : Kernel::Impl {
     const HostKernel* row = nullptr;
-    std::vector<std::pair<long*, long>> runtime; ///< values set before every launch
+    std::vector<std::pair<void (*)(long), long>> runtime; ///< setters and values, applied before every launch
 };
 
 std::uint64_t physical_memory() {
@@ -86,7 +86,7 @@ private:
         if (arguments.size() != impl.row->argument_count)
             throw DeviceError(fmt::format("host: kernel '{}' takes {} arguments, got {}", impl.row->entry,
                                           impl.row->argument_count, arguments.size()));
-        for (const auto& [variable, value] : impl.runtime) *variable = value;
+        for (const auto& [set, value] : impl.runtime) set(value);
         return timed([&] {
             group_count = static_cast<uint>(grid.groups);
             for (group_id = 0; group_id < group_count; ++group_id) impl.row->run(arguments);
@@ -157,7 +157,7 @@ std::shared_ptr<Kernel::Impl> HostDevice::do_compile(const KernelSource& source,
                         entry, source.name, fixed));
     auto impl = std::make_shared<HostKernelImpl>();
     impl->row = row;
-    for (const auto& define : row->runtime) impl->runtime.emplace_back(define.value, define.initial);
+    for (const auto& define : row->runtime) impl->runtime.emplace_back(define.set, define.initial);
     for (const auto& [name, value] : rest) {
         if (name == "GROUP_SIZE") {
             if (value != "1")
