@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// The CUDA adaptor on the stub of the driver: whose context is current, what a launch costs, which errors.
+#include "backends/cuda/cuda_device.h"
+#include "tests/cuda/allocations.h"
+#include "tests/cuda/stub_driver.h"
+#include "tests/unit/device_support.h"
+
+#include <cstdlib>
+#include <dlfcn.h>
+#include <gmock/gmock.h>
+
+namespace tandem {
+namespace {
+
+using Context = CUctx_st*;
+
+template<class Function>
+Function* entry_of_stub(const char* name) {
+    static auto* const library = dlopen("libcuda.so.1", RTLD_NOW);
+    return reinterpret_cast<Function*>(dlsym(library, name));
+}
+
+/// An entry point of the driver, as an application has it.
+template<class... Arguments>
+auto entry(const char* name) {
+    return entry_of_stub<int(Arguments...)>(name);
+}
+
+Context current() {
+    Context context = nullptr;
+    entry<Context*>("cuCtxGetCurrent")(&context);
+    return context;
+}
+
+void make_current(Context context) { entry<Context>("cuCtxSetCurrent")(context); }
+
+class CudaDevice : public testing::Test {
+protected:
+    CudaDevice() {
+        auto found = cuda::discover();
+        if (!found.devices.empty()) device = std::move(found.devices.front());
+        entry<Context*, unsigned, int>("cuCtxCreate_v2")(&other, 0, 0);
+        make_current(nullptr);
+    }
+    void SetUp() override {
+        ASSERT_NE(device, nullptr) << "LD_LIBRARY_PATH and TANDEM_NVRTC name the stubs";
+        ASSERT_EQ(device->info().name, "Stub GPU");
+    }
+    ~CudaDevice() override {
+        device.reset();
+        entry<Context>("cuCtxDestroy_v2")(other);
+    }
+
+    std::unique_ptr<Device> device;
+    Context other = nullptr; ///< the application's
+};
+
+/// Every operation; `after` is called behind each.
+template<class After>
+void every_operation(Device& device, const After& after) {
+    const auto done = [&](const char* what, auto operation) {
+        operation();
+        after(what);
+    };
+    Buffer words;
+    Kernel kernel;
+    std::vector<std::uint32_t> values(16, 1);
+    done("allocate", [&] { words = device.allocate(64, "words"); });
+    done("upload", [&] { device.upload(words, bytes_of(values)); });
+    done("blocking upload", [&] { device.upload(words, bytes_of(values), 0, true); });
+    done("clear", [&] { device.clear(words, 32); });
+    done("download", [&] { device.download(words, std::as_writable_bytes(std::span(values))); });
+    done("compile", [&] { kernel = test::compile(device, "do_nothing"); });
+    const std::array<Argument, 1> arguments{words};
+    done("launch", [&] { device.launch(kernel, {2, 1}, arguments); });
+    done("finish", [&] { device.finish(); });
+    done("set_clocks", [&] { device.set_clocks(Clocks::on); });
+    done("timed launch", [&] { device.launch(kernel, {2, 1}, arguments); });
+    done("finish with times", [&] { EXPECT_EQ(device.finish().events.at(0).device_ns, 1000); });
+    done("set_clocks off", [&] { device.set_clocks(Clocks::off); });
+    done("free", [&] { words = {}; });
+}
+
+TEST_F(CudaDevice, LeavesTheCurrentContextAlone) {
+    for (auto* before : {Context{}, other}) {
+        make_current(before);
+        every_operation(*device, [&](const char* what) { EXPECT_EQ(current(), before) << what; });
+        { const auto found = cuda::discover(); }
+        EXPECT_EQ(current(), before) << "opened and closed";
+    }
+    make_current(other);
+    device.reset();
+    EXPECT_EQ(current(), other);
+}
+
+TEST_F(CudaDevice, AdoptedRunsOnTheGivenStreamOfTheGivenContext) {
+    CUstream_st* stream = nullptr;
+    make_current(other);
+    entry<CUstream_st**, unsigned>("cuStreamCreate")(&stream, 0);
+    const auto there = entry_of_stub<unsigned long(CUstream_st*, Context)>("stub_calls");
+    const auto all = entry_of_stub<unsigned long()>("stub_all_calls");
+    const auto elsewhere = all() - there(stream, other);
+    for (auto* before : {Context{}, other}) {
+        make_current(before);
+        auto adopted = cuda::adopt(other, stream);
+        EXPECT_EQ(current(), before);
+        every_operation(*adopted, [&](const char* what) { EXPECT_EQ(current(), before) << what; });
+        adopted.reset();
+        EXPECT_EQ(current(), before);
+    }
+    EXPECT_GT(there(stream, other), 20u);
+    EXPECT_EQ(all() - there(stream, other), elsewhere);
+}
+
+TEST_F(CudaDevice, AContextThatIsNoneCannotBeAdopted) {
+    EXPECT_THAT(test::message_of([] { cuda::adopt(nullptr, nullptr); }),
+                testing::HasSubstr("the context cannot be adopted: CUDA_ERROR_INVALID_CONTEXT"));
+}
+
+TEST_F(CudaDevice, FramesTakeNothingFromTheHeap) {
+    const auto words = device->allocate(4096, "a buffer with a label that is long");
+    const auto kernel = test::compile(*device, "do_nothing");
+    const std::array<Argument, 3> arguments{words, 1u, 2.0};
+    std::vector<std::uint32_t> values(1024, 1);
+    const auto frame = [&] {
+        device->upload(words, bytes_of(values));
+        { const HostWork work(*device, Stage::broad, "work with a label that is long"); }
+        device->launch(kernel, {2, 1}, arguments);
+        device->clear(words, 64);
+        device->download(words, std::as_writable_bytes(std::span(values)));
+        device->finish();
+    };
+    frame();
+    const auto before = allocations();
+    for (int i = 0; i < 1000; ++i) frame();
+    EXPECT_EQ(allocations(), before);
+}
+
+TEST_F(CudaDevice, ArgumentsHaveALimit) {
+    const auto words = device->allocate(64, "words");
+    const auto kernel = test::compile(*device, "do_nothing");
+    const std::vector<Argument> arguments(33, Argument(words));
+    EXPECT_THAT(test::message_of([&] {
+                    device->launch(kernel, {1, 1}, arguments);
+                }),
+                testing::HasSubstr("'do_nothing' with 33 arguments; a launch takes at most 32"));
+    device->launch(kernel, {1, 1}, std::span(arguments).first(32));
+}
+
+TEST_F(CudaDevice, ErrorsOfMemoryAreTold) {
+    const auto words = device->allocate(64, "words");
+    const auto kernel = test::compile(*device, "do_nothing");
+    const std::array<Argument, 1> arguments{words};
+    device->set_clocks(Clocks::on);
+    device->launch(kernel, {1, 1}, arguments);
+    setenv("STUB_MEMORY", "1000", 1);
+    EXPECT_THROW(device->allocate(2000, "more"), OutOfMemory);
+    setenv("STUB_LAUNCH", "2", 1);
+    EXPECT_THROW(device->launch(kernel, {1, 1}, arguments), OutOfMemory);
+    setenv("STUB_LAUNCH", "700", 1);
+    try {
+        device->launch(kernel, {1, 1}, arguments);
+        ADD_FAILURE();
+    } catch (const OutOfMemory&) {
+        ADD_FAILURE();
+    } catch (const DeviceError&) {}
+    unsetenv("STUB_MEMORY");
+    unsetenv("STUB_LAUNCH");
+    device->launch(kernel, {1, 1}, arguments);
+    const auto trace = device->finish();
+    ASSERT_EQ(trace.events.size(), 3u); // two launches and the wait
+    EXPECT_EQ(trace.events[1].ticket, 2u);
+    EXPECT_EQ(trace.events[1].device_ns, 1000);
+    device->set_clocks(Clocks::off);
+}
+
+} // namespace
+} // namespace tandem

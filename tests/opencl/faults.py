@@ -1,0 +1,45 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""faults.py PROGRAM SHIM: every OpenCL call that can fail does, one a run, with work in flight."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+if len(sys.argv) != 3:
+    sys.exit(__doc__)
+PROGRAM, SHIM = (pathlib.Path(a).resolve() for a in sys.argv[1:])
+
+
+def run(folder, **variables):
+    """Status and lines on standard error of a frame whose contacts OpenCL finds."""
+    arguments = ("export", "pile:bodies=2,frames=1", "--frames", "0", "--vtu", folder, "--contacts", "--device", "opencl:0")
+    environment = {**os.environ, "LD_PRELOAD": str(SHIM), **{k: str(v) for k, v in variables.items()}}
+    done = subprocess.run([str(PROGRAM), *arguments], capture_output=True, text=True, env=environment, timeout=100)
+    return done.returncode, done.stderr.splitlines()
+
+
+class Faults(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def test_every_call(self):
+        count = pathlib.Path(self.folder) / "count"
+        self.assertEqual(run(self.folder, SHIM_COUNT=count), (0, []))
+        calls = int(count.read_text())
+        self.assertGreater(calls, 40)
+        for call in range(1, calls):
+            with self.subTest(call=call):
+                status, errors = run(self.folder, SHIM_CALL=call)
+                self.assertEqual((status, len(errors)), (3, 1), errors)
+                self.assertRegex(errors[0], "^tandem: opencl:0.*(failed with code -5, out of resources|does not compile)")
+        # The last is the wait of the device's end: the work is done, and what may be read still is not freed.
+        self.assertEqual(run(self.folder, SHIM_CALL=calls), (0, []))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)
