@@ -3,10 +3,13 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
+# Strangers write <tandem/backends/device.h>; the headers name each other from the tree's root.
+target_include_directories(tandem INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 install(TARGETS tandem EXPORT tandem-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS tandem-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 set(public_headers
   backends/device.h backends/trace.h backends/registry.h backends/host/host_device.h backends/opencl/opencl_device.h
+  backends/cuda/cuda_device.h
   algorithms/traversal.h algorithms/settings.h algorithms/kdop/device_scene.h algorithms/kdop/emptied.h
   algorithms/kdop/kdop_settings.h algorithms/kdop/strips.h
   algorithms/kdop/tree.h algorithms/kdop/range.h algorithms/broad/broad.h scenes/scene.h scenes/dynamics.h

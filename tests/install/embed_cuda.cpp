@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// A program that owns a CUDA context and stream, by the driver's API, and has tandem find candidate pairs in
+// them: on its stream, after its own commands, beside its own memory, and with the thread's current context
+// left as it was. Prints how many pairs there are. Built without a toolkit: it finds the driver's few entry
+// points itself. On the stub of the driver, which runs no kernels, it looks at where the calls arrived
+// instead of the count.
+#include "find_pairs.h"
+
+#include <tandem/backends/cuda/cuda_device.h>
+
+#include <cstdio>
+#include <dlfcn.h>
+#include <vector>
+
+namespace {
+
+using Handle = void*; ///< CUcontext, CUstream
+using Pointer = unsigned long long;
+
+constexpr std::size_t bytes = std::size_t{1} << 20;
+
+void* library() {
+    static auto* const opened = dlopen("libcuda.so.1", RTLD_NOW);
+    return opened;
+}
+
+template<class Function>
+Function* entry(const char* name) {
+    return reinterpret_cast<Function*>(dlsym(library(), name));
+}
+
+template<class... Arguments>
+bool call(const char* name, Arguments... arguments) {
+    auto* const function = entry<int(Arguments...)>(name);
+    const int code = function != nullptr ? function(arguments...) : -1;
+    if (code != 0) std::fprintf(stderr, "embed_cuda: %s failed with %d\n", name, code);
+    return code == 0;
+}
+
+bool check(bool good, const char* what) {
+    if (!good) std::fprintf(stderr, "embed_cuda: %s\n", what);
+    return good;
+}
+
+bool is_current(Handle context) {
+    Handle current = nullptr;
+    return call("cuCtxGetCurrent", &current) && current == context;
+}
+
+/// What tandem reads of the application's memory right after the application's own command.
+bool follows(tandem::Device& device, Handle context, Handle stream) {
+    Handle before = nullptr;
+    Pointer memory = 0;
+    bool good = call("cuCtxGetCurrent", &before) && call("cuCtxSetCurrent", context)
+                && call("cuMemAlloc_v2", &memory, bytes)
+                && call("cuMemsetD8Async", memory, static_cast<unsigned char>(0x5a), bytes, stream)
+                && call("cuCtxSetCurrent", before);
+    if (!good) return false;
+    std::vector<std::byte> back(bytes);
+    device.download(device.adopt(reinterpret_cast<void*>(memory), bytes, "the application's"), back);
+    for (const auto byte : back) good &= byte == std::byte{0x5a};
+    return good & call("cuCtxSetCurrent", context) & call("cuMemFree_v2", memory)
+           & call("cuCtxSetCurrent", before);
+}
+
+/// The whole of it while `current` is the thread's current context, or none is.
+bool run(Handle context, Handle stream, Handle current) {
+    if (!call("cuCtxSetCurrent", current)) return false;
+    auto device = tandem::cuda::adopt(context, stream);
+    bool good = check(is_current(current), "adopt() changed the current context");
+    good &= check(follows(*device, context, stream), "tandem does not follow the application's commands");
+    const auto count = candidate_pairs(*device);
+    good &= check(is_current(current), "a session changed the current context");
+    const bool stub = entry<void()>("stub_all_calls") != nullptr;
+    good &= check(count > 0 || stub, "no pairs");
+    std::printf("%llu candidate pairs%s\n", static_cast<unsigned long long>(count),
+                stub ? " (no kernels ran)" : "");
+    good &= check(device->bytes_allocated() == 0, "the session left memory behind");
+    device.reset();
+    return good & check(is_current(current), "the device's end changed the current context");
+}
+
+/// On the stub: whether everything arrived on the application's stream with its context current.
+bool arrived(Handle context, Handle stream) {
+    auto* const all = entry<unsigned long()>("stub_all_calls");
+    if (all == nullptr) return true;
+    const auto here = entry<unsigned long(Handle, Handle)>("stub_calls")(stream, context);
+    std::printf("%lu calls on a stream, %lu of them on the application's\n", all(), here);
+    return here > 50 && here == all();
+}
+
+} // namespace
+
+int main() {
+    Handle context = nullptr;
+    Handle other = nullptr;
+    Handle stream = nullptr;
+    if (!check(library() != nullptr, "no driver (looked for libcuda.so.1)")) return 77;
+    if (!call("cuInit", 0u) || !call("cuCtxCreate_v2", &other, 0u, 0)
+        || !call("cuCtxCreate_v2", &context, 0u, 0) || !call("cuStreamCreate", &stream, 1u))
+        return 1;
+    bool good = true;
+    for (auto* current : {context, other, Handle{}}) good &= run(context, stream, current);
+    good &= check(arrived(context, stream), "calls went elsewhere than to the application's stream");
+    // What is the application's outlives the device that borrowed it.
+    good &= call("cuCtxSetCurrent", context) && call("cuStreamSynchronize", stream);
+    good &= call("cuStreamDestroy_v2", stream) && call("cuCtxDestroy_v2", context)
+            && call("cuCtxDestroy_v2", other);
+    return good ? 0 : 1;
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// A program that owns an OpenCL context and queue, and has tandem find candidate pairs in them: on its queue,
+// after its own commands, and beside its own memory. Prints how many pairs there are.
+#define CL_TARGET_OPENCL_VERSION 120
+#include "find_pairs.h"
+
+#include <tandem/backends/opencl/opencl_device.h>
+
+#include <CL/cl.h>
+#include <cstdio>
+#include <vector>
+
+namespace {
+
+constexpr std::size_t bytes = std::size_t{1} << 20;
+
+bool check(bool good, const char* what) {
+    if (!good) std::fprintf(stderr, "embed_opencl: %s\n", what);
+    return good;
+}
+
+/// What tandem reads of the application's memory right after the application's own command.
+bool follows(tandem::Device& device, cl_command_queue queue, cl_mem memory) {
+    const cl_uchar value = 0x5a;
+    if (clEnqueueFillBuffer(queue, memory, &value, 1, 0, bytes, 0, nullptr, nullptr) != CL_SUCCESS)
+        return false;
+    const auto adopted = device.adopt(memory, bytes, "the application's");
+    std::vector<std::byte> back(bytes);
+    device.download(adopted, back);
+    for (const auto byte : back)
+        if (byte != std::byte{value}) return false;
+    return true;
+}
+
+bool run(cl_context context, cl_device_id id, cl_command_queue queue, cl_mem memory) {
+    const auto device = tandem::opencl::adopt(context, id, queue);
+    bool good = check(follows(*device, queue, memory), "tandem does not follow the application's commands");
+    const auto count = candidate_pairs(*device);
+    std::printf("%llu candidate pairs\n", static_cast<unsigned long long>(count));
+    good &= check(count > 0, "no pairs");
+    good &= check(device->bytes_allocated() == 0, "the session left memory behind");
+    return good & check(device->finish().events.empty(), "commands were recorded that nobody asked for");
+}
+
+} // namespace
+
+int main() {
+    cl_platform_id platform = nullptr;
+    cl_device_id id = nullptr;
+    cl_int code = clGetPlatformIDs(1, &platform, nullptr);
+    if (code == CL_SUCCESS) code = clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &id, nullptr);
+    if (!check(code == CL_SUCCESS, "no device")) return 1;
+    auto* context = clCreateContext(nullptr, 1, &id, nullptr, nullptr, &code);
+    auto* queue = clCreateCommandQueue(context, id, 0, &code);
+    auto* memory = clCreateBuffer(context, CL_MEM_READ_WRITE, bytes, nullptr, &code);
+    bool good = run(context, id, queue, memory);
+    // What is the application's outlives the device that borrowed it.
+    good &= check(clFinish(queue) == CL_SUCCESS, "the queue is gone");
+    good &= check(clReleaseMemObject(memory) == CL_SUCCESS, "the memory is gone");
+    good &= check(clReleaseCommandQueue(queue) == CL_SUCCESS, "the queue is gone");
+    good &= check(clReleaseContext(context) == CL_SUCCESS, "the context is gone");
+    return good ? 0 : 1;
+}
