@@ -19,7 +19,7 @@
 namespace tandem {
 
 /// A device failed or cannot do what was asked: backend, call, code and what was being done, in one line.
-/// Nothing is in flight on an OpenCL queue that one came from.
+/// What the device was asked for before is no longer in flight, or can never be waited for.
 struct DeviceError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

@@ -114,6 +114,26 @@ Staging::Source page_locked(const Driver& driver) {
 /// More than any kernel has, so that a launch needs no memory from the heap.
 constexpr std::size_t most_arguments = 32;
 
+/// Arguments as cuLaunchKernel takes them: places of values, which the driver copies before it returns.
+struct Parameters {
+    explicit Parameters(std::span<const Argument> arguments) {
+        for (std::size_t i = 0; i < arguments.size(); ++i) {
+            const auto& value = arguments[i].value();
+            if (const auto* const* buffer = std::get_if<Buffer::Impl*>(&value)) {
+                pointers[i] = static_cast<const CudaBuffer*>(*buffer)->pointer;
+                places[i] = &pointers[i];
+            } else {
+                places[i] = const_cast<std::byte*>(std::get<Argument::Scalar>(value).bytes.data());
+            }
+        }
+    }
+    Parameters(const Parameters&) = delete;
+    Parameters& operator=(const Parameters&) = delete;
+
+    std::array<DevicePointer, most_arguments> pointers;
+    std::array<void*, most_arguments> places;
+};
+
 class CudaDevice : public Device {
 public:
     CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index);
@@ -157,6 +177,7 @@ private:
     };
     template<class What>
     void wait(const What& what);
+    void check_launch(std::string_view entry, Grid grid, std::size_t arguments) const;
     const LoadedModule& module(const KernelSource& source, const Defines& defines);
     const Driver& driver() const { return libraries_->driver; }
     /// Runs `submit` between two events when timestamps are on; the ticket.
@@ -237,6 +258,11 @@ void CudaDevice::describe() {
 }
 
 void CudaDevice::fail(Result result, std::string_view call, std::string_view what) const {
+    // Whoever catches the error may free what commands in flight still read or write.
+    if (context_ != nullptr && (stream_ != nullptr || !owned_)) {
+        const CurrentContext current(driver(), context_);
+        driver().cuStreamSynchronize(stream_);
+    }
     const auto text = fmt::format("{} ({}): {} failed with {} while {}; driver for CUDA {}, NVRTC {}",
                                   info_.id, info_.name, call, driver().describe(result), what,
                                   version_text(driver().version), version_text(libraries_->nvrtc.version()));
@@ -377,34 +403,27 @@ std::shared_ptr<Kernel::Impl> CudaDevice::do_compile(const KernelSource& source,
 
 std::uint64_t CudaDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) {
     const Scope scope(*this);
-    if (arguments.size() > most_arguments)
-        throw DeviceError(fmt::format("{}: '{}' with {} arguments; a launch takes at most {}", info_.id,
-                                      kernel.facts.entry, arguments.size(), most_arguments));
-    std::array<DevicePointer, most_arguments> pointers;
-    std::array<void*, most_arguments> parameters;
-    for (std::size_t i = 0; i < arguments.size(); ++i) {
-        const auto& value = arguments[i].value();
-        if (const auto* const* buffer = std::get_if<Buffer::Impl*>(&value)) {
-            pointers[i] = static_cast<const CudaBuffer*>(*buffer)->pointer;
-            parameters[i] = &pointers[i];
-        } else {
-            // The driver copies the value before it returns.
-            parameters[i] = const_cast<std::byte*>(std::get<Argument::Scalar>(value).bytes.data());
-        }
-    }
+    check_launch(kernel.facts.entry, grid, arguments.size());
+    Parameters parameters(arguments);
     const auto function = static_cast<CudaKernel&>(kernel).function;
     const auto groups = static_cast<unsigned>(grid.groups);
-    if (grid.groups > 0x7fffffffu)
-        throw DeviceError(fmt::format("{}: '{}' with {} groups; a launch takes at most 2147483647", info_.id,
-                                      kernel.facts.entry, grid.groups));
     return timed([&] {
         check(driver().cuLaunchKernel(function, groups, 1, 1, grid.group_size, 1, 1, 0, stream_,
-                                      parameters.data(), nullptr),
+                                      parameters.places.data(), nullptr),
               "cuLaunchKernel", [&] {
                   return fmt::format("launching '{}' with {} groups of {}", kernel.facts.entry, groups,
                                      grid.group_size);
               });
     });
+}
+
+void CudaDevice::check_launch(std::string_view entry, Grid grid, std::size_t arguments) const {
+    if (arguments > most_arguments)
+        throw DeviceError(fmt::format("{}: '{}' with {} arguments; a launch takes at most {}", info_.id,
+                                      entry, arguments, most_arguments));
+    if (grid.groups > 0x7fffffffu)
+        throw DeviceError(fmt::format("{}: '{}' with {} groups; a launch takes at most 2147483647", info_.id,
+                                      entry, grid.groups));
 }
 
 void CudaDevice::do_finish() {

@@ -136,6 +136,21 @@ TEST_F(CudaDevice, FramesTakeNothingFromTheHeap) {
     EXPECT_EQ(allocations(), before);
 }
 
+/// Memory that a command in flight reads may be freed by whoever catches the error.
+TEST_F(CudaDevice, AnErrorWaitsForWhatIsInFlight) {
+    const auto waits = entry_of_stub<unsigned long()>("stub_waits");
+    const auto words = device->allocate(64, "words");
+    const auto kernel = test::compile(*device, "do_nothing");
+    const std::array<Argument, 1> arguments{words};
+    device->upload(words, bytes_of(std::vector<std::uint32_t>(16, 1)));
+    const auto before = waits();
+    setenv("STUB_LAUNCH", "700", 1);
+    EXPECT_THROW(device->launch(kernel, {1, 1}, arguments), DeviceError);
+    unsetenv("STUB_LAUNCH");
+    EXPECT_EQ(waits(), before + 1);
+    EXPECT_EQ(current(), nullptr);
+}
+
 TEST_F(CudaDevice, ArgumentsHaveALimit) {
     const auto words = device->allocate(64, "words");
     const auto kernel = test::compile(*device, "do_nothing");

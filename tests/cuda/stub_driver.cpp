@@ -30,6 +30,7 @@ char primary; ///< stands for the device's primary context
 thread_local Context current = nullptr;
 std::map<Stream, Context> streams; ///< of each that was made, its context
 std::map<std::pair<Stream, Context>, unsigned long> calls;
+unsigned long waits = 0;
 
 /// Of a call that needs a context.
 Result in_context() { return current != nullptr ? 0 : invalid_context; }
@@ -178,6 +179,7 @@ Result cuStreamDestroy_v2(Stream stream) {
     return in_context();
 }
 Result cuStreamSynchronize(Stream stream) {
+    ++waits;
     return launched && number("STUB_FAULT", 0) != 0 ? 700 : on(stream);
 }
 Result cuEventCreate(EventHandle* event, unsigned) {
@@ -211,6 +213,7 @@ unsigned long stub_calls(Stream stream, Context context) {
     const auto found = calls.find({stream, context});
     return found == calls.end() ? 0 : found->second;
 }
+unsigned long stub_waits() { return waits; }
 unsigned long stub_all_calls() {
     unsigned long sum = 0;
     for (const auto& [where, count] : calls) sum += count;

@@ -11,4 +11,6 @@ extern "C" {
 unsigned long stub_calls(CUstream_st* stream, CUctx_st* context);
 /// The calls so far that name any stream.
 unsigned long stub_all_calls();
+/// Those of them that wait for one.
+unsigned long stub_waits();
 }
