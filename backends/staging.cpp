@@ -13,16 +13,21 @@ constexpr std::size_t alignment = 256;
 } // namespace
 
 std::byte* Staging::take(std::size_t bytes) {
-    if (bytes > limit_) return nullptr;
     const auto rounded = (bytes + alignment - 1) / alignment * alignment;
+    const auto size = std::max(rounded, std::min(block_bytes, limit_));
+    if (size > limit_) return nullptr;
     for (auto& block : blocks_) {
         if (block.size - block.used < rounded) continue;
         auto* memory = block.memory + block.used;
         block.used += rounded;
         return memory;
     }
-    const auto size = std::max(rounded, block_bytes);
-    if (size > limit_ - held_) return nullptr;
+    if (size > limit_ - held_) {
+        const bool idle =
+            std::all_of(blocks_.begin(), blocks_.end(), [](const auto& block) { return block.used == 0; });
+        if (!idle) return nullptr;
+        drop(); // blocks that are each too small would be in the way for ever
+    }
     auto* memory = source_.allocate(size);
     if (memory == nullptr) return nullptr;
     blocks_.push_back({memory, size, rounded});
