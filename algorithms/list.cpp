@@ -2,6 +2,7 @@
 #include "algorithms/chunked/chunked.h"
 #include "algorithms/gproximity/gproximity.h"
 #include "algorithms/sources.h"
+#include "algorithms/traversal.h"
 #include "scenes/error.h"
 
 #include <algorithm>
@@ -9,9 +10,22 @@
 
 namespace tandem {
 
-std::span<const Traversal* const> algorithms() {
-    static const std::array all{&chunked(), &gproximity()};
+namespace {
+
+std::vector<const Traversal*>& listed() {
+    static std::vector<const Traversal*> all{&chunked(), &gproximity()};
     return all;
+}
+
+} // namespace
+
+std::span<const Traversal* const> algorithms() { return listed(); }
+
+void add_algorithm(const Traversal& traversal) {
+    for (const auto* other : listed())
+        if (other->name() == traversal.name())
+            throw InputError(fmt::format("there is an algorithm {} already", traversal.name()));
+    listed().push_back(&traversal);
 }
 
 const Traversal& algorithm(std::string_view name) {
@@ -27,19 +41,9 @@ const Preset& preset(const Traversal& traversal, std::string_view name) {
     std::vector<std::string> names;
     for (const auto& candidate : traversal.presets()) {
         if (candidate.name == name) return candidate;
-        names.push_back(candidate.name);
+        names.emplace_back(candidate.name);
     }
     throw InputError(unknown(fmt::format("preset of {}", traversal.name()), name, names));
-}
-
-std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, const Scene& scene,
-                                            const Settings& settings) const {
-    if (devices.size() != 1)
-        throw InputError(
-            fmt::format("{} runs on one device at a time; {} were given", name(), devices.size()));
-    if (scene.bodies.empty()) throw InputError(fmt::format("scene {} has no bodies", scene.name));
-    check(settings, devices.front()->info());
-    return do_prepare(*devices.front(), scene, settings);
 }
 
 const KernelSource& kernel_source(std::string_view name) {

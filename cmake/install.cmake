@@ -10,9 +10,9 @@ install(TARGETS tandem-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 set(public_headers
   backends/device.h backends/trace.h backends/registry.h backends/host/host_device.h backends/opencl/opencl_device.h
   backends/cuda/cuda_device.h
-  algorithms/traversal.h algorithms/settings.h algorithms/kdop/device_scene.h algorithms/kdop/emptied.h
-  algorithms/kdop/kdop_settings.h algorithms/kdop/strips.h
-  algorithms/kdop/tree.h algorithms/kdop/range.h algorithms/broad/broad.h scenes/scene.h scenes/dynamics.h
+  algorithms/traversal.h algorithms/answer/frame_result.h
+  algorithms/parameters/parameter.h algorithms/parameters/choices.h algorithms/parameters/table.h
+  algorithms/bounds/geometry.h algorithms/bodies/range.h scenes/scene.h scenes/dynamics.h
   scenes/contact.h scenes/simulate/simulation.h scenes/mesh.h scenes/builtin.h scenes/error.h)
 foreach(header ${public_headers})
   cmake_path(GET header PARENT_PATH folder)

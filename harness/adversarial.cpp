@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/adversarial.h"
 
-#include "algorithms/kdop/pair_list.h"
+#include "algorithms/hierarchy/pair_list.h"
 #include "harness/oracle/contact_truth.h"
 #include "harness/oracle/frame_truth.h"
 #include "scenes/parallel.h"
@@ -65,9 +65,10 @@ public:
         list_ = std::move(list);
         for (const auto& cell : cells) {
             const auto group = std::min(group_size, cell.device->info().max_group_size);
-            scenes_.push_back(std::make_unique<DeviceScene>(*cell.device, scene_, cell.geometry, leaves,
-                                                            group, Residency::resident));
-            lists_.push_back(std::make_unique<PairList>(*scenes_.back(), list_));
+            bodies_.push_back(
+                std::make_unique<Bodies>(*cell.device, scene_, cell.geometry, Bodies::Sharing::by_mesh));
+            trees_.push_back(std::make_unique<ChunkTrees>(*bodies_.back(), leaves, group));
+            lists_.push_back(std::make_unique<PairList>(*trees_.back(), list_));
         }
     }
 
@@ -79,10 +80,10 @@ public:
         tally.truth_seconds += seconds_since(begin);
         begin = Clock::now();
         std::vector<std::vector<std::uint8_t>> found;
-        for (std::size_t cell = 0; cell < scenes_.size(); ++cell) {
-            scenes_[cell]->update(batch.frame);
+        for (std::size_t cell = 0; cell < lists_.size(); ++cell) {
+            bodies_[cell]->update(batch.frame);
+            trees_[cell]->refit(batch.frame);
             found.push_back(lists_[cell]->run());
-            scenes_[cell]->device().finish();
         }
         tally.test_seconds += seconds_since(begin);
         compare(batch, found, number, tally);
@@ -98,7 +99,7 @@ private:
 
     void make_posed(Batch& batch, std::uint64_t number) {
         batch.frame = scene_.frame(number);
-        for (const auto& decision : decide_pairs(scene_, batch.frame, Precision::single, list_))
+        for (const auto& decision : decide_pairs(scene_, batch.frame, Precision::fp32, list_))
             batch.truth.push_back(decision.relation);
         batch.decided = batch.truth.size();
     }
@@ -170,7 +171,8 @@ private:
     std::uint64_t together_;
     Scene scene_;
     std::vector<Pair> list_;
-    std::vector<std::unique_ptr<DeviceScene>> scenes_;
+    std::vector<std::unique_ptr<Bodies>> bodies_;
+    std::vector<std::unique_ptr<ChunkTrees>> trees_;
     std::vector<std::unique_ptr<PairList>> lists_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/kdop/kdop_settings.h"
+#include "algorithms/bounds/geometry.h"
 #include "backends/device.h"
 #include "scenes/hard/hard.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/ceilings.h"
 
-#include "algorithms/kdop/kdop_settings.h"
+#include "algorithms/bounds/geometry.h"
 #include "algorithms/sources.h"
 #include "harness/record.h"
 
@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 using Samples = std::vector<double>;
 
 constexpr int repeats = 9;
-constexpr std::string_view file = "algorithms/kdop/ceilings.cl";
+constexpr std::string_view file = "algorithms/bounds/ceilings.cl";
 
 /// One device with its sizes: large buffers that no cache holds, small ones that every GPU's second level
 /// does.

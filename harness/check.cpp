@@ -41,7 +41,7 @@ void print_matrix_header() {
 
 void print_matrix_row(const Cell& cell, const Measurement& m) {
     fmt::print("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n",
-               cell.device->info().id, cell.algorithm->name(), cell.preset, m.agreement.digest.count,
+               name_of(cell.devices), cell.algorithm->name(), cell.preset, m.agreement.digest.count,
                m.agreement.missing, m.agreement.extra, m.retries,
                std::accumulate(m.contacts.begin(), m.contacts.end(), std::uint64_t{0}),
                m.agreement.contact_frames_wrong == 0 ? "yes" : "NO",
@@ -64,7 +64,7 @@ int check_family(const Job& job, const RunOptions& options, RecordFile& file, co
         wrong += m.agreement.ok() ? 0 : 1;
         if (!m.errors) return;
         meeting = m.errors->pairs;
-        (m.settings.at("rounding") == "safe" ? safe : others) += m.errors->missed();
+        (m.settings[parameters::rounding] == Rounding::safe ? safe : others) += m.errors->missed();
     });
     const auto& flaws = job.range.flaws;
     fmt::print("{:<26} {:>6} {:>9} {:>11} {:>7} {:>9} {:>6} {:>10}{}\n", job.scene.name,
@@ -120,7 +120,7 @@ int check_command(const RunOptions& options) {
     if (request.devices.empty()) request.devices.emplace_back("all");
     const auto backends = discover();
     check_required(backends, options.require);
-    const auto devices = choose_devices(backends, request.devices);
+    const auto devices = open_devices(options, backends, request.devices);
     const auto scenes = expand_hard(options.scene);
     if (scenes.size() > 1) return check_hard(options, plan(request, devices), scenes);
     if (request.presets.empty()) request.presets.emplace_back("all");

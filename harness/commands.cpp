@@ -7,7 +7,6 @@
 #include "harness/progress.h"
 #include "harness/record.h"
 #include "harness/table.h"
-#include "harness/walk.h"
 #include "scenes/error.h"
 #include "scenes/hard/hard.h"
 
@@ -23,23 +22,20 @@ namespace {
 
 void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts) {
     if (!pairs && !contacts) return;
-    Walk walk(cell, job.scene);
+    const auto session = cell.algorithm->prepare(cell.devices, job.scene, cell.settings);
     for (std::size_t i = 0; i < job.range.frames.size(); ++i) {
-        const auto result = walk.run(job.range.frames[i]);
-        if (pairs) pairs.pairs(job.range.first + i, walk.session->download(result));
-        if (contacts) contacts.contacts(job.range.first + i, walk.session->download_contacts(result));
-        cell.device->finish();
+        const auto result = session->run(job.range.frames[i]);
+        if (pairs) pairs.pairs(job.range.first + i, result.download());
+        if (contacts) contacts.contacts(job.range.first + i, result.download_contacts());
     }
 }
 
 /// Replays the frames and does nothing else, so that a profiler sees only the algorithm.
 int profile(const Job& job, std::size_t times) {
     for (const auto& cell : job.cells) {
-        Walk walk(cell, job.scene);
-        for (std::size_t i = 0; i < times; ++i) {
-            for (const auto& frame : job.range.frames) walk.run(frame);
-            cell.device->finish();
-        }
+        const auto session = cell.algorithm->prepare(cell.devices, job.scene, cell.settings);
+        for (std::size_t i = 0; i < times; ++i)
+            for (const auto& frame : job.range.frames) session->run(frame);
         fmt::print("{}: replayed frames {}:{} {} times; nothing measured or recorded\n", describe(cell),
                    job.range.first, job.range.last, times);
     }
@@ -68,7 +64,7 @@ int run_command(const RunOptions& options) {
     if (request.devices.empty()) request.devices.emplace_back("opencl:0");
     const auto backends = discover();
     check_required(backends, options.require);
-    const auto job = open_job(options, plan(request, choose_devices(backends, request.devices)));
+    const auto job = open_job(options, plan(request, open_devices(options, backends, request.devices)));
     RecordFile file(options.out);
     DumpFile pairs(options.dump_pairs, pairs_header);
     DumpFile contacts(options.dump_contacts, contacts_header);

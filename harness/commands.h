@@ -27,6 +27,7 @@ struct RunOptions {
     TruthAmount truth = TruthAmount::pairs; ///< compare answers with the exact truth
     std::size_t truth_contacts = 0;         ///< of this many pairs a frame at most; 0: all
     Degenerate degenerate = Degenerate::flat;
+    std::size_t memory = 0; ///< bytes that each device may give; 0: what it has
     bool quiet = false;
 };
 

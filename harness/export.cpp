@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/kdop/tree.h"
+#include "algorithms/hierarchy/order.h"
 #include "harness/inputs.h"
-#include "harness/walk.h"
 #include "scenes/error.h"
 #include "scenes/export/glb.h"
 #include "scenes/export/vtk.h"
@@ -42,24 +41,22 @@ class Contacts {
 public:
     Contacts(const std::string& device, const Scene& scene) : scene_(scene), backends_(discover()) {
         Request request;
-        request.algorithms = {"chunked"};
+        request.algorithms = {std::string(algorithms().front()->name())};
         request.devices = {device};
         cell_ = plan(request, choose_devices(backends_, request.devices)).front();
-        walk_.emplace(cell_, scene);
+        session_ = cell_.algorithm->prepare(cell_.devices, scene, cell_.settings);
     }
 
     std::vector<ContactPoint> of(const Frame& frame) {
         check_coordinates({&cell_, 1}, scene_, {0, 0, {frame}});
-        auto contacts = walk_->session->download_contacts(walk_->run(frame));
-        cell_.device->finish();
-        return contacts;
+        return session_->run(frame).download_contacts();
     }
 
 private:
     const Scene& scene_;
     std::vector<BackendReport> backends_;
     Cell cell_;
-    std::optional<Walk> walk_;
+    std::unique_ptr<Session> session_;
 };
 
 void make_folder(const std::string& folder) {

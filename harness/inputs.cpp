@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/inputs.h"
 
-#include "algorithms/kdop/range.h"
+#include "algorithms/bodies/range.h"
 #include "scenes/error.h"
 
 #include <algorithm>
@@ -70,6 +70,15 @@ std::pair<std::size_t, std::size_t> named_frames(const std::string& frames, cons
     return {first, last};
 }
 
+std::vector<DeviceGroup> open_devices(const RunOptions& options, const std::vector<BackendReport>& backends,
+                                      std::span<const std::string> names) {
+    auto chosen = choose_devices(backends, names);
+    for (const auto& group : chosen)
+        for (auto* device : group)
+            if (options.memory > 0) device->set_memory_limit(options.memory);
+    return chosen;
+}
+
 void check_required(const std::vector<BackendReport>& backends, const std::vector<std::string>& require) {
     std::vector<std::string> there;
     for (const auto& backend : backends)
@@ -103,9 +112,9 @@ void check_outputs(const RunOptions& options, std::span<const Cell> cells) {
     if (options.profile > 0 && (dumps || !options.out.empty()))
         throw InputError("--profile only replays frames; leave out --out and dumps");
     for (const auto& cell : cells) {
-        if (dumps && cell.settings.at("output") != "pairs")
+        if (dumps && cell.settings[parameters::output] != Output::pairs)
             throw InputError("dumps need pairs; leave output out or set output=pairs");
-        if (!options.dump_contacts.empty() && cell.settings.at("contact_rule") == "none")
+        if (!options.dump_contacts.empty() && cell.settings[parameters::contact_rule] == ContactRule::none)
             throw InputError("--dump-contacts needs contacts; leave contact_rule out");
     }
 }

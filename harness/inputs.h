@@ -15,6 +15,10 @@ FrameRange open_frames(const RunOptions& options, const Scene& scene);
 /// The first and the last frame of "FIRST:LAST" or "N", all when empty; throws InputError as open_frames.
 std::pair<std::size_t, std::size_t> named_frames(const std::string& frames, const Scene& scene);
 
+/// The devices that the options name, limited to --memory. Throws InputError.
+std::vector<DeviceGroup> open_devices(const RunOptions& options, const std::vector<BackendReport>& backends,
+                                      std::span<const std::string> names);
+
 /// Throws InputError for each name that is no backend with devices and no device.
 void check_required(const std::vector<BackendReport>& backends, const std::vector<std::string>& require);
 

@@ -52,8 +52,9 @@ void print_scene(const Scene& scene, const FrameRange& range) {
 }
 
 bool misses_against_its_promise(const Measurement& m) {
-    const auto& rounding = m.settings.at("rounding");
-    return m.errors && m.errors->missed() > 0 && (rounding == "safe" || rounding == "directed");
+    const auto rounding = m.settings[parameters::rounding];
+    return m.errors && m.errors->missed() > 0
+           && (rounding == Rounding::safe || rounding == Rounding::directed);
 }
 
 } // namespace tandem

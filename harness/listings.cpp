@@ -16,16 +16,29 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json parameters_json(std::span<const Parameter> parameters) {
+std::vector<std::string> words_of(const Parameter& parameter) {
+    std::vector<std::string> words;
+    for (const auto& word : parameter.choices()) words.emplace_back(word.text);
+    return words;
+}
+
+Json parameters_json(std::span<const Parameter* const> parameters) {
     Json json = Json::array();
-    for (const auto& p : parameters) {
-        Json row{{"name", p.name}, {"default", p.initial}, {"help", p.help}};
-        if (p.choices.empty())
-            row["range"] = {p.least, p.most};
+    for (const auto* p : parameters) {
+        Json row{{"name", p->name}, {"default", p->text(p->initial)}, {"help", p->help}};
+        if (p->choices().empty())
+            row["range"] = {p->least, p->most};
         else
-            row["choices"] = p.choices;
+            row["choices"] = words_of(*p);
         json.push_back(row);
     }
+    return json;
+}
+
+Json counters_json(std::span<const Counter> counters) {
+    Json json = Json::array();
+    for (const auto& c : counters)
+        json.push_back({{"name", c.name}, {"unit", c.unit}, {"meaning", c.meaning}});
     return json;
 }
 
@@ -57,10 +70,12 @@ void print_algorithm(const Traversal& traversal) {
     fmt::print("{}: {}\n  presets\n", traversal.name(), traversal.summary());
     for (const auto& p : traversal.presets()) fmt::print("    {:<18} {}\n", p.name, p.help);
     fmt::print("  settings\n");
-    for (const auto& p : traversal.parameters())
-        fmt::print("    {:<18} {:<10} {} [{}]\n", p.name, p.initial, p.help,
-                   p.choices.empty() ? fmt::format("{}..{}", p.least, p.most)
-                                     : fmt::format("{}", fmt::join(p.choices, ", ")));
+    for (const auto* p : traversal.parameters())
+        fmt::print("    {:<18} {:<10} {} [{}]\n", p->name, p->text(p->initial), p->help,
+                   p->choices().empty() ? fmt::format("{}..{}", p->least, p->most)
+                                        : fmt::format("{}", fmt::join(words_of(*p), ", ")));
+    fmt::print("  counters\n");
+    for (const auto& c : traversal.counters()) fmt::print("    {:<22} {} [{}]\n", c.name, c.meaning, c.unit);
 }
 
 /// `tandem devices --measure`: the ceilings of the chosen devices.
@@ -70,12 +85,13 @@ int measure_devices(const std::vector<BackendReport>& backends, const DevicesOpt
     const auto chosen = choose_devices(backends, options.devices.empty() ? all : options.devices);
     RecordFile file(options.out);
     Json records = Json::array();
-    for (auto* device : chosen) {
-        const auto ceilings = measure_ceilings(*device);
-        records.push_back(ceilings_record(device->info(), ceilings));
-        file.append(records.back());
-        if (!options.json) fmt::print("{}", ceilings_table(device->info(), ceilings));
-    }
+    for (const auto& group : chosen)
+        for (auto* device : group) {
+            const auto ceilings = measure_ceilings(*device);
+            records.push_back(ceilings_record(device->info(), ceilings));
+            file.append(records.back());
+            if (!options.json) fmt::print("{}", ceilings_table(device->info(), ceilings));
+        }
     if (options.json) fmt::print("{}\n", records.dump(2));
     return 0;
 }
@@ -203,10 +219,11 @@ int algorithms_command(bool json) {
     for (const auto* traversal : algorithms()) {
         Json presets = Json::array();
         for (const auto& p : traversal->presets())
-            presets.push_back({{"name", p.name}, {"help", p.help}, {"values", p.values}});
+            presets.push_back({{"name", p.name}, {"help", p.help}, {"values", p.texts()}});
         all.push_back({{"name", traversal->name()},
                        {"summary", traversal->summary()},
                        {"parameters", parameters_json(traversal->parameters())},
+                       {"counters", counters_json(traversal->counters())},
                        {"presets", presets}});
         if (!json) print_algorithm(*traversal);
     }

@@ -48,7 +48,8 @@ void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string
            "P,Q or all (see 'tandem algorithms'); when left out each algorithm's first, for check all")
         ->delimiter(',');
     app.add_option("--device", options.request.devices,
-                   "D,E or all (see 'tandem devices'); when left out opencl:0, for check all")
+                   "D,E or all (see 'tandem devices'), D+E for one cell on both; when left out opencl:0, for "
+                   "check all")
         ->delimiter(',');
     app.add_option("--frames", options.frames, "FIRST:LAST, both inclusive; all when left out");
     app.add_option("--set", sets, "NAME=V1,V2: several values make several cells")->expected(1)->take_all();
@@ -71,6 +72,11 @@ void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string
            "the "
            "second are refused; the default), skip (neither takes part) or reject (both are refused)")
         ->option_text("flat|skip|reject");
+    app.add_option("--memory", options.memory,
+                   "take at most so many bytes of a device's memory; frames that need more run in batches "
+                   "(4096, 512MB, 2GiB)")
+        ->transform(CLI::AsSizeValue(false))
+        ->option_text("BYTES");
     app.add_flag("--quiet", options.quiet, "no progress line");
 }
 

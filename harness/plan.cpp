@@ -26,15 +26,15 @@ void add_once(std::vector<Value>& values, Value value) {
 
 bool declares(const Traversal& traversal, const std::string& name) {
     const auto parameters = traversal.parameters();
-    return std::any_of(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == name; });
+    return std::any_of(parameters.begin(), parameters.end(), [&](const auto* p) { return p->name == name; });
 }
 
 /// Every combination of the values of the settings that the algorithm declares.
-std::vector<Settings> combinations(const Request& request, const Traversal& traversal) {
-    std::vector<Settings> all{{}};
+std::vector<SettingTexts> combinations(const Request& request, const Traversal& traversal) {
+    std::vector<SettingTexts> all{{}};
     for (const auto& [name, values] : request.sets) {
         if (!declares(traversal, name)) continue;
-        std::vector<Settings> longer;
+        std::vector<SettingTexts> longer;
         for (const auto& settings : all) {
             for (const auto& value : values) {
                 longer.push_back(settings);
@@ -56,7 +56,7 @@ std::vector<const Traversal*> choose_algorithms(const Request& request) {
 void check_sets(const Request& request, std::span<const Traversal* const> chosen) {
     std::set<std::string> known;
     for (const auto* traversal : chosen)
-        for (const auto& parameter : traversal->parameters()) known.insert(parameter.name);
+        for (const auto* parameter : traversal->parameters()) known.emplace(parameter->name);
     const std::vector<std::string> names(known.begin(), known.end());
     for (const auto& [name, values] : request.sets)
         if (!known.contains(name)) throw InputError(unknown("setting", name, names));
@@ -85,59 +85,80 @@ void check_presets(const Request& request, std::span<const Traversal* const> cho
     for (const auto* traversal : chosen)
         for (const auto& candidate : traversal->presets())
             if (std::find(names.begin(), names.end(), candidate.name) == names.end())
-                names.push_back(candidate.name);
+                names.emplace_back(candidate.name);
     for (const auto& name : request.presets)
         if (std::find(names.begin(), names.end(), name) == names.end())
             throw InputError(unknown("preset", name, names));
 }
 
 /// A cell whose settings fit its device.
-Cell make_cell(const Traversal& traversal, const Preset& preset, const Settings& given, Device& device) {
-    Cell cell{&traversal, preset.name,
-              resolve(traversal.parameters(), preset.values, given, traversal.name()), &device};
-    traversal.check(cell.settings, device.info());
+Cell make_cell(const Traversal& traversal, const Preset& preset, const SettingTexts& given,
+               const DeviceGroup& devices) {
+    Cell cell{&traversal, std::string(preset.name),
+              resolve(traversal.parameters(), preset.values, given, traversal.name()), devices};
+    traversal.check(cell.devices, cell.settings);
     return cell;
+}
+
+/// The device of that id; throws InputError that names the reason of absence and what there is.
+Device* named_device(const std::vector<BackendReport>& backends, const std::string& name) {
+    std::vector<std::string> ids;
+    for (const auto& backend : backends)
+        for (const auto& device : backend.devices) {
+            if (device->info().id == name) return device.get();
+            ids.push_back(device->info().id);
+        }
+    throw InputError(unknown("device", name, ids) + reasons(backends));
+}
+
+/// "D" or "D+E+..." as a group.
+DeviceGroup named_group(const std::vector<BackendReport>& backends, const std::string& name) {
+    DeviceGroup group;
+    std::size_t begin = 0;
+    for (auto end = name.find('+'); begin <= name.size(); begin = end + 1, end = name.find('+', begin)) {
+        end = std::min(end, name.size());
+        auto* device = named_device(backends, name.substr(begin, end - begin));
+        if (std::find(group.begin(), group.end(), device) != group.end())
+            throw InputError(fmt::format("device {}: {} is named twice; a device works for a cell once", name,
+                                         device->info().id));
+        group.push_back(device);
+    }
+    return group;
 }
 
 } // namespace
 
-std::vector<Device*> choose_devices(const std::vector<BackendReport>& backends,
-                                    std::span<const std::string> names) {
-    std::vector<Device*> present;
-    std::vector<std::string> ids;
-    for (const auto& backend : backends) {
-        for (const auto& device : backend.devices) {
-            present.push_back(device.get());
-            ids.push_back(device->info().id);
-        }
-    }
-    std::vector<Device*> chosen;
+std::string name_of(const DeviceGroup& devices) {
+    std::string name;
+    for (const auto* device : devices) name += (name.empty() ? "" : "+") + device->info().id;
+    return name;
+}
+
+std::vector<DeviceGroup> choose_devices(const std::vector<BackendReport>& backends,
+                                        std::span<const std::string> names) {
+    std::vector<DeviceGroup> chosen;
     for (const auto& name : names) {
-        if (name == "all") {
-            for (auto* device : present) add_once(chosen, device);
+        if (name != "all") {
+            add_once(chosen, named_group(backends, name));
             continue;
         }
-        if (name.find('+') != std::string::npos)
-            throw InputError(fmt::format(
-                "device {}: one cell on several devices is not supported yet; list them with ','", name));
-        const auto found = std::find(ids.begin(), ids.end(), name);
-        if (found == ids.end()) throw InputError(unknown("device", name, ids) + reasons(backends));
-        add_once(chosen, present[static_cast<std::size_t>(found - ids.begin())]);
+        for (const auto& backend : backends)
+            for (const auto& device : backend.devices) add_once(chosen, DeviceGroup{device.get()});
     }
     return chosen;
 }
 
-std::vector<Cell> plan(const Request& request, std::span<Device* const> devices, Unfit unfit) {
+std::vector<Cell> plan(const Request& request, std::span<const DeviceGroup> devices, Unfit unfit) {
     const auto chosen = choose_algorithms(request);
     check_sets(request, chosen);
     check_presets(request, chosen);
     std::vector<Cell> cells;
-    for (auto* device : devices)
+    for (const auto& group : devices)
         for (const auto* traversal : chosen)
             for (const auto* preset : choose_presets(request, *traversal))
                 for (const auto& given : combinations(request, *traversal)) {
                     try {
-                        cells.push_back(make_cell(*traversal, *preset, given, *device));
+                        cells.push_back(make_cell(*traversal, *preset, given, group));
                     } catch (const InputError&) {
                         if (unfit == Unfit::refuse) throw;
                     }
@@ -149,10 +170,10 @@ std::string describe(const Cell& cell) {
     const auto base = resolve(cell.algorithm->parameters(), preset(*cell.algorithm, cell.preset).values, {},
                               cell.algorithm->name());
     std::vector<std::string> changed;
-    for (const auto& [name, value] : cell.settings)
-        if (base.at(name) != value) changed.push_back(fmt::format("{}={}", name, value));
+    for (const auto& [name, value] : cell.settings.texts())
+        if (base.text(name) != value) changed.push_back(fmt::format("{}={}", name, value));
     return fmt::format("{} {}{}{} on {}", cell.algorithm->name(), cell.preset, changed.empty() ? "" : " ",
-                       fmt::join(changed, ","), cell.device->info().id);
+                       fmt::join(changed, ","), name_of(cell.devices));
 }
 
 } // namespace tandem

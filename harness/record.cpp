@@ -103,6 +103,12 @@ Json record_device(const DeviceInfo& info) {
             {"memory_bytes", info.global_bytes}};
 }
 
+Json record_devices(const DeviceGroup& devices) {
+    Json json = Json::array();
+    for (const auto* device : devices) json.push_back(record_device(device->info()));
+    return json;
+}
+
 namespace {
 
 Json kernels_json(const std::vector<KernelFacts>& kernels) {
@@ -128,7 +134,7 @@ Json record_environment() {
 
 namespace {
 
-std::string settings_key(const Settings& settings) {
+std::string settings_key(const SettingTexts& settings) {
     std::string key;
     for (const auto& [name, value] : settings)
         key += fmt::format("{}{}={}", key.empty() ? "" : ",", name, value);
@@ -147,21 +153,26 @@ Json agreement_json(const Measurement& m, const Scene& scene) {
             {"contact_digest", digest_json(a.contact_digest)}};
 }
 
-Json work_json(const Measurement& m) {
+/// By the names that the algorithm declares; null where nothing was counted.
+Json counters_json(const Measurement& m, const Traversal& algorithm) {
+    Json json = Json::object();
+    for (const auto& counter : algorithm.counters()) {
+        const auto found = m.work.find(counter.name);
+        json[std::string(counter.name)] = found == m.work.end() ? Json() : Json(found->second);
+    }
+    return json;
+}
+
+Json work_json(const Measurement& m, const Traversal& algorithm) {
     return {{"body_pairs", m.body_pairs},
             {"candidate_pairs", m.candidate_pairs},
             {"contacts", m.contacts},
-            {"bvtt_nodes", m.work.bvtt_nodes},
-            {"seeds", m.work.seeds},
-            {"balances", m.work.balances},
-            {"refills", m.work.refills},
-            {"spills", m.work.spills},
-            {"queue_bytes", m.work.queue_bytes},
-            {"published_queue_bytes", m.work.published_queue_bytes},
+            {"counters", counters_json(m, algorithm)},
             {"rejected", m.rejected},
-            {"unsure", m.unsure},
-            {"uncertain", m.uncertain},
-            {"retries", m.retries}};
+            {"undecided_by_filter", m.undecided_by_filter},
+            {"undecided_by_double", m.undecided_by_double},
+            {"retries", m.retries},
+            {"batches", m.batches}};
 }
 
 Json spread_json(const std::vector<double>& samples) {
@@ -255,10 +266,10 @@ std::string status_of(const Measurement& m, const std::string& failure) {
 
 Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, const Measurement& m,
                  const std::string& failure) {
-    const auto& settings = m.settings.empty() ? cell.settings : m.settings;
+    const auto settings = (m.settings.empty() ? cell.settings : m.settings).texts();
     Json json;
-    json["schema"] = 1;
-    json["key"] = fmt::format("{}|{}|{}@{}|{}:{}{}|{}", cell.algorithm->name(), cell.device->info().id,
+    json["schema"] = 2;
+    json["key"] = fmt::format("{}|{}|{}@{}|{}:{}{}|{}", cell.algorithm->name(), name_of(cell.devices),
                               scene.key, hex(scene.digest), range.first, range.last,
                               handling_key(range.flaws), settings_key(settings));
     json["status"] = status_of(m, failure);
@@ -268,13 +279,13 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["settings"] = settings;
     json["scene"] = record_scene(scene);
     json["frames"] = {{"first", range.first}, {"last", range.last}};
-    json["devices"] = Json::array({record_device(cell.device->info())});
+    json["devices"] = record_devices(cell.devices);
     const bool measured = failure.empty();
     json["total_ns"] = measured ? total_json(m) : Json();
     json["breakdown_ns"] = measured ? with_summary(m.breakdown_ns) : Json();
     json["device_span_ns"] = m.device_span_ns.empty() ? Json() : with_summary(m.device_span_ns);
     json["stages"] = stages_json(m);
-    json["work"] = measured ? work_json(m) : Json();
+    json["work"] = measured ? work_json(m, *cell.algorithm) : Json();
     json["kernels"] = kernels_json(m.kernels);
     json["preparation"] =
         measured ? Json{{"host_ns", m.prepare_ns}, {"device_bytes", m.device_bytes}} : Json();

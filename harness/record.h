@@ -15,6 +15,7 @@ nlohmann::ordered_json make_record(const Cell& cell, const Scene& scene, const F
 /// The parts of a record that say of what, where and with what it was made.
 nlohmann::ordered_json record_scene(const Scene& scene);
 nlohmann::ordered_json record_device(const DeviceInfo& info);
+nlohmann::ordered_json record_devices(const DeviceGroup& devices);
 nlohmann::ordered_json record_environment();
 
 /// Appends records to a JSON-lines file, one write and one fsync a record.

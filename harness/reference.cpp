@@ -2,7 +2,7 @@
 #include "harness/reference.h"
 
 #include "algorithms/contacts/reference.h"
-#include "algorithms/kdop/drift.h"
+#include "algorithms/bodies/drift.h"
 #include "harness/world_vertices.h"
 #include "scenes/parallel.h"
 
@@ -70,8 +70,8 @@ Real directed_sum(std::span<const Real> terms, int mode) {
     return sum;
 }
 
-/// Projection of a point with what its rounding asks for (algorithms/kdop/README.md); `drift`: of the point,
-/// by axis, null unless the truth is the pose's.
+/// Projection of a point with what its rounding asks for (algorithms/bounds/README.md); `drift`: of the
+/// point, by axis, null unless the truth is the pose's.
 template<class Real>
 std::pair<Real, Real> project(const std::array<Real, 3>& point, const std::array<int, 3>& direction,
                               Rounding rounding, const std::array<Real, 3>* drift) {
@@ -120,7 +120,7 @@ Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& g
     Bounds<Real> bounds;
     bounds.axes = axes.size();
     bounds.published = geometry.rounding == Rounding::published;
-    const bool drifts = geometry.truth == Truth::pose;
+    const bool drifts = geometry.placement == Placement::exact;
     const auto drift = drifts ? drift_in<Real>(scene, frame, geometry, body) : std::array<Real, 3>{};
     bounds.vertices = world_vertices<Real>(scene, frame, body);
     const auto& tetrahedra = scene.meshes[scene.bodies[body].mesh].tetrahedra;
@@ -225,8 +225,8 @@ void add_contacts(const Scene& scene, const std::vector<Bounds<Real>>& bounds, s
     answer.contact_digest.b += digest.b;
     answer.degenerate += counts.degenerate;
     answer.rejected += counts.rejected;
-    answer.unsure += counts.unsure;
-    answer.uncertain += counts.uncertain;
+    answer.undecided_by_filter += counts.undecided_by_filter;
+    answer.undecided_by_double += counts.undecided_by_double;
 }
 
 template<class Real>
@@ -263,17 +263,11 @@ ReferenceAnswer answer_in(const Scene& scene, const Frame& frame, const Geometry
     return answer;
 }
 
-std::uint64_t split_mix(std::uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
-}
-
 } // namespace
 
 ReferenceAnswer reference(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
                           Method method, const ContactSettings& settings) {
-    return geometry.precision == Precision::twice
+    return geometry.precision == Precision::fp64
                ? answer_in<double>(scene, frame, geometry, contacts, method, settings)
                : answer_in<float>(scene, frame, geometry, contacts, method, settings);
 }
@@ -282,26 +276,6 @@ Method reference_method(const Scene& scene) {
     constexpr double most_tests = 4e6;
     const auto tetrahedra = static_cast<double>(tetrahedron_count(scene));
     return tetrahedra * tetrahedra / 2 <= most_tests ? Method::brute_force : Method::sweep;
-}
-
-Digest digest_of(std::span<const Pair> pairs) {
-    const auto parts = in_parts(pairs);
-    std::vector<Digest> found(parts.size());
-    parallel_for(parts.size(), [&](std::size_t i) {
-        for (const auto& p : parts[i]) {
-            const auto first = std::uint64_t{p.body_a} << 32 | p.tet_a;
-            const auto second = std::uint64_t{p.body_b} << 32 | p.tet_b;
-            const auto term = split_mix(split_mix(first) + second);
-            found[i].a += term;
-            found[i].b += split_mix(term + 0x9e3779b97f4a7c15u);
-        }
-    });
-    Digest digest{pairs.size(), 0, 0};
-    for (const auto& part : found) {
-        digest.a += part.a;
-        digest.b += part.b;
-    }
-    return digest;
 }
 
 Difference difference(std::span<const Pair> expected, std::span<const Pair> found) {

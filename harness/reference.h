@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/answer/digest.h"
+#include "algorithms/bounds/geometry.h"
 #include "algorithms/contacts/contact_settings.h"
-#include "algorithms/traversal.h"
+#include "scenes/scene.h"
 
 namespace tandem {
 
@@ -13,7 +15,7 @@ struct ReferenceAnswer {
     std::uint64_t contacts = 0;
     std::uint64_t degenerate = 0;
     std::uint64_t rejected = 0;
-    std::uint64_t unsure = 0, uncertain = 0;
+    std::uint64_t undecided_by_filter = 0, undecided_by_double = 0;
     Digest contact_digest;
 };
 
@@ -29,9 +31,6 @@ ReferenceAnswer reference(const Scene& scene, const Frame& frame, const Geometry
 
 /// Brute force for small scenes, sweep otherwise.
 Method reference_method(const Scene& scene);
-
-/// Order-free digest of pairs, by the definition that pairs.clh implements on devices.
-Digest digest_of(std::span<const Pair> pairs);
 
 /// Pairs of `expected` that `found` lacks, and pairs of `found` that `expected` lacks. Both sorted;
 /// duplicates in `found` count as extra.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampler.h"
 
-#include "algorithms/broad/broad.h"
+#include "algorithms/bounds/geometry.h"
 #include "scenes/error.h"
 
 #include <algorithm>
@@ -14,12 +14,6 @@ namespace tandem {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-void add(Digest& sum, const Digest& term) {
-    sum.count += term.count;
-    sum.a += term.a;
-    sum.b += term.b;
-}
 
 /// Device time from the begin of the first command to the end of the last; -1 when a command has no times.
 std::int64_t device_span(const Trace& trace) {
@@ -34,22 +28,18 @@ std::int64_t device_span(const Trace& trace) {
     return last < 0 ? -1 : last - first;
 }
 
-/// One cell at work: the session, its broad phase, and the ways to replay the frames.
+/// One cell at work: the session, and the ways to replay the frames.
 class Sampler {
 public:
     Sampler(const Cell& cell, const Scene& scene, const FrameRange& range, Measurement& out)
-        : range_(range), out_(out), device_(*cell.device) {
-        device_.set_clocks(Clocks::off);
-        device_.finish();
+        : cell_(cell), range_(range), out_(out) {
+        for (auto* device : cell.devices) device->set_clocks(Clocks::off);
         const auto begin = Clock::now();
-        const std::array devices{cell.device};
-        session_ = cell.algorithm->prepare(devices, scene, cell.settings);
-        device_.finish();
+        session_ = cell.algorithm->prepare(cell.devices, scene, cell.settings);
+        wait();
         out.prepare_ns = since(begin);
         out.settings = session_->settings();
         geometry_ = geometry_of(out.settings);
-        if (!session_->finds_pairs())
-            broad_ = std::make_unique<Broad>(scene, geometry_, broad_bound(out.settings));
     }
 
     void check(References& references, const SampleOptions& options, const std::string& name);
@@ -58,26 +48,26 @@ public:
     void count();
 
 private:
-    FrameResult run(std::size_t index) {
-        std::vector<BodyPair> pairs;
-        if (broad_) {
-            const HostWork work(device_, Stage::broad, "body pairs");
-            pairs = broad_->pairs(range_.frames[index]);
-        }
-        return session_->run(range_.frames[index], pairs);
+    FrameResult run(std::size_t index) { return session_->run(range_.frames[index]); }
+    void wait() {
+        for (auto* device : cell_.devices) device->finish();
+    }
+    bool makes_contacts() const {
+        return out_.settings[parameters::output] == Output::pairs
+               && out_.settings[parameters::contact_rule] != ContactRule::none;
     }
 
     void compare(const ReferenceAnswer& expected, const FrameResult& result, const Digest& digest,
                  const Digest& contacts);
     void add_errors(Truths& truths, std::size_t index, const FrameResult& result, const Digest& digest,
                     const Digest& contacts, const Report& report);
+    void add_counts(const FrameResult& result);
 
+    const Cell& cell_;
     const FrameRange& range_;
     Measurement& out_;
-    Device& device_;
     std::unique_ptr<Session> session_;
     Geometry geometry_;
-    std::unique_ptr<Broad> broad_;
     std::vector<Digest> digests_; ///< [frame] of the checking replay
 };
 
@@ -86,8 +76,8 @@ void Sampler::compare(const ReferenceAnswer& expected, const FrameResult& result
     auto& agreement = out_.agreement;
     ++agreement.frames;
     if (digest != expected.digest) {
-        if (result.pairs) {
-            const auto found = difference(expected.pairs, session_->download(result));
+        if (result.has_pairs()) {
+            const auto found = difference(expected.pairs, result.download());
             agreement.missing += found.missing;
             agreement.extra += found.extra;
         } else {
@@ -101,8 +91,7 @@ void Sampler::compare(const ReferenceAnswer& expected, const FrameResult& result
             }
         }
     }
-    if (out_.settings.at("contact_rule") != "none" && result.pairs && contacts != expected.contact_digest)
-        ++agreement.contact_frames_wrong;
+    if (makes_contacts() && contacts != expected.contact_digest) ++agreement.contact_frames_wrong;
 }
 
 void Sampler::add_errors(Truths& truths, std::size_t index, const FrameResult& result, const Digest& digest,
@@ -110,9 +99,9 @@ void Sampler::add_errors(Truths& truths, std::size_t index, const FrameResult& r
     FrameAnswer answer;
     answer.pairs = digest;
     answer.contacts = contacts;
-    answer.makes_contacts = out_.settings.at("contact_rule") != "none";
-    answer.download = [&] { return session_->download(result); };
-    answer.download_contacts = [&] { return session_->download_contacts(result); };
+    answer.makes_contacts = makes_contacts();
+    answer.download = [&] { return result.download(); };
+    answer.download_contacts = [&] { return result.download_contacts(); };
     if (!out_.errors) out_.errors.emplace();
     out_.errors->add(truths.errors(geometry_, index, answer, report));
 }
@@ -123,46 +112,50 @@ void Sampler::check(References& references, const SampleOptions& options, const 
         const auto frame = fmt::format("frame {} of {}", i + 1, range_.frames.size());
         options.progress(fmt::format("{}: checking {}", name, frame));
         const auto result = run(i);
-        const bool counted = out_.settings.at("output") == "count";
-        auto digest = counted ? Digest{result.count, 0, 0} : session_->digest(result);
-        const auto contacts = session_->contact_digest(result);
+        const bool counted = out_.settings[parameters::output] == Output::count;
+        auto digest = counted ? Digest{result.count, 0, 0} : result.digest();
+        const auto contacts = result.contact_digest();
         if (options.check) {
             const auto& expected = references.answer(geometry_, contact_settings_of(out_.settings), i);
             if (counted && result.count == expected.digest.count) digest = expected.digest;
             compare(expected, result, digest, contacts);
         }
-        if (options.truths != nullptr && result.pairs)
+        if (options.truths != nullptr && result.has_pairs())
             add_errors(*options.truths, i, result, digest, contacts,
                        [&](double share, std::uint64_t decided) {
                            options.progress(fmt::format("truth of {}: {:.0f} %, {} pairs decided", frame,
                                                         share * 100, decided));
                        });
-        add(out_.agreement.digest, digest);
-        add(out_.agreement.contact_digest, contacts);
+        out_.agreement.digest += digest;
+        out_.agreement.contact_digest += contacts;
         digests_.push_back(digest);
-        out_.body_pairs.push_back(result.body_pairs);
-        out_.candidate_pairs.push_back(result.count);
-        out_.contacts.push_back(result.contacts);
-        out_.degenerate += result.degenerate;
-        out_.rejected += result.rejected;
-        out_.unsure += result.unsure;
-        out_.uncertain += result.uncertain;
-        out_.retries += result.retries;
-        device_.finish();
+        add_counts(result);
     }
-    out_.device_bytes = device_.bytes_allocated();
+    for (const auto* device : cell_.devices) out_.device_bytes += device->bytes_allocated();
+}
+
+void Sampler::add_counts(const FrameResult& result) {
+    out_.body_pairs.push_back(result.body_pairs);
+    out_.candidate_pairs.push_back(result.count);
+    out_.contacts.push_back(result.contacts);
+    out_.degenerate += result.degenerate;
+    out_.rejected += result.rejected;
+    out_.undecided_by_filter += result.undecided_by_filter;
+    out_.undecided_by_double += result.undecided_by_double;
+    out_.retries += result.retries;
+    out_.batches += result.batches;
 }
 
 void Sampler::time() {
     session_->reset();
     std::vector<std::int64_t> frames;
     for (std::size_t i = 0; i < range_.frames.size(); ++i) {
-        device_.finish();
+        wait();
         const auto begin = Clock::now();
         const auto result = run(i);
         frames.push_back(since(begin));
         // A sample that gives another answer than the checked replay counts against the cell.
-        if (out_.settings.at("output") != "count" && session_->digest(result) != digests_[i])
+        if (out_.settings[parameters::output] != Output::count && result.digest() != digests_[i])
             ++out_.agreement.extra;
         if (result.count != out_.candidate_pairs[i]) ++out_.agreement.extra;
     }
@@ -171,35 +164,41 @@ void Sampler::time() {
 
 void Sampler::break_down() {
     session_->reset();
-    device_.set_clocks(Clocks::on);
+    for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
     for (std::size_t i = 0; i < range_.frames.size(); ++i) {
-        device_.finish();
+        wait();
         const auto begin = Clock::now();
-        run(i);
+        const auto result = run(i);
         out_.breakdown_ns.push_back(since(begin));
-        const auto trace = device_.finish();
-        out_.stages.push_back(by_stage(trace));
-        out_.device_span_ns.push_back(device_span(trace));
+        StageSamples sum{};
+        std::int64_t span = 0; // the longest of the devices, -1 when one does not tell
+        for (auto* device : cell_.devices) {
+            const auto trace = device->finish();
+            const auto own = by_stage(trace);
+            for (std::size_t stage = 0; stage < own.size(); ++stage) sum[stage] += own[stage];
+            const auto own_span = device_span(trace);
+            span = span < 0 || own_span < 0 ? -1 : std::max(span, own_span);
+        }
+        out_.stages.push_back(sum);
+        out_.device_span_ns.push_back(span);
     }
     if (std::any_of(out_.device_span_ns.begin(), out_.device_span_ns.end(),
                     [](auto span) { return span < 0; }))
         out_.device_span_ns.clear();
-    device_.set_clocks(Clocks::off);
+    for (auto* device : cell_.devices) device->set_clocks(Clocks::off);
 }
 
 void Sampler::count() {
     session_->reset();
     session_->count_work(true);
     for (std::size_t i = 0; i < range_.frames.size(); ++i) {
-        const auto work = run(i).work;
-        out_.work.bvtt_nodes += work.bvtt_nodes;
-        out_.work.seeds += work.seeds;
-        out_.work.balances += work.balances;
-        out_.work.refills += work.refills;
-        out_.work.spills += work.spills;
-        out_.work.queue_bytes = work.queue_bytes;
-        out_.work.published_queue_bytes = work.published_queue_bytes;
-        device_.finish();
+        const auto result = run(i);
+        for (const auto& counter : cell_.algorithm->counters()) {
+            const auto found = result.work.find(counter.name);
+            if (found == result.work.end()) continue;
+            auto& total = out_.work[counter.name];
+            total = counter.total == Counter::Total::sum ? total + found->second : found->second;
+        }
     }
     session_->count_work(false);
 }
@@ -272,7 +271,7 @@ Measurement measure(const Cell& cell, const Scene& scene, const FrameRange& rang
     Measurement out;
     const auto name = describe(cell);
     options.progress(fmt::format("{}: preparing", name));
-    cell.device->take_kernels();
+    for (auto* device : cell.devices) device->take_kernels();
     Sampler sampler(cell, scene, range, out);
     sampler.check(references, options, name);
     for (std::size_t i = 0; i < options.repeat; ++i) {
@@ -282,7 +281,10 @@ Measurement measure(const Cell& cell, const Scene& scene, const FrameRange& rang
     options.progress(fmt::format("{}: breakdown", name));
     sampler.break_down();
     if (options.count_work) sampler.count();
-    out.kernels = cell.device->take_kernels();
+    for (auto* device : cell.devices) {
+        const auto own = device->take_kernels();
+        out.kernels.insert(out.kernels.end(), own.begin(), own.end());
+    }
     return out;
 }
 

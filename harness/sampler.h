@@ -78,8 +78,9 @@ struct Measurement {
     std::vector<std::int64_t> breakdown_ns;          ///< [frame] span of the breakdown run
     std::vector<std::int64_t> device_span_ns; ///< [frame] first begin to last end; empty when not known
     std::vector<std::uint64_t> body_pairs, candidate_pairs, contacts; ///< [frame]
-    std::uint64_t degenerate = 0, rejected = 0, unsure = 0, uncertain = 0, retries = 0;
-    Work work;
+    std::uint64_t degenerate = 0, rejected = 0, undecided_by_filter = 0, undecided_by_double = 0;
+    std::uint64_t retries = 0, batches = 0;         ///< of the checking replay
+    std::map<std::string_view, std::uint64_t> work; ///< by counter, over the frames; empty when not counted
     Agreement agreement;
     std::optional<AnswerErrors> errors; ///< against the exact truth; none when not asked for
     std::vector<KernelFacts> kernels;

@@ -37,20 +37,23 @@ Scene open_scene(const SimulateOptions& options) {
 
 /// A body moves by its contacts: unless asked for others, the least translation for pairs that surely meet.
 /// What cells are measured with is the paper's rule, which pushes bodies that only touch metres sideways.
-void prefer_certain_contacts(Request& request, std::span<Device* const> devices) {
+void prefer_certain_contacts(Request& request, std::span<const DeviceGroup> devices) {
     const auto prefer = [&](const char* name, const char* value) {
         const auto given = std::any_of(request.sets.begin(), request.sets.end(),
                                        [&](const auto& set) { return set.first == name; });
         if (!given) request.sets.push_back({name, {value}});
     };
     prefer("contact_rule", "sat");
-    const auto has_double = [](const auto* device) { return device->info().has_double; };
-    if (std::all_of(devices.begin(), devices.end(), has_double)) prefer("decision", "recheck");
+    const auto have_double = [](const DeviceGroup& group) {
+        return std::all_of(group.begin(), group.end(),
+                           [](const auto* device) { return device->info().has_double; });
+    };
+    if (std::all_of(devices.begin(), devices.end(), have_double)) prefer("decision", "recheck");
 }
 
 Cell only_cell(const SimulateOptions& options, const std::vector<BackendReport>& backends) {
     auto request = options.request;
-    if (request.algorithms.empty()) request.algorithms = {"chunked"};
+    if (request.algorithms.empty()) request.algorithms = {std::string(algorithms().front()->name())};
     if (request.devices.empty()) request.devices = {"opencl:0"};
     const auto devices = choose_devices(backends, request.devices);
     prefer_certain_contacts(request, devices);
@@ -59,7 +62,8 @@ Cell only_cell(const SimulateOptions& options, const std::vector<BackendReport>&
         throw InputError(fmt::format("a simulation takes one algorithm, preset, device and value of each "
                                      "setting; this asks for {} cells",
                                      cells.size()));
-    if (cells.front().settings.at("output") != "pairs" || cells.front().settings.at("contact_rule") == "none")
+    if (cells.front().settings[parameters::output] != Output::pairs
+        || cells.front().settings[parameters::contact_rule] == ContactRule::none)
         throw InputError("a simulation needs contacts; leave out output and contact_rule");
     return cells.front();
 }
@@ -71,8 +75,9 @@ public:
     Journal(const SimulateOptions& options, const Scene& scene, const Cell& cell)
         : settings_(describe(*scene.dynamics)) {
         // What contacts depend on; devices and schedules find the same ones.
-        for (const auto* name : {"k", "axes", "precision", "rounding", "truth", "contact_rule", "decision"})
-            settings_ += fmt::format(" {}={}", name, cell.settings.at(name));
+        for (const auto* name :
+             {"k", "axes", "precision", "rounding", "placement", "contact_rule", "decision"})
+            settings_ += fmt::format(" {}={}", name, cell.settings.text(name));
         if (options.recording.empty()) {
             if (options.resume) throw InputError("--resume goes with -o FILE, the recording to go on with");
             return;
@@ -121,6 +126,11 @@ private:
     std::optional<RecordingWriter> writer_;
 };
 
+/// Books the simulation's own work on the host under its stage.
+void book(Search& search, Stage stage, std::int64_t host_ns) {
+    search.stages[static_cast<std::size_t>(stage)].host_ns += host_ns;
+}
+
 /// Steps until `last` are done; totals and records get each as it ends.
 void run_steps(const SimulateOptions& options, std::size_t last, Simulation& simulation,
                ContactFinder& finder, Journal& journal, RecordFile& file, RunTotals& totals) {
@@ -132,7 +142,9 @@ void run_steps(const SimulateOptions& options, std::size_t last, Simulation& sim
         const auto begin = Clock::now();
         const auto report = simulation.step(detect);
         const auto wall = since(begin);
-        const auto search = finder.take();
+        auto search = finder.take();
+        book(search, Stage::reduce, report.reduce_ns);
+        book(search, Stage::solve, report.solve_ns);
         totals.add(report, search, wall);
         journal.append(report, simulation.midway());
         file.append(step_record(report, search, wall));
@@ -146,23 +158,26 @@ void run_steps(const SimulateOptions& options, std::size_t last, Simulation& sim
 } // namespace
 
 ContactFinder::ContactFinder(const Cell& cell, const Scene& scene, bool timed)
-    : device_(*cell.device), walk_(cell, scene) {
-    device_.set_clocks(timed ? Clocks::on : Clocks::off);
-    device_.finish();
+    : session_(cell.algorithm->prepare(cell.devices, scene, cell.settings)),
+      host_broad_(cell.settings[parameters::broad] != Broad::device) {
+    for (auto* device : session_->devices()) device->set_clocks(timed ? Clocks::on : Clocks::off);
 }
 
 void ContactFinder::find(const Frame& frame, std::vector<ContactPoint>& contacts) {
-    auto begin = Clock::now();
-    const auto pairs = walk_.broad ? walk_.broad->pairs(frame) : std::vector<BodyPair>{};
-    search_.broad_ns += since(begin);
-    begin = Clock::now();
-    const auto result = walk_.session->run(frame, pairs);
-    contacts = walk_.session->download_contacts(result);
+    const auto begin = Clock::now();
+    const auto result = session_->run(frame);
+    contacts = result.download_contacts();
     search_.narrow_ns += since(begin);
     search_.body_pairs += result.body_pairs;
     search_.candidate_pairs += result.count;
-    const auto stages = by_stage(device_.finish());
-    for (std::size_t i = 0; i < stages.size(); ++i) search_.stages[i] += stages[i];
+    for (auto* device : session_->devices()) {
+        const auto stages = by_stage(device->finish());
+        for (std::size_t i = 0; i < stages.size(); ++i) search_.stages[i] += stages[i];
+        if (!host_broad_) continue;
+        const auto broad = stages[static_cast<std::size_t>(Stage::broad)].host_ns;
+        search_.broad_ns += broad;
+        search_.narrow_ns -= broad;
+    }
 }
 
 Search ContactFinder::take() { return std::exchange(search_, {}); }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "harness/sampler.h"
-#include "harness/walk.h"
 #include "scenes/simulate/simulation.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,9 +11,9 @@ namespace tandem {
 /// One search for contacts: what was found and host nanoseconds it took.
 struct Search {
     std::uint64_t body_pairs = 0, candidate_pairs = 0;
-    std::int64_t broad_ns = 0;  ///< body pairs, where the host finds them
+    std::int64_t broad_ns = 0;  ///< body pairs, where the host finds them and stages are measured
     std::int64_t narrow_ns = 0; ///< transform to contacts, with all transfers and waits
-    StageSamples stages{};      ///< with device times only where they are measured
+    StageSamples stages{};      ///< of the searches only where they are measured
 };
 
 /// Finds the contacts of frames with one cell. `timed`: with device times of every stage, which cost some
@@ -29,8 +28,8 @@ public:
     Search take();
 
 private:
-    Device& device_;
-    Walk walk_;
+    std::unique_ptr<Session> session_;
+    bool host_broad_;
     Search search_;
 };
 

@@ -73,7 +73,7 @@ void RunTotals::add(const StepReport& report, const Search& search, std::int64_t
 }
 
 Json step_record(const StepReport& report, const Search& search, std::int64_t wall_ns) {
-    return {{"schema", 1},
+    return {{"schema", 2},
             {"kind", "step"},
             {"step", report.step},
             {"time_s", report.time},
@@ -99,7 +99,7 @@ Json step_record(const StepReport& report, const Search& search, std::int64_t wa
 }
 
 Json run_record(const Cell& cell, const Scene& scene, const RunTotals& t, const std::string& failure) {
-    Json json{{"schema", 1},
+    Json json{{"schema", 2},
               {"kind", "run"},
               {"status", failure.empty() ? "ok" : "failed"},
               {"failure", failure.empty() ? Json(nullptr) : Json(failure)},
@@ -107,8 +107,8 @@ Json run_record(const Cell& cell, const Scene& scene, const RunTotals& t, const 
               {"dynamics", dynamics_json(*scene.dynamics)},
               {"algorithm", cell.algorithm->name()},
               {"preset", cell.preset},
-              {"settings", cell.settings},
-              {"device", record_device(cell.device->info())},
+              {"settings", cell.settings.texts()},
+              {"devices", record_devices(cell.devices)},
               {"first_step", t.first},
               {"steps", t.steps}};
     json["contacts_found_median"] = median(t.found);

@@ -86,7 +86,7 @@ std::string stage_table(std::span<const Row> rows) {
         text += fmt::format(
             "{:<{}} {:<9} {:>9.2f} {:>9.2f} {:>8.2f} {:>8.2f} {:>9.2f} {:>9.2f} {:>9.2f} {:>9.2f} {:>9.2f} "
             "{:>8.2f} {:>8.2f} {:>9} {:>6} {:>10} {:>9} {:>10.2f}\n",
-            label(*cell), width, cell->device->info().id, device_ms(*m, Stage::transform),
+            label(*cell), width, name_of(cell->devices), device_ms(*m, Stage::transform),
             device_ms(*m, Stage::refit), broad_ms(*m), device_ms(*m, Stage::seed),
             device_ms(*m, Stage::traverse), device_ms(*m, Stage::balance), device_ms(*m, Stage::contact),
             host_ms(*m, Stage::preprocess), host_ms(*m, Stage::postprocess), device_ms(*m, Stage::read),
@@ -97,17 +97,19 @@ std::string stage_table(std::span<const Row> rows) {
 }
 
 std::string speedup_table(std::span<const Row> rows) {
+    if (rows.empty()) return {};
+    const auto base = rows.front().cell->algorithm->name();
+    const auto launches = [](const Measurement& m) {
+        return static_cast<double>(over_stages(m, &StageSample::launches));
+    };
     std::string text;
     for (const auto& [g, gm] : rows) {
-        if (g->algorithm->name() != "gproximity") continue;
+        if (g->algorithm->name() == base) continue;
         for (const auto& [c, cm] : rows) {
-            if (c->algorithm->name() != "chunked" || c->device != g->device) continue;
-            const auto launches = [](const Measurement& m) {
-                return static_cast<double>(over_stages(m, &StageSample::launches));
-            };
+            if (c->algorithm->name() != base || c->devices != g->devices) continue;
             text +=
                 fmt::format("{:<60} {:<9} {} {} {} {} {} {}\n", fmt::format("{} / {}", label(*g), label(*c)),
-                            g->device->info().id, ratio(total_ms(*gm), total_ms(*cm)),
+                            name_of(g->devices), ratio(total_ms(*gm), total_ms(*cm)),
                             ratio(narrow_ms(*gm), narrow_ms(*cm)), ratio(kernels_ms(*gm), kernels_ms(*cm)),
                             ratio(device_ms(*gm, Stage::read), device_ms(*cm, Stage::read)),
                             ratio(device_ms(*gm, Stage::write), device_ms(*cm, Stage::write)),
@@ -116,8 +118,8 @@ std::string speedup_table(std::span<const Row> rows) {
     }
     if (text.empty()) return text;
     return fmt::format("{:<60} {:<9} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n",
-                       "how many times chunked is faster", "device", "total", "narrow", "kernels", "read",
-                       "write", "launches")
+                       fmt::format("how many times {} is faster", base), "device", "total", "narrow",
+                       "kernels", "read", "write", "launches")
            + text;
 }
 

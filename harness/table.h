@@ -18,8 +18,9 @@ struct Row {
 /// finds the body pairs, total the median sample.
 std::string stage_table(std::span<const Row> rows);
 
-/// The form of the paper's Table 4: how many times longer each gproximity row takes than each chunked row on
-/// the same device, in total, narrow phase, kernels alone, reads, writes and launches.
+/// The form of the paper's Table 4: how many times longer each row of another algorithm takes than each row
+/// of the first row's algorithm on the same devices, in total, narrow phase, kernels alone, reads, writes and
+/// launches.
 std::string speedup_table(std::span<const Row> rows);
 
 } // namespace tandem

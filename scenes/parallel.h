@@ -12,10 +12,10 @@
 
 namespace tandem {
 
-/// Calls work(i) for i < count on all cores. When a call throws, no further ones are begun, and the first
-/// exception is thrown after those that run have ended.
+/// Calls work(i) for i < count on `threads` threads at most. When a call throws, no further ones are begun,
+/// and the first exception is thrown after those that run have ended.
 template<class Work>
-void parallel_for(std::size_t count, Work work) {
+void parallel_for(std::size_t count, std::size_t threads, Work work) {
     std::atomic<std::size_t> next = 0;
     std::exception_ptr failure;
     std::once_flag failed;
@@ -29,11 +29,16 @@ void parallel_for(std::size_t count, Work work) {
     };
     {
         std::vector<std::jthread> others;
-        const auto threads = std::min<std::size_t>(count, std::thread::hardware_concurrency());
-        for (std::size_t i = 1; i < threads; ++i) others.emplace_back(drain);
+        for (std::size_t i = 1; i < std::min(count, threads); ++i) others.emplace_back(drain);
         drain();
     }
     if (failure) std::rethrow_exception(failure);
+}
+
+/// The same on all cores.
+template<class Work>
+void parallel_for(std::size_t count, Work work) {
+    parallel_for(count, std::thread::hardware_concurrency(), std::move(work));
 }
 
 /// Spans of `values` in order, none empty, small enough that all cores get some of a long list.

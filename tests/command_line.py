@@ -172,7 +172,7 @@ class CommandLine(Case):
                         "k=6,,8", "axes=coordinate", "rounding=directed"):
             expected = "goes with k=8 only" if setting == "axes=coordinate" else "impossible"
             self.bad(expected, "run", "plates", "--algorithm", "chunked", "--set", setting, "--frames", "0")
-        self.bad("goes with rounding=safe", "run", "plates", "--set", "truth=t2", "--set", "rounding=nearest")
+        self.bad("goes with rounding=safe", "run", "plates", "--set", "placement=exact", "--set", "rounding=nearest")
         for frames in ("5:2", "0:500", "500", "x", "1:", "-1:2", "0:99999999999999999999"):
             self.bad("frames", "run", "plates", "--frames", frames)
         for pose in ("0 0 0 1 0 0", "0 0 0 1 0 0 0 0", "0 0 0 0 0 0 0", "nan 0 0 1 0 0 0", "a b c d e f g", ""):

@@ -4,20 +4,19 @@
 // of BROAD_TILE. Tiles whose unions are apart are skipped; of the others every body is tested with every one.
 #include "backends/portable.h"
 #include "algorithms/broad/tile.clh"
-#include "algorithms/kdop/node.clh"
-#include "algorithms/status.clh"
+#include "algorithms/answer/status.clh"
+#include "algorithms/bounds/volume.clh"
 
 // A volume here is SLABS rows {lower, upper}.
 
 // Copies the root volumes of a tile into the order of bodies and makes their union. A work-group a tile.
-KERNEL void bound_tiles(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* order,
-                        uint body_count, GLOBAL RealPair* roots, GLOBAL RealPair* unions) {
+KERNEL void bound_tiles(GLOBAL const real* volumes, GLOBAL const uint* order, uint body_count,
+                        GLOBAL RealPair* roots, GLOBAL RealPair* unions) {
     LOCAL_ARRAY(RealPair, tile, BROAD_TILE * SLABS);
     const uint first = GROUP_ID * BROAD_TILE;
     const uint count = body_count - first < BROAD_TILE ? body_count - first : BROAD_TILE;
     for (uint i = LOCAL_ID; i < count * SLABS; i += GROUP_SIZE) {
-        GLOBAL const uint* body = bodies + (ulong)order[first + i / SLABS] * BODY_WORDS;
-        GLOBAL const real* root = node_at(nodes, body[BODY_NODES]);
+        GLOBAL const real* root = volume_of(volumes, order[first + i / SLABS]);
         RealPair slab;
         slab.x = root[i % SLABS];
         slab.y = root[i % SLABS + SLABS];

@@ -11,7 +11,7 @@ namespace tandem {
 namespace {
 
 /// Roundings on the way from a body's vertex to a slab: input, rotation (4), two sums, and E of a safe corner
-/// (4), doubled for good measure and for the bound on the drift from the pose (6; truth = t2).
+/// (4), doubled for good measure and for the bound on the drift from the pose (6; placement = exact).
 constexpr double rounding_steps = 24;
 
 /// What published rounding adds, in integer directions: its tolerance is one of unit directions, shared by
@@ -49,20 +49,16 @@ std::vector<BodyPair> ascending(std::vector<BodyPair> pairs, std::size_t bodies)
 
 } // namespace
 
-Broad::Bound broad_bound(const Settings& settings) {
-    return settings.at("broad") == "tight" ? Broad::Bound::tight : Broad::Bound::sphere;
-}
-
-Broad::Broad(const Scene& scene, const Geometry& geometry, Bound bound)
+BroadSweep::BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound)
     : scene_(scene),
       bound_(bound),
-      roundoff_(std::ldexp(1.0, geometry.precision == Precision::twice ? -53 : -24)),
+      roundoff_(std::ldexp(1.0, geometry.precision == Precision::fp64 ? -53 : -24)),
       tolerance_(geometry.rounding == Rounding::published ? published_slack : 0) {
     for (const auto& d : directions(geometry)) directions_.emplace_back(d[0], d[1], d[2]);
     for (const auto& mesh : scene.meshes) shapes_.push_back(shape_of(mesh.vertices));
 }
 
-Broad::Shape Broad::shape_of(const std::vector<Eigen::Vector3d>& vertices) const {
+BroadSweep::Shape BroadSweep::shape_of(const std::vector<Eigen::Vector3d>& vertices) const {
     Eigen::Vector3d lower = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
     Eigen::Vector3d upper = -lower;
     Shape shape;
@@ -77,12 +73,12 @@ Broad::Shape Broad::shape_of(const std::vector<Eigen::Vector3d>& vertices) const
     return shape;
 }
 
-void Broad::bound_rigid(const Shape& shape, const Pose& pose, double* slabs) const {
+void BroadSweep::bound_rigid(const Shape& shape, const Pose& pose, double* slabs) const {
     const Eigen::Matrix3d rotation = pose.rotation.normalized().toRotationMatrix();
     const Eigen::Vector3d centre = rotation * shape.centre + pose.translation;
     const double slack = rounding_steps * roundoff_ * (pose.translation.lpNorm<1>() + 2 * shape.reach);
     for (const auto& d : directions_) {
-        const double reach = bound_ == Bound::sphere ? shape.radius * d.norm()
+        const double reach = bound_ == Broad::sphere ? shape.radius * d.norm()
                                                      : (rotation.transpose() * d).cwiseAbs().dot(shape.half);
         const double middle = d.dot(centre);
         const double width = reach * (1 + 8 * std::numeric_limits<double>::epsilon()) + slack * d.lpNorm<1>()
@@ -92,12 +88,12 @@ void Broad::bound_rigid(const Shape& shape, const Pose& pose, double* slabs) con
     }
 }
 
-void Broad::bound_deformed(const std::vector<Eigen::Vector3d>& vertices, double* slabs) const {
+void BroadSweep::bound_deformed(const std::vector<Eigen::Vector3d>& vertices, double* slabs) const {
     const auto shape = shape_of(vertices);
     for (const auto& d : directions_) {
         double lower = d.dot(shape.centre) - shape.radius * d.norm();
         double upper = d.dot(shape.centre) + shape.radius * d.norm();
-        if (bound_ == Bound::tight) {
+        if (bound_ == Broad::tight) {
             lower = std::numeric_limits<double>::infinity();
             upper = -lower;
             for (const auto& v : vertices) {
@@ -112,7 +108,7 @@ void Broad::bound_deformed(const std::vector<Eigen::Vector3d>& vertices, double*
     }
 }
 
-std::size_t Broad::sweep_direction(const std::vector<double>& slabs) const {
+std::size_t BroadSweep::sweep_direction(const std::vector<double>& slabs) const {
     const auto stride = 2 * directions_.size();
     const auto bodies = scene_.bodies.size();
     std::size_t best = 0;
@@ -134,7 +130,7 @@ std::size_t Broad::sweep_direction(const std::vector<double>& slabs) const {
     return best;
 }
 
-std::vector<double> Broad::bounds(const Frame& frame) const {
+std::vector<double> BroadSweep::bounds(const Frame& frame) const {
     const auto stride = 2 * directions_.size();
     const auto bodies = static_cast<std::uint32_t>(scene_.bodies.size());
     std::vector<double> slabs(bodies * stride);
@@ -147,7 +143,7 @@ std::vector<double> Broad::bounds(const Frame& frame) const {
     return slabs;
 }
 
-std::vector<BodyPair> Broad::pairs(const Frame& frame) const {
+std::vector<BodyPair> BroadSweep::pairs(const Frame& frame) const {
     const auto slabs = bounds(frame);
     const auto stride = 2 * directions_.size();
     const auto bodies = scene_.bodies.size();

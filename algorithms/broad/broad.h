@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/kdop/device_scene.h"
+#include "algorithms/bounds/geometry.h"
+#include "algorithms/traversal.h"
 
 namespace tandem {
 
@@ -9,14 +10,11 @@ namespace tandem {
 /// geometry's own directions, swept along the direction that spreads the bodies most. Bounds along any other
 /// directions could drop pairs whose k-DOPs overlap. Widened by the rounding of transform and slabs, so no
 /// pair whose root k-DOPs overlap is ever dropped. Pairs of two fixed bodies are left out.
-class Broad {
+class BroadSweep {
 public:
-    enum class Bound {
-        sphere, ///< the paper's: a sphere around each mesh
-        tight   ///< a box of the mesh's frame; a deformable body's own slabs
-    };
-
-    Broad(const Scene& scene, const Geometry& geometry, Bound bound);
+    /// `bound`: Broad::sphere, the paper's spheres around meshes; or Broad::tight, boxes of the meshes'
+    /// frames and the own slabs of deformable bodies. `scene` must outlive this.
+    BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound);
 
     /// Pairs in ascending order. O(n log n) and the pairs that overlap along the sweep.
     std::vector<BodyPair> pairs(const Frame& frame) const;
@@ -36,12 +34,10 @@ private:
 
     const Scene& scene_;
     std::vector<Eigen::Vector3d> directions_;
-    Bound bound_;
+    Broad bound_;
     double roundoff_;
     double tolerance_;          ///< of the overlap test along unit directions
     std::vector<Shape> shapes_; ///< by mesh
 };
-
-Broad::Bound broad_bound(const Settings& settings);
 
 } // namespace tandem

@@ -29,39 +29,41 @@ Eigen::Vector3d centre_of(const std::vector<Eigen::Vector3d>& vertices) {
 
 } // namespace
 
-BroadStage::BroadStage(const DeviceScene& scene, const Scene& bodies, std::uint32_t groups)
-    : scene_(scene),
-      bodies_(bodies),
-      group_size_(std::min<std::uint32_t>(scene.group_size(), BROAD_TILE)),
-      groups_(groups * (scene.group_size() / group_size_)) {
-    const auto count = scene.body_count();
-    if (bodies.bodies.size() > most_bodies)
+BroadStage::BroadStage(const Bodies& bodies, const Hierarchy& hierarchy, LaunchShape shape)
+    : bodies_(bodies), hierarchy_(hierarchy) {
+    shape_.group_size = std::min<std::uint32_t>(shape.group_size, BROAD_TILE);
+    shape_.groups = shape.groups * (shape.group_size / shape_.group_size);
+    const auto count = bodies.count();
+    if (count > most_bodies)
         throw InputError(fmt::format("setting broad=device takes at most {} bodies and the scene has {}; "
                                      "choose broad=tight",
-                                     most_bodies, bodies.bodies.size()));
-    for (const auto& mesh : bodies.meshes) mesh_centres_.push_back(centre_of(mesh.vertices));
-    const auto defines = geometry_defines(scene.geometry(), group_size_);
+                                     most_bodies, count));
+    for (const auto& mesh : bodies.scene().meshes) mesh_centres_.push_back(centre_of(mesh.vertices));
+    auto& device = bodies.device();
+    const auto& geometry = bodies.geometry();
+    const auto defines = geometry_defines(geometry, shape_.group_size);
     const auto& source = kernel_source("algorithms/broad/broad.cl");
-    bound_ = scene.device().compile(source, "bound_tiles", defines);
-    find_ = scene.device().compile(source, "find_body_pairs", defines);
-    const auto volume = static_cast<std::uint64_t>(scene.geometry().k) * real_bytes(scene.geometry());
-    order_ = scene.device().allocate(std::uint64_t{count} * 4, "order of bodies");
-    roots_ = scene.device().allocate(count * volume, "root volumes");
-    unions_ = scene.device().allocate(tiles_of(count) * volume, "unions of tiles");
+    bound_ = device.compile(source, "bound_tiles", defines);
+    find_ = device.compile(source, "find_body_pairs", defines);
+    const auto volume = static_cast<std::uint64_t>(geometry.k) * real_bytes(geometry);
+    order_ = device.allocate(std::uint64_t{count} * 4, "order of bodies");
+    roots_ = device.allocate(count * volume, "root volumes");
+    unions_ = device.allocate(tiles_of(count) * volume, "unions of tiles");
 }
 
 std::uint64_t BroadStage::most_pairs() const {
-    const std::uint64_t bodies = scene_.body_count();
+    const std::uint64_t bodies = bodies_.count();
     return bodies * (bodies - 1) / 2;
 }
 
 std::vector<Eigen::Vector3d> BroadStage::centres(const Frame& frame) const {
     std::vector<Eigen::Vector3d> centres;
-    for (std::size_t body = 0; body < bodies_.bodies.size(); ++body) {
+    const auto& bodies = bodies_.scene().bodies;
+    for (std::size_t body = 0; body < bodies.size(); ++body) {
         const auto& pose = frame.poses[body];
-        centres.push_back(bodies_.bodies[body].deformable
+        centres.push_back(bodies[body].deformable
                               ? centre_of(frame.deformed[body])
-                              : pose.rotation.normalized() * mesh_centres_[bodies_.bodies[body].mesh]
+                              : pose.rotation.normalized() * mesh_centres_[bodies[body].mesh]
                                     + pose.translation);
     }
     return centres;
@@ -70,25 +72,26 @@ std::vector<Eigen::Vector3d> BroadStage::centres(const Frame& frame) const {
 void BroadStage::sort(const Frame& frame) {
     std::vector<std::uint32_t> order;
     {
-        const HostWork work(scene_.device(), Stage::broad, "sort bodies");
+        const HostWork work(bodies_.device(), Stage::broad, "sort bodies");
         order = morton_order(centres(frame));
-        const auto moving = [&](std::uint32_t body) { return !bodies_.bodies[body].fixed; };
+        const auto moving = [&](std::uint32_t body) { return !bodies_.scene().bodies[body].fixed; };
         const auto fixed = std::stable_partition(order.begin(), order.end(), moving);
         moving_count_ = static_cast<std::uint32_t>(fixed - order.begin());
     }
-    const StageScope scope(scene_.device(), Stage::write);
-    scene_.device().upload(order_, bytes_of(order));
+    const StageScope scope(bodies_.device(), Stage::write);
+    bodies_.device().upload(order_, bytes_of(order));
 }
 
 void BroadStage::launch(const Buffer& pairs, std::uint32_t capacity, const Buffer& status) {
-    const StageScope scope(scene_.device(), Stage::broad);
-    const auto count = scene_.body_count();
-    const std::array<Argument, 6> bound{scene_.nodes(), scene_.bodies(), order_, count, roots_, unions_};
-    scene_.device().launch(bound_, {tiles_of(count), group_size_}, bound);
+    const StageScope scope(bodies_.device(), Stage::broad);
+    const auto count = bodies_.count();
+    const std::array<Argument, 5> bound{hierarchy_.volumes(), order_, count, roots_, unions_};
+    bodies_.device().launch(bound_, {tiles_of(count), shape_.group_size}, bound);
     const std::array<Argument, 8> find{roots_,        unions_, order_,   count,
                                        moving_count_, pairs,   capacity, status};
     const auto tile_pairs = tiles_of(moving_count_) * tiles_of(count);
-    scene_.device().launch(find_, {std::max(1u, std::min(groups_, tile_pairs)), group_size_}, find);
+    bodies_.device().launch(find_, {std::max(1u, std::min(shape_.groups, tile_pairs)), shape_.group_size},
+                            find);
 }
 
 } // namespace tandem

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/kdop/device_scene.h"
+#include "algorithms/bodies/bodies.h"
+#include "algorithms/hierarchy/hierarchy.h"
+#include "algorithms/traversal.h"
 
 namespace tandem {
 
@@ -9,9 +11,9 @@ namespace tandem {
 /// but those of two fixed bodies. Grids depend on the number of bodies only.
 class BroadStage {
 public:
-    /// `groups`: of scene.group_size() work-items, as many as run well at once. Throws InputError for more
-    /// bodies than pairs of tiles can be numbered for.
-    BroadStage(const DeviceScene& scene, const Scene& bodies, std::uint32_t groups);
+    /// Pairs of `bodies` by the volumes of `hierarchy`. Throws InputError for more bodies than pairs of tiles
+    /// can be numbered for.
+    BroadStage(const Bodies& bodies, const Hierarchy& hierarchy, LaunchShape shape);
 
     /// Puts the bodies in order of where `frame` has them. Neighbours in space should be neighbours there
     /// whenever pairs are sought: that decides how fast they are found, never which.
@@ -25,9 +27,9 @@ public:
 private:
     std::vector<Eigen::Vector3d> centres(const Frame& frame) const;
 
-    const DeviceScene& scene_;
-    const Scene& bodies_;
-    std::uint32_t group_size_, groups_;
+    const Bodies& bodies_;
+    const Hierarchy& hierarchy_;
+    LaunchShape shape_;
     std::uint32_t moving_count_ = 0; ///< bodies in the order that are not fixed; they come first
     std::vector<Eigen::Vector3d> mesh_centres_;
     Buffer order_, roots_, unions_;

@@ -9,37 +9,41 @@
 #define ROOT_TEST 1
 #endif
 
-// seeds[level * (pair_count + 1) + pair] = number of chunk pairs that body pair starts with at that level.
-KERNEL void count_seeds(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
-                        GLOBAL const uint* pairs, uint given_pairs, uint level_count, GLOBAL ulong* seeds,
+// Where a level's seeds stand: the starts of all body pairs and their sum.
+DEVICE ulong row_of_level(uint level, uint pair_count) { return level * ((ulong)pair_count + 1); }
+
+// seeds[row_of_level(level) + pair] = number of chunk pairs that body pair starts with at that level.
+KERNEL void count_seeds(GLOBAL const real* volumes, GLOBAL const uint* trees, GLOBAL const uint* levels,
+                        GLOBAL const uint* pairs, uint pair_room, uint level_count, GLOBAL ulong* seeds,
                         GLOBAL const uint* status) {
-    const uint pair_count = body_pair_count(given_pairs, status);
+    const uint pair_count = body_pair_count(pair_room, status);
     const ulong threshold = seed_threshold(pair_count);
-    for (uint pair = GLOBAL_ID; pair < pair_count; pair += GLOBAL_COUNT) {
-        GLOBAL const uint* a = bodies + (ulong)pairs[2u * pair] * BODY_WORDS;
-        GLOBAL const uint* b = bodies + (ulong)pairs[2u * pair + 1u] * BODY_WORDS;
+    for (ulong pair = GLOBAL_ID; pair < pair_count; pair += GLOBAL_COUNT) { // in 32 bits it might start over
+        const uint body_a = body_a_of(pairs, (uint)pair);
+        const uint body_b = body_b_of(pairs, (uint)pair);
+        GLOBAL const uint* a = tree_of(trees, body_a);
+        GLOBAL const uint* b = tree_of(trees, body_b);
         const uint own = seed_level(a, b, levels, threshold);
-        const ulong chunks_a = levels[(ulong)(a[BODY_LEVELS] + own) * LEVEL_WORDS + LEVEL_CHUNKS];
-        const ulong chunks_b = levels[(ulong)(b[BODY_LEVELS] + own) * LEVEL_WORDS + LEVEL_CHUNKS];
-        const int apart =
-            ROOT_TEST ? !overlap(node_at(nodes, a[BODY_NODES]), node_at(nodes, b[BODY_NODES])) : 0;
+        const ulong chunks_a = level_of(levels, a, own)[LEVEL_CHUNKS];
+        const ulong chunks_b = level_of(levels, b, own)[LEVEL_CHUNKS];
+        const int apart = ROOT_TEST ? !overlap(volume_of(volumes, body_a), volume_of(volumes, body_b)) : 0;
         const ulong walks = apart ? 0 : chunks_a * chunks_b;
         for (uint level = 0; level < level_count; ++level)
-            seeds[(ulong)level * (pair_count + 1u) + pair] = level == own ? walks : 0;
+            seeds[row_of_level(level, pair_count) + pair] = level == own ? walks : 0;
     }
 }
 
 // Turns each level's counts into starts, with the total at the end: one work-group a level; each work-item
 // sums a contiguous part, work-item 0 scans the parts.
-KERNEL void scan_seeds(GLOBAL ulong* seeds, uint given_pairs, GLOBAL const uint* status) {
+KERNEL void scan_seeds(GLOBAL ulong* seeds, uint pair_room, GLOBAL const uint* status) {
     LOCAL_ARRAY(ulong, parts, GROUP_SIZE);
-    const uint pair_count = body_pair_count(given_pairs, status);
-    GLOBAL ulong* row = seeds + (ulong)GROUP_ID * (pair_count + 1u);
-    const uint part = (pair_count + (uint)GROUP_SIZE - 1u) / (uint)GROUP_SIZE;
-    const uint first = LOCAL_ID * part < pair_count ? LOCAL_ID * part : pair_count;
-    const uint last = first + part < pair_count ? first + part : pair_count;
+    const uint pair_count = body_pair_count(pair_room, status);
+    GLOBAL ulong* row = seeds + row_of_level(GROUP_ID, pair_count);
+    const ulong part = ((ulong)pair_count + GROUP_SIZE - 1) / GROUP_SIZE;
+    const ulong first = LOCAL_ID * part < pair_count ? LOCAL_ID * part : pair_count;
+    const ulong last = first + part < pair_count ? first + part : pair_count;
     ulong sum = 0;
-    for (uint i = first; i < last; ++i) sum += row[i];
+    for (ulong i = first; i < last; ++i) sum += row[i];
     parts[LOCAL_ID] = sum;
     BARRIER;
     if (LOCAL_ID == 0u) {
@@ -53,7 +57,7 @@ KERNEL void scan_seeds(GLOBAL ulong* seeds, uint given_pairs, GLOBAL const uint*
     }
     BARRIER;
     ulong start = parts[LOCAL_ID];
-    for (uint i = first; i < last; ++i) {
+    for (ulong i = first; i < last; ++i) {
         const ulong own = row[i];
         row[i] = start;
         start += own;
@@ -65,10 +69,10 @@ DEVICE Walk walk_of_seed(const Job* job, uint pair_count, GLOBAL const ulong* st
                          GLOBAL const uint* handed, ulong seed) {
     if (seed >= own) {
         GLOBAL const uint* row = handed + (seed - own) * SEED_WORDS;
-        return start_walk(job->bodies, job->levels, job->pairs, job->level, row[0], row[1], row[2]);
+        return start_walk(job->trees, job->levels, job->pairs, job->level, row[0], row[1], row[2]);
     }
     const uint pair = pair_from(starts, near, pair_count, seed);
-    return walk_in_pair(job->bodies, job->levels, job->pairs, job->level, pair, seed - starts[pair]);
+    return walk_in_pair(job->trees, job->levels, job->pairs, job->level, pair, seed - starts[pair]);
 }
 
 // How many seeds a launch has: the level's own and the handed ones.
@@ -84,17 +88,17 @@ DEVICE ulong seed_total(ulong own, GLOBAL const uint* status, uint level, uint h
 // Schedule `item`, the paper's: every work-item walks seed after seed, a fixed stride apart, each to its end,
 // with a stack of its own. One launch takes the seeds of one level: `seeds` holds the starts of that level's
 // own ones.
-KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
-                     GLOBAL const uint* ids, GLOBAL const uint* pairs, uint given_pairs, uint level,
-                     GLOBAL const ulong* seeds, GLOBAL const uint* handed, uint handed_capacity,
-                     GLOBAL uint* below, uint below_capacity, GLOBAL uint* found, uint capacity,
-                     GLOBAL uint* status) {
+KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* levels,
+                     GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* pairs,
+                     uint pair_room, uint level, GLOBAL const ulong* seeds, GLOBAL const uint* handed,
+                     uint handed_capacity, GLOBAL uint* below, uint below_capacity, GLOBAL uint* found,
+                     uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, stacks, STACK_DEPTH * GROUP_SIZE);
     LOCAL uint* stack = stacks + LOCAL_ID;
-    const Job job = {nodes, bodies,         levels, ids,      pairs, level,
-                     below, below_capacity, found,  capacity, status};
-    const uint pair_count = body_pair_count(given_pairs, status);
-    GLOBAL const ulong* starts = seeds + (ulong)level * (pair_count + 1u);
+    const Job job = {nodes, trees, bodies,         levels, ids,      pairs,
+                     level, below, below_capacity, found,  capacity, status};
+    const uint pair_count = body_pair_count(pair_room, status);
+    GLOBAL const ulong* starts = seeds + row_of_level(level, pair_count);
     const ulong own = starts[pair_count];
     const ulong total = seed_total(own, status, level, handed_capacity);
     ulong seed = GLOBAL_ID;
@@ -164,19 +168,19 @@ DEVICE uint batch_size(ulong seeds) {
 // Schedule `group`: batches of seeds are dealt to work-groups, a fixed stride apart. A group tests the roots
 // of a batch, which few seeds survive, and expands what is left from a stack that its work-items share, so
 // that all of them have work however unlike the walks are.
-KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* levels,
-                               GLOBAL const uint* ids, GLOBAL const uint* pairs, uint given_pairs, uint level,
-                               GLOBAL const ulong* seeds, GLOBAL const uint* handed, uint handed_capacity,
-                               GLOBAL uint* below, uint below_capacity, GLOBAL uint* found, uint capacity,
-                               GLOBAL uint* status) {
+KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* levels,
+                               GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* pairs,
+                               uint pair_room, uint level, GLOBAL const ulong* seeds,
+                               GLOBAL const uint* handed, uint handed_capacity, GLOBAL uint* below,
+                               uint below_capacity, GLOBAL uint* found, uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, rows, SHARED_ROWS * ROW_WORDS);
     LOCAL_ARRAY(uint, pushed,
                 3); // rows pushed in this turn, and in the one before, which slow work-items may
     // still read; the third is made ready for the next
-    const Job job = {nodes, bodies,         levels, ids,      pairs, level,
-                     below, below_capacity, found,  capacity, status};
-    const uint all_pairs = body_pair_count(given_pairs, status);
-    GLOBAL const ulong* starts = seeds + (ulong)level * (all_pairs + 1u);
+    const Job job = {nodes, trees, bodies,         levels, ids,      pairs,
+                     level, below, below_capacity, found,  capacity, status};
+    const uint all_pairs = body_pair_count(pair_room, status);
+    GLOBAL const ulong* starts = seeds + row_of_level(level, all_pairs);
     const ulong own = starts[all_pairs];
     const ulong total = seed_total(own, status, level, handed_capacity);
     const uint batch = batch_size(total);
@@ -196,7 +200,7 @@ KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* bodi
         if (LOCAL_ID == 0u) pushed[(turn + 1u) % 3u] = 0u;
         BARRIER;
         if (collecting) {
-            const uint pair_count = body_pair_count(given_pairs, status); // again, for want of registers
+            const uint pair_count = body_pair_count(pair_room, status); // again, for want of registers
             const uint near = start < own ? pair_between(starts, 0u, pair_count, start) : 0u;
             for (ulong seed = start + LOCAL_ID; seed < start + batch && seed < total; seed += GROUP_SIZE) {
                 const Walk walk = walk_of_seed(&job, pair_count, starts, own, near, handed, seed);
@@ -208,7 +212,7 @@ KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* bodi
             }
             start += (ulong)GROUP_COUNT * batch;
         } else if (LOCAL_ID < taken) {
-            const Walk walk = start_walk(bodies, levels, pairs, level, row[0], row[1], row[2]);
+            const Walk walk = start_walk(trees, levels, pairs, level, row[0], row[1], row[2]);
             const Children children = expand(&job, &walk, row[3], &tally);
             for (uint i = 0; i < 4u; ++i)
                 if (((children.left >> i) & 1u) != 0u)

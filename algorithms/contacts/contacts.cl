@@ -16,14 +16,6 @@
 #ifndef CONTACT_RULE
 #define CONTACT_RULE 0
 #endif
-#define RULE_OPPOSING 0
-#define RULE_PUBLISHED 1
-#define RULE_SAT 2
-#define RULE_CLIP 3
-#define RULE_RESTRICTED 4
-#define RULE_VERTEX 5
-#define RULE_CONSISTENT 6
-#define RULE_GROWTH 7
 // Rules that take the pair in canonical order; the others take it as it is named.
 #define IS_CANONICAL (CONTACT_RULE >= RULE_SAT)
 // Rules whose contacts have a normal and a depth each.
@@ -269,14 +261,13 @@ DEVICE ulong contact_term(ulong pair_term, uint feature, GLOBAL const uint* bits
     return term;
 }
 
-// Digest of the contacts that are in the buffer. `value_bits`: their values as words. `ids`: tetrahedra in
-// input order.
+// Adds the terms of the first `count` contacts to `sums`. `value_bits`: their values as words. `ids`:
+// tetrahedra in input order.
 KERNEL void digest_contacts(GLOBAL const uint* found, GLOBAL const uint* bodies, GLOBAL const uint* ids,
-                            GLOBAL const uint* contact_ids, GLOBAL const uint* value_bits,
-                            uint contact_capacity, GLOBAL uint* status) {
+                            GLOBAL const uint* contact_ids, GLOBAL const uint* value_bits, uint count,
+                            GLOBAL uint* sums) {
     ulong a = 0;
     ulong b = 0;
-    const ulong count = stored(status + STATUS_CONTACTS, contact_capacity);
     for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         GLOBAL const uint* contact = contact_ids + i * CONTACT_WORDS;
         GLOBAL const uint* row = found + (ulong)contact[0] * PAIR_WORDS;
@@ -287,8 +278,5 @@ KERNEL void digest_contacts(GLOBAL const uint* found, GLOBAL const uint* bodies,
         a += term;
         b += digest_b(term);
     }
-    if (a != 0 || b != 0) {
-        counter_add_wide(status + STATUS_CONTACT_DIGEST_A, a);
-        counter_add_wide(status + STATUS_CONTACT_DIGEST_B, b);
-    }
+    add_to_sums(sums, a, b);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/contacts/decision_stage.h"
 
-#include "algorithms/contacts/exact.h"
+#include "algorithms/contacts/exact/meet_exactly.h"
 #include "algorithms/sources.h"
-#include "algorithms/status.clh"
+#include "algorithms/answer/status.clh"
 
 namespace tandem {
 
@@ -31,10 +31,10 @@ std::vector<std::uint8_t> verdicts_of(const std::vector<std::byte>& bytes) {
 
 } // namespace
 
-DecisionStage::DecisionStage(const DeviceScene& scene, DecisionPrecision decision, std::uint32_t groups)
-    : scene_(scene), decision_(decision), groups_(groups) {
-    auto defines = row_defines(scene.geometry(), scene.group_size());
-    auto& device = scene.device();
+DecisionStage::DecisionStage(const Bodies& bodies, DecisionPrecision decision, LaunchShape shape)
+    : bodies_(bodies), decision_(decision), shape_(shape) {
+    auto defines = row_defines(bodies.geometry(), shape.group_size);
+    auto& device = bodies.device();
     if (decision != DecisionPrecision::fp64)
         filter_ = device.compile(kernel_source("algorithms/contacts/filter.cl"), "filter_pairs", defines);
     defines["RECHECK_ALL"] = decision == DecisionPrecision::fp64 ? "1" : "0";
@@ -47,65 +47,73 @@ DecisionStage::DecisionStage(const DeviceScene& scene, DecisionPrecision decisio
 
 void DecisionStage::reserve(std::uint64_t pairs) {
     if (pairs <= room_) return;
-    room_ = pairs;
-    verdicts_ = unsure_ = uncertain_ = {};
-    auto& device = scene_.device();
+    room_ = 0; // until all of them are there
+    verdicts_ = undecided_by_filter_ = undecided_by_double_ = {};
+    auto& device = bodies_.device();
     verdicts_ = device.allocate(pairs, "verdicts");
-    unsure_ = device.allocate(decision_ == DecisionPrecision::fp64 ? 4 : pairs * 4, "unsure pairs");
-    uncertain_ = device.allocate(pairs * 4, "uncertain pairs");
+    undecided_by_filter_ = device.allocate(decision_ == DecisionPrecision::fp64 ? 4 : pairs * 4,
+                                           "pairs undecided by the filter");
+    undecided_by_double_ = device.allocate(pairs * 4, "pairs undecided in double");
+    room_ = pairs;
 }
 
-void DecisionStage::launch(const Buffer& found, std::uint64_t first, std::uint64_t pair_capacity,
-                           const Buffer& status) {
-    const StageScope scope(scene_.device(), Stage::contact);
-    reserve(pair_capacity);
-    if (first == 0) settled_ = 0;
-    const Grid grid{groups_, scene_.group_size()};
+void DecisionStage::launch(const Buffer& found, std::uint64_t first, std::uint64_t end,
+                           const Status& status) {
+    const StageScope scope(bodies_.device(), Stage::contact);
+    reserve(end);
+    const Grid grid{shape_.groups, shape_.group_size};
     const auto from = static_cast<std::uint32_t>(first);
-    const auto room = static_cast<std::uint32_t>(pair_capacity);
+    const auto room = static_cast<std::uint32_t>(end);
     if (decision_ != DecisionPrecision::fp64) {
         const std::array<Argument, 10> filter{found,
                                               from,
                                               room,
-                                              scene_.bodies(),
-                                              scene_.poses(),
-                                              scene_.tetrahedra(),
-                                              scene_.vertices(),
+                                              bodies_.row_table(),
+                                              bodies_.poses(),
+                                              bodies_.tetrahedra(),
+                                              bodies_.vertices(),
                                               verdicts_,
-                                              unsure_,
-                                              status};
-        scene_.device().launch(filter_, grid, filter);
+                                              undecided_by_filter_,
+                                              status.buffer()};
+        bodies_.device().launch(filter_, grid, filter);
     }
     const std::array<Argument, 11> recheck{found,
                                            from,
                                            room,
-                                           scene_.bodies(),
-                                           scene_.poses(),
-                                           scene_.tetrahedra(),
-                                           scene_.vertices(),
+                                           bodies_.row_table(),
+                                           bodies_.poses(),
+                                           bodies_.tetrahedra(),
+                                           bodies_.vertices(),
                                            verdicts_,
-                                           unsure_,
-                                           uncertain_,
-                                           status};
-    scene_.device().launch(recheck_, grid, recheck);
+                                           undecided_by_filter_,
+                                           undecided_by_double_,
+                                           status.buffer()};
+    bodies_.device().launch(recheck_, grid, recheck);
     if (decision_ == DecisionPrecision::exact) settle(found, status);
 }
 
-void DecisionStage::settle(const Buffer& found, const Buffer& status) {
-    auto& device = scene_.device();
-    std::uint32_t uncertain = 0; // at most one for each of the pairs, whose numbers are words
-    device.download(status, std::as_writable_bytes(std::span(&uncertain, 1)), STATUS_UNCERTAIN * 4);
-    if (uncertain <= settled_) return;
-    const auto first = static_cast<std::uint32_t>(settled_);
-    const std::uint32_t count = uncertain - first;
-    settled_ = uncertain;
-    const auto real = real_bytes(scene_.geometry());
+/// Those that are new since the status was last read or written: the others have been settled.
+void DecisionStage::settle(const Buffer& found, const Status& status) {
+    auto& device = bodies_.device();
+    std::uint32_t undecided_by_double = 0; // at most one for each of the pairs, whose numbers are words
+    device.download(status.buffer(), std::as_writable_bytes(std::span(&undecided_by_double, 1)),
+                    STATUS_UNDECIDED_BY_DOUBLE * 4);
+    const auto first = static_cast<std::uint32_t>(status.counter(STATUS_UNDECIDED_BY_DOUBLE));
+    if (undecided_by_double <= first) return;
+    const std::uint32_t count = undecided_by_double - first;
+    const auto real = real_bytes(bodies_.geometry());
     corners_ = {};
-    corners_ = device.allocate(count * corner_reals * real, "corners of uncertain pairs");
-    const Grid grid{groups_, scene_.group_size()};
-    const std::array<Argument, 9> gather{
-        found, scene_.bodies(), scene_.poses(), scene_.tetrahedra(), scene_.vertices(), uncertain_,
-        first, count,           corners_};
+    corners_ = device.allocate(count * corner_reals * real, "corners of undecided pairs");
+    const Grid grid{shape_.groups, shape_.group_size};
+    const std::array<Argument, 9> gather{found,
+                                         bodies_.row_table(),
+                                         bodies_.poses(),
+                                         bodies_.tetrahedra(),
+                                         bodies_.vertices(),
+                                         undecided_by_double_,
+                                         first,
+                                         count,
+                                         corners_};
     device.launch(gather_, grid, gather);
     std::vector<std::byte> bytes(corners_.bytes());
     device.download(corners_, bytes);
@@ -117,7 +125,7 @@ void DecisionStage::settle(const Buffer& found, const Buffer& status) {
     answers_ = {};
     answers_ = device.allocate(count, "exact verdicts");
     device.upload(answers_, bytes_of(verdicts), 0, true);
-    const std::array<Argument, 5> settle{uncertain_, first, count, answers_, verdicts_};
+    const std::array<Argument, 5> settle{undecided_by_double_, first, count, answers_, verdicts_};
     device.launch(settle_, grid, settle);
 }
 

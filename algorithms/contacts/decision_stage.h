@@ -2,32 +2,35 @@
 #pragma once
 
 #include "algorithms/contacts/contact_settings.h"
-#include "algorithms/kdop/device_scene.h"
+#include "algorithms/answer/status.h"
+#include "algorithms/bodies/bodies.h"
+#include "algorithms/traversal.h"
 
 namespace tandem {
 
 /// Decides with certainty which candidate pairs in a buffer meet: settings decision=recheck, fp64 and exact.
-/// STATUS_UNSURE counts the pairs that the filter, STATUS_UNCERTAIN those that double could not decide.
+/// STATUS_UNDECIDED_BY_FILTER counts the pairs that the filter, STATUS_UNDECIDED_BY_DOUBLE those that double
+/// could not decide.
 class DecisionStage {
 public:
-    DecisionStage(const DeviceScene& scene, DecisionPrecision decision, std::uint32_t groups);
+    DecisionStage(const Bodies& bodies, DecisionPrecision decision, LaunchShape shape);
 
-    /// Enqueues verdicts for pairs `first`.. of `found`, whose count stands in `status`. With decision=exact
-    /// it waits for the counts and, where there are any, for the pairs that double is unsure of.
-    void launch(const Buffer& found, std::uint64_t first, std::uint64_t pair_capacity, const Buffer& status);
+    /// Enqueues verdicts for pairs `first`..`end` - 1 of `found`, as far as `status` has counted so many.
+    /// With decision=exact it waits for the counts and, where there are any, for the pairs that double cannot
+    /// decide.
+    void launch(const Buffer& found, std::uint64_t first, std::uint64_t end, const Status& status);
 
     const Buffer& verdicts() const { return verdicts_; } ///< a byte a pair, VERDICT_* of candidates.clh
 
 private:
     void reserve(std::uint64_t pairs);
-    void settle(const Buffer& found, const Buffer& status);
+    void settle(const Buffer& found, const Status& status);
 
-    const DeviceScene& scene_;
+    const Bodies& bodies_;
     DecisionPrecision decision_;
-    std::uint32_t groups_;
+    LaunchShape shape_;
     std::uint64_t room_ = 0;
-    std::uint64_t settled_ = 0; ///< of the frame's uncertain pairs
-    Buffer verdicts_, unsure_, uncertain_;
+    Buffer verdicts_, undecided_by_filter_, undecided_by_double_;
     Buffer corners_, answers_; ///< of the pairs the host decides; they live until their commands are done
     Kernel filter_, recheck_, gather_, settle_;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/contacts/reference.h"
 
-#include "algorithms/contacts/exact.h"
+#include "algorithms/contacts/exact/meet_exactly.h"
 #include "algorithms/contacts/reference_pair.h"
 
 namespace tandem {
@@ -71,10 +71,10 @@ bool decided_apart(const Corners<Real>& a, const Corners<Real>& b, DecisionPreci
     if (decision == DecisionPrecision::fp32) return false;
     unsigned verdict = 0;
     if (decision != DecisionPrecision::fp64) verdict = certain_verdict(a, b);
-    if (verdict == 0 && decision != DecisionPrecision::fp64) ++counts.unsure;
+    if (verdict == 0 && decision != DecisionPrecision::fp64) ++counts.undecided_by_filter;
     if (verdict == 0) {
         verdict = certain_verdict(widened(a), widened(b));
-        counts.uncertain += verdict == 0 ? 1 : 0;
+        counts.undecided_by_double += verdict == 0 ? 1 : 0;
     }
     if (verdict == 0 && decision == DecisionPrecision::exact)
         verdict = meet_exactly(widened(a), widened(b)) ? 2 : 1;

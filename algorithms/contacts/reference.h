@@ -33,10 +33,10 @@ struct Contact {
 
 /// Pairs that gave no contact, by reason, and what the stages of the decision left open.
 struct ContactCounts {
-    std::uint64_t degenerate = 0; ///< no certain volume, or a coordinate that is no usable number
-    std::uint64_t rejected = 0;   ///< told apart
-    std::uint64_t unsure = 0;     ///< by the certified filter left open
-    std::uint64_t uncertain = 0;  ///< by double left open
+    std::uint64_t degenerate = 0;          ///< no certain volume, or a coordinate that is no usable number
+    std::uint64_t rejected = 0;            ///< told apart
+    std::uint64_t undecided_by_filter = 0; ///< by the certified filter left open
+    std::uint64_t undecided_by_double = 0; ///< by double left open
 
     bool operator==(const ContactCounts&) const = default;
 };

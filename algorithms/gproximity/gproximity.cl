@@ -5,9 +5,9 @@
 // evens the queues out.
 #include "backends/portable.h"
 #include "algorithms/broad/body_pairs.clh"
-#include "algorithms/emit.clh"
+#include "algorithms/answer/emit.clh"
 #include "algorithms/gproximity/queues.clh"
-#include "algorithms/kdop/node.clh"
+#include "algorithms/hierarchy/node.clh"
 
 #ifndef LOCAL_QUEUE
 #define LOCAL_QUEUE 600
@@ -51,20 +51,22 @@ DEVICE uint share_of_queue(uint queue, uint total, uint queues) {
     return total / queues + (queue < total % queues ? 1u : 0u);
 }
 
-// Root pairs of body pairs first..first+count-1, spread evenly over the queues.
+// Root pairs of the body pairs from number `first` on, `most` at most, spread evenly over the queues.
 KERNEL void scatter_roots(GLOBAL uint* items, GLOBAL uint* counts, uint queues, uint queue_capacity,
-                          uint first, uint given_pairs, GLOBAL const uint* status) {
-    const uint count = body_pair_count(given_pairs, status);
-    for (uint i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
+                          uint first, uint most, GLOBAL const uint* status) {
+    const uint all = body_pair_count(0xffffffffu, status);
+    const uint rest = all > first ? all - first : 0u;
+    const uint count = rest < most ? rest : most;
+    for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) { // in 32 bits it might start over
         uint place;
-        const uint queue = queue_of_item(i, count, queues, &place);
+        const uint queue = queue_of_item((uint)i, count, queues, &place);
         GLOBAL uint* item = items + ((ulong)queue * queue_capacity + place) * ITEM_WORDS;
-        item[0] = first + i;
-        item[1] = 1u;
-        item[2] = 1u;
+        item[0] = first + (uint)i;
+        item[1] = ROOT_NODE;
+        item[2] = ROOT_NODE;
     }
-    for (uint queue = GLOBAL_ID; queue < queues; queue += GLOBAL_COUNT)
-        counts[queue] = share_of_queue(queue, count, queues);
+    for (ulong queue = GLOBAL_ID; queue < queues; queue += GLOBAL_COUNT)
+        counts[queue] = share_of_queue((uint)queue, count, queues);
 }
 
 // What one node pair leads to: a candidate pair, nothing, or two children to push.
@@ -73,23 +75,27 @@ typedef struct {
     uint descend; // 0 none, 1 children of a, 2 children of b
 } Step;
 
-DEVICE Step walk_item(Step step, GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* ids,
-                      GLOBAL const uint* pairs, GLOBAL uint* found, uint capacity, GLOBAL uint* status,
-                      Tally* tally) {
-    const uint body_a = pairs[2u * step.pair];
-    const uint body_b = pairs[2u * step.pair + 1u];
-    GLOBAL const uint* a = bodies + (ulong)body_a * BODY_WORDS;
-    GLOBAL const uint* b = bodies + (ulong)body_b * BODY_WORDS;
-    GLOBAL const real* node_a = node_at(nodes, a[BODY_NODES] + step.a);
-    GLOBAL const real* node_b = node_at(nodes, b[BODY_NODES] + step.b);
+DEVICE Step walk_item(Step step, GLOBAL const real* nodes, GLOBAL const uint* trees,
+                      GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* pairs,
+                      GLOBAL uint* found, uint capacity, GLOBAL uint* status, Tally* tally) {
+    const uint body_a = body_a_of(pairs, step.pair);
+    const uint body_b = body_b_of(pairs, step.pair);
+    GLOBAL const uint* a = tree_of(trees, body_a);
+    GLOBAL const uint* b = tree_of(trees, body_b);
+    GLOBAL const real* node_a = node_at(nodes, a[TREE_NODES] + step.a);
+    GLOBAL const real* node_b = node_at(nodes, b[TREE_NODES] + step.b);
     step.descend = 0u;
+    if (WINDOWED
+        && !in_window(status, first_item_below(step.a, a[TREE_ITEMS]),
+                      (ulong)last_item_below(step.a, a[TREE_ITEMS]) + 1))
+        return step;
     if (COUNT_WORK) tally->tests += 1;
     if (!overlap(node_a, node_b)) return step;
-    const int leaf_a = is_leaf(step.a, a[BODY_TETRAHEDRON_COUNT]);
-    const int leaf_b = is_leaf(step.b, b[BODY_TETRAHEDRON_COUNT]);
+    const int leaf_a = is_leaf(step.a, a[TREE_ITEMS]);
+    const int leaf_b = is_leaf(step.b, b[TREE_ITEMS]);
     if (leaf_a && leaf_b)
-        emit(tally, status, found, capacity, bodies, ids, body_a, body_b,
-             leaf_item(step.a, a[BODY_TETRAHEDRON_COUNT]), leaf_item(step.b, b[BODY_TETRAHEDRON_COUNT]));
+        emit(tally, status, found, capacity, bodies, ids, body_a, body_b, leaf_item(step.a, a[TREE_ITEMS]),
+             leaf_item(step.b, b[TREE_ITEMS]));
     else
         step.descend = leaf_b || (!leaf_a && node_size(node_a) > node_size(node_b)) ? 1u : 2u;
     return step;
@@ -100,8 +106,8 @@ DEVICE Step walk_item(Step step, GLOBAL const real* nodes, GLOBAL const uint* bo
 DEVICE void push_children(Step step, LOCAL uint* queue, LOCAL uint* size, GLOBAL uint* own, uint stored) {
     const uint slot = LOCAL_ATOMIC_ADD(size, 2u);
     for (uint child = 0; child < 2u; ++child) {
-        const uint a = step.descend == 1u ? 2u * step.a + child : step.a;
-        const uint b = step.descend == 2u ? 2u * step.b + child : step.b;
+        const uint a = step.descend == 1u ? first_child(step.a) + child : step.a;
+        const uint b = step.descend == 2u ? first_child(step.b) + child : step.b;
         if (slot + child < (uint)LOCAL_QUEUE) {
             queue[(slot + child) * ITEM_WORDS] = step.pair;
             queue[(slot + child) * ITEM_WORDS + 1u] = a;
@@ -156,18 +162,18 @@ DEVICE void settle_round(LOCAL uint* shared, uint active, uint queue_capacity, G
 // One launch: every group empties its queue as far as the rules let it. A round takes the top of the local
 // queue, at most one item a work-item, and never more than the group's own queue could store if all of them
 // split.
-KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* bodies, GLOBAL const uint* ids,
-                            GLOBAL const uint* pairs, GLOBAL uint* items, GLOBAL uint* counts,
-                            uint queue_capacity, GLOBAL uint* idle, GLOBAL uint* found, uint capacity,
-                            GLOBAL uint* status) {
+KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* bodies,
+                            GLOBAL const uint* ids, GLOBAL const uint* pairs, GLOBAL uint* items,
+                            GLOBAL uint* counts, uint queue_capacity, GLOBAL uint* idle, GLOBAL uint* found,
+                            uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, queue, LOCAL_QUEUE * ITEM_WORDS);
     LOCAL_ARRAY(uint, shared, 4);
     GLOBAL uint* own = items + (ulong)GROUP_ID * queue_capacity * ITEM_WORDS;
     Tally tally = empty_tally();
     if (LOCAL_ID == 0u) take_items(shared, counts[GROUP_ID]);
     BARRIER;
-    uint stop = shared[STOP];
-    while (stop == 0u) {
+    uint stop;
+    do { // once at least, as loops with barriers have to; a group without items stops at its end
         const uint size = shared[SIZE];
         const uint stored = shared[STORED];
         for (uint i = LOCAL_ID; i < shared[TAKE] * ITEM_WORDS; i += (uint)GROUP_SIZE)
@@ -186,14 +192,14 @@ KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* bodies,
         if (LOCAL_ID == 0u) shared[SIZE] = size - active;
         BARRIER;
         if (LOCAL_ID < active) {
-            step = walk_item(step, nodes, bodies, ids, pairs, found, capacity, status, &tally);
+            step = walk_item(step, nodes, trees, bodies, ids, pairs, found, capacity, status, &tally);
             if (step.descend != 0u) push_children(step, queue, shared + SIZE, own, stored);
         }
         BARRIER_GLOBAL;
         if (LOCAL_ID == 0u) settle_round(shared, active, queue_capacity, idle, status);
         BARRIER;
         stop = shared[STOP];
-    }
+    } while (stop == 0u);
     // Back onto the own queue's top. Items of a refill that was not begun still lie there.
     for (uint i = LOCAL_ID; shared[TAKE] == 0u && i < shared[SIZE] * ITEM_WORDS; i += (uint)GROUP_SIZE)
         own[(ulong)shared[STORED] * ITEM_WORDS + i] = queue[i];
@@ -280,13 +286,13 @@ KERNEL void move_balance_serially(GLOBAL const uint* from, GLOBAL uint* to, GLOB
     uint moved = 0;
     uint queue = 0;
     uint place = 0;
-    while (moved < total) {
-        while (starts[source + 1u] <= moved) ++source;
-        while (place >= share_of_queue(queue, total, queues)) {
+    do { // once at least, as loops with barriers have to; then it moves nothing
+        while (moved < total && starts[source + 1u] <= moved) ++source;
+        while (moved < total && place >= share_of_queue(queue, total, queues)) {
             ++queue;
             place = 0;
         }
-        uint run = starts[source + 1u] - moved;
+        uint run = moved < total ? starts[source + 1u] - moved : 0u;
         const uint space = share_of_queue(queue, total, queues) - place;
         run = run < space ? run : space;
         run = run < (uint)GROUP_SIZE ? run : (uint)GROUP_SIZE;
@@ -297,7 +303,7 @@ KERNEL void move_balance_serially(GLOBAL const uint* from, GLOBAL uint* to, GLOB
         BARRIER;
         moved += run;
         place += run;
-    }
+    } while (moved < total);
     for (uint i = LOCAL_ID; total != 0u && i < queues; i += (uint)GROUP_SIZE)
         counts[i] = share_of_queue(i, total, queues);
 }

@@ -26,8 +26,9 @@ constexpr std::size_t default_frames = 10;
 std::vector<std::string> choices(const Traversal& traversal, const std::string& name,
                                  const std::string& left_out = "") {
     std::vector<std::string> result;
-    for (const auto& parameter : traversal.parameters())
-        if (parameter.name == name) result = parameter.choices;
+    for (const auto* parameter : traversal.parameters())
+        if (parameter->name == name)
+            for (const auto& word : parameter->choices()) result.emplace_back(word.text);
     std::erase(result, left_out);
     return result;
 }
@@ -48,12 +49,12 @@ std::vector<Axis> axes_of_contacts(const Traversal& traversal) {
 
 bool same(const Cell& a, const Cell& b) {
     return a.algorithm == b.algorithm && a.preset == b.preset && a.settings == b.settings
-           && a.device == b.device;
+           && a.devices == b.devices;
 }
 
 /// The cells of a request that names no settings: for each algorithm and device first the bounds, then the
 /// contacts. Combinations that a device or another setting excludes are left out.
-std::vector<Cell> sweep(const Request& request, std::span<Device* const> devices) {
+std::vector<Cell> sweep(const Request& request, std::span<const DeviceGroup> devices) {
     std::vector<Cell> cells;
     for (const auto& base : plan(request, devices)) {
         auto own = request;
@@ -61,7 +62,7 @@ std::vector<Cell> sweep(const Request& request, std::span<Device* const> devices
         own.presets = {base.preset};
         for (const auto& axes : {axes_of_bounds(*base.algorithm), axes_of_contacts(*base.algorithm)}) {
             own.sets = axes;
-            for (const auto& cell : plan(own, std::array{base.device}, Unfit::leave_out))
+            for (const auto& cell : plan(own, std::array{base.devices}, Unfit::leave_out))
                 if (std::none_of(cells.begin(), cells.end(), [&](const auto& c) { return same(c, cell); }))
                     cells.push_back(cell);
         }
@@ -166,10 +167,10 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
 int accuracy_command(const AccuracyOptions& options) {
     auto request = options.run.request;
     if (request.devices.empty()) request.devices.emplace_back("opencl:0");
-    if (request.algorithms.empty()) request.algorithms.emplace_back("chunked");
+    if (request.algorithms.empty()) request.algorithms.emplace_back(algorithms().front()->name());
     const auto backends = discover();
     check_required(backends, options.run.require);
-    const auto devices = choose_devices(backends, request.devices);
+    const auto devices = open_devices(options.run, backends, request.devices);
     const auto cells = request.sets.empty() ? sweep(request, devices) : plan(request, devices);
     auto scenes = options.scenes;
     if (scenes.empty()) scenes.emplace_back(); // of --mesh, or the message that there is none

@@ -43,7 +43,7 @@ const ContactTruths& Truths::contact_truths_of(const Place& place, const Report&
 const AnswerErrors& Truths::errors(const Geometry& geometry, std::size_t index, const FrameAnswer& answer,
                                    const Report& report) {
     const auto precision = geometry.precision;
-    const Place place{{precision, geometry.truth}, index};
+    const Place place{{precision, geometry.placement}, index};
     const std::tuple key{precision, place,
                          Numbers{answer.pairs.count, answer.pairs.a, answer.pairs.b, answer.contacts.count,
                                  answer.contacts.a, answer.contacts.b}};
@@ -68,13 +68,13 @@ AnswerErrors Truths::errors_of(Precision precision, const Place& place, const Fr
         errors.drift = drifts_.at(precision);
     }
     if (!answer.makes_contacts) return errors;
-    const Place rounded{{precision, Truth::vertices}, index};
+    const Place rounded{{precision, Placement::rounded}, index};
     const auto contacts = answer.download_contacts();
     errors.decisions = decision_matrix(truth_of(rounded, report), pairs, contacts);
     if (amount_ != TruthAmount::contacts) return errors;
     const auto& exact = contact_truths_of(rounded, report);
     errors.every_contact = exact.every;
-    errors.contacts = contact_errors(exact, contacts, precision == Precision::twice ? 0x1p-53 : 0x1p-24);
+    errors.contacts = contact_errors(exact, contacts, precision == Precision::fp64 ? 0x1p-53 : 0x1p-24);
     return errors;
 }
 

@@ -27,8 +27,8 @@ struct FrameAnswer {
 
 /// The truth of a scene's frames, found once for all cells of the same positions, and the errors of answers,
 /// found once for each answer: cells that give the same have the same errors. Candidate pairs are compared
-/// with the truth that the cell's bounds promise to hold (its setting `truth`); contacts and decisions with
-/// that of the vertices they are made from, in the cell's precision.
+/// with the truth that the cell's bounds promise to hold (its setting `placement`); contacts and decisions
+/// with that of the vertices they are made from, in the cell's precision.
 class Truths {
 public:
     /// `scene` and `frames` must outlive it. `most_contacts`: of this many pairs of a frame at most the exact
@@ -57,7 +57,7 @@ private:
     TruthAmount amount_;
     std::size_t most_contacts_;
     std::map<Place, FrameTruth> truths_;
-    std::map<Place, ContactTruths> contact_truths_; ///< of Truth::vertices
+    std::map<Place, ContactTruths> contact_truths_; ///< of Placement::rounded
     std::map<Precision, Drift> drifts_;             ///< of the first frame
     std::map<std::tuple<Precision, Place, Numbers>, AnswerErrors> errors_;
 };

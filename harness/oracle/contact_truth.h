@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/oracle/decision.h"
+#include "algorithms/contacts/exact/decision.h"
 
 #include <optional>
 #include <vector>

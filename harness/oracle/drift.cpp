@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/oracle/drift.h"
 
-#include "algorithms/kdop/drift.h"
+#include "algorithms/bodies/drift.h"
 #include "harness/oracle/posed.h"
 #include "harness/oracle/rounding.h"
 #include "harness/statistics.h"
@@ -42,7 +42,7 @@ double spacing(double x) {
 
 template<class Real>
 BodyDrift drift_in(const Scene& scene, const Frame& frame, std::size_t body) {
-    constexpr auto precision = sizeof(Real) == 8 ? Precision::twice : Precision::single;
+    constexpr auto precision = sizeof(Real) == 8 ? Precision::fp64 : Precision::fp32;
     const auto world = world_vertices<Real>(scene, frame, body);
     const auto& mesh = scene.meshes[scene.bodies[body].mesh];
     const auto bound = scene.bodies[body].deformable
@@ -70,8 +70,8 @@ BodyDrift drift_in(const Scene& scene, const Frame& frame, std::size_t body) {
 Drift vertex_drift(const Scene& scene, const Frame& frame, Precision precision) {
     std::vector<BodyDrift> bodies(scene.bodies.size());
     parallel_for(bodies.size(), [&](std::size_t body) {
-        bodies[body] = precision == Precision::twice ? drift_in<double>(scene, frame, body)
-                                                     : drift_in<float>(scene, frame, body);
+        bodies[body] = precision == Precision::fp64 ? drift_in<double>(scene, frame, body)
+                                                    : drift_in<float>(scene, frame, body);
     });
     Drift drift;
     std::vector<double> ulps;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/kdop/kdop_settings.h"
+#include "algorithms/bounds/geometry.h"
 #include "scenes/scene.h"
 
 namespace tandem {
 
-/// How far a frame's world vertices, as a cell of some precision has them (truth t1), are from where the
-/// poses put the scene's own vertices exactly (truth t2). A vertex's drift is its largest along an axis, in
-/// ulps of its largest coordinate: spacings of the precision's numbers there.
+/// How far a frame's world vertices, as a cell of some precision has them (placement=rounded), are from where
+/// the poses put the scene's own vertices exactly (placement=exact). A vertex's drift is its largest along an
+/// axis, in ulps of its largest coordinate: spacings of the precision's numbers there.
 struct Drift {
     std::uint64_t vertices = 0;          ///< of all bodies
     double median = 0, p99 = 0, max = 0; ///< ulps, as of `Spread`

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/oracle/exact_contact.h"
 
-#include "harness/oracle/lattice.h"
+#include "algorithms/contacts/exact/lattice.h"
 #include "harness/oracle/rounding.h"
 
 namespace tandem::oracle {

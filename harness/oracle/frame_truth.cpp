@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/oracle/frame_truth.h"
 
-#include "algorithms/kdop/drift.h"
+#include "algorithms/bodies/drift.h"
 #include "harness/oracle/posed.h"
 #include "harness/oracle/superset.h"
 #include "harness/world_vertices.h"
@@ -38,7 +38,7 @@ World world_in(const Scene& scene, const Frame& frame) {
 }
 
 World world_of(const Scene& scene, const Frame& frame, Precision precision) {
-    return precision == Precision::twice ? world_in<double>(scene, frame) : world_in<float>(scene, frame);
+    return precision == Precision::fp64 ? world_in<double>(scene, frame) : world_in<float>(scene, frame);
 }
 
 /// What the decision takes.
@@ -49,7 +49,7 @@ public:
           frame_(frame),
           world_(world_of(scene, frame, positions.precision)),
           off_(world_.size()),
-          posed_(positions.truth == Truth::pose) {
+          posed_(positions.placement == Placement::exact) {
         if (!posed_) return;
         parallel_for(world_.size(), [&](std::size_t body) {
             if (is_rigid(body))

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/kdop/kdop_settings.h"
-#include "harness/oracle/decision.h"
+#include "algorithms/bounds/geometry.h"
+#include "algorithms/contacts/exact/decision.h"
 #include "scenes/contact.h"
 #include "scenes/scene.h"
 
@@ -13,16 +13,16 @@
 
 namespace tandem {
 
-/// Where the vertices are. Truth::vertices: where a cell's precision has them, moved by world_vertices and
-/// then taken as they are. Truth::pose: where the poses put the scene's own doubles exactly, whatever the
-/// precision.
+/// Where the vertices are. Placement::rounded: where a cell's precision has them, moved by world_vertices and
+/// then taken as they are. Placement::exact: where the poses put the scene's own doubles exactly, whatever
+/// the precision.
 struct Positions {
-    Precision precision = Precision::single;
-    Truth truth = Truth::vertices;
+    Precision precision = Precision::fp32;
+    Placement placement = Placement::rounded;
 
     // NOLINTNEXTLINE(*-explicit-*): most questions are about the vertices of a precision
-    Positions(Precision cell, Truth level = Truth::vertices)
-        : precision(level == Truth::pose ? Precision::twice : cell), truth(level) {}
+    Positions(Precision cell, Placement level = Placement::rounded)
+        : precision(level == Placement::exact ? Precision::fp64 : cell), placement(level) {}
     auto operator<=>(const Positions&) const = default;
 };
 
@@ -49,7 +49,7 @@ FrameTruth frame_truth(const Scene& scene, const Frame& frame, Positions positio
 std::vector<Decision> decide_pairs(const Scene& scene, const Frame& frame, Positions positions,
                                    std::span<const Pair> pairs);
 
-/// The corners of the pairs' tetrahedra, in their order: as the decision of Truth::vertices takes them.
+/// The corners of the pairs' tetrahedra, in their order: as the decision of Placement::rounded takes them.
 std::vector<std::array<TetraCorners, 2>> pair_corners(const Scene& scene, const Frame& frame,
                                                       Precision precision, std::span<const Pair> pairs);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/oracle/posed.h"
 
-#include "harness/oracle/filter.h"
-#include "harness/oracle/program.h"
+#include "algorithms/contacts/exact/filter.h"
+#include "algorithms/contacts/exact/program.h"
 
 #include <algorithm>
 

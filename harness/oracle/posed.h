@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/oracle/decision.h"
-#include "harness/oracle/facets.h"
+#include "algorithms/contacts/exact/decision.h"
+#include "algorithms/contacts/exact/facets.h"
 #include "scenes/scene.h"
 
 #include <gmpxx.h>

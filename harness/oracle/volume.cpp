@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/oracle/volume.h"
 
-#include "harness/oracle/filter.h"
-#include "harness/oracle/lattice.h"
+#include "algorithms/contacts/exact/filter.h"
+#include "algorithms/contacts/exact/lattice.h"
 #include "harness/oracle/rounding.h"
 
 #include <algorithm>

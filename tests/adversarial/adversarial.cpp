@@ -9,7 +9,8 @@
 #include "harness/environment.h"
 #include "harness/plan.h"
 #include "harness/sampler.h"
-#include "harness/walk.h"
+#include "harness/plan.h"
+#include "harness/sampler.h"
 #include "scenes/error.h"
 
 #include <CLI/CLI.hpp>
@@ -41,8 +42,9 @@ std::vector<const HardFamily*> chosen(const Options& options) {
 std::vector<AdversarialCell> cells_of(const Options& options, const std::vector<BackendReport>& backends) {
     const auto rounding = options.rounding == "safe" ? Rounding::safe : Rounding::nearest;
     std::vector<AdversarialCell> cells;
-    for (auto* device : choose_devices(backends, options.devices))
-        for (const int k : options.k) cells.push_back({device, {.k = k, .rounding = rounding}});
+    for (const auto& group : choose_devices(backends, options.devices))
+        for (auto* device : group)
+            for (const int k : options.k) cells.push_back({device, {.k = k, .rounding = rounding}});
     return cells;
 }
 
@@ -103,7 +105,7 @@ int count(const Options& options) {
     int code = 0;
     for (const auto& cell : plan(request, choose_devices(backends, options.devices))) {
         const auto begin = std::chrono::steady_clock::now();
-        const auto result = Walk(cell, scene).run(scene.frame(0));
+        const auto result = cell.algorithm->prepare(cell.devices, scene, cell.settings)->run(scene.frame(0));
         const double seconds = 1e-9 * static_cast<double>(since(begin));
         fmt::print("{}: {} pairs of {} in {:.1f} s\n", describe(cell), result.count, expected, seconds);
         std::fflush(stdout);

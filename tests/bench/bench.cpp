@@ -4,9 +4,9 @@
 #include "algorithms/broad/broad.h"
 #include "algorithms/broad/broad_stage.h"
 #include "algorithms/contacts/reference.h"
-#include "algorithms/kdop/device_scene.h"
+#include "tests/support/prepared_trees.h"
 #include "algorithms/sources.h"
-#include "algorithms/status.clh"
+#include "algorithms/answer/status.clh"
 #include "algorithms/traversal.h"
 #include "backends/registry.h"
 
@@ -41,7 +41,7 @@ void transfer(benchmark::State& state, Device& device, bool up) {
 
 /// A kernel that does nothing, and the wait for it.
 void launch_latency(benchmark::State& state, Device& device) {
-    const auto kernel = device.compile(kernel_source("algorithms/kdop/ceilings.cl"), "do_nothing",
+    const auto kernel = device.compile(kernel_source("algorithms/bounds/ceilings.cl"), "do_nothing",
                                        geometry_defines({}, group_size(device)));
     const auto empty = device.allocate(64, "empty");
     const std::array<Argument, 1> arguments{empty};
@@ -54,8 +54,8 @@ void launch_latency(benchmark::State& state, Device& device) {
 }
 
 void refit(benchmark::State& state, Device& device) {
-    DeviceScene scene(device, jacks(), {.k = static_cast<int>(state.range(0))}, 32, group_size(device),
-                      Residency::resident);
+    testing_support::PreparedTrees scene(device, jacks(), {.k = static_cast<int>(state.range(0))}, 32,
+                                         group_size(device));
     const auto frame = jacks().frame(0);
     scene.update(frame); // PoCL compiles for a group size at the first launch
     device.finish();
@@ -63,19 +63,19 @@ void refit(benchmark::State& state, Device& device) {
         scene.update(frame);
         device.finish();
     }
-    state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * scene.slots() * 4)
+    state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * scene.trees.slots() * 4)
                             * state.range(0));
 }
 
 /// One frame of an algorithm; contacts on or off tells the contact kernel's share, a threshold of 1 the
 /// seeding's.
-void frame(benchmark::State& state, Device& device, const std::string& name, const Settings& given) {
+void frame(benchmark::State& state, Device& device, const std::string& name, const SettingTexts& given) {
     const auto& traversal = algorithm(name);
     const auto settings = resolve(traversal.parameters(), {}, given, name);
     const std::array devices{&device};
     const auto session = traversal.prepare(devices, jacks(), settings);
     const auto first = jacks().frame(0);
-    const auto pairs = Broad(jacks(), geometry_of(settings), Broad::Bound::sphere).pairs(first);
+    const auto pairs = BroadSweep(jacks(), geometry_of(settings), Broad::sphere).pairs(first);
     auto found = session->run(first, pairs).count;
     device.finish();
     for ([[maybe_unused]] auto _ : state) {
@@ -90,8 +90,8 @@ void frame(benchmark::State& state, Device& device, const std::string& name, con
 /// The device's, after refit: kernels and the wait for them.
 void broad_on_device(benchmark::State& state, Device& device) {
     const auto scene = make_scene(fmt::format("pile:bodies={},mesh=grain1,frames=1", state.range(0)));
-    DeviceScene on(device, scene, {}, 32, group_size(device), Residency::resident);
-    BroadStage stage(on, scene, 64 * device.info().compute_units);
+    testing_support::PreparedTrees on(device, scene, {}, 32, group_size(device));
+    BroadStage stage(on.bodies, on.trees, {group_size(device), 64 * device.info().compute_units});
     const auto status = device.allocate(STATUS_WORDS * 4, "status");
     const auto room = static_cast<std::uint32_t>(std::min<std::uint64_t>(stage.most_pairs(), 1 << 22));
     const auto pairs = device.allocate(std::size_t{room} * sizeof(BodyPair), "body pairs");
@@ -108,9 +108,9 @@ void broad_on_device(benchmark::State& state, Device& device) {
     state.SetComplexityN(state.range(0));
 }
 
-void broad(benchmark::State& state, Broad::Bound bound) {
+void broad(benchmark::State& state, Broad bound) {
     const auto scene = make_scene(fmt::format("pile:bodies={},mesh=grain1,frames=1", state.range(0)));
-    const Broad search(scene, {}, bound);
+    const BroadSweep search(scene, {}, bound);
     const auto first = scene.frame(0);
     for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(search.pairs(first));
     state.SetComplexityN(state.range(0));
@@ -148,7 +148,7 @@ void register_for(Device& device) {
         ->Arg(200)
         ->Arg(2000)
         ->Arg(20000);
-    const std::vector<std::pair<std::string, Settings>> variants{
+    const std::vector<std::pair<std::string, SettingTexts>> variants{
         {"contacts", {}},
         {"no contacts", {{"contact_rule", "none"}}},
         {"count only", {{"output", "count"}}},
@@ -169,8 +169,8 @@ int main(int argc, char** argv) {
     const auto backends = tandem::discover();
     for (const auto& backend : backends)
         for (const auto& device : backend.devices) tandem::register_for(*device);
-    for (const auto& [name, bound] : {std::pair{"broad, sphere", tandem::Broad::Bound::sphere},
-                                      std::pair{"broad, tight", tandem::Broad::Bound::tight}})
+    for (const auto& [name, bound] :
+         {std::pair{"broad, sphere", tandem::Broad::sphere}, std::pair{"broad, tight", tandem::Broad::tight}})
         benchmark::RegisterBenchmark(name, [bound = bound](auto& state) { tandem::broad(state, bound); })
             ->Arg(200)
             ->Arg(2000)

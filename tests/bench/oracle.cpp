@@ -58,7 +58,7 @@ void million(benchmark::State& state) {
         pairs.insert(pairs.end(), pairs.begin(), pairs.begin() + static_cast<long>(found));
     pairs.resize(1000000);
     for ([[maybe_unused]] auto _ : state)
-        benchmark::DoNotOptimize(decide_pairs(scene, frame, Precision::single, pairs));
+        benchmark::DoNotOptimize(decide_pairs(scene, frame, Precision::fp32, pairs));
     state.counters["candidates"] = static_cast<double>(found);
 }
 

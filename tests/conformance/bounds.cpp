@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The hierarchies on the device: containment, equal bits on host and OpenCL, the memory they take.
-#include "algorithms/kdop/device_scene.h"
-#include "algorithms/kdop/pack.h"
+#include "tests/support/prepared_trees.h"
+#include "algorithms/bodies/pack.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
 
@@ -21,28 +21,22 @@ std::vector<Geometry> geometries() {
 #else
     for (const int k : {6, 8, 12, 14, 16, 18, 20, 24, 26})
 #endif
-        for (const auto precision : {Precision::single, Precision::twice}) {
+        for (const auto precision : {Precision::fp32, Precision::fp64}) {
             all.push_back({.k = k, .precision = precision});
             if (k != 8 && k != 26) continue; // these have every kind of direction
             for (const auto rounding : {Rounding::nearest, Rounding::published})
                 all.push_back({.k = k, .precision = precision, .rounding = rounding});
-            all.push_back({.k = k, .precision = precision, .truth = Truth::pose});
+            all.push_back({.k = k, .precision = precision, .placement = Placement::exact});
         }
     return all;
 }
 
-std::vector<std::byte> nodes_of(const DeviceScene& scene) {
-    std::vector<std::byte> bytes(scene.slots() * static_cast<std::uint64_t>(scene.geometry().k)
-                                 * real_bytes(scene.geometry()));
-    scene.device().download(scene.nodes(), bytes);
+std::vector<std::byte> bytes_in(const PreparedTrees& on_device, const Buffer& buffer, std::uint64_t rows) {
+    std::vector<std::byte> bytes(rows * static_cast<std::uint64_t>(on_device.geometry().k)
+                                 * real_bytes(on_device.geometry()));
+    const StageScope scope(on_device.bodies.device(), Stage::read);
+    on_device.bodies.device().download(buffer, bytes);
     return bytes;
-}
-
-template<class Real>
-std::vector<double> as_doubles(std::span<const std::byte> bytes) {
-    std::vector<Real> values(bytes.size() / sizeof(Real));
-    std::memcpy(values.data(), bytes.data(), bytes.size());
-    return {values.begin(), values.end()};
 }
 
 /// A vertex in world coordinates as the device computes it.
@@ -66,15 +60,15 @@ std::array<Real, 3> world(const Scene& scene, const Frame& frame, std::uint32_t 
 /// Checks that the body's root slabs hold the exact projection of every vertex; returns how many were
 /// checked.
 template<class Real>
-std::uint64_t check_roots(const Scene& scene, const Frame& frame, const DeviceScene& on_device,
+std::uint64_t check_roots(const Scene& scene, const Frame& frame, const PreparedTrees& on_device,
                           long double slack) {
     const auto& geometry = on_device.geometry();
-    const auto values = as_doubles<Real>(nodes_of(on_device));
+    const auto volumes = on_device.volumes<Real>();
+    const std::vector<double> values(volumes.begin(), volumes.end());
     const auto axes = directions(geometry);
     std::uint64_t checked = 0;
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) {
-        const auto* root =
-            &values[std::size_t{on_device.body_rows()[body * 8 + 2]} * static_cast<std::size_t>(geometry.k)];
+        const auto* root = &values[std::size_t{body} * static_cast<std::size_t>(geometry.k)];
         for (std::uint32_t v = 0; v < scene.meshes[scene.bodies[body].mesh].vertices.size(); ++v) {
             const auto p = world<Real>(scene, frame, body, v);
             for (std::size_t axis = 0; axis < axes.size(); ++axis) {
@@ -100,9 +94,9 @@ TEST(Bounds, SafeRootsContainEveryVertex) {
         // Directions with at most two non-zeros keep comparisons safe, not containment: their one rounding is
         // allowed.
         if (geometry.rounding != Rounding::safe) continue;
-        DeviceScene on_device(device("host"), scene, geometry, 4, 1, Residency::resident);
+        PreparedTrees on_device(device("host"), scene, geometry, 4, 1);
         on_device.update(frame);
-        checked += geometry.precision == Precision::twice
+        checked += geometry.precision == Precision::fp64
                        ? check_roots<double>(scene, frame, on_device, 0x1p-52L)
                        : check_roots<float>(scene, frame, on_device, 0x1p-23L);
     }
@@ -114,20 +108,21 @@ TEST(Bounds, HostAndOpenclHaveEqualBits) {
     std::uint64_t bytes = 0;
     for (const auto& geometry : geometries()) {
         for (const std::uint32_t leaves : {2u, 32u, 256u}) {
-            DeviceScene host(device("host"), scene, geometry, leaves, 1, Residency::resident);
-            DeviceScene opencl(device("opencl:0"), scene, geometry, leaves, 64, Residency::resident);
+            PreparedTrees host(device("host"), scene, geometry, leaves, 1);
+            PreparedTrees opencl(device("opencl:0"), scene, geometry, leaves, 64);
             for (std::size_t i = 0; i < scene.frame_count; ++i) {
                 host.update(scene.frame(i));
                 opencl.update(scene.frame(i));
                 const auto slots = static_cast<std::size_t>(geometry.k) * real_bytes(geometry);
-                const auto a = nodes_of(host);
-                const auto b = nodes_of(opencl);
-                // Slot 0 of a chunk is unused, but for that of a body's first chunk.
+                const auto a = bytes_in(host, host.trees.nodes(), host.trees.slots());
+                const auto b = bytes_in(opencl, opencl.trees.nodes(), opencl.trees.slots());
+                EXPECT_EQ(bytes_in(host, host.trees.volumes(), host.bodies.count()),
+                          bytes_in(opencl, opencl.trees.volumes(), opencl.bodies.count()));
                 for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) {
-                    const std::size_t first = host.body_rows()[body * 8 + 2];
-                    for (const auto& level : host.levels(body)) {
+                    const std::size_t first = host.trees.first_slot(body);
+                    for (const auto& level : host.trees.levels(body)) {
                         for (std::uint32_t slot = 0; slot < 2 * level.items; ++slot) {
-                            if (slot % (2 * leaves) == 0 && level.slot + slot != 0) continue;
+                            if (slot % (2 * leaves) == 0) continue; // unused
                             const auto at = (first + level.slot + slot) * slots;
                             ASSERT_EQ(std::memcmp(&a[at], &b[at], slots), 0)
                                 << "body " << body << " slot " << slot;
@@ -150,13 +145,14 @@ TEST(Bounds, MemoryStaysWithinItsBudget) {
         for (const auto& geometry : geometries()) {
             auto& on = device("host");
             const auto before = on.bytes_allocated();
-            const DeviceScene on_device(on, scene, geometry, 32, 1, Residency::resident);
+            const PreparedTrees on_device(on, scene, geometry, 32, 1);
             const auto real = real_bytes(geometry);
             const auto node = real * static_cast<std::size_t>(geometry.k) + 8;
             const auto topology = scene.meshes.front().tetrahedra.size() * 32
                                   + scene.meshes.front().vertices.size() * 4 * real + 4096;
             EXPECT_LE(on.bytes_allocated() - before,
-                      node * on_device.slots() + 4 * real * vertex_count(scene) + topology)
+                      node * (on_device.trees.slots() + on_device.bodies.count())
+                          + 4 * real * vertex_count(scene) + topology)
                 << key;
         }
     }
@@ -165,13 +161,14 @@ TEST(Bounds, MemoryStaysWithinItsBudget) {
 TEST(Bounds, FixedBodiesAreRefittedOnce) {
     const auto scene = crowd(63, 6, 1.0);
     auto& on = device("host");
-    DeviceScene on_device(on, scene, {}, 8, 1, Residency::resident);
+    PreparedTrees on_device(on, scene, {}, 8, 1);
     const auto groups_of = [&] {
-        on.finish();
+        on.set_clocks(Clocks::on);
         on_device.update(scene.frame(0));
         std::uint64_t groups = 0;
         for (const auto& event : on.finish().events)
             groups += event.label == "refit_strips" ? event.groups : 0;
+        on.set_clocks(Clocks::off);
         return groups;
     };
     const auto first = groups_of();

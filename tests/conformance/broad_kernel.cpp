@@ -39,9 +39,8 @@ class BroadKernel : public testing::TestWithParam<std::string> {};
 
 TEST_P(BroadKernel, EqualsADoubleLoopOverTheRootVolumes) {
     auto& on = device(GetParam());
-    for (const auto& geometry :
-         {Geometry{}, Geometry{.k = 8}, Geometry{.k = 8, .precision = Precision::twice},
-          Geometry{.k = 18, .precision = Precision::twice}}) {
+    for (const auto& geometry : {Geometry{}, Geometry{.k = 8}, Geometry{.k = 8, .precision = Precision::fp64},
+                                 Geometry{.k = 18, .precision = Precision::fp64}}) {
         const auto scene = crowd(77, 40, 2.5);
         Search search(on, scene, geometry, 64, 100);
         search.sort_by(0);
@@ -76,7 +75,7 @@ TEST_P(BroadKernel, ManyTilesInAnyOrder) {
 TEST_P(BroadKernel, TouchingOverlaps) {
     auto& on = device(GetParam());
     const auto scene = lattice(5);
-    for (const auto& geometry : {Geometry{}, Geometry{.precision = Precision::twice}}) {
+    for (const auto& geometry : {Geometry{}, Geometry{.precision = Precision::fp64}}) {
         Search search(on, scene, geometry, 32, 100);
         search.sort_by(0);
         search.go_to(0);

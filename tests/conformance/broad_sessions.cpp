@@ -3,7 +3,8 @@
 // against brute force, capacities of the pairs' buffer, and the commands of a frame.
 #include "broad_support.h"
 
-#include "harness/walk.h"
+#include "algorithms/bounds/geometry.h"
+#include "harness/reference.h"
 #include "scenes/error.h"
 
 #include <fmt/format.h>
@@ -23,29 +24,27 @@ TEST_P(BroadSessions, EveryPresetWithEveryBroadPhase) {
     for (const auto* traversal : algorithms()) {
         for (const auto& p : traversal->presets()) {
             for (const std::string broad : {"sphere", "tight", "device"}) {
-                Settings given{{"broad", broad}};
-                if (p.values.contains("groups")) given["queue_bytes"] = "1048576";
-                const Cell cell{traversal, p.name,
-                                resolve(traversal->parameters(), p.values, given, traversal->name()), &on};
+                SettingTexts given{{"broad", broad}};
+                if (p.texts().contains("groups")) given["queue_bytes"] = "1048576";
+                const auto settings = resolve(traversal->parameters(), p.values, given, traversal->name());
+                const std::array devices{&on};
                 SCOPED_TRACE(fmt::format("{} {}{}", traversal->name(), p.name, text(given)));
                 if (broad == "device" && p.name != "resident" && p.name != "fair") {
-                    EXPECT_THROW(traversal->check(cell.settings, on.info()), InputError);
+                    EXPECT_THROW(traversal->check(devices, settings), InputError);
                     continue;
                 }
-                Walk walk(cell, scene);
-                EXPECT_EQ(walk.session->finds_pairs(), broad == "device");
+                const auto session = traversal->prepare(devices, scene, settings);
                 for (std::size_t i = 0; i < scene.frame_count; ++i) {
                     const auto frame = scene.frame(i);
                     const auto right =
-                        reference(scene, frame, geometry_of(cell.settings), true, Method::brute_force);
-                    const auto result = walk.run(frame);
+                        reference(scene, frame, geometry_of(settings), true, Method::brute_force);
+                    const auto result = session->run(frame);
                     ASSERT_GT(result.count, 0u);
-                    EXPECT_EQ(walk.session->digest(result), right.digest);
-                    EXPECT_EQ(walk.session->contact_digest(result), right.contact_digest);
+                    EXPECT_EQ(result.digest(), right.digest);
+                    EXPECT_EQ(result.contact_digest(), right.contact_digest);
                     EXPECT_GT(result.body_pairs, 0u);
                     EXPECT_LT(result.body_pairs, all_pairs(scene).size());
                 }
-                on.finish();
                 ++cells;
             }
         }
@@ -70,24 +69,34 @@ TEST_P(BroadSessions, ACapacityOfExactlyTheBodyPairsNeedsNoRetry) {
                 {{"broad", "device"}, {"body_pair_capacity", std::to_string(capacity)}}, traversal->name());
             const std::array devices{&on};
             const auto session = traversal->prepare(devices, scene, settings);
-            const auto result = session->run(frame, {});
+            const auto result = session->run(frame);
             EXPECT_EQ(result.body_pairs, pairs);
             EXPECT_EQ(result.retries, capacity < pairs ? 1u : 0u);
-            EXPECT_EQ(session->digest(result), right.digest);
-            EXPECT_EQ(session->contact_digest(result), right.contact_digest);
+            EXPECT_EQ(result.digest(), right.digest);
+            EXPECT_EQ(result.contact_digest(), right.contact_digest);
         }
     }
 }
 
-TEST_P(BroadSessions, RefusesPairsFromTheHost) {
+/// Whoever finds them otherwise: pairs that are given are those that are walked, and only in that run.
+TEST_P(BroadSessions, GivenPairsAreWalkedInstead) {
     auto& on = device(GetParam());
-    const auto scene = crowd(8, 4, 0.5);
-    for (const auto* traversal : algorithms()) {
-        const auto settings = resolve(traversal->parameters(), {}, {{"broad", "device"}}, traversal->name());
-        const std::array devices{&on};
-        const auto session = traversal->prepare(devices, scene, settings);
-        EXPECT_THROW(session->run(scene.frame(0), all_pairs(scene)), InputError);
-    }
+    const auto scene = crowd(8, 6, 0.5);
+    const auto frame = scene.frame(0);
+    const auto right = reference(scene, frame, {}, true, Method::brute_force);
+    const BodyPair first{right.pairs.front().body_a, right.pairs.front().body_b};
+    for (const auto* traversal : algorithms())
+        for (const std::string broad : {"device", "tight"}) {
+            const auto settings = resolve(traversal->parameters(), {}, {{"broad", broad}}, traversal->name());
+            const std::array devices{&on};
+            const auto session = traversal->prepare(devices, scene, settings);
+            EXPECT_EQ(session->run(frame).digest(), right.digest);
+            for (const auto& pair : session->run(frame, {&first, 1}).download())
+                EXPECT_EQ((BodyPair{pair.body_a, pair.body_b}), first);
+            EXPECT_EQ(session->run(frame, {}).count, 0u);
+            EXPECT_EQ(session->run(frame, all_pairs(scene)).contact_digest(), right.contact_digest);
+            EXPECT_EQ(session->run(frame).contact_digest(), right.contact_digest);
+        }
 }
 
 /// The commands of a resident chunked frame: the same for frames of different answers, one wait, and the
@@ -99,12 +108,12 @@ TEST_P(BroadSessions, ResidentChunkedIsOneSequence) {
     const auto settings = resolve(traversal.parameters(), {}, {{"broad", "device"}}, traversal.name());
     const std::array devices{&on};
     const auto session = traversal.prepare(devices, scene, settings);
-    session->run(scene.frame(0), {}); // sorts the bodies
-    on.finish();
+    session->run(scene.frame(0)); // sorts the bodies
+    on.set_clocks(Clocks::on);
     std::vector<std::vector<std::string>> sequences;
     std::vector<std::uint64_t> found;
     for (const std::size_t frame : {0u, 1u}) {
-        const auto result = session->run(scene.frame(frame), {});
+        const auto result = session->run(scene.frame(frame));
         EXPECT_EQ(result.retries, 0u);
         found.push_back(result.body_pairs);
         std::uint64_t waits = 0, searches = 0;
@@ -118,6 +127,7 @@ TEST_P(BroadSessions, ResidentChunkedIsOneSequence) {
         EXPECT_EQ(waits, 1u);
         EXPECT_EQ(searches, 2u);
     }
+    on.set_clocks(Clocks::off);
     EXPECT_NE(found[0], found[1]);
     EXPECT_EQ(sequences[0], sequences[1]);
 }

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "algorithms/broad/broad_stage.h"
-#include "algorithms/status.clh"
+#include "algorithms/answer/status.clh"
 #include "tests/support/cells.h"
+#include "tests/support/prepared_trees.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -64,15 +65,12 @@ bool overlapping(const Real* a, const Real* b, std::size_t axes) {
 }
 
 template<class Real>
-std::vector<BodyPair> expected_pairs(const DeviceScene& on, const Scene& scene) {
+std::vector<BodyPair> expected_pairs(const PreparedTrees& on, const Scene& scene) {
     const auto k = static_cast<std::size_t>(on.geometry().k);
-    std::vector<Real> nodes(on.slots() * k);
-    on.device().download(on.nodes(), std::as_writable_bytes(std::span(nodes)));
+    const auto volumes = on.volumes<Real>();
     std::vector<BodyPair> pairs;
     for (const auto& pair : all_pairs(scene))
-        if (overlapping(&nodes[on.body_rows()[pair.a * 8 + 2] * k],
-                        &nodes[on.body_rows()[pair.b * 8 + 2] * k], k / 2))
-            pairs.push_back(pair);
+        if (overlapping(&volumes[pair.a * k], &volumes[pair.b * k], k / 2)) pairs.push_back(pair);
     return pairs;
 }
 
@@ -82,29 +80,28 @@ public:
     Search(Device& device, const Scene& scene, const Geometry& geometry, std::uint32_t group_size,
            std::uint32_t groups)
         : scene_(scene),
-          on_(device, scene, geometry, 4, device.info().max_group_size == 1 ? 1 : group_size,
-              Residency::resident),
-          stage_(on_, scene, groups),
+          on_(device, scene, geometry, 4, device.info().max_group_size == 1 ? 1 : group_size),
+          stage_(on_.bodies, on_.trees, {on_.trees.group_size(), groups}),
           status_(device.allocate(STATUS_WORDS * 4, "status")) {}
 
     void go_to(std::size_t frame) { on_.update(scene_.frame(frame)); }
     void sort_by(std::size_t frame) { stage_.sort(scene_.frame(frame)); }
 
     std::vector<BodyPair> expected() const {
-        return on_.geometry().precision == Precision::twice ? expected_pairs<double>(on_, scene_)
-                                                            : expected_pairs<float>(on_, scene_);
+        return on_.geometry().precision == Precision::fp64 ? expected_pairs<double>(on_, scene_)
+                                                           : expected_pairs<float>(on_, scene_);
     }
 
     /// The pairs found, sorted; their number in `count`. Checks that nothing is written past `capacity`.
     std::vector<BodyPair> found(std::uint32_t capacity, std::uint64_t& count) {
         std::vector<std::uint32_t> rows(2 * (capacity + stage_.most_pairs() + 1), guard);
-        const auto pairs = on_.device().allocate(rows.size() * 4, "pairs and guards");
-        on_.device().upload(pairs, bytes_of(rows));
-        on_.device().clear(status_, STATUS_WORDS * 4);
+        const auto pairs = on_.bodies.device().allocate(rows.size() * 4, "pairs and guards");
+        on_.bodies.device().upload(pairs, bytes_of(rows));
+        on_.bodies.device().clear(status_, STATUS_WORDS * 4);
         stage_.launch(pairs, capacity, status_);
         std::vector<std::uint32_t> status(STATUS_WORDS);
-        on_.device().download(status_, std::as_writable_bytes(std::span(status)));
-        on_.device().download(pairs, std::as_writable_bytes(std::span(rows)));
+        on_.bodies.device().download(status_, std::as_writable_bytes(std::span(status)));
+        on_.bodies.device().download(pairs, std::as_writable_bytes(std::span(rows)));
         count = status[STATUS_BODY_PAIRS] | std::uint64_t{status[STATUS_BODY_PAIRS + 1]} << 32;
         const auto written = std::min<std::uint64_t>(count, capacity);
         std::vector<BodyPair> result;
@@ -124,7 +121,7 @@ public:
 
 private:
     const Scene& scene_;
-    DeviceScene on_;
+    PreparedTrees on_;
     BroadStage stage_;
     Buffer status_;
 };

@@ -47,7 +47,7 @@ protected:
     Scene scene = make_scene("colosseum:slices=3,layers=1");
     Frame frame = scene.frame(0);
 
-    std::unique_ptr<Session> prepare(const std::string& algorithm_name, const Settings& given) const {
+    std::unique_ptr<Session> prepare(const std::string& algorithm_name, const SettingTexts& given) const {
         const auto& traversal = algorithm(algorithm_name);
         const std::array devices{&on};
         return traversal.prepare(devices, scene,
@@ -55,28 +55,28 @@ protected:
     }
 
     /// Runs the frame and compares with the reference.
-    FrameResult expect_right(const std::string& algorithm_name, const Settings& given) {
+    FrameResult expect_right(const std::string& algorithm_name, const SettingTexts& given) {
         SCOPED_TRACE(algorithm_name + " on " + on.info().id + text(given));
         const auto session = prepare(algorithm_name, given);
         const auto& settings = session->settings();
         const auto expected = reference(scene, frame, geometry_of(settings), true, Method::brute_force,
                                         contact_settings_of(settings));
-        const auto result = session->run(frame, all_pairs(scene, *session));
-        EXPECT_EQ(session->contact_digest(result), expected.contact_digest);
+        const auto result = run_among_all(*session, scene, frame);
+        EXPECT_EQ(result.contact_digest(), expected.contact_digest);
         EXPECT_EQ(result.rejected, expected.rejected);
         EXPECT_EQ(result.degenerate, expected.degenerate);
-        EXPECT_EQ(result.unsure, expected.unsure);
-        EXPECT_EQ(result.uncertain, expected.uncertain);
+        EXPECT_EQ(result.undecided_by_filter, expected.undecided_by_filter);
+        EXPECT_EQ(result.undecided_by_double, expected.undecided_by_double);
         EXPECT_GT(result.contacts, 0u);
         return result;
     }
 };
 
 TEST_P(ContactConformance, EveryDecisionEqualsTheReferenceInEveryResidency) {
-    EXPECT_EQ(expect_right("chunked", {}).unsure, 0u);
+    EXPECT_EQ(expect_right("chunked", {}).undecided_by_filter, 0u);
     const auto recheck = expect_right("chunked", {{"decision", "recheck"}, {"contact_rule", "sat"}});
-    EXPECT_GT(recheck.uncertain, 100u);
-    EXPECT_LE(recheck.uncertain, recheck.unsure);
+    EXPECT_GT(recheck.undecided_by_double, 100u);
+    EXPECT_LE(recheck.undecided_by_double, recheck.undecided_by_filter);
     expect_right("gproximity", {{"decision", "fp64"}, {"contact_rule", "clip"}});
     const auto exact = expect_right("gproximity", {{"decision", "exact"},
                                                    {"contact_rule", "published"},
@@ -104,8 +104,8 @@ TEST_P(ContactConformance, RulesThatAskForTheBoundaryEqualTheReference) {
 
 TEST_P(ContactConformance, ExactTellsApartWhatTheOracleDoes) {
     const auto session = prepare("chunked", {{"decision", "exact"}});
-    const auto result = session->run(frame, all_pairs(scene, *session));
-    const auto truth = decide_pairs(scene, frame, Precision::single, session->download(result));
+    const auto result = run_among_all(*session, scene, frame);
+    const auto truth = decide_pairs(scene, frame, Precision::fp32, result.download());
     const auto disjoint = std::count_if(
         truth.begin(), truth.end(), [](auto decision) { return decision.relation == Relation::disjoint; });
     EXPECT_EQ(result.rejected, static_cast<std::uint64_t>(disjoint));
@@ -117,8 +117,8 @@ TEST_P(ContactConformance, ExactTellsApartWhatDoubleCannot) {
     frame = scene.frame(0);
     const auto expected = [&](const std::string& decision) {
         const auto session = prepare("chunked", {{"decision", decision}});
-        const auto result = session->run(frame, all_pairs(scene, *session));
-        const auto truth = decide_pairs(scene, frame, Precision::single, session->download(result));
+        const auto result = run_among_all(*session, scene, frame);
+        const auto truth = decide_pairs(scene, frame, Precision::fp32, result.download());
         const auto disjoint = std::count_if(
             truth.begin(), truth.end(), [](auto decided) { return decided.relation == Relation::disjoint; });
         return std::pair(result.rejected, static_cast<std::uint64_t>(disjoint));
@@ -132,9 +132,10 @@ TEST_P(ContactConformance, ExactTellsApartWhatDoubleCannot) {
 TEST_P(ContactConformance, OnlyExactWaitsForTheHost) {
     for (const std::string decision : {"recheck", "fp64", "exact"}) {
         const auto session = prepare("chunked", {{"decision", decision}});
-        on.finish();
-        session->run(frame, all_pairs(scene, *session));
+        on.set_clocks(Clocks::on);
+        run_among_all(*session, scene, frame);
         const auto trace = on.finish();
+        on.set_clocks(Clocks::off);
         const auto waits =
             std::count_if(trace.events.begin(), trace.events.end(), [](const auto& e) { return e.blocked; });
         EXPECT_EQ(waits > 1, decision == "exact") << decision;

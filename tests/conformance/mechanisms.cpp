@@ -36,18 +36,18 @@ TEST_P(Mechanisms, GproximityIsForcedThroughEveryMechanism) {
                                       traversal.name());
         const std::array devices{&on};
         const auto session = traversal.prepare(devices, scene, settings);
-        const auto timed = session->run(frame, all_pairs(scene, *session));
-        EXPECT_EQ(session->digest(timed), expected.digest);
-        EXPECT_EQ(session->contact_digest(timed), expected.contact_digest);
+        const auto timed = run_among_all(*session, scene, frame);
+        EXPECT_EQ(timed.digest(), expected.digest);
+        EXPECT_EQ(timed.contact_digest(), expected.contact_digest);
         EXPECT_GT(timed.retries, 0u);
         session->count_work(true); // the counting build makes no contacts
-        const auto result = session->run(frame, all_pairs(scene, *session));
-        EXPECT_EQ(session->digest(result), expected.digest);
-        EXPECT_GT(result.work.balances, 0u);
-        EXPECT_GT(result.work.refills, 0u);
-        EXPECT_GT(result.work.spills, 0u);
-        fmt::print("{} balances, {} refills, {} spills, {} retries\n", result.work.balances,
-                   result.work.refills, result.work.spills, timed.retries);
+        const auto result = run_among_all(*session, scene, frame);
+        EXPECT_EQ(result.digest(), expected.digest);
+        EXPECT_GT(result.work.at("balances"), 0u);
+        EXPECT_GT(result.work.at("refills"), 0u);
+        EXPECT_GT(result.work.at("spills"), 0u);
+        fmt::print("{} balances, {} refills, {} spills, {} retries\n", result.work.at("balances"),
+                   result.work.at("refills"), result.work.at("spills"), timed.retries);
     }
 }
 
@@ -63,9 +63,9 @@ TEST_P(Mechanisms, ChunkedSharesItsTargetOfSeeds) {
         const std::array devices{&on};
         const auto session = traversal.prepare(devices, scene, settings);
         session->count_work(true);
-        const auto body_pairs = all_pairs(scene, *session);
+        const auto body_pairs = all_pairs(scene);
         pairs = body_pairs.size();
-        return session->run(scene.frame(0), body_pairs).work.seeds;
+        return session->run(scene.frame(0), body_pairs).work.at("seeds");
     };
     std::uint64_t pairs = 0;
     const auto coarse = seeds("1", "1", pairs);
@@ -96,9 +96,9 @@ TEST_P(Mechanisms, DescendingTheLargerOfUnlikeNodesNeedsFewerTests) {
         const std::array devices{&on};
         const auto session = traversal.prepare(devices, scene, settings);
         session->count_work(true);
-        const auto result = session->run(scene.frame(0), all_pairs(scene, *session));
-        digest = session->digest(result);
-        return result.work.bvtt_nodes;
+        const auto result = run_among_all(*session, scene, scene.frame(0));
+        digest = result.digest();
+        return result.work.at("bvtt_nodes");
     };
     Digest of_larger, of_both, again;
     const auto larger = tests("larger", "group", of_larger);
@@ -121,9 +121,11 @@ TEST_P(Mechanisms, ResidentChunkedWaitsOnce) {
         const std::array devices{&on};
         const auto session = traversal.prepare(devices, scene, settings);
         for (std::size_t i = 0; i < scene.frame_count; ++i) {
-            on.finish();
-            ASSERT_GT(session->run(scene.frame(i), all_pairs(scene, *session)).count, 0u);
+            on.set_clocks(Clocks::on);
+            const auto count = run_among_all(*session, scene, scene.frame(i)).count;
             const auto trace = on.finish();
+            on.set_clocks(Clocks::off);
+            ASSERT_GT(count, 0u);
             EXPECT_EQ(std::count_if(trace.events.begin(), trace.events.end(),
                                     [](const auto& e) { return e.blocked; }),
                       1);

@@ -15,7 +15,7 @@ TEST(Reference, SweepEqualsBruteForce) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         const auto scene = crowd(seed, 8, 0.7);
         for (const auto& geometry :
-             {Geometry{}, Geometry{.k = 8}, Geometry{.k = 26, .precision = Precision::twice}}) {
+             {Geometry{}, Geometry{.k = 8}, Geometry{.k = 26, .precision = Precision::fp64}}) {
             const auto brute = reference(scene, scene.frame(0), geometry, true, Method::brute_force);
             const auto swept = reference(scene, scene.frame(0), geometry, true, Method::sweep);
             EXPECT_FALSE(brute.pairs.empty());
@@ -39,10 +39,10 @@ TEST(Broad, NeverDropsAPairWithCandidates) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         const auto scene = crowd(1000 + seed, 9, 2.0);
         for (const auto& geometry :
-             {Geometry{.k = 8}, Geometry{.k = 6}, Geometry{.k = 18, .precision = Precision::twice}}) {
+             {Geometry{.k = 8}, Geometry{.k = 6}, Geometry{.k = 18, .precision = Precision::fp64}}) {
             const auto answer = reference(scene, scene.frame(1), geometry, false, Method::brute_force);
-            for (const auto bound : {Broad::Bound::sphere, Broad::Bound::tight}) {
-                const auto found = Broad(scene, geometry, bound).pairs(scene.frame(1));
+            for (const auto bound : {Broad::sphere, Broad::tight}) {
+                const auto found = BroadSweep(scene, geometry, bound).pairs(scene.frame(1));
                 EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
                 for (const auto& p : answer.pairs)
                     ASSERT_TRUE(std::binary_search(found.begin(), found.end(), BodyPair{p.body_a, p.body_b}));

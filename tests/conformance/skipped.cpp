@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tetrahedra that a frame skips: in no pair of any algorithm, in no bound, and back in the next frame.
-#include "algorithms/kdop/device_scene.h"
+#include "algorithms/published/published_frame.h"
+#include "tests/support/prepared_trees.h"
 #include "harness/flaws.h"
 #include "harness/oracle/frame_truth.h"
 #include "tests/support/cells.h"
@@ -50,7 +51,7 @@ std::vector<Pair> expected(const Scene& scene, const Frame& frame, const Geometr
 
 class Skipping : public testing::TestWithParam<std::string> {
 protected:
-    static void expect_the_rest(const Traversal& traversal, const Preset& preset, const Settings& given,
+    static void expect_the_rest(const Traversal& traversal, const Preset& preset, const SettingTexts& given,
                                 const Scene& scene) {
         auto settings = resolve(traversal.parameters(), preset.values, given, traversal.name());
         SCOPED_TRACE(fmt::format("{} {}{}", traversal.name(), preset.name, text(given)));
@@ -60,9 +61,9 @@ protected:
         std::size_t left_out = 0;
         for (const auto& frame : frames_of(scene)) {
             const auto pairs = expected(scene, frame, geometry);
-            const auto result = session->run(frame, all_pairs(scene, *session));
-            EXPECT_EQ(session->download(result), pairs);
-            EXPECT_EQ(session->digest(result), digest_of(pairs));
+            const auto result = run_among_all(*session, scene, frame);
+            EXPECT_EQ(result.download(), pairs);
+            EXPECT_EQ(result.digest(), digest_of(pairs));
             for (const auto method : {Method::brute_force, Method::sweep})
                 EXPECT_EQ(reference(scene, frame, geometry, false, method).pairs, pairs);
             EXPECT_GT(pairs.size(), 100u);
@@ -76,7 +77,7 @@ TEST_P(Skipping, LeavesTheRestAsItIsWithEveryPreset) {
     const auto scene = boxes_scene(3, 4);
     for (const auto* traversal : algorithms())
         for (const auto& preset : traversal->presets()) {
-            Settings given{{"contact_rule", "none"}};
+            SettingTexts given{{"contact_rule", "none"}};
             if (traversal->name() == "gproximity") given["queue_bytes"] = "1048576";
             expect_the_rest(*traversal, preset, given, scene);
         }
@@ -106,27 +107,27 @@ TEST_P(Skipping, WorksInEveryRoundingAndPrecision) {
 
 /// Every inner node is what its children are, skipped leaves hold nothing, and nothing else is empty.
 template<class Real>
-std::size_t check_nodes(const Scene& scene, const Frame& frame, const DeviceScene& on_device) {
+std::size_t check_nodes(const Scene& scene, const Frame& frame, const PreparedTrees& on_device) {
     const auto k = static_cast<std::size_t>(on_device.geometry().k);
-    std::vector<Real> nodes(on_device.slots() * k);
-    on_device.device().download(on_device.nodes(), std::as_writable_bytes(std::span(nodes)));
+    const auto nodes = on_device.nodes<Real>();
+    const auto volumes = on_device.volumes<Real>();
     std::size_t empty = 0;
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) {
-        const auto base = on_device.body_rows()[body * 8 + 2];
+        const auto base = on_device.trees.first_slot(body);
         const auto node = [&](std::uint32_t slot) { return &nodes[slot * k]; };
         std::vector<Real> whole(k);
         std::fill_n(whole.begin(), k / 2, std::numeric_limits<Real>::infinity());
         std::fill(whole.begin() + static_cast<std::ptrdiff_t>(k / 2), whole.end(),
                   -std::numeric_limits<Real>::infinity());
         const auto nothing = whole;
-        std::vector<bool> skipped(on_device.ids(body).size());
+        std::vector<bool> skipped(on_device.bodies.mesh(body).ids.size());
         if (!frame.skipped.empty())
             for (const auto t : frame.skipped[body]) skipped[t] = true;
         std::uint32_t number = 0;
-        for (const auto& level : on_device.levels(body)) {
+        for (const auto& level : on_device.trees.levels(body)) {
             for (std::uint32_t chunk = 0; chunk < level.chunks; ++chunk) {
-                const auto first = chunk * on_device.leaves();
-                const auto items = std::min(on_device.leaves(), level.items - first);
+                const auto first = chunk * on_device.trees.leaves();
+                const auto items = std::min(on_device.trees.leaves(), level.items - first);
                 const auto slot = base + level.slot + 2 * first;
                 for (std::uint32_t i = 1; i < items; ++i)
                     for (std::size_t word = 0; word < k; ++word) {
@@ -137,7 +138,8 @@ std::size_t check_nodes(const Scene& scene, const Frame& frame, const DeviceScen
                     const auto width = std::bit_ceil(items);
                     const auto item = first + (leaf >= width ? leaf - width : leaf + items - width);
                     const bool is_empty = std::equal(nothing.begin(), nothing.end(), node(slot + leaf));
-                    EXPECT_EQ(is_empty, skipped[on_device.ids(body)[item]]) << body << " " << item;
+                    EXPECT_EQ(is_empty, skipped[on_device.bodies.mesh(body).ids[item]])
+                        << body << " " << item;
                     empty += is_empty ? 1 : 0;
                     for (std::size_t word = 0; word < k; ++word)
                         whole[word] = word < k / 2 ? std::min(whole[word], node(slot + leaf)[word])
@@ -146,7 +148,7 @@ std::size_t check_nodes(const Scene& scene, const Frame& frame, const DeviceScen
             }
             ++number;
         }
-        EXPECT_TRUE(std::equal(whole.begin(), whole.end(), node(base))) << "volume of body " << body;
+        EXPECT_TRUE(std::equal(whole.begin(), whole.end(), &volumes[body * k])) << "volume of body " << body;
     }
     return empty;
 }
@@ -155,16 +157,20 @@ TEST_P(Skipping, NodesHoldTheRestOnly) {
     for (const std::uint32_t cells : {2u, 7u}) {
         const auto scene = boxes_scene(cells, 4);
         for (const std::uint32_t leaves : {2u, 32u, 4096u})
-            for (const auto residency : {Residency::resident, Residency::published}) {
+            for (const auto sharing : {Bodies::Sharing::by_mesh, Bodies::Sharing::none}) {
                 SCOPED_TRACE(fmt::format("{} cells, {} leaves", cells, leaves));
-                DeviceScene on_device(device(GetParam()), scene, {.k = 18}, leaves,
-                                      device(GetParam()).info().max_group_size == 1 ? 1 : 64, residency);
+                PreparedTrees on_device(device(GetParam()), scene, {.k = 18}, leaves,
+                                        device(GetParam()).info().max_group_size == 1 ? 1 : 64, sharing);
+                PublishedFrame published(on_device.bodies, on_device.trees,
+                                         {on_device.trees.group_size(), 1});
                 for (const auto& frame : frames_of(scene)) {
-                    on_device.update(frame);
+                    if (sharing == Bodies::Sharing::none)
+                        published.update(frame);
+                    else
+                        on_device.update(frame);
                     std::size_t count = 0;
                     for (const auto& body : frame.skipped) count += body.size();
                     EXPECT_EQ(check_nodes<float>(scene, frame, on_device), count);
-                    on_device.device().finish();
                 }
             }
     }
@@ -186,12 +192,12 @@ TEST_P(Skipping, BodiesWithoutTheirNearPartsAreNoBodyPairs) {
     const auto& traversal = algorithm("chunked");
     const std::array devices{&device(GetParam())};
     const auto session = traversal.prepare(
-        devices, scene, resolve(traversal.parameters(), {{"broad", "device"}}, {}, "chunked"));
-    const auto with = session->run(frame, {});
+        devices, scene, resolve(traversal.parameters(), {}, {{"broad", "device"}}, "chunked"));
+    const auto with = session->run(frame);
     EXPECT_GT(with.body_pairs, 0u);
     EXPECT_GT(with.count, 0u);
     frame.skipped = {{}, {}, around(scene.meshes[1], vertex)};
-    const auto without = session->run(frame, {});
+    const auto without = session->run(frame);
     EXPECT_EQ(without.body_pairs, 0u);
     EXPECT_EQ(without.count, 0u);
 }
@@ -207,7 +213,7 @@ TEST_P(Skipping, AgreesWithTheTruth) {
     EXPECT_GT(flaws.degenerate, 0u);
     EXPECT_GT(flaws.non_finite, 0u);
     for (const auto& frame : frames) {
-        const auto truth = frame_truth(scene, frame, Precision::single);
+        const auto truth = frame_truth(scene, frame, Precision::fp32);
         EXPECT_GT(truth.overlapping.size(), 100u);
         EXPECT_TRUE(truth.invalid.empty());
         for (const auto& list : {truth.touching, truth.overlapping})
@@ -216,7 +222,7 @@ TEST_P(Skipping, AgreesWithTheTruth) {
             const std::array devices{&device(GetParam())};
             const auto session = traversal->prepare(
                 devices, scene, resolve(traversal->parameters(), {}, {}, traversal->name()));
-            const auto pairs = session->download(session->run(frame, all_pairs(scene, *session)));
+            const auto pairs = run_among_all(*session, scene, frame).download();
             const auto errors = pair_errors(truth, pairs);
             EXPECT_EQ(errors.missed_touching + errors.missed_overlapping, 0u) << traversal->name();
             EXPECT_EQ(errors.invalid, 0u) << traversal->name();

@@ -31,15 +31,15 @@ constexpr std::array tested{"8", "18", "26"};
 class HardAlgorithms : public testing::TestWithParam<std::string> {
 protected:
     void expect_none_missed(const Traversal& traversal, const Scene& scene, std::span<const Frame> frames,
-                            Settings given) {
+                            SettingTexts given) {
         if (traversal.name() == "gproximity") given["queue_bytes"] = "1048576";
         const std::array devices{&device(GetParam())};
         const auto session =
             traversal.prepare(devices, scene, resolve(traversal.parameters(), {}, given, traversal.name()));
         for (const auto& frame : frames) {
-            const auto truth = frame_truth(scene, frame, Precision::single);
-            const auto result = session->run(frame, all_pairs(scene, *session));
-            const auto pairs = session->download(result);
+            const auto truth = frame_truth(scene, frame, Precision::fp32);
+            const auto result = run_among_all(*session, scene, frame);
+            const auto pairs = result.download();
             const auto errors = pair_errors(truth, pairs);
             EXPECT_EQ(errors.missed_touching, 0u) << "of " << truth.touching.size();
             EXPECT_EQ(errors.missed_overlapping, 0u) << "of " << truth.overlapping.size();
@@ -102,10 +102,10 @@ TEST_P(HardAlgorithms, ExactCapacityLosesNothing) {
             const auto session = traversal->prepare(
                 devices, scene,
                 resolve(traversal->parameters(), {}, {{"pair_capacity", capacity}}, traversal->name()));
-            const auto result = session->run(frame, all_pairs(scene, *session));
+            const auto result = run_among_all(*session, scene, frame);
             EXPECT_EQ(result.count, 1000u) << traversal->name() << " " << capacity;
             EXPECT_EQ(result.retries, retries) << traversal->name() << " " << capacity;
-            EXPECT_EQ(session->download(result).size(), 1000u);
+            EXPECT_EQ(result.download().size(), 1000u);
         }
 }
 
@@ -119,7 +119,7 @@ TEST_P(HardAlgorithms, CountsAreThoseConstructed) {
             const auto session = traversal->prepare(
                 devices, scene,
                 resolve(traversal->parameters(), {}, {{"output", output}}, traversal->name()));
-            const auto result = session->run(scene.frame(0), all_pairs(scene, *session));
+            const auto result = run_among_all(*session, scene, scene.frame(0));
             EXPECT_EQ(result.count, family.meeting(15)) << traversal->name() << " " << output;
         }
 }
@@ -131,14 +131,13 @@ TEST_P(HardAlgorithms, RefitsLeaveNoTrace) {
         const std::array devices{&device(GetParam())};
         const auto settings = resolve(traversal->parameters(), {}, {}, traversal->name());
         const auto old = traversal->prepare(devices, scene, settings);
-        for (std::size_t i = 0; i + 1 < scene.frame_count; ++i)
-            old->run(scene.frame(i), all_pairs(scene, *old));
+        for (std::size_t i = 0; i + 1 < scene.frame_count; ++i) run_among_all(*old, scene, scene.frame(i));
         const auto last = scene.frame(scene.frame_count - 1);
-        const auto result = old->run(last, all_pairs(scene, *old));
+        const auto result = run_among_all(*old, scene, last);
         const auto fresh = traversal->prepare(devices, scene, settings);
-        const auto expected = fresh->run(last, all_pairs(scene, *fresh));
+        const auto expected = run_among_all(*fresh, scene, last);
         EXPECT_GT(expected.count, 0u);
-        EXPECT_EQ(old->digest(result), fresh->digest(expected)) << traversal->name();
+        EXPECT_EQ(result.digest(), expected.digest()) << traversal->name();
     }
 }
 
@@ -160,8 +159,8 @@ TEST_P(HardAlgorithms, ContactsAreFinite) {
             devices, scene,
             resolve(traversal.parameters(), {}, {{"pair_capacity", "32768"}, {"contact_capacity", "65536"}},
                     "chunked"));
-        const auto result = session->run(scene.frame(0), all_pairs(scene, *session));
-        for (const auto& contact : session->download_contacts(result)) {
+        const auto result = run_among_all(*session, scene, scene.frame(0));
+        for (const auto& contact : result.download_contacts()) {
             ASSERT_TRUE(is_finite(contact)) << family.name;
             ++found;
         }

@@ -2,7 +2,7 @@
 // The knob of every family moves something, and the methods that are known to fail do fail.
 #include "tests/hard/support.h"
 
-#include "algorithms/kdop/kdop_settings.h"
+#include "algorithms/bounds/geometry.h"
 #include "harness/oracle/contact_truth.h"
 #include "harness/oracle/frame_truth.h"
 #include "harness/world_vertices.h"
@@ -150,13 +150,13 @@ Scene scene_of(const HardFamily& family, double e) {
 /// Pairs of the first frame that meet.
 double meeting(const HardFamily& family, double e) {
     const auto scene = scene_of(family, e);
-    const auto truth = frame_truth(scene, scene.frame(0), Precision::single);
+    const auto truth = frame_truth(scene, scene.frame(0), Precision::fp32);
     return static_cast<double>(truth.touching.size() + truth.overlapping.size());
 }
 
 double overlapping(const HardFamily& family, double e) {
     const auto scene = scene_of(family, e);
-    return static_cast<double>(frame_truth(scene, scene.frame(0), Precision::single).overlapping.size());
+    return static_cast<double>(frame_truth(scene, scene.frame(0), Precision::fp32).overlapping.size());
 }
 
 /// Largest difference of a vertex transformed in single and in double precision.

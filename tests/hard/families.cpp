@@ -2,7 +2,7 @@
 // The catalogue: that generators make what they say, always the same, and refuse what they cannot make.
 #include "tests/hard/support.h"
 
-#include "algorithms/kdop/range.h"
+#include "algorithms/bodies/range.h"
 #include "harness/oracle/frame_truth.h"
 #include "scenes/error.h"
 #include "tests/support/scenes.h"
@@ -139,7 +139,7 @@ TEST(HardScenes, MeetAsOftenAsConstructed) {
         if (family.scene == nullptr) continue;
         SCOPED_TRACE(family.name);
         const auto scene = make_scene(name_of(family));
-        const auto truth = frame_truth(scene, scene.frame(0), Precision::single);
+        const auto truth = frame_truth(scene, scene.frame(0), Precision::fp32);
         const auto met = truth.touching.size() + truth.overlapping.size();
         EXPECT_GT(met, 0u);
         if (family.meeting != nullptr) {
@@ -155,7 +155,7 @@ TEST(HardScenes, OfRigidBodiesMeetAndMiss) {
         for (std::size_t f = 0; f < scene.frame_count; ++f) {
             std::vector<Pair> intended;
             for (std::uint32_t t = 0; t < 64; ++t) intended.push_back({0, t, 1, t});
-            for (const auto& decision : decide_pairs(scene, scene.frame(f), Precision::single, intended))
+            for (const auto& decision : decide_pairs(scene, scene.frame(f), Precision::fp32, intended))
                 met += meets(decision.relation) ? 1 : 0;
         }
         EXPECT_GT(met, 0u) << family->name;
@@ -180,7 +180,7 @@ TEST(HardScenes, RefuseWhatTheyCannotMake) {
 
 std::string refusal(const Scene& scene, std::size_t frame) {
     try {
-        check_range(scene, scene.frame(frame), Precision::single);
+        check_range(scene, scene.frame(frame), Precision::fp32);
     } catch (const InputError& error) {
         return error.what();
     }

@@ -15,5 +15,5 @@ inline std::uint64_t candidate_pairs(tandem::Device& device) {
         tandem::resolve(chunked.parameters(), {}, {{"k", "18"}, {"broad", "device"}}, chunked.name());
     const std::array<tandem::Device*, 1> devices{&device};
     const auto session = chunked.prepare(devices, scene, settings);
-    return session->run(scene.frame(0), {}).count;
+    return session->run(scene.frame(0)).count;
 }

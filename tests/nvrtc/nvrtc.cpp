@@ -2,7 +2,8 @@
 // nvrtc [--require nvrtc]: compiles every kernel of the plan with NVRTC, which needs no GPU: all define sets
 // for sm_90, the defaults for the other architectures. Without NVRTC it says how many kernels it did not
 // compile.
-#include "algorithms/kdop/pair_list.h"
+#include "algorithms/hierarchy/pair_list.h"
+#include "tests/support/prepared_trees.h"
 #include "algorithms/sources.h"
 #include "algorithms/traversal.h"
 #include "backends/ptxas_log.h"
@@ -53,7 +54,8 @@ const cuda::Image& for_hopper(const KernelSource& source, const Defines& defines
 }
 
 /// Compiles what the sessions of the given settings ask for.
-void prepare(Device& device, const Traversal& traversal, const Settings& from, const Settings& given) {
+void prepare(Device& device, const Traversal& traversal, std::span<const Assignment> from,
+             const SettingTexts& given) {
     auto scene = make_scene("pile:bodies=2,frames=1");
     const auto settings = resolve(traversal.parameters(), from, given, traversal.name());
     const std::array devices{&device};
@@ -64,8 +66,8 @@ void prepare(Device& device, const Traversal& traversal, const Settings& from, c
 /// Compiles the test of an explicit list of pairs.
 void prepare_list(Device& device, Precision precision) {
     const auto scene = make_scene("hard:touch:pairs=2,together=2");
-    const DeviceScene on_device(device, scene, {.precision = precision}, 32, 128, Residency::resident);
-    const PairList list(on_device, std::vector<Pair>{{0, 0, 1, 0}, {0, 1, 1, 1}});
+    const testing_support::PreparedTrees on_device(device, scene, {.precision = precision}, 32, 128);
+    const PairList list(on_device.trees, std::vector<Pair>{{0, 0, 1, 0}, {0, 1, 1, 1}});
 }
 
 /// Every contact rule with and without verdicts, and every decision.
@@ -94,15 +96,16 @@ Programs plan() {
                          {"axes", k == "8c" ? "coordinate" : "standard"},
                          {"precision", precision}});
         }
-        for (const auto& [rounding, truth] :
-             {std::pair{"nearest", "t1"}, std::pair{"published", "t1"}, std::pair{"directed", "t1"},
-              std::pair{"safe", "t2"}, std::pair{"directed", "t2"}})
-            prepare(device, *traversal, first, {{"k", "26"}, {"rounding", rounding}, {"truth", truth}});
+        for (const auto& [rounding, placement] :
+             {std::pair{"nearest", "rounded"}, std::pair{"published", "rounded"},
+              std::pair{"directed", "rounded"}, std::pair{"safe", "exact"}, std::pair{"directed", "exact"}})
+            prepare(device, *traversal, first,
+                    {{"k", "26"}, {"rounding", rounding}, {"placement", placement}});
         for (const auto& preset : traversal->presets())
             for (const std::string output : {"pairs", "count", "digest"})
                 prepare(device, *traversal, preset.values, {{"output", output}});
     }
-    for (const auto precision : {Precision::single, Precision::twice}) prepare_list(device, precision);
+    for (const auto precision : {Precision::fp32, Precision::fp64}) prepare_list(device, precision);
     return device.asked();
 }
 
@@ -111,7 +114,7 @@ Programs defaults() {
     for (const auto* traversal : algorithms())
         for (const std::string precision : {"float", "double"})
             prepare(device, *traversal, traversal->presets().front().values, {{"precision", precision}});
-    for (const auto precision : {Precision::single, Precision::twice}) prepare_list(device, precision);
+    for (const auto precision : {Precision::fp32, Precision::fp64}) prepare_list(device, precision);
     return device.asked();
 }
 
@@ -262,11 +265,11 @@ TEST(Nvrtc, DefaultsForEveryArchitecture) {
 
 TEST(Nvrtc, AnUnknownNewerArchitectureGetsPtx) {
     if (!can_compile(defaults())) return;
-    const auto image =
-        nvrtc()->compile(kernel_source("algorithms/digest.cl"), {}, nvrtc()->architectures().back() + 10);
+    const auto image = nvrtc()->compile(kernel_source("algorithms/answer/digest.cl"), {},
+                                        nvrtc()->architectures().back() + 10);
     EXPECT_NE(image.target.find(" ptx"), std::string::npos);
     EXPECT_NE(image.bytes.find(".version"), std::string::npos);
-    EXPECT_THROW(nvrtc()->compile(kernel_source("algorithms/digest.cl"), {}, 10), DeviceError);
+    EXPECT_THROW(nvrtc()->compile(kernel_source("algorithms/answer/digest.cl"), {}, 10), DeviceError);
 }
 
 using NvrtcCache = testing_support::FolderTest;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/parameters/table.h"
 #include "algorithms/traversal.h"
 #include "backends/registry.h"
 #include "harness/reference.h"
@@ -38,11 +39,11 @@ inline std::string device_label(const std::string& device) {
 }
 
 /// Values of one setting (or of several at once, written "k=8,axes=coordinate").
-using Axis = std::vector<Settings>;
+using Axis = std::vector<SettingTexts>;
 
 /// Rows such that every pair of values of any two axes stands together in at least one of them; greedy, fixed
 /// seed.
-inline std::vector<Settings> pairwise(const std::vector<Axis>& axes) {
+inline std::vector<SettingTexts> pairwise(const std::vector<Axis>& axes) {
     using Choice = std::pair<std::size_t, std::size_t>; // axis, value
     std::set<std::pair<Choice, Choice>> open;
     for (std::size_t i = 0; i < axes.size(); ++i)
@@ -50,7 +51,7 @@ inline std::vector<Settings> pairwise(const std::vector<Axis>& axes) {
             for (std::size_t a = 0; a < axes[i].size(); ++a)
                 for (std::size_t b = 0; b < axes[j].size(); ++b) open.insert({{i, a}, {j, b}});
     Random random(7);
-    std::vector<Settings> rows;
+    std::vector<SettingTexts> rows;
     while (!open.empty()) {
         std::vector<std::size_t> best;
         std::size_t most = 0;
@@ -70,7 +71,7 @@ inline std::vector<Settings> pairwise(const std::vector<Axis>& axes) {
                 best = row;
             }
         }
-        Settings settings;
+        SettingTexts settings;
         for (std::size_t i = 0; i < axes.size(); ++i)
             settings.insert(axes[i][best[i]].begin(), axes[i][best[i]].end());
         rows.push_back(settings);
@@ -91,12 +92,13 @@ inline std::vector<BodyPair> all_pairs(const Scene& scene) {
     return pairs;
 }
 
-/// What to give a session that has to look at all of them.
-inline std::vector<BodyPair> all_pairs(const Scene& scene, const Session& session) {
-    return session.finds_pairs() ? std::vector<BodyPair>{} : all_pairs(scene);
+/// Runs a frame among all of them, or among those that the device finds where it is to.
+inline FrameResult run_among_all(Session& session, const Scene& scene, const Frame& frame) {
+    if (session.settings()[parameters::broad] == Broad::device) return session.run(frame);
+    return session.run(frame, all_pairs(scene));
 }
 
-inline std::string text(const Settings& settings) {
+inline std::string text(const SettingTexts& settings) {
     std::string result;
     for (const auto& [name, value] : settings) result += " " + name + "=" + value;
     return result;

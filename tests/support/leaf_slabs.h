@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/kdop/device_scene.h"
+#include "algorithms/hierarchy/heap.h"
+#include "tests/support/prepared_trees.h"
 #include "tests/support/oracle_touch.h"
 
 #include <cmath>
@@ -51,16 +52,14 @@ public:
         : axes_(static_cast<std::size_t>(geometry.k) / 2),
           published_(geometry.rounding == Rounding::published) {
         constexpr std::uint32_t leaves = 32;
-        DeviceScene on_device(device, pairs.scene(), geometry, leaves, 1, Residency::resident);
+        PreparedTrees on_device(device, pairs.scene(), geometry, leaves, 1);
         on_device.update(pairs.frame());
-        std::vector<Real> nodes(on_device.slots() * 2 * axes_);
-        device.download(on_device.nodes(), std::as_writable_bytes(std::span(nodes)));
-        device.finish();
+        const auto nodes = on_device.nodes<Real>();
         for (std::uint32_t body = 0; body < 2; ++body) {
-            const auto& ids = on_device.ids(body);
+            const auto& ids = on_device.bodies.mesh(body).ids;
             const auto count = static_cast<std::uint32_t>(ids.size());
             slabs_[body].resize(count * 2 * axes_);
-            const auto first = on_device.body_rows()[body * 8 + 2] + on_device.levels(body).front().slot;
+            const auto first = on_device.trees.first_slot(body) + on_device.trees.levels(body).front().slot;
             for (std::uint32_t item = 0; item < count; ++item) {
                 const auto chunk = item / leaves * leaves;
                 const auto slot = first + 2 * chunk + leaf_of(item - chunk, std::min(leaves, count - chunk));

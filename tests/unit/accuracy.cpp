@@ -139,7 +139,7 @@ TEST(Accuracy, VolumesAreThoseOfTheContactPointsHull) {
 /// Float takes a gap or an overlap of 2^-30 for a touch. Bounds for t2 are judged by what the poses say,
 /// contacts always by the vertices they are made from.
 TEST(Accuracy, PairsAreJudgedByTheTruthThatTheirBoundsAreFor) {
-    const Geometry vertices, poses{.truth = Truth::pose};
+    const Geometry vertices, poses{.placement = Placement::exact};
     for (const double gap : {0x1p-30, -0x1p-30}) {
         const auto scene = two_units(1 + gap);
         const std::vector<Frame> frames{scene.frame(0)};
@@ -176,7 +176,7 @@ TEST(Accuracy, PairsWhoseVolumeRoundsToZeroAreCountedApart) {
     answer.download_contacts = [] {
         return std::vector<ContactPoint>{{the_pair, 0, {0.8e-120, 0, 0}, {1, 0, 0}, -0.1e-120}};
     };
-    const auto& e = truths.errors({.precision = Precision::twice}, 0, answer);
+    const auto& e = truths.errors({.precision = Precision::fp64}, 0, answer);
     ASSERT_TRUE(e.contacts);
     EXPECT_EQ(e.contacts->overlapping, 1u);
     EXPECT_EQ(e.contacts->no_volume, 1u);
@@ -222,7 +222,7 @@ TEST(Accuracy, NumbersThatAreNotFiniteAreCountedAndInNoSample) {
 TEST(Accuracy, EqualAnswersAreComparedOnceAndASampleSaysSo) {
     const auto scene = crowd(3, 9, 1.2);
     const std::vector<Frame> frames{scene.frame(0)};
-    const auto truth = frame_truth(scene, frames[0], Precision::single);
+    const auto truth = frame_truth(scene, frames[0], Precision::fp32);
     ASSERT_GT(truth.overlapping.size(), 20u);
     int downloads = 0;
     FrameAnswer answer;
@@ -248,7 +248,7 @@ TEST(Accuracy, EqualAnswersAreComparedOnceAndASampleSaysSo) {
 TEST(Accuracy, AnAnswerThatCouldNotBeReadIsAskedForAgain) {
     const auto scene = crowd(3, 9, 1.2);
     const std::vector<Frame> frames{scene.frame(0)};
-    const auto truth = frame_truth(scene, frames[0], Precision::single);
+    const auto truth = frame_truth(scene, frames[0], Precision::fp32);
     FrameAnswer answer;
     answer.download = []() -> std::vector<Pair> { throw DeviceError("lost"); };
     Truths truths(scene, frames, TruthAmount::pairs, 0);

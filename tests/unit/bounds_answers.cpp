@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Candidate pairs by rounding and truth: which answers have to be equal, which must not be compared, and that
-// kernels, reference and broad phase mean the same slabs.
+// Candidate pairs by rounding and placement: which answers have to be equal, which must not be compared, and
+// that kernels, reference and broad phase mean the same slabs.
 #include "algorithms/broad/broad.h"
-#include "algorithms/kdop_session.h"
+#include "algorithms/broad/broad.h"
 #include "harness/sampler.h"
 #include "scenes/error.h"
 #include "tests/support/cells.h"
@@ -33,11 +33,13 @@ Scene far_crowd(std::uint64_t seed, double offset) {
 }
 
 Measurement measured(const Scene& scene, References& references, const FrameRange& range,
-                     const Settings& given) {
+                     const SettingTexts& given) {
     const auto& chunked = algorithm("chunked");
     const auto& preset = chunked.presets().front();
-    const Cell cell{&chunked, preset.name,
-                    resolve(chunked.parameters(), preset.values, given, chunked.name()), &device("host")};
+    const Cell cell{&chunked,
+                    std::string(preset.name),
+                    resolve(chunked.parameters(), preset.values, given, chunked.name()),
+                    {&device("host")}};
     SampleOptions options;
     options.repeat = 1;
     options.count_work = false;
@@ -68,15 +70,15 @@ TEST(BoundsAnswers, SafeAndNearestAgreeWithoutCornersAndEveryCellWithItsOwnRefer
 
 TEST(BoundsAnswers, WiderTruthFindsMore) {
     const auto scene = far_crowd(82, 1000);
-    for (const auto precision : {Precision::single, Precision::twice}) {
-        const auto at = [&](Truth truth) {
-            return reference(scene, scene.frame(0), {.precision = precision, .truth = truth}, false,
+    for (const auto precision : {Precision::fp32, Precision::fp64}) {
+        const auto at = [&](Placement placement) {
+            return reference(scene, scene.frame(0), {.precision = precision, .placement = placement}, false,
                              Method::brute_force)
                 .pairs;
         };
-        const auto lost = difference(at(Truth::vertices), at(Truth::pose));
+        const auto lost = difference(at(Placement::rounded), at(Placement::exact));
         EXPECT_EQ(lost.missing, 0u);
-        EXPECT_EQ(lost.extra > 0, precision == Precision::single);
+        EXPECT_EQ(lost.extra > 0, precision == Precision::fp32);
     }
 }
 
@@ -106,11 +108,11 @@ TEST(BoundsAnswers, KernelsAndReferenceMeanTheSameSlabsInEveryRounding) {
     for (const auto* scene : {&in_world, &posed})
         for (const auto rounding :
              {Rounding::nearest, Rounding::safe, Rounding::published, Rounding::directed})
-            for (const auto truth : {Truth::vertices, Truth::pose}) {
-                if (truth == Truth::pose
+            for (const auto placement : {Placement::rounded, Placement::exact}) {
+                if (placement == Placement::exact
                     && (rounding == Rounding::nearest || rounding == Rounding::published))
                     continue;
-                Geometry geometry{.k = 8, .rounding = rounding, .truth = truth};
+                Geometry geometry{.k = 8, .rounding = rounding, .placement = placement};
                 const auto in = [&] {
                     return reference(scene->scene(), scene->frame(), geometry, false, Method::brute_force)
                         .pairs;
@@ -118,7 +120,7 @@ TEST(BoundsAnswers, KernelsAndReferenceMeanTheSameSlabsInEveryRounding) {
                 const auto found = kernel_pairs<float>(*scene, geometry);
                 EXPECT_EQ(found, in()) << static_cast<int>(rounding);
                 counts.insert(found.size());
-                geometry.precision = Precision::twice;
+                geometry.precision = Precision::fp64;
                 EXPECT_EQ(kernel_pairs<double>(*scene, geometry), in()) << static_cast<int>(rounding);
             }
     EXPECT_GT(counts.size(), 4u) << "roundings that do not differ here say little";
@@ -129,12 +131,13 @@ TEST(BoundsAnswers, TheHostsBroadPhaseDropsNoBodyPairOfAnyBounds) {
         const auto scene = far_crowd(84, offset);
         const auto frame = scene.frame(0);
         for (const Geometry& geometry :
-             {Geometry{.k = 8, .rounding = Rounding::published}, Geometry{.k = 8, .truth = Truth::pose},
-              Geometry{.k = 8, .rounding = Rounding::directed, .truth = Truth::pose}}) {
+             {Geometry{.k = 8, .rounding = Rounding::published},
+              Geometry{.k = 8, .placement = Placement::exact},
+              Geometry{.k = 8, .rounding = Rounding::directed, .placement = Placement::exact}}) {
             const auto expected = reference(scene, frame, geometry, false, Method::brute_force).pairs;
             ASSERT_GT(expected.size(), 100u);
-            for (const auto bound : {Broad::Bound::sphere, Broad::Bound::tight}) {
-                const auto found = Broad(scene, geometry, bound).pairs(frame);
+            for (const auto bound : {Broad::sphere, Broad::tight}) {
+                const auto found = BroadSweep(scene, geometry, bound).pairs(frame);
                 for (const auto& pair : expected)
                     ASSERT_TRUE(
                         std::binary_search(found.begin(), found.end(), BodyPair{pair.body_a, pair.body_b}));
@@ -148,13 +151,13 @@ TEST(BoundsAnswers, DirectedIsRefusedWhereKernelsCannotRoundDirected) {
     const auto settings = resolve(chunked.parameters(), {}, {{"rounding", "directed"}}, chunked.name());
     auto info = device("opencl:0").info();
     try {
-        effective(settings, info);
+        chunked.fitted(settings, info);
         FAIL();
     } catch (const InputError& error) {
         EXPECT_THAT(error.what(), HasSubstr("rounding=directed is impossible on opencl:0"));
     }
     info.has_directed_rounding = true;
-    EXPECT_EQ(effective(settings, info).at("rounding"), "directed");
+    EXPECT_EQ(algorithm("chunked").fitted(settings, info)[parameters::rounding], Rounding::directed);
 }
 
 } // namespace

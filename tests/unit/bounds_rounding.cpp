@@ -2,7 +2,7 @@
 // What each rounding of slabs promises, on the slabs that the host's kernels make: pairs that touch or
 // overlap (the oracle says which), drawn so that rounding has every chance to tell them apart.
 // TANDEM_DRAWS=N: N pairs for each precision instead of a few.
-#include "harness/oracle/decision.h"
+#include "algorithms/contacts/exact/decision.h"
 #include "tests/support/cells.h"
 #include "tests/support/leaf_slabs.h"
 
@@ -87,7 +87,7 @@ std::uint64_t uncontained(const std::vector<OraclePair>& pairs, const PairScene&
 template<class Real>
 void expect_kept(std::uint64_t seed, std::uint64_t count) {
     constexpr std::uint64_t batch = 40000;
-    const auto precision = sizeof(Real) == 8 ? Precision::twice : Precision::single;
+    const auto precision = sizeof(Real) == 8 ? Precision::fp64 : Precision::fp32;
     std::map<std::pair<int, Rounding>, std::uint64_t> missed;
     std::uint64_t checked = 0;
     for (std::uint64_t done = 0; done < count; done += batch) {
@@ -107,7 +107,7 @@ void expect_kept(std::uint64_t seed, std::uint64_t count) {
         const bool has_corners = k != 6 && k != 12 && k != 16 && k != 18;
         EXPECT_EQ((missed[{k, Rounding::nearest}] > 0), has_corners) << "k = " << k;
         // Of doubles the fixed tolerance hides everything.
-        EXPECT_EQ((missed[{k, Rounding::published}] > 0), k != 6 && precision == Precision::single)
+        EXPECT_EQ((missed[{k, Rounding::published}] > 0), k != 6 && precision == Precision::fp32)
             << "k = " << k;
         fmt::print("k = {:>2}: nearest misses {}, published {} of {} pairs that meet\n", k,
                    missed[{k, Rounding::nearest}], missed[{k, Rounding::published}], checked);
@@ -121,7 +121,7 @@ TEST(BoundsRounding, SafeAndDirectedKeepEveryPairInDouble) {
 
 template<class Real>
 void expect_contained(std::uint64_t seed, std::uint64_t count) {
-    const auto precision = sizeof(Real) == 8 ? Precision::twice : Precision::single;
+    const auto precision = sizeof(Real) == 8 ? Precision::fp64 : Precision::fp32;
     const auto pairs = meeting_pairs<Real>(seed, count);
     const PairScene scene(pairs);
     for (const int k : all_k) {

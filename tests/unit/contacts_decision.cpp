@@ -20,8 +20,8 @@ struct Score {
     std::uint64_t pairs = 0;
     std::uint64_t missed = 0;      ///< told apart though they meet
     std::uint64_t kept = 0;        ///< disjoint, but not told apart
-    std::uint64_t unexplained = 0; ///< of those, neither uncertain in double nor degenerate
-    std::uint64_t unsure = 0, uncertain = 0;
+    std::uint64_t unexplained = 0; ///< of those, neither undecided in double nor degenerate
+    std::uint64_t undecided_by_filter = 0, undecided_by_double = 0;
 };
 
 Score score(const std::vector<OraclePair>& pairs, DecisionPrecision decision) {
@@ -36,9 +36,9 @@ Score score(const std::vector<OraclePair>& pairs, DecisionPrecision decision) {
         result.missed += !disjoint ? counts.rejected : 0;
         const std::uint64_t kept = disjoint && counts.rejected == 0 ? 1 : 0;
         result.kept += kept;
-        result.unexplained += counts.uncertain == 0 ? kept : 0;
-        result.unsure += counts.unsure;
-        result.uncertain += counts.uncertain;
+        result.unexplained += counts.undecided_by_double == 0 ? kept : 0;
+        result.undecided_by_filter += counts.undecided_by_filter;
+        result.undecided_by_double += counts.undecided_by_double;
     }
     return result;
 }
@@ -84,7 +84,8 @@ TEST(ContactsDecision, NoDecisionTellsApartWhatMeets) {
 }
 
 TEST(ContactsDecision, EachStageIsWrongOnlyWhereItSaysSo) {
-    std::uint64_t wrong_in_float = 0, wrong_after_recheck = 0, uncertain = 0, unsure = 0;
+    std::uint64_t wrong_in_float = 0, wrong_after_recheck = 0, undecided_by_double = 0,
+                  undecided_by_filter = 0;
     for (const auto& [name, pairs] : families()) {
         SCOPED_TRACE(name);
         const auto fp32 = score(pairs, DecisionPrecision::fp32);
@@ -96,23 +97,24 @@ TEST(ContactsDecision, EachStageIsWrongOnlyWhereItSaysSo) {
                 "| %s | %llu | %llu | %llu | %llu | %llu | %llu | %llu |\n", name.c_str(),
                 static_cast<unsigned long long>(pairs.size()), static_cast<unsigned long long>(fp32.kept),
                 static_cast<unsigned long long>(recheck.kept), static_cast<unsigned long long>(fp64.kept),
-                static_cast<unsigned long long>(exact.kept), static_cast<unsigned long long>(recheck.unsure),
-                static_cast<unsigned long long>(recheck.uncertain));
+                static_cast<unsigned long long>(exact.kept),
+                static_cast<unsigned long long>(recheck.undecided_by_filter),
+                static_cast<unsigned long long>(recheck.undecided_by_double));
         EXPECT_EQ(recheck.unexplained, 0u);
         EXPECT_EQ(fp64.unexplained, 0u);
         EXPECT_EQ(exact.kept, 0u);
-        EXPECT_LE(recheck.uncertain, recheck.unsure);
+        EXPECT_LE(recheck.undecided_by_double, recheck.undecided_by_filter);
         EXPECT_LE(recheck.kept, fp32.kept);
-        EXPECT_EQ(fp64.unsure, 0u);
+        EXPECT_EQ(fp64.undecided_by_filter, 0u);
         wrong_in_float += fp32.kept;
         wrong_after_recheck += recheck.kept;
-        uncertain += recheck.uncertain;
-        unsure += recheck.unsure;
+        undecided_by_double += recheck.undecided_by_double;
+        undecided_by_filter += recheck.undecided_by_filter;
     }
     EXPECT_GT(wrong_in_float, 500u);
     EXPECT_LT(wrong_after_recheck, wrong_in_float / 10);
-    EXPECT_GT(uncertain, 500u);
-    EXPECT_LT(uncertain, unsure);
+    EXPECT_GT(undecided_by_double, 500u);
+    EXPECT_LT(undecided_by_double, undecided_by_filter);
 }
 
 TEST(ContactsDecision, VerdictsAreNeverWrongInEitherPrecision) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/contacts/reference.h"
-#include "harness/oracle/decision.h"
+#include "algorithms/contacts/exact/decision.h"
 
 #include <cmath>
 #include <limits>

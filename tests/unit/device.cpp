@@ -100,7 +100,7 @@ TEST(Device, CountsWhatItHolds) {
 
 TEST(Device, NamesTheKernelThatDoesNotCompile) {
     for (auto* device : devices()) {
-        const auto& source = kernel_source("algorithms/kdop/refit.cl");
+        const auto& source = kernel_source("algorithms/hierarchy/refit.cl");
         const Defines defines{
             {"K", "10"}, {"AXES", "0"}, {"PRECISION", "32"}, {"ROUNDING", "1"}, {"GROUP_SIZE", "1"}};
         const auto message = message_of([&] { device->compile(source, "refit_strips", defines); });

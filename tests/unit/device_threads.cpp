@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Two host devices on two threads do not meet: work-group numbers, local memory and defines are the thread's.
+#include "algorithms/answer/status.clh"
+#include "algorithms/sources.h"
 #include "backends/host/host_device.h"
 #include "tests/unit/device_support.h"
 
@@ -12,17 +14,14 @@ namespace {
 
 constexpr std::uint32_t levels = 7;
 constexpr int rounds = 400;
-constexpr std::size_t status_words = 1024; // more than a status has
 
-/// Rows of counts, `pairs` and a place for the sum each, turned into starts by one work-group a row. The
-/// number of pairs comes from the host or, with a define that the host reads at run time, from the device.
+/// Rows of counts, `pairs` and a place for the sum each, turned into starts by one work-group a row.
 class Rows {
 public:
-    Rows(std::uint32_t pairs, bool counted_by_device) : pairs_(pairs) {
-        kernel_ = test::compile(*device_, "scan_seeds", {{"BROAD_ON_DEVICE", counted_by_device ? "1" : "0"}});
-        given_ = counted_by_device ? 2 * pairs : pairs;
-        std::vector<std::uint32_t> status(status_words, 0); // counters of two words, low and high
-        for (std::size_t i = 0; counted_by_device && i < status.size(); i += 2) status[i] = pairs;
+    explicit Rows(std::uint32_t pairs) : pairs_(pairs) {
+        kernel_ = test::compile(*device_, "scan_seeds", {});
+        std::vector<std::uint32_t> status(STATUS_WORDS, 0);
+        status[STATUS_BODY_PAIRS] = pairs;
         device_->upload(status_, bytes_of(status));
         counts_.resize(std::size_t{levels} * (pairs + 1));
         std::iota(counts_.begin(), counts_.end(), std::uint64_t{pairs});
@@ -38,7 +37,7 @@ public:
     /// How many rows are wrong.
     std::size_t wrong() {
         device_->upload(seeds_, bytes_of(counts_));
-        const std::array<Argument, 3> arguments{seeds_, given_, status_};
+        const std::array<Argument, 3> arguments{seeds_, 2 * pairs_, status_};
         device_->launch(kernel_, {levels, 1}, arguments);
         const auto starts = test::downloaded<std::uint64_t>(*device_, seeds_, counts_.size());
         std::size_t sum = 0;
@@ -53,32 +52,71 @@ public:
 private:
     std::unique_ptr<Device> device_ = host::make_device();
     std::uint32_t pairs_;
-    std::uint32_t given_ = 0;
     Kernel kernel_;
-    Buffer status_ = device_->allocate(status_words * 4, "status");
+    Buffer status_ = device_->allocate(STATUS_WORDS * 4, "status");
     Buffer seeds_;
     std::vector<std::uint64_t> counts_;
     std::vector<std::vector<std::uint64_t>> sums_;
 };
 
-TEST(DeviceThreads, HostDevicesDoNotMeet) {
-    Rows alone(50, true);
-    ASSERT_EQ(alone.wrong(), 0u);
+/// A vertex at the origin moved by the second of some poses, whose distance is a define that the host reads
+/// at run time: what comes out is that distance.
+class Moved {
+public:
+    explicit Moved(bool exact) : distance_(exact ? 16 : 12) {
+        kernel_ =
+            device_->compile(kernel_source("algorithms/published/transform.cl"), "transform_vertices",
+                             {{"PRECISION", "32"}, {"PLACEMENT", exact ? "1" : "0"}, {"GROUP_SIZE", "1"}});
+        std::vector<float> poses(32);
+        poses[12 + 3] = 12;
+        poses[16 + 3] = 16;
+        device_->upload(poses_, bytes_of(poses));
+        device_->upload(bodies_, bytes_of(std::vector<std::uint32_t>{1}));
+        device_->upload(vertices_, bytes_of(std::vector<float>(4)));
+    }
+
+    std::size_t wrong() {
+        const std::array<Argument, 5> arguments{vertices_, world_, bodies_, poses_, 1u};
+        device_->launch(kernel_, {1, 1}, arguments);
+        return test::downloaded<float>(*device_, world_, 4).front() == distance_ ? 0 : 1;
+    }
+
+private:
+    std::unique_ptr<Device> device_ = host::make_device();
+    float distance_;
+    Kernel kernel_;
+    Buffer poses_ = device_->allocate(32 * 4, "poses"), bodies_ = device_->allocate(4, "bodies"),
+           vertices_ = device_->allocate(16, "vertices"), world_ = device_->allocate(16, "world");
+};
+
+/// Wrong answers of two threads that run at once, each with its own of `Job`.
+template<class Job, class First, class Second>
+std::size_t wrong_at_once(const First& first, const Second& second) {
     std::barrier start(2);
-    const auto run = [&](std::uint32_t pairs, bool counted_by_device, std::size_t& wrong) {
-        Rows rows(pairs, counted_by_device);
+    const auto run = [&](const auto& setting) {
+        Job job(setting);
+        std::size_t wrong = 0;
         for (int i = 0; i < rounds; ++i) {
             start.arrive_and_wait();
-            for (int j = 0; j < 100; ++j) wrong += rows.wrong();
+            for (int j = 0; j < 100; ++j) wrong += job.wrong();
         }
+        return wrong;
     };
-    std::size_t here = 0;
     std::size_t there = 0;
-    std::thread other([&] { run(90, true, there); });
-    run(100, false, here);
+    std::thread other([&] { there = run(second); });
+    const auto here = run(first);
     other.join();
-    EXPECT_EQ(here, 0u);
-    EXPECT_EQ(there, 0u);
+    return here + there;
+}
+
+TEST(DeviceThreads, HostDevicesDoNotMeet) {
+    ASSERT_EQ(Rows(50).wrong(), 0u);
+    EXPECT_EQ(wrong_at_once<Rows>(100u, 90u), 0u);
+}
+
+TEST(DeviceThreads, DefinesOfHostDevicesDoNotMeet) {
+    ASSERT_EQ(Moved(false).wrong() + Moved(true).wrong(), 0u);
+    EXPECT_EQ(wrong_at_once<Moved>(false, true), 0u);
 }
 
 } // namespace

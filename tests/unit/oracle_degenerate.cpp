@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tetrahedra of no volume: they touch what they meet.
-#include "harness/oracle/lattice.h"
-#include "harness/oracle/program.h"
+#include "algorithms/contacts/exact/lattice.h"
+#include "algorithms/contacts/exact/program.h"
 #include "tests/support/oracle_pairs.h"
 
 #include <gtest/gtest.h>

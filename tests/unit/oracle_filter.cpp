@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Every tier gives the answer of the slowest one, and the filter certifies nothing that is not so.
-#include "harness/oracle/filter.h"
-#include "harness/oracle/lattice.h"
+#include "algorithms/contacts/exact/filter.h"
+#include "algorithms/contacts/exact/lattice.h"
 #include "scenes/parallel.h"
 #include "tests/support/oracle_pairs.h"
 

@@ -59,7 +59,7 @@ Scene stacked(double height = 1) {
 
 TEST(OracleFrame, FindsWhatBruteForceFinds) {
     const auto scene = crowd(3, 9, 1.2);
-    for (const auto precision : {Precision::single, Precision::twice})
+    for (const auto precision : {Precision::fp32, Precision::fp64})
         for (std::size_t i = 0; i < scene.frame_count; ++i) {
             const auto frame = scene.frame(i);
             const auto truth = frame_truth(scene, frame, precision);
@@ -73,9 +73,9 @@ TEST(OracleFrame, FindsWhatBruteForceFinds) {
 TEST(OracleFrame, FacesOnFaces) {
     const auto scene = stacked();
     const auto frame = scene.frame(0);
-    const auto truth = frame_truth(scene, frame, Precision::single);
+    const auto truth = frame_truth(scene, frame, Precision::fp32);
     EXPECT_TRUE(truth.overlapping.empty());
-    EXPECT_TRUE(truth.touching == brute_force(scene, frame, Precision::single, Relation::touching));
+    EXPECT_TRUE(truth.touching == brute_force(scene, frame, Precision::fp32, Relation::touching));
     EXPECT_GT(truth.touching.size(), 20u);
 }
 
@@ -83,14 +83,14 @@ TEST(OracleFrame, FacesOnFaces) {
 TEST(OracleFrame, TheVerticesAreTheCells) {
     const auto scene = stacked(1 + 0x1p-40);
     const auto frame = scene.frame(0);
-    EXPECT_GT(frame_truth(scene, frame, Precision::single).touching.size(), 20u);
-    EXPECT_EQ(frame_truth(scene, frame, Precision::twice).touching.size(), 0u);
+    EXPECT_GT(frame_truth(scene, frame, Precision::fp32).touching.size(), 20u);
+    EXPECT_EQ(frame_truth(scene, frame, Precision::fp64).touching.size(), 0u);
 }
 
 TEST(OracleFrame, ErrorsOfCandidates) {
     const auto scene = crowd(4, 9, 1.2);
     const auto frame = scene.frame(0);
-    const auto truth = frame_truth(scene, frame, Precision::single);
+    const auto truth = frame_truth(scene, frame, Precision::fp32);
     auto candidates = reference(scene, frame, {}, false, Method::brute_force).pairs;
     const auto errors = pair_errors(truth, candidates);
     EXPECT_EQ(errors.candidates, candidates.size());
@@ -108,7 +108,7 @@ TEST(OracleFrame, ReportsProgress) {
     double last = 0;
     std::uint64_t decided = 0;
     const auto truth =
-        frame_truth(scene, scene.frame(0), Precision::single, [&](double share, std::uint64_t done) {
+        frame_truth(scene, scene.frame(0), Precision::fp32, [&](double share, std::uint64_t done) {
             EXPECT_GE(share, last);
             EXPECT_LE(share, 1);
             last = share;
@@ -123,10 +123,10 @@ TEST(OracleFrame, ReportsProgress) {
 TEST(OracleFrame, CoordinatesThatAreNoNumbers) {
     const auto scene = crowd(6, 6, 1);
     auto frame = scene.frame(0);
-    const auto before = frame_truth(scene, frame, Precision::single);
+    const auto before = frame_truth(scene, frame, Precision::fp32);
     EXPECT_TRUE(before.invalid.empty());
     frame.deformed[1][0].x() = std::numeric_limits<double>::quiet_NaN();
-    const auto truth = frame_truth(scene, frame, Precision::single);
+    const auto truth = frame_truth(scene, frame, Precision::fp32);
     ASSERT_FALSE(truth.invalid.empty());
     for (const auto& [body, tetrahedron] : truth.invalid) {
         const auto& corners = scene.meshes[scene.bodies[body].mesh].tetrahedra[tetrahedron];
@@ -162,17 +162,17 @@ TEST(OracleFrame, VerticesSurviveTheRoundTripThroughFloat) {
 TEST(OracleFrame, RefusesWhatIsTooLargeForMemory) {
     const auto scene = crowd(3, 9, 1.2);
     const auto frame = scene.frame(0);
-    const auto expected = frame_truth(scene, frame, Precision::single);
+    const auto expected = frame_truth(scene, frame, Precision::fp32);
     ASSERT_GT(expected.overlapping.size(), 20u);
     const auto near = std::accumulate(expected.decisions.relations.begin(),
                                       expected.decisions.relations.end(), std::uint64_t{0});
     const auto needed = tetrahedron_count(scene) * (4 * 3 + 6) * sizeof(double) + near * 3 * sizeof(Pair);
-    const auto enough = frame_truth(scene, frame, Precision::single, {}, needed);
+    const auto enough = frame_truth(scene, frame, Precision::fp32, {}, needed);
     EXPECT_EQ(enough.overlapping, expected.overlapping);
     EXPECT_EQ(enough.touching, expected.touching);
     for (const std::uint64_t memory : {needed - 1, needed / 2, std::uint64_t{1000}, std::uint64_t{0}}) {
         try {
-            frame_truth(scene, frame, Precision::single, {}, memory);
+            frame_truth(scene, frame, Precision::fp32, {}, memory);
             ADD_FAILURE() << memory;
         } catch (const InputError& error) {
             EXPECT_NE(std::string(error.what()).find("--truth none, fewer frames"), std::string::npos)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The truth of poses: what the filter certifies of corners that are a little off holds for all of them, and
 // with rationals for the rest every pair is decided as rationals alone decide it.
-#include "harness/oracle/filter.h"
+#include "algorithms/contacts/exact/filter.h"
 #include "harness/oracle/frame_truth.h"
-#include "harness/oracle/lattice.h"
+#include "algorithms/contacts/exact/lattice.h"
 #include "harness/oracle/posed.h"
 #include "harness/oracle/superset.h"
 #include "scenes/parallel.h"
@@ -125,7 +125,7 @@ TEST(OraclePosed, DeformableBodiesAreWhereTheFramePutsThem) {
     frame.poses.resize(2);
     frame.deformed.resize(2);
     for (const auto& v : scene.meshes[0].vertices) frame.deformed[1].push_back(v + Eigen::Vector3d(1, 0, 0));
-    const auto truth = frame_truth(scene, frame, {Precision::single, Truth::pose});
+    const auto truth = frame_truth(scene, frame, {Precision::fp32, Placement::exact});
     EXPECT_EQ(truth.touching.size(), 1u);
     EXPECT_TRUE(truth.overlapping.empty());
 }
@@ -175,7 +175,7 @@ oracle::Points<mpq_class> exact_corners(const Scene& scene, const Frame& frame, 
 TEST(OraclePosed, FramesAreThoseOfRationals) {
     const auto scene = crowd(3, 5, 0.7);
     const auto frame = scene.frame(1);
-    const auto truth = frame_truth(scene, frame, {Precision::single, Truth::pose});
+    const auto truth = frame_truth(scene, frame, {Precision::fp32, Placement::exact});
     EXPECT_TRUE(truth.touching.empty());
     std::uint64_t pairs = 0;
     for (std::uint32_t a = 1; a < 3; ++a) { // 48 deformed tetrahedra and a lone one against all others

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Whether a tetrahedron has a volume, and the volume of a hull of points.
 #include "harness/oracle/contact_truth.h"
-#include "harness/oracle/filter.h"
-#include "harness/oracle/lattice.h"
+#include "algorithms/contacts/exact/filter.h"
+#include "algorithms/contacts/exact/lattice.h"
 #include "harness/oracle/volume.h"
 #include "tests/support/oracle_pairs.h"
 

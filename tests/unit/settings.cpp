@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/kdop_session.h"
+#include "algorithms/bounds/geometry.h"
+#include "algorithms/traversal.h"
 #include "algorithms/traversal.h"
 #include "scenes/error.h"
 
@@ -24,22 +25,22 @@ std::string message_of(Call call) {
     return "no error";
 }
 
-Settings with(const Settings& given) {
+Settings with(const SettingTexts& given) {
     const auto& chunked = algorithm("chunked");
     return resolve(chunked.parameters(), {}, given, chunked.name());
 }
 
 TEST(Settings, DefaultsAreThoseOfTheDesign) {
     const auto settings = with({});
-    EXPECT_EQ(settings.at("k"), "18");
-    EXPECT_EQ(settings.at("rounding"), "safe");
-    EXPECT_EQ(settings.at("precision"), "float");
-    EXPECT_EQ(settings.at("seed_threshold"), "0");
-    EXPECT_EQ(settings.at("residency"), "resident");
+    EXPECT_EQ(settings.text("k"), "18");
+    EXPECT_EQ(settings.text("rounding"), "safe");
+    EXPECT_EQ(settings.text("precision"), "float");
+    EXPECT_EQ(settings.text("seed_threshold"), "0");
+    EXPECT_EQ(settings.text("residency"), "resident");
 }
 
 TEST(Settings, IntegersMayBeWrittenWithAnExponent) {
-    EXPECT_EQ(with({{"seed_threshold", "1e7"}}).at("seed_threshold"), "10000000");
+    EXPECT_EQ(with({{"seed_threshold", "1e7"}}).text("seed_threshold"), "10000000");
     EXPECT_THAT(message_of([] { with({{"seed_threshold", "1.5"}}); }), HasSubstr("impossible"));
 }
 
@@ -59,7 +60,7 @@ TEST(Settings, UnknownNamesOfferTheNearest) {
                 HasSubstr("goes with k=8"));
     for (const std::string rounding : {"nearest", "published"})
         EXPECT_THAT(message_of([&] {
-                        geometry_of(with({{"truth", "t2"}, {"rounding", rounding}}));
+                        geometry_of(with({{"placement", "exact"}, {"rounding", rounding}}));
                     }),
                     HasSubstr("goes with rounding=safe or directed"));
 }
@@ -71,11 +72,11 @@ TEST(Settings, DecisionsWithCertaintyNeedDouble) {
     info.has_double = false;
     for (const std::string decision : {"recheck", "fp64", "exact"})
         EXPECT_EQ(message_of([&] {
-                      effective(with({{"decision", decision}}), info);
+                      algorithm("chunked").fitted(with({{"decision", decision}}), info);
                   }),
                   "setting decision=" + decision
                       + " is impossible on opencl:9, which has no double; choose fp32");
-    EXPECT_EQ(effective(with({}), info).at("decision"), "fp32");
+    EXPECT_EQ(algorithm("chunked").fitted(with({}), info)[parameters::decision], DecisionPrecision::fp32);
     EXPECT_THAT(message_of([] {
                     with({{"decision", "fp16"}});
                 }),
@@ -93,7 +94,7 @@ TEST(Settings, EveryPresetResolves) {
     for (const auto* traversal : algorithms()) {
         for (const auto& p : traversal->presets()) {
             const auto settings = resolve(traversal->parameters(), p.values, {}, traversal->name());
-            EXPECT_EQ(settings.size(), traversal->parameters().size());
+            EXPECT_EQ(settings.texts().size(), traversal->parameters().size());
             ++presets;
         }
     }

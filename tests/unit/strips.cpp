@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // refit.cl and the host agree on how many strips a work-group takes, and every team takes one at least.
-#include "algorithms/kdop/strips.h"
+#include "algorithms/hierarchy/strips.h"
 
 #include <bit>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 TEST(Strips, AGroupTakesWhatItsTeamsTake) {
     for (const int k : {6, 8, 12, 14, 16, 18, 20, 24, 26})
-        for (const auto precision : {Precision::single, Precision::twice})
+        for (const auto precision : {Precision::fp32, Precision::fp64})
             for (std::uint32_t given = 1; given <= 1024; ++given) {
                 const Geometry geometry{.k = k, .precision = precision};
                 const auto shape = refit_shape(geometry, given);
@@ -35,7 +35,7 @@ TEST(Strips, LargeNodesOfFullGroupsKeepTheirGroup) {
     EXPECT_EQ(refit_shape({.k = 18}, 128).group_size, 128u);
     EXPECT_EQ(refit_shape({.k = 18}, 128).tile_nodes, 256u);
     EXPECT_EQ(refit_shape({.k = 8}, 1024).group_size, 128u);
-    EXPECT_EQ(refit_shape({.k = 18, .precision = Precision::twice}, 128).group_size, 64u);
+    EXPECT_EQ(refit_shape({.k = 18, .precision = Precision::fp64}, 128).group_size, 64u);
     EXPECT_EQ(refit_shape({.k = 18}, 96).group_size, 64u);
 }
 

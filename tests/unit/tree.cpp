@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/kdop/tree.h"
+#include "algorithms/hierarchy/levels.h"
+#include "algorithms/hierarchy/order.h"
 #include "scenes/builtin.h"
 #include "scenes/scene.h"
 

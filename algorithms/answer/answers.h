@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/answer/frame_result.h"
+#include "algorithms/answer/room.h"
+#include "algorithms/bodies/bodies.h"
+#include "algorithms/traversal.h"
+
+namespace tandem {
+
+/// The buffers that one answer lies in.
+struct AnswerBuffers {
+    Room pairs;          ///< rows of pairs.clh
+    Room contact_ids;    ///< 2 words: pair, feature
+    Room contact_values; ///< 8 reals: point, normal, depth, padding
+};
+
+/// What it takes to answer questions about pairs and contacts: kernels, and the bodies they are of. Shared by
+/// a session and its results.
+class AnswerTools {
+public:
+    AnswerTools(std::shared_ptr<const Bodies> bodies, LaunchShape shape, bool contacts);
+
+    /// Of the first rows of a buffer. They launch, and wait for the sums.
+    Digest digest(const Buffer& pairs, std::uint64_t count) const;
+    Digest contact_digest(const AnswerBuffers& buffers, std::uint64_t contacts) const;
+    Pair pair_of(const std::array<std::uint32_t, 4>& row) const;
+    Device& device() const { return bodies_->device(); }
+    bool in_double() const { return bodies_->geometry().precision == Precision::fp64; }
+
+private:
+    Digest sums(std::uint64_t count) const;
+
+    std::shared_ptr<const Bodies> bodies_;
+    LaunchShape shape_;
+    Buffer sums_;
+    Kernel pairs_kernel_, contacts_kernel_;
+};
+
+/// Pairs and contacts that lie in a device's buffers.
+std::shared_ptr<const AnswerPart> device_part(std::shared_ptr<const AnswerTools> tools,
+                                              std::shared_ptr<const AnswerBuffers> buffers,
+                                              std::uint64_t pairs, std::uint64_t contacts);
+
+/// Brings pairs and, of each range of them, contacts to the host's memory.
+class HostPart : public AnswerPart {
+public:
+    /// The first `count` pairs of `buffers`; booked under Stage::read.
+    HostPart(std::shared_ptr<const AnswerTools> tools, const AnswerBuffers& buffers, std::uint64_t count);
+    /// Appends the first `count` contacts of `buffers`, which are of these pairs.
+    void add_contacts(const AnswerBuffers& buffers, std::uint64_t count);
+
+    PairBuffer pairs() const override { return {{}, rows_.size(), rows_.size()}; }
+    Digest digest() const override;
+    Digest contact_digest() const override;
+    void append_pairs(std::vector<Pair>& pairs) const override;
+    void append_contacts(std::vector<ContactPoint>& contacts) const override;
+
+private:
+    std::shared_ptr<const AnswerTools> tools_;
+    std::vector<std::array<std::uint32_t, 4>> rows_;
+    std::vector<std::array<std::uint32_t, 2>> ids_;
+    std::vector<std::byte> values_;
+};
+
+/// Buffers that return when the last answer that lies in them is gone, so that an answer outlives the next
+/// run and a caller who keeps none costs none.
+class AnswerPool {
+public:
+    /// `pairs` and `contacts`: how many there is room for at first, fewer where a limit is near; contacts 0:
+    /// no buffers for them.
+    AnswerPool(Device& device, std::size_t real_bytes, std::int64_t pairs, std::int64_t contacts);
+
+    /// Buffers that no answer lies in, with as much room as was ever needed. Throws OutOfMemory.
+    std::shared_ptr<AnswerBuffers> take();
+    /// The same for a frame that did not fit: room for so many, or as much as is free, shared out to pairs
+    /// and contacts with a rest for the walk. Buffers that no answer lies in are given up.
+    std::shared_ptr<AnswerBuffers> take_what_fits(std::uint64_t pairs, std::uint64_t contacts);
+
+private:
+    std::shared_ptr<AnswerBuffers> make(std::uint64_t pairs, std::uint64_t contacts) const;
+    std::size_t contact_bytes() const;
+
+    Device& device_;
+    std::size_t real_bytes_;
+    bool contacts_;
+    std::vector<std::shared_ptr<AnswerBuffers>> sets_;
+};
+
+} // namespace tandem

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "backends/device.h"
+#include "scenes/contact.h"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace tandem {
+
+/// Order-free digest of a set: its 64-bit count and two wrapping sums of a fixed mix of its elements.
+struct Digest {
+    std::uint64_t count = 0, a = 0, b = 0;
+
+    Digest& operator+=(const Digest& other);
+    bool operator==(const Digest&) const = default;
+};
+
+/// Candidate pairs in a device's memory: rows of 4 words, body a, body b, and the positions of the two
+/// tetrahedra along their bodies' Z-curves (answer/pairs.clh).
+struct PairBuffer {
+    Buffer rows; ///< empty when the pairs are not on a device
+    std::uint64_t count = 0;
+    std::uint64_t capacity = 0; ///< rows there is room for
+};
+
+/// What one device found of a frame, in its memory or brought to the host's.
+class AnswerPart {
+public:
+    virtual ~AnswerPart() = default;
+
+    virtual PairBuffer pairs() const = 0;
+    virtual Digest digest() const = 0;
+    virtual Digest contact_digest() const = 0;
+    /// Appends pairs and contacts, in no order.
+    virtual void append_pairs(std::vector<Pair>& pairs) const = 0;
+    virtual void append_contacts(std::vector<ContactPoint>& contacts) const = 0;
+};
+
+/// A frame's answer, which owns its parts: one for each device, and one for each batch whose pairs were
+/// brought to the host to make room. It can be asked as long as its scene and devices live, also after the
+/// next run; a session keeps its buffers apart until then.
+struct FrameResult {
+    std::uint64_t count = 0;      ///< candidate pairs
+    std::uint64_t body_pairs = 0; ///< those given, or found
+    std::uint64_t contacts = 0;
+    std::uint64_t degenerate = 0;          ///< pairs without contacts because a tetrahedron has no volume
+    std::uint64_t rejected = 0;            ///< pairs that were told apart
+    std::uint64_t undecided_by_filter = 0; ///< that the certified filter left (decision=recheck, exact)
+    std::uint64_t undecided_by_double = 0; ///< that double left (decision=recheck, fp64, exact)
+    std::uint64_t retries = 0;             ///< times a buffer was too small and a walk ran again
+    std::uint64_t batches = 0; ///< parts that the frame was split into for want of memory; 1: none
+    std::map<std::string_view, std::uint64_t> work; ///< by Counter; empty unless Session::count_work(true)
+    std::optional<Digest> summed;                   ///< output=digest: of the pairs
+    std::vector<std::shared_ptr<const AnswerPart>> parts; ///< none unless output=pairs
+
+    bool has_pairs() const { return !parts.empty(); }
+    /// Of pairs and contacts, summed where they are. Not part of a measured frame. Of an answer that only
+    /// counts the sums are 0.
+    Digest digest() const;
+    Digest contact_digest() const;
+    /// Pairs and contacts, sorted; none unless output=pairs.
+    std::vector<Pair> download() const;
+    std::vector<ContactPoint> download_contacts() const;
+};
+
+} // namespace tandem

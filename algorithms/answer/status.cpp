@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/answer/status.h"
+
+namespace tandem {
+
+Status::Status(Device& device, Writes writes) : device_(device), writes_(writes) {
+    buffer_ = device.allocate(sizeof(Words), "status");
+}
+
+void Status::put(std::size_t word, std::uint64_t value) {
+    words_[word] = static_cast<std::uint32_t>(value);
+    words_[word + 1] = static_cast<std::uint32_t>(value >> 32);
+}
+
+void Status::begin(std::uint64_t body_pairs) {
+    words_.fill(0);
+    put(STATUS_BODY_PAIRS, body_pairs);
+    const StageScope scope(device_, Stage::write);
+    if (body_pairs == 0)
+        device_.clear(buffer_, sizeof(Words));
+    else
+        device_.upload(buffer_, std::as_bytes(std::span(words_)));
+}
+
+void Status::set(std::size_t word, std::uint64_t value) {
+    put(word, value);
+    write(words_);
+}
+
+void Status::set_window(std::uint32_t first, std::uint32_t end) {
+    words_[STATUS_WINDOW_FIRST] = first;
+    words_[STATUS_WINDOW_END] = end;
+    write(words_);
+}
+
+void Status::write(const Words& words) {
+    words_ = words;
+    // Written whole: Oclgrind 21.10 takes the rest of a buffer for uninitialised after a partial write.
+    const StageScope scope(device_, Stage::write);
+    device_.upload(buffer_, std::as_bytes(std::span(words_)), 0, writes_ == Writes::blocking);
+}
+
+void Status::read() {
+    const StageScope scope(device_, Stage::read);
+    device_.download(buffer_, std::as_writable_bytes(std::span(words_)));
+}
+
+} // namespace tandem

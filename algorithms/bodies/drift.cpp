@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/bodies/drift.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tandem {
+
+namespace {
+
+constexpr double matrix_error = 24 * 0x1p-53; ///< of an entry that pose_rows computes in double
+
+double roundoff(Precision precision) { return precision == Precision::fp64 ? 0x1p-53 : 0x1p-24; }
+
+/// More than all roundings below the least normal number lose.
+double underflow(Precision precision) { return precision == Precision::fp64 ? 0x1p-1060 : 0x1p-140; }
+
+/// gamma_n of Higham 2002, lemma 3.1.
+double gamma(int n, double u) { return n * u / (1 - n * u); }
+
+/// Room for the roundings of the bound itself, of its rounding to the cell's precision and of three bounds
+/// added there.
+double with_room(double bound, double u) { return bound * (1 + 64 * u); }
+
+} // namespace
+
+double reach_of(std::span<const Eigen::Vector3d> vertices) {
+    double reach = 0;
+    for (const auto& v : vertices) reach = std::max(reach, v.norm());
+    return reach;
+}
+
+std::array<double, 3> drift_bound(const Pose& pose, double reach, Precision precision) {
+    const double u = roundoff(precision);
+    const double of_matrix = std::sqrt(3.0) * matrix_error * reach;
+    const double of_rotation =
+        gamma(6, u) * (reach + of_matrix) + of_matrix + underflow(precision) * (1 + reach);
+    std::array<double, 3> bound{};
+    for (int i = 0; i < 3; ++i)
+        bound[static_cast<std::size_t>(i)] =
+            with_room(of_rotation + gamma(2, u) * std::fabs(pose.translation[i]), u);
+    return bound;
+}
+
+std::array<double, 3> drift_bound(std::span<const Eigen::Vector3d> world, Precision precision) {
+    if (precision == Precision::fp64) return {};
+    const double u = roundoff(precision);
+    std::array<double, 3> bound{};
+    for (const auto& v : world)
+        for (int i = 0; i < 3; ++i)
+            bound[static_cast<std::size_t>(i)] =
+                std::max(bound[static_cast<std::size_t>(i)], std::fabs(v[i]));
+    for (auto& b : bound) b = with_room(u * b + underflow(precision), u);
+    return bound;
+}
+
+} // namespace tandem

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/bodies/pack.h"
+
+#include <cstring>
+
+namespace tandem {
+
+namespace {
+
+template<class Real, class Numbers>
+void append(std::vector<std::byte>& out, const Numbers& numbers) {
+    for (const double number : numbers) {
+        const auto value = static_cast<Real>(number);
+        const auto at = out.size();
+        out.resize(at + sizeof(Real));
+        std::memcpy(out.data() + at, &value, sizeof(Real));
+    }
+}
+
+template<class Real>
+void append_vertices(std::vector<std::byte>& out, const OrderedMesh& mesh,
+                     const std::vector<Eigen::Vector3d>& vertices) {
+    const auto at = out.size();
+    out.resize(at + mesh.vertices.size() * 4 * sizeof(Real));
+    auto* target = out.data() + at;
+    for (const auto vertex : mesh.vertices) {
+        const auto& p = vertices[vertex];
+        const std::array<Real, 4> row{static_cast<Real>(p.x()), static_cast<Real>(p.y()),
+                                      static_cast<Real>(p.z()), 0};
+        std::memcpy(target, row.data(), sizeof(row));
+        target += sizeof(row);
+    }
+}
+
+} // namespace
+
+void pack_vertices(std::vector<std::byte>& out, const Geometry& geometry, const OrderedMesh& mesh,
+                   const std::vector<Eigen::Vector3d>& vertices) {
+    if (geometry.precision == Precision::fp64)
+        append_vertices<double>(out, mesh, vertices);
+    else
+        append_vertices<float>(out, mesh, vertices);
+}
+
+std::array<double, 12> pose_rows(const Pose& pose) {
+    const auto& q = pose.rotation;
+    const double length = std::sqrt((q.w() * q.w() + q.x() * q.x()) + (q.y() * q.y() + q.z() * q.z()));
+    const double w = q.w() / length;
+    const double x = q.x() / length;
+    const double y = q.y() / length;
+    const double z = q.z() / length;
+    const auto& t = pose.translation;
+    return {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),     t.x(),
+            2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),     t.y(),
+            2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y), t.z()};
+}
+
+void pack_pose(std::vector<std::byte>& out, const Geometry& geometry, const Pose& pose,
+               const std::array<double, 3>& drift) {
+    const auto put = [&](const auto& numbers) {
+        if (geometry.precision == Precision::fp64)
+            append<double>(out, numbers);
+        else
+            append<float>(out, numbers);
+    };
+    put(pose_rows(pose));
+    if (geometry.placement == Placement::exact) put(std::array<double, 4>{drift[0], drift[1], drift[2], 0});
+}
+
+} // namespace tandem

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// What a device can do at most, to put the times of the walks against: moving bytes, and overlap tests of
+// nodes that lie in registers.
+#include "backends/portable.h"
+#include "algorithms/hierarchy/node.clh"
+
+// Work-items take neighbouring words, and IN_FLIGHT rounds of the grid at once, so that enough reads are in
+// flight.
+#define IN_FLIGHT 8
+
+// words = a multiple of the work-items times IN_FLIGHT.
+KERNEL void copy_words(GLOBAL const ulong* from, GLOBAL ulong* to, ulong words) {
+    const ulong stride = GLOBAL_COUNT;
+    for (ulong i = GLOBAL_ID; i < words; i += stride * IN_FLIGHT) {
+        ulong held[IN_FLIGHT];
+        for (int j = 0; j < IN_FLIGHT; ++j) held[j] = from[i + (ulong)j * stride];
+        for (int j = 0; j < IN_FLIGHT; ++j) to[i + (ulong)j * stride] = held[j];
+    }
+}
+
+// Reads `words` words `rounds` times. The sum is written only if it is a value that no upload here gives.
+KERNEL void read_words(GLOBAL const ulong* from, GLOBAL ulong* out, ulong words, uint rounds) {
+    const ulong stride = GLOBAL_COUNT;
+    ulong sum = 0;
+    for (uint round = 0; round < rounds; ++round) {
+        for (ulong i = GLOBAL_ID; i < words; i += stride * IN_FLIGHT) {
+            ulong held[IN_FLIGHT];
+            for (int j = 0; j < IN_FLIGHT; ++j) held[j] = from[i + (ulong)j * stride];
+            for (int j = 0; j < IN_FLIGHT; ++j) sum = sum * 3u + held[j] + round;
+        }
+    }
+    if (sum == 0x123456789abcdefUL) out[0] = sum;
+}
+
+KERNEL void do_nothing(GLOBAL uint* out) {
+    if (GLOBAL_ID == 0xffffffffu) out[0] = 1u;
+}
+
+// rounds * SLABS closed overlap tests of K comparisons each, a work-item. The slabs of b rotate so that no
+// comparison repeats, and grow a little after each turn so that no turn repeats.
+KERNEL void test_overlaps(GLOBAL const real* nodes, GLOBAL uint* counts, uint rounds, uint turns) {
+    real a[K];
+    real b[K];
+    for (int i = 0; i < K; ++i) a[i] = nodes[i];
+    for (int i = 0; i < K; ++i) b[i] = nodes[K + i] + (real)(GLOBAL_ID & 7u);
+    uint found = 0u;
+    for (uint round = 0; round < rounds; ++round) {
+        UNROLL for (int turn = 0; turn < SLABS; ++turn) {
+            int apart = 0;
+            UNROLL for (int axis = 0; axis < SLABS; ++axis) {
+                const int other = (axis + turn) % SLABS;
+                apart |= (a[axis] > b[other + SLABS]) | (b[other] > a[axis + SLABS]);
+            }
+            found += apart == 0 ? 1u : 0u;
+        }
+        for (int i = 0; i < K; ++i) b[i] = b[i] + (real)turns;
+    }
+    counts[GLOBAL_ID] = found;
+}

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/bounds/geometry.h"
+
+#include "scenes/error.h"
+
+#include <algorithm>
+#include <initializer_list>
+
+namespace tandem {
+
+namespace {
+
+using Direction = std::array<int, 3>;
+
+constexpr Direction coordinates[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+constexpr Direction corners[] = {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
+constexpr Direction edges[] = {{1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
+
+constexpr std::array<const Parameter*, 5> declared{&parameters::k, &parameters::axes, &parameters::precision,
+                                                   &parameters::rounding, &parameters::placement};
+
+} // namespace
+
+std::vector<Direction> directions(const Geometry& geometry) {
+    std::vector<Direction> result;
+    const auto add = [&](auto& set, std::size_t count) { result.insert(result.end(), set, set + count); };
+    const auto is_one_of = [k = geometry.k](std::initializer_list<int> all) {
+        return std::find(all.begin(), all.end(), k) != all.end();
+    };
+    if (geometry.coordinate_axes || !is_one_of({8, 12, 20})) add(coordinates, 3);
+    if (geometry.coordinate_axes)
+        add(corners, 1);
+    else if (is_one_of({8, 14, 20, 26}))
+        add(corners, 4);
+    else if (geometry.k == 24)
+        result.insert(result.end(), corners + 1, corners + 4);
+    if (is_one_of({12, 18, 20, 24, 26})) add(edges, 6);
+    if (geometry.k == 16) add(edges, 5);
+    return result;
+}
+
+std::span<const Parameter* const> geometry_parameters() { return declared; }
+
+Geometry geometry_of(const Settings& settings) {
+    Geometry geometry;
+    geometry.k = settings[parameters::k];
+    geometry.coordinate_axes = settings[parameters::axes] == Axes::coordinate;
+    geometry.precision = settings[parameters::precision];
+    geometry.rounding = settings[parameters::rounding];
+    geometry.placement = settings[parameters::placement];
+    if (geometry.coordinate_axes && geometry.k != 8)
+        throw InputError("setting axes=coordinate goes with k=8 only; leave axes out for other k");
+    if (geometry.placement == Placement::exact && geometry.rounding != Rounding::safe
+        && geometry.rounding != Rounding::directed)
+        throw InputError("setting placement=exact goes with rounding=safe or directed, which widen slabs by "
+                         "the bound it needs; leave rounding or placement out");
+    return geometry;
+}
+
+Defines row_defines(const Geometry& geometry, std::uint32_t group_size) {
+    Defines defines;
+    define(defines, parameters::precision, geometry.precision);
+    define(defines, parameters::placement, geometry.placement);
+    define(defines, parameters::group_size, group_size);
+    return defines;
+}
+
+Defines geometry_defines(const Geometry& geometry, std::uint32_t group_size) {
+    auto defines = row_defines(geometry, group_size);
+    define(defines, parameters::k, geometry.k);
+    define(defines, parameters::axes, geometry.coordinate_axes ? Axes::coordinate : Axes::standard);
+    define(defines, parameters::rounding, geometry.rounding);
+    return defines;
+}
+
+} // namespace tandem

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/broad/body_pairs.h"
+
+#include "algorithms/bodies/bodies.h"
+#include "algorithms/parameters/table.h"
+#include "scenes/error.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tandem {
+
+BodyPairs::BodyPairs(const Ground& ground, const Hierarchy& hierarchy, Status::Writes writes)
+    : device_(ground.device),
+      scene_(ground.scene),
+      geometry_(ground.bodies.geometry()),
+      writes_(writes),
+      room_(ground.device, "body pairs", sizeof(BodyPair), 0) {
+    const auto who = ground.settings[parameters::broad];
+    if (who != Broad::device) {
+        broad_.emplace(ground.scene, geometry_, who);
+        return;
+    }
+    stage_ = std::make_unique<BroadStage>(ground.bodies, hierarchy, ground.shape);
+    const auto first = static_cast<std::uint64_t>(ground.settings[parameters::body_pair_capacity]);
+    room_ = Room(device_, "body pairs", sizeof(BodyPair),
+                 std::clamp<std::uint64_t>(stage_->most_pairs(), 1, first));
+}
+
+void BodyPairs::upload(std::span<const BodyPair> pairs) {
+    on_host_ = pairs;
+    searches_ = false;
+    if (pairs.size() > room_.rows()) room_.grow(pairs.size());
+    const StageScope scope(device_, Stage::write);
+    device_.upload(room_.buffer(), std::as_bytes(pairs), 0, writes_ == Status::Writes::blocking);
+}
+
+void BodyPairs::begin(const Frame& frame, std::optional<std::span<const BodyPair>> given) {
+    if (given && given->size() > Room::most)
+        throw InputError(
+            fmt::format("run() was given {} body pairs; kernels number at most 2^32 - 1", given->size()));
+    if (given) {
+        upload(*given);
+    } else if (stage_) {
+        on_host_ = {};
+        searches_ = true;
+        if (!sorted_) stage_->sort(frame);
+        sorted_ = true;
+    } else {
+        {
+            const HostWork work(device_, Stage::broad, "body pairs");
+            found_ = broad_->pairs(frame);
+        }
+        upload(found_);
+    }
+}
+
+void BodyPairs::begin_part(std::span<const BodyPair> part) { upload(part); }
+
+void BodyPairs::launch(const Status& status) {
+    if (searches_) stage_->launch(room_.buffer(), room_.capacity(), status.buffer());
+}
+
+bool BodyPairs::grow(const Status& status) {
+    const auto found = status.counter(STATUS_BODY_PAIRS);
+    if (!searches_ || found <= room_.rows()) return false;
+    room_.grow(found);
+    return true;
+}
+
+std::vector<BodyPair> BodyPairs::list(const Frame& frame, const Status& status) const {
+    if (!searches_) return {on_host_.begin(), on_host_.end()};
+    const auto found = status.counter(STATUS_BODY_PAIRS);
+    if (found > room_.rows()) {
+        const HostWork work(device_, Stage::broad, "body pairs");
+        return BroadSweep(scene_, geometry_, Broad::tight).pairs(frame);
+    }
+    std::vector<BodyPair> pairs(found);
+    {
+        const StageScope scope(device_, Stage::read);
+        device_.download(room_.buffer(), std::as_writable_bytes(std::span(pairs)));
+    }
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+} // namespace tandem

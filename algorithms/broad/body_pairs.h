@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/answer/room.h"
+#include "algorithms/answer/status.h"
+#include "algorithms/broad/broad.h"
+#include "algorithms/broad/broad_stage.h"
+#include "algorithms/steps.h"
+
+#include <memory>
+#include <optional>
+
+namespace tandem {
+
+/// A frame's body pairs on a device: found there or by the host, as setting broad says, or given.
+class BodyPairs {
+public:
+    /// `writes`: whether an upload of pairs is waited for. What is given must outlive this.
+    BodyPairs(const Ground& ground, const Hierarchy& hierarchy, Status::Writes writes);
+
+    /// The next launches are of `frame`: uploads the pairs that are given or that the host finds. Throws
+    /// InputError for more than kernels number.
+    void begin(const Frame& frame, std::optional<std::span<const BodyPair>> given);
+    /// The same with a part of the frame's pairs.
+    void begin_part(std::span<const BodyPair> part);
+    /// Enqueues the device's search, if it is the device that finds the frame's pairs.
+    void launch(const Status& status);
+    /// After a launch: makes room for what the device has found; true when the search has to run again.
+    /// Throws OutOfMemory.
+    bool grow(const Status& status);
+    /// The frame's pairs in ascending order, after a launch; they are downloaded when the device has found
+    /// them, and found by the host where there is no room for them on the device.
+    std::vector<BodyPair> list(const Frame& frame, const Status& status) const;
+    /// Forgets the order in which bodies stand.
+    void reset() { sorted_ = false; }
+
+    /// Whether it is the device that finds the pairs at hand.
+    bool searched() const { return searches_; }
+    /// The pairs at hand where the host knows them.
+    std::span<const BodyPair> on_host() const { return on_host_; }
+    const Room& room() const { return room_; }
+
+private:
+    void upload(std::span<const BodyPair> pairs);
+
+    Device& device_;
+    const Scene& scene_;
+    Geometry geometry_;
+    Status::Writes writes_;
+    std::optional<BroadSweep> broad_;   ///< the host's search
+    std::unique_ptr<BroadStage> stage_; ///< the device's
+    bool searches_ = false;             ///< the device searches in this frame
+    bool sorted_ = false;               ///< bodies stand in the order of some frame
+    std::vector<BodyPair> found_;       ///< by the host
+    std::span<const BodyPair> on_host_; ///< of this launch, where the host knows them
+    Room room_;
+};
+
+} // namespace tandem

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/chunked/chunked_walker.h"
+
+#include "algorithms/chunked/levels.clh"
+#include "algorithms/sources.h"
+
+#include <algorithm>
+#include <map>
+
+namespace tandem {
+
+namespace {
+
+constexpr std::size_t seed_bytes = 12; ///< SEED_WORDS words
+
+} // namespace
+
+ChunkedWalker::ChunkedWalker(const ChunkTrees& trees, const Ground& ground)
+    : trees_(trees),
+      shape_(ground.shape),
+      threshold_(ground.settings[chunked_parameters::seed_threshold]),
+      target_(ground.settings[chunked_parameters::seed_target]),
+      schedule_(ground.settings[chunked_parameters::schedule]),
+      larger_(ground.settings[chunked_parameters::descent] == chunked_parameters::Descent::larger),
+      // Body pairs found on the device have passed the same test.
+      root_test_(ground.settings[chunked_parameters::root_test]
+                 && ground.settings[parameters::broad] != Broad::device) {
+    find_top_level();
+    const bool hands = top_level_ > 0 || ground.settings[parameters::residency] == Residency::published;
+    const auto seeds =
+        first_rows(ground.device, ground.settings[chunked_parameters::seed_capacity], seed_bytes, 1.0 / 16);
+    for (auto& room : handed_) room = Room(ground.device, "seeds", seed_bytes, hands ? seeds : 1);
+    starts_ = Room(ground.device, "seed starts", 8, top_level_ + 1);
+}
+
+void ChunkedWalker::do_compile(const WalkBuild& build) {
+    auto defines = trees_.defines(shape_.group_size);
+    build.add_to(defines);
+    define(defines, chunked_parameters::seed_threshold, threshold_);
+    define(defines, chunked_parameters::seed_target, target_);
+    define(defines, chunked_parameters::root_test, root_test_);
+    define(defines, chunked_parameters::descent,
+           larger_ ? chunked_parameters::Descent::larger : chunked_parameters::Descent::both);
+    const auto& source = kernel_source("algorithms/chunked/chunked.cl");
+    count_kernel_ = device().compile(source, "count_seeds", defines);
+    scan_kernel_ = device().compile(source, "scan_seeds", defines);
+    const bool in_groups = schedule_ == chunked_parameters::Schedule::group;
+    traverse_kernel_ = device().compile(source, in_groups ? "traverse_in_groups" : "traverse", defines);
+}
+
+std::uint32_t ChunkedWalker::seed_level(std::uint32_t a, std::uint32_t b, std::uint64_t pair_count) const {
+    const auto threshold = static_cast<std::uint64_t>(threshold_ != 0 ? threshold_ : target_)
+                           / (threshold_ != 0 ? 1 : std::max<std::uint64_t>(pair_count, 1));
+    const auto& levels_a = trees_.levels(a);
+    const auto& levels_b = trees_.levels(b);
+    const auto top = static_cast<std::uint32_t>(std::min(levels_a.size(), levels_b.size()) - 1);
+    std::uint32_t level = 0;
+    while (level < top && std::uint64_t{levels_a[level].chunks} * levels_b[level].chunks > threshold) ++level;
+    return level;
+}
+
+/// Which levels can be seeded depends on meshes and the number of bodies only, so that the sequence of
+/// launches is fixed beforehand.
+void ChunkedWalker::find_top_level() {
+    const std::uint64_t bodies = trees_.bodies().count();
+    const auto most_pairs = bodies * (bodies - 1) / 2;
+    std::map<const std::vector<Level>*, std::uint32_t> first_with; // one body for each mesh
+    for (std::uint32_t body = 0; body < bodies; ++body) first_with.emplace(&trees_.levels(body), body);
+    for (const auto& [levels_a, a] : first_with)
+        for (const auto& [levels_b, b] : first_with)
+            top_level_ = std::max(top_level_, seed_level(a, b, most_pairs));
+}
+
+void ChunkedWalker::reserve_handed(std::uint64_t seeds) {
+    for (auto& room : handed_) room.grow(seeds);
+}
+
+void ChunkedWalker::reserve_starts(std::uint64_t pairs) {
+    const auto rows = (pairs + 1) * (top_level_ + 1);
+    if (rows > starts_.rows()) starts_.grow(rows);
+}
+
+bool ChunkedWalker::do_grow(const Status& status) {
+    std::uint64_t most = 0;
+    for (std::uint32_t level = 0; level < top_level_; ++level)
+        most = std::max(most, status.counter(STATUS_LEVELS + 2 * level));
+    if (most <= handed_[0].rows() && most <= handed_[1].rows()) return false;
+    reserve_handed(most);
+    return true;
+}
+
+void ChunkedWalker::do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
+    work[counters::bvtt_nodes.name] += status.counter(STATUS_BVTT_NODES);
+    work[counters::seeds.name] += status.counter(STATUS_SEEDS);
+}
+
+void ChunkedWalker::make_seeds(const WalkTask& task) {
+    const StageScope scope(device(), Stage::seed);
+    reserve_starts(task.most_pairs());
+    const auto group = shape_.group_size;
+    const std::array<Argument, 8> count{trees_.volumes(), trees_.tree_table(), trees_.level_table(),
+                                        task.body_pairs,  task.pair_room,      top_level_ + 1,
+                                        starts_.buffer(), task.status.buffer()};
+    const auto needed = (std::uint64_t{task.most_pairs()} + group - 1) / group;
+    device().launch(count_kernel_, {std::clamp<std::uint64_t>(needed, 1, shape_.groups), group}, count);
+    const std::array<Argument, 3> scan{starts_.buffer(), task.pair_room, task.status.buffer()};
+    device().launch(scan_kernel_, {top_level_ + 1, group}, scan);
+}
+
+void ChunkedWalker::traverse(const WalkTask& task, std::uint32_t level, std::uint32_t pair_room) {
+    const StageScope scope(device(), Stage::traverse);
+    const auto& bodies = trees_.bodies();
+    const std::array<Argument, 16> arguments{trees_.nodes(),
+                                             trees_.tree_table(),
+                                             trees_.level_table(),
+                                             bodies.row_table(),
+                                             bodies.ids(),
+                                             task.body_pairs,
+                                             pair_room,
+                                             level,
+                                             starts_.buffer(),
+                                             handed(level).buffer(),
+                                             handed(level).capacity(),
+                                             handed(level + 1).buffer(),
+                                             handed(level + 1).capacity(),
+                                             task.answer.pairs.buffer(),
+                                             task.answer.pairs.capacity(),
+                                             task.status.buffer()};
+    device().launch(traverse_kernel_, {shape_.groups, shape_.group_size}, arguments);
+}
+
+void ChunkedWalker::do_launch(const WalkTask& task) {
+    make_seeds(task);
+    for (std::uint32_t level = top_level_ + 1; level-- > 0;) traverse(task, level, task.pair_room);
+}
+
+} // namespace tandem

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/answer/room.h"
+#include "algorithms/chunked/chunked_parameters.h"
+#include "algorithms/hierarchy/chunk_trees.h"
+#include "algorithms/steps.h"
+
+namespace tandem {
+
+/// The chunked static scheduler's walk: seeds made on the device, then one launch a level, from the highest
+/// that any pair of the scene's meshes is seeded at.
+class ChunkedWalker : public Walker {
+public:
+    /// Both must outlive this.
+    ChunkedWalker(const ChunkTrees& trees, const Ground& ground);
+
+protected:
+    /// The rule of seed_level in seeds.clh, for the host.
+    std::uint32_t seed_level(std::uint32_t a, std::uint32_t b, std::uint64_t pair_count) const;
+    /// Enqueues the walks of a level: its own seeds, as the starts have them, and those handed down to it.
+    void traverse(const WalkTask& task, std::uint32_t level, std::uint32_t pair_room);
+    /// Room for the starts of so many body pairs; what was there is lost.
+    void reserve_starts(std::uint64_t pairs);
+
+    const ChunkTrees& trees() const { return trees_; }
+    Device& device() const { return trees_.bodies().device(); }
+    std::uint32_t top_level() const { return top_level_; }
+    const Room& starts() const { return starts_; }
+    /// Seeds handed down to a level, and from outside; rows of SEED_WORDS words.
+    const Room& handed(std::uint32_t level) const { return handed_[level % 2]; }
+    void reserve_handed(std::uint64_t seeds);
+
+private:
+    void do_compile(const WalkBuild& build) override;
+    void do_launch(const WalkTask& task) override;
+    bool do_grow(const Status& status) override;
+    void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
+
+    void find_top_level();
+    void make_seeds(const WalkTask& task);
+
+    const ChunkTrees& trees_;
+    LaunchShape shape_;
+    std::int64_t threshold_; ///< 0: target_ shared by the body pairs
+    std::int64_t target_;
+    chunked_parameters::Schedule schedule_;
+    bool larger_;
+    bool root_test_;
+    std::uint32_t top_level_ = 0; ///< the highest level any pair of this scene's meshes is seeded at
+    std::array<Room, 2> handed_;  ///< seeds handed down to even and odd levels
+    Room starts_;
+    Kernel count_kernel_, scan_kernel_, traverse_kernel_;
+};
+
+} // namespace tandem

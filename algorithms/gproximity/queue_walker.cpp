@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/gproximity/queue_walker.h"
+
+#include "algorithms/gproximity/queues.clh"
+#include "algorithms/sources.h"
+
+#include <algorithm>
+
+namespace tandem {
+
+namespace {
+
+constexpr std::uint64_t item_words = 3;
+constexpr auto too_many_items =
+    "gproximity: 2^31 node pairs or more wait in its queues, past what it counts; set batch, or take chunked";
+
+constexpr Counter balances{"balances", "launches", "balance launches that moved work"};
+constexpr Counter refills{"refills", "loads", "times a group loaded more from its own queue inside a launch"};
+constexpr Counter spills{"spills", "node pairs",
+                         "node pairs that left a full local queue for the global one"};
+constexpr Counter own_bytes{"queue_bytes", "bytes", "one of the two arrays of queues", Counter::Total::last};
+constexpr Counter published_bytes{"published_queue_bytes", "bytes",
+                                  "what the paper's release would have taken for it on this device",
+                                  Counter::Total::last};
+
+constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds, balances, refills, spills, own_bytes,
+                                  published_bytes};
+
+} // namespace
+
+std::span<const Counter> queue_counters() { return all_counters; }
+
+QueueWalker::QueueWalker(const ChunkTrees& trees, const Ground& ground)
+    : trees_(trees), shape_(ground.shape), sizes_(queue_sizes(ground.settings, ground.device.info())) {
+    counts_ = device().allocate(sizes_.groups * 4, "queue counts");
+    starts_ = device().allocate((sizes_.groups + 1) * 4, "queue starts");
+    totals_ = device().allocate(8, "balance totals");
+    idle_ = device().allocate(4, "idle groups");
+    const auto room = first_rows(device(), sizes_.queue_capacity, sizes_.groups * item_words * 4, 0.25);
+    reserve_queues(static_cast<std::uint32_t>(room));
+}
+
+void QueueWalker::do_compile(const WalkBuild& build) {
+    const auto& source = kernel_source("algorithms/gproximity/gproximity.cl");
+    auto defines = trees_.defines(shape_.group_size);
+    build.add_to(defines);
+    add_defines(sizes_, defines);
+    const bool serial = sizes_.balance == Balance::serial;
+    scatter_ = device().compile(source, "scatter_roots", defines);
+    traverse_ = device().compile(source, "traverse_queues", defines);
+    if (!serial) move_ = device().compile(source, "move_balance", defines);
+    define(defines, parameters::group_size, sizes_.balance_group_size);
+    plan_ = device().compile(source, "plan_balance", defines);
+    if (serial) move_ = device().compile(source, "move_balance_serially", defines);
+}
+
+std::uint64_t QueueWalker::queue_bytes() const {
+    return std::uint64_t{sizes_.groups} * sizes_.queue_capacity * item_words * 4;
+}
+
+/// Items that may wait in all queues together.
+std::uint64_t QueueWalker::queue_room() const {
+    return std::uint64_t{sizes_.groups} * (sizes_.queue_capacity - 1);
+}
+
+void QueueWalker::reserve_queues(std::uint32_t capacity) {
+    for (auto& buffer : items_) buffer = {};
+    sizes_.queue_capacity = std::max(capacity, 2u);
+    for (auto& buffer : items_) buffer = device().allocate(queue_bytes(), "queues");
+}
+
+bool QueueWalker::do_grow(const Status& status) {
+    if (status.counter(STATUS_BODY_PAIRS) > queue_room()) short_of_queue_ = true;
+    if (!short_of_queue_) return false;
+    short_of_queue_ = false;
+    if (sizes_.queue_capacity > MOST_QUEUE_ITEMS / 2) throw DeviceError(too_many_items);
+    const auto before = sizes_.queue_capacity;
+    try {
+        reserve_queues(2 * before);
+    } catch (const OutOfMemory&) {
+        reserve_queues(before); // which has just been given back
+        throw;
+    }
+    return true;
+}
+
+/// The release took min(largest allocation, a quarter of the memory) for one array (tvcg18.md 2.1).
+void QueueWalker::do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
+    const auto& info = device().info();
+    work[counters::bvtt_nodes.name] += status.counter(STATUS_BVTT_NODES);
+    work[counters::seeds.name] += status.counter(STATUS_SEEDS);
+    work[balances.name] += balances_;
+    work[refills.name] += status.counter(STATUS_REFILLS);
+    work[spills.name] += status.counter(STATUS_SPILLS);
+    work[own_bytes.name] = queue_bytes();
+    work[published_bytes.name] = std::min(info.max_allocation, info.global_bytes / 4);
+}
+
+/// Spreads the roots of body pairs over the queues; the pairs themselves are on the device.
+void QueueWalker::seed(const WalkTask& task, std::uint32_t first, std::uint32_t most) {
+    const StageScope scope(device(), Stage::seed);
+    const std::array<Argument, 7> arguments{items_[0], counts_, sizes_.groups,       sizes_.queue_capacity,
+                                            first,     most,    task.status.buffer()};
+    device().launch(scatter_, {shape_.groups, shape_.group_size}, arguments);
+}
+
+/// What the release did: a fresh host array as large as all queues, one root at the start of each, uploaded
+/// whole.
+void QueueWalker::upload_whole_queues(std::uint32_t first, std::uint32_t count) {
+    const auto words = std::uint64_t{sizes_.groups} * sizes_.queue_capacity * item_words;
+    std::unique_ptr<std::uint32_t[]> items;
+    std::vector<std::uint32_t> counts(sizes_.groups, 0);
+    {
+        const HostWork work(device(), Stage::preprocess, "queue array");
+        items = std::make_unique_for_overwrite<std::uint32_t[]>(words);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            // A batch may be larger than the groups: roots then lie one above the other.
+            const auto queue = i % sizes_.groups;
+            auto* item =
+                &items[(std::uint64_t{queue} * sizes_.queue_capacity + counts[queue]++) * item_words];
+            item[0] = first + i;
+            item[1] = item[2] = 1;
+        }
+    }
+    const StageScope scope(device(), Stage::write);
+    device().upload(items_[0], std::as_bytes(std::span(items.get(), words)), 0, true);
+    device().upload(counts_, bytes_of(counts), 0, true);
+}
+
+void QueueWalker::do_clear_idle() { device().clear(idle_, 4); }
+
+void QueueWalker::traverse(const WalkTask& task) {
+    const auto& bodies = trees_.bodies();
+    const std::array<Argument, 12> arguments{trees_.nodes(),
+                                             trees_.tree_table(),
+                                             bodies.row_table(),
+                                             bodies.ids(),
+                                             task.body_pairs,
+                                             items_[0],
+                                             counts_,
+                                             sizes_.queue_capacity,
+                                             idle_,
+                                             task.answer.pairs.buffer(),
+                                             task.answer.pairs.capacity(),
+                                             task.status.buffer()};
+    {
+        const StageScope scope(device(), Stage::write);
+        do_clear_idle();
+    }
+    const StageScope scope(device(), Stage::traverse);
+    device().launch(traverse_, {sizes_.groups, shape_.group_size}, arguments);
+}
+
+/// The thresholds are those of both originals: any queue below its initial load, or nearly full.
+void QueueWalker::plan_and_move() {
+    const auto margin = std::uint64_t{4} * shape_.group_size + sizes_.local_queue;
+    const auto high =
+        static_cast<std::uint32_t>(sizes_.queue_capacity > margin ? sizes_.queue_capacity - margin : 0);
+    const auto low = 3 * shape_.group_size;
+    const StageScope scope(device(), Stage::balance);
+    const std::array<Argument, 6> plan{counts_, sizes_.groups, low, high, starts_, totals_};
+    device().launch(plan_, {1, sizes_.balance_group_size}, plan);
+    const std::array<Argument, 7> move{items_[0], items_[1], counts_, sizes_.groups, sizes_.queue_capacity,
+                                       starts_,   totals_};
+    if (sizes_.balance == Balance::serial)
+        device().launch(move_, {1, sizes_.balance_group_size}, move);
+    else
+        device().launch(move_, {shape_.groups, shape_.group_size}, move);
+}
+
+/// Plans and moves; returns {items left, at most MOST_QUEUE_ITEMS, and whether they moved}.
+std::array<std::uint32_t, 2> QueueWalker::balance() {
+    plan_and_move();
+    std::array<std::uint32_t, 2> totals{};
+    const StageScope scope(device(), Stage::read);
+    device().download(totals_, std::as_writable_bytes(std::span(totals)));
+    return totals;
+}
+
+/// Walks one batch to its end; false when the queues are too small for it.
+bool QueueWalker::walk_batch(const WalkTask& task, std::uint32_t first, std::uint32_t count) {
+    if (count > queue_room()) return false;
+    if (sizes_.upload == QueueUpload::queues)
+        upload_whole_queues(first, count);
+    else
+        seed(task, first, count);
+    while (true) {
+        traverse(task);
+        do_after_launch();
+        const auto [left, moved] = balance();
+        if (left >= MOST_QUEUE_ITEMS) throw DeviceError(too_many_items);
+        if (left == 0) return true;
+        if (moved != 0) {
+            std::swap(items_[0], items_[1]);
+            ++balances_;
+        }
+        if (left > queue_room()) return false;
+    }
+}
+
+void QueueWalker::do_launch(const WalkTask& task) {
+    balances_ = 0;
+    short_of_queue_ = false;
+    // Pairs found on the device are as many as there is room for; do_grow looks whether these were all.
+    const auto most = task.searched ? queue_room() : std::uint64_t{task.most_pairs()};
+    const auto total = static_cast<std::uint32_t>(std::min<std::uint64_t>(task.most_pairs(), most));
+    const auto batch = sizes_.batch == 0 ? total : sizes_.batch;
+    for (std::uint64_t first = 0; first < total; first += batch) {
+        const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(batch, total - first));
+        if (!walk_batch(task, static_cast<std::uint32_t>(first), count)) {
+            short_of_queue_ = true;
+            return;
+        }
+        if (task.interlude != nullptr) task.interlude->part_walked();
+    }
+}
+
+} // namespace tandem

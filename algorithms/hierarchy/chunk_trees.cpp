@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/hierarchy/chunk_trees.h"
+
+#include "algorithms/hierarchy/heap.h"
+#include "algorithms/sources.h"
+#include "backends/upload.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace tandem {
+
+namespace {
+
+constexpr std::uint32_t level_words = 4;
+constexpr std::uint32_t job_words = 8;
+constexpr std::uint32_t most_top_items = 1024; ///< of a level that one work-group refits
+
+std::uint64_t groups_for(std::uint64_t items, std::uint64_t per_group) {
+    return (items + per_group - 1) / per_group;
+}
+
+} // namespace
+
+ChunkTrees::ChunkTrees(const Bodies& bodies, std::uint32_t leaves, std::uint32_t group_size)
+    : bodies_(bodies),
+      device_(bodies.device()),
+      leaves_(leaves),
+      group_size_(group_size),
+      shape_(refit_shape(bodies.geometry(), group_size)) {
+    for (const auto& mesh : bodies.scene().meshes)
+        mesh_levels_.push_back(chunk_levels(static_cast<std::uint32_t>(mesh.tetrahedra.size()), leaves));
+    lay_out();
+    plan_strips();
+    strips_kernel_ = compile("refit_strips");
+    tops_kernel_ = compile("refit_tops");
+    upload_static();
+}
+
+Defines ChunkTrees::defines(std::uint32_t group_size) const {
+    auto defines = geometry_defines(bodies_.geometry(), group_size);
+    defines["LEAF_BITS"] = std::to_string(ceil_log2(leaves_));
+    return defines;
+}
+
+Kernel ChunkTrees::compile(std::string_view entry) const {
+    auto own = defines(shape_.group_size);
+    own["TILE_NODES"] = std::to_string(shape_.tile_nodes);
+    return device_.compile(kernel_source("algorithms/hierarchy/refit.cl"), entry, own);
+}
+
+/// Rows of levels by mesh, of trees by body.
+void ChunkTrees::lay_out() {
+    std::vector<std::uint32_t> first_level;
+    for (const auto& levels : mesh_levels_) {
+        first_level.push_back(static_cast<std::uint32_t>(level_rows_.size() / level_words));
+        for (const auto& level : levels)
+            level_rows_.insert(level_rows_.end(), {level.slot, level.items, level.chunks, 0});
+    }
+    for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
+        trees_.push_back({static_cast<std::uint32_t>(slots_), first_level[bodies_.scene().bodies[body].mesh],
+                          static_cast<std::uint32_t>(levels(body).size()),
+                          bodies_.row(body).tetrahedron_count});
+        slots_ += slot_count(levels(body));
+    }
+    if (slots_ > std::numeric_limits<std::uint32_t>::max())
+        throw DeviceError("scene: more than 2^32 nodes; leave bodies out");
+}
+
+/// Level by level, each from its deepest nodes up, in strips of at most strip_height + 1 depths. The small
+/// levels above them are left to refit_tops.
+void ChunkTrees::plan_strips() {
+    const auto is_small = [&](const std::vector<Level>& levels) {
+        return first_top_level_ >= levels.size() || levels[first_top_level_].items <= most_top_items;
+    };
+    while (!std::all_of(mesh_levels_.begin(), mesh_levels_.end(), is_small)) ++first_top_level_;
+    for (std::uint32_t level = 0; level < first_top_level_; ++level) {
+        std::uint32_t deepest = 0;
+        for (const auto& levels : mesh_levels_)
+            if (level < levels.size())
+                deepest = std::max(deepest, ceil_log2(std::min(levels[level].items, leaves_)));
+        for (std::uint32_t bottom = deepest;;) {
+            const auto top = bottom > strip_height ? bottom - strip_height : 0;
+            strips_.push_back(
+                {level, bottom - top, static_cast<std::uint32_t>(jobs_.size() / job_words), 0, 0});
+            plan_strip(level, false, top);
+            strips_.back().dynamic_jobs = strips_.back().jobs;
+            plan_strip(level, true, top);
+            if (top == 0) break;
+            bottom = top - 1;
+        }
+    }
+}
+
+void ChunkTrees::plan_strip(std::uint32_t level, bool fixed, std::uint32_t top) {
+    const auto& scene = bodies_.scene();
+    for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) {
+        const auto& levels = this->levels(body);
+        if (scene.bodies[body].fixed != fixed || level >= levels.size()) continue;
+        const auto& row = bodies_.row(body);
+        for (std::uint32_t chunk = 0; chunk < levels[level].chunks; ++chunk) {
+            const auto first = chunk * leaves_;
+            const auto items = std::min(leaves_, levels[level].items - first);
+            const auto base = trees_[body].nodes + levels[level].slot + heap::heap_slots(first);
+            const auto top_node = heap::first_below(heap::root_node, top);
+            for (auto root = top_node; root < std::min(2 * top_node, heap::heap_slots(items)); ++root) {
+                jobs_.insert(jobs_.end(),
+                             {base, items, root, body, first, row.tetrahedra, row.vertices, row.flags});
+                ++strips_.back().jobs;
+            }
+        }
+    }
+}
+
+void ChunkTrees::upload_static() {
+    tree_table_ = uploaded(device_, bytes_of(trees_), "trees");
+    level_table_ = uploaded(device_, bytes_of(level_rows_), "levels");
+    job_table_ = uploaded(device_, bytes_of(jobs_), "refit jobs");
+    std::vector<std::uint32_t> order(bodies_.count());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto moving = [&](std::uint32_t body) { return !bodies_.scene().bodies[body].fixed; };
+    moving_bodies_ =
+        static_cast<std::uint32_t>(std::stable_partition(order.begin(), order.end(), moving) - order.begin());
+    body_order_ = uploaded(device_, bytes_of(order), "bodies to refit");
+    const auto node = static_cast<std::uint64_t>(bodies_.geometry().k) * real_bytes(bodies_.geometry());
+    nodes_ = device_.allocate(slots_ * node, "nodes");
+    volumes_ = device_.allocate(bodies_.count() * node, "volumes");
+}
+
+std::size_t ChunkTrees::do_bytes() const {
+    std::size_t sum = 0;
+    for (const auto* buffer : {&nodes_, &volumes_, &tree_table_, &level_table_, &job_table_, &body_order_})
+        sum += buffer->bytes();
+    return sum;
+}
+
+void ChunkTrees::launch_strips(bool all) {
+    for (const auto& s : strips_) {
+        const auto per_group = strips_of_group(shape_, s.height);
+        const auto jobs = all ? s.jobs : s.dynamic_jobs;
+        if (jobs == 0) continue;
+        const std::array<Argument, 11> arguments{nodes_,
+                                                 tree_table_,
+                                                 level_table_,
+                                                 bodies_.poses(),
+                                                 bodies_.tetrahedra(),
+                                                 bodies_.vertices(),
+                                                 job_table_,
+                                                 s.first_job,
+                                                 jobs,
+                                                 s.level,
+                                                 s.height};
+        device_.launch(strips_kernel_, {groups_for(jobs, per_group), shape_.group_size}, arguments);
+    }
+}
+
+void ChunkTrees::launch_tops(bool all) {
+    const std::array<Argument, 6> arguments{nodes_,       volumes_,    tree_table_,
+                                            level_table_, body_order_, first_top_level_};
+    const auto bodies = all ? bodies_.count() : moving_bodies_;
+    if (bodies > 0) device_.launch(tops_kernel_, {bodies, shape_.group_size}, arguments);
+}
+
+void ChunkTrees::upload_emptied() {
+    const auto put = [&](Buffer& buffer, const std::vector<std::uint32_t>& words, std::string_view label) {
+        if (!buffer || buffer.bytes() < words.size() * 4) {
+            buffer = {};
+            buffer = device_.allocate(words.size() * 4, label);
+        }
+        device_.upload(buffer, bytes_of(words));
+    };
+    const StageScope scope(device_, Stage::write);
+    put(emptied_rows_, emptied_.rows, "emptied nodes");
+    put(emptied_starts_, emptied_.starts, "rounds of emptied nodes");
+}
+
+/// Plans the nodes that tetrahedra skipped by the frame change, when it skips others than the one before.
+void ChunkTrees::leave_out(const Frame& frame) {
+    if (frame.skipped == skipped_) return;
+    {
+        const HostWork work(device_, Stage::preprocess, "skipped tetrahedra");
+        EmptiedPlan plan(leaves_, first_top_level_);
+        positions_.resize(mesh_levels_.size());
+        for (std::size_t body = 0; body < frame.skipped.size(); ++body) {
+            if (frame.skipped[body].empty()) continue;
+            const auto mesh = bodies_.scene().bodies[body].mesh;
+            if (positions_[mesh].empty()) positions_[mesh] = inverse(bodies_.mesh(body).ids);
+            plan.add(trees_[body].nodes, mesh_levels_[mesh], frame.skipped[body], positions_[mesh]);
+        }
+        emptied_ = plan.take();
+        skipped_ = frame.skipped;
+        fresh_ = true;
+    }
+    if (emptied_.bodies == 0) return;
+    if (!emptied_rows_) empty_kernel_ = compile("empty_nodes");
+    upload_emptied();
+}
+
+void ChunkTrees::do_refit(const Frame& frame, bool all) {
+    leave_out(frame);
+    all |= fresh_;
+    const StageScope scope(device_, Stage::refit);
+    launch_strips(all);
+    if (emptied_.bodies > 0) {
+        const std::array<Argument, 4> arguments{nodes_, emptied_rows_, emptied_starts_, emptied_.rounds};
+        device_.launch(empty_kernel_, {emptied_.bodies, shape_.group_size}, arguments);
+    }
+    launch_tops(all);
+    fresh_ = false;
+}
+
+} // namespace tandem

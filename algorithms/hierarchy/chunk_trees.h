@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/bodies/bodies.h"
+#include "algorithms/hierarchy/emptied.h"
+#include "algorithms/hierarchy/hierarchy.h"
+#include "algorithms/hierarchy/levels.h"
+#include "algorithms/hierarchy/strips.h"
+
+namespace tandem {
+
+/// Chunks over every body's tetrahedra and super chunks over those (paper, section 3.1): complete binary
+/// trees without stored children (heap.clh), k-DOPs for nodes.
+class ChunkTrees final : public Hierarchy {
+public:
+    /// `leaves`: tetrahedra per chunk, a power of two. Work-groups are of `group_size` work-items at most.
+    /// `bodies` must outlive this. Throws OutOfMemory when the nodes do not fit, DeviceError when there are
+    /// 2^32 of them.
+    ChunkTrees(const Bodies& bodies, std::uint32_t leaves, std::uint32_t group_size);
+
+    const Bodies& bodies() const { return bodies_; }
+    std::uint32_t group_size() const { return group_size_; }
+    std::uint32_t leaves() const { return leaves_; }
+    /// Levels of a body's hierarchy.
+    const std::vector<Level>& levels(std::uint32_t body) const {
+        return mesh_levels_[bodies_.scene().bodies[body].mesh];
+    }
+    /// The body's first node slot.
+    std::uint32_t first_slot(std::size_t body) const { return trees_[body].nodes; }
+    /// Node slots of all bodies.
+    std::uint64_t slots() const { return slots_; }
+    /// What kernels that include node.clh are compiled with: the geometry and the size of chunks.
+    Defines defines(std::uint32_t group_size) const;
+
+    const Buffer& tree_table() const { return tree_table_; }   ///< TREE_WORDS words a body
+    const Buffer& level_table() const { return level_table_; } ///< LEVEL_WORDS words a level
+
+private:
+    /// A row of node.clh.
+    struct Tree {
+        std::uint32_t nodes = 0, levels = 0, level_count = 0, items = 0;
+    };
+    struct Strip {
+        std::uint32_t level, height, first_job, jobs, dynamic_jobs;
+    };
+
+    void do_refit(const Frame& frame, bool all) override;
+    const Buffer& do_volumes() const override { return volumes_; }
+    const Buffer& do_nodes() const override { return nodes_; }
+    std::size_t do_bytes() const override;
+
+    Kernel compile(std::string_view entry) const;
+    void lay_out();
+    void plan_strips();
+    void plan_strip(std::uint32_t level, bool fixed, std::uint32_t top);
+    void upload_static();
+    void leave_out(const Frame& frame);
+    void upload_emptied();
+    void launch_strips(bool all);
+    void launch_tops(bool all);
+
+    const Bodies& bodies_;
+    Device& device_;
+    std::uint32_t leaves_;
+    std::uint32_t group_size_;
+    RefitShape shape_;
+    std::vector<std::vector<Level>> mesh_levels_;
+    std::vector<std::uint32_t> level_rows_;
+    std::vector<Tree> trees_;
+    std::vector<std::uint32_t> jobs_;
+    std::vector<Strip> strips_;
+    std::uint32_t first_top_level_ = 1; ///< the first level that refit_tops does
+    std::uint32_t moving_bodies_ = 0;   ///< how many in body_order_ are not fixed; they come first
+    std::uint64_t slots_ = 0;
+    bool fresh_ = true; ///< fixed bodies need a refit: there was no frame yet, or it skipped others of theirs
+    std::vector<std::vector<std::uint32_t>> skipped_; ///< by the last frame
+    std::vector<std::vector<std::uint32_t>>
+        positions_;   ///< by mesh: the inverse of its ids, once it is needed
+    Emptied emptied_; ///< for skipped_
+    Buffer nodes_, volumes_, tree_table_, level_table_, job_table_, body_order_;
+    Buffer emptied_rows_, emptied_starts_;
+    Kernel strips_kernel_, tops_kernel_, empty_kernel_;
+};
+
+} // namespace tandem

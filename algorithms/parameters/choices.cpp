@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// The numbers of choices.h and the names that kernels have for them, side by side.
+#include "algorithms/parameters/choices.clh"
+#include "algorithms/parameters/choices.h"
+
+namespace tandem {
+
+namespace {
+
+template<class Choice>
+constexpr bool is(Choice choice, int number) {
+    return static_cast<int>(choice) == number;
+}
+
+static_assert(is(Axes::standard, AXES_STANDARD) && is(Axes::coordinate, AXES_COORDINATE));
+static_assert(is(Rounding::nearest, ROUNDING_NEAREST) && is(Rounding::safe, ROUNDING_SAFE)
+              && is(Rounding::published, ROUNDING_PUBLISHED) && is(Rounding::directed, ROUNDING_DIRECTED));
+static_assert(is(Placement::rounded, PLACEMENT_ROUNDED) && is(Placement::exact, PLACEMENT_EXACT));
+static_assert(is(Output::pairs, OUTPUT_PAIRS) && is(Output::count, OUTPUT_COUNT)
+              && is(Output::digest, OUTPUT_DIGEST));
+static_assert(is(ContactRule::opposing, RULE_OPPOSING) && is(ContactRule::published, RULE_PUBLISHED)
+              && is(ContactRule::sat, RULE_SAT) && is(ContactRule::clip, RULE_CLIP)
+              && is(ContactRule::restricted, RULE_RESTRICTED) && is(ContactRule::vertex, RULE_VERTEX)
+              && is(ContactRule::consistent, RULE_CONSISTENT) && is(ContactRule::growth, RULE_GROWTH));
+
+} // namespace
+
+} // namespace tandem

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// What the common settings choose from. Kernels see an enumerator's number under the setting's define; names
+// for these numbers stand in choices.clh, and choices.cpp does not compile when the two differ.
+#pragma once
+
+namespace tandem {
+
+/// Which directions k = 8 has.
+enum class Axes {
+    standard,  ///< the paper's four cube diagonals; for other k the symmetric sets of directions.clh
+    coordinate ///< x, y, z and one diagonal
+};
+
+/// Bits of a real number in vertices, slabs and contacts.
+enum class Precision { fp32 = 32, fp64 = 64 };
+
+/// How a slab's ends are rounded; bounds/README.md has what each is good for.
+enum class Rounding {
+    nearest,   ///< to nearest, nothing added: misses pairs on directions with three non-zeros
+    safe,      ///< widened where the rounding is not monotone: misses nothing
+    published, ///< the paper's: unit directions, an absolute tolerance of 10 FLT_EPSILON; misses pairs
+    directed   ///< outwards, on devices that can: slabs contain the exact ones
+};
+
+/// Where the vertices are whose contacts no slab may miss.
+enum class Placement {
+    rounded, ///< the world vertices in the cell's precision, after their transform has been rounded
+    exact    ///< the scene's own doubles where its poses put them, moved without rounding
+};
+
+/// Who finds body pairs.
+enum class Broad {
+    sphere, ///< the host, by the paper's spheres
+    tight,  ///< the host, by boxes
+    device  ///< the device, by root k-DOPs
+};
+
+/// Where the data of a frame lives between frames.
+enum class Residency {
+    resident, ///< topology once, shared by bodies with one mesh; a frame uploads poses or vertices only
+    published ///< as the paper's code: everything converted, uploaded and read back in every frame
+};
+
+/// What a walk hands out.
+enum class Output { pairs, count, digest };
+
+/// How contacts are made of a pair that meets; contacts/README.md has the rules.
+enum class ContactRule { opposing, published, sat, clip, restricted, vertex, consistent, growth, none };
+
+/// What decides whether a pair meets.
+enum class DecisionPrecision {
+    fp32,    ///< separating axes in the cell's precision; what they do not tell apart meets
+    recheck, ///< a certified filter in the cell's precision, then double for what it cannot decide
+    fp64,    ///< the certified decision in double for all pairs
+    exact    ///< as recheck, then exact arithmetic on the host for what double cannot decide
+};
+
+} // namespace tandem

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// The settings that algorithms share: name, default, choices or range, define and help of each, once. What an
+// algorithm has beside them stands in its own file, in the same form.
+#pragma once
+
+#include "algorithms/parameters/choices.h"
+#include "algorithms/parameters/parameter.h"
+
+#include <limits>
+
+namespace tandem::parameters {
+
+inline constexpr std::int64_t word_limit = std::numeric_limits<std::uint32_t>::max();
+
+inline constexpr Setting<int> k{
+    "k",
+    18,
+    {{"6", 6}, {"8", 8}, {"12", 12}, {"14", 14}, {"16", 16}, {"18", 18}, {"20", 20}, {"24", 24}, {"26", 26}},
+    "K",
+    "planes of the k-DOPs (k/2 directions)"};
+inline constexpr Setting<Axes> axes{
+    "axes",
+    Axes::standard,
+    {{"standard", Axes::standard}, {"coordinate", Axes::coordinate}},
+    "AXES",
+    "k=8: standard = the paper's four cube diagonals, coordinate = x, y, z and one diagonal"};
+inline constexpr Setting<Precision> precision{"precision",
+                                              Precision::fp32,
+                                              {{"float", Precision::fp32}, {"double", Precision::fp64}},
+                                              "PRECISION",
+                                              "of vertices, slabs and contacts"};
+inline constexpr Setting<Rounding> rounding{
+    "rounding",
+    Rounding::safe,
+    {{"nearest", Rounding::nearest},
+     {"safe", Rounding::safe},
+     {"published", Rounding::published},
+     {"directed", Rounding::directed}},
+    "ROUNDING",
+    "safe widens diagonal slabs by their rounding bound: nothing is missed; published: unit directions, a "
+    "fixed tolerance, as the paper's code; directed (CUDA): slabs contain the exact ones"};
+inline constexpr Setting<Placement> placement{
+    "placement",
+    Placement::rounded,
+    {{"rounded", Placement::rounded}, {"exact", Placement::exact}},
+    "PLACEMENT",
+    "whose contacts no slab may miss: those of the world vertices as rounded, or those of the scene's own "
+    "vertices where its poses put them exactly (safe and directed, wider slabs)"};
+
+inline constexpr Setting<ContactRule> contact_rule{
+    "contact_rule",
+    ContactRule::opposing,
+    {{"opposing", ContactRule::opposing},
+     {"published", ContactRule::published},
+     {"sat", ContactRule::sat},
+     {"clip", ContactRule::clip},
+     {"restricted", ContactRule::restricted},
+     {"vertex", ContactRule::vertex},
+     {"consistent", ContactRule::consistent},
+     {"growth", ContactRule::growth},
+     {"none", ContactRule::none}},
+    "CONTACT_RULE",
+    "opposing: the paper's most opposing boundary faces; published: with its code's tolerances and gaps; "
+    "sat: the least translation; clip: the intersection; restricted: sat along what boundary faces make; "
+    "vertex: corners inside, nearest boundary face; consistent: the one their edges leave by; growth: what "
+    "meets first when both grow"};
+inline constexpr Setting<DecisionPrecision> decision{
+    "decision",
+    DecisionPrecision::fp32,
+    {{"fp32", DecisionPrecision::fp32},
+     {"recheck", DecisionPrecision::recheck},
+     {"fp64", DecisionPrecision::fp64},
+     {"exact", DecisionPrecision::exact}},
+    "",
+    "whether a pair meets: fp32: separating axes in the cell's precision; recheck: a certified filter, then "
+    "double; fp64: double; exact: then exact arithmetic on the host"};
+
+inline constexpr Setting<Broad> broad{
+    "broad",
+    Broad::sphere,
+    {{"sphere", Broad::sphere}, {"tight", Broad::tight}, {"device", Broad::device}},
+    "",
+    "who finds body pairs: the host by the paper's spheres, or by boxes, or the device by root k-DOPs"};
+inline constexpr Setting<std::int64_t> body_pair_capacity{
+    "body_pair_capacity", 65536, Range{1, word_limit}, "",
+    "broad=device: body pairs there is room for at first"};
+inline constexpr Setting<Residency> residency{
+    "residency",
+    Residency::resident,
+    {{"resident", Residency::resident}, {"published", Residency::published}},
+    "",
+    "published: convert, upload and read back everything in every frame, as the paper's code"};
+inline constexpr Setting<Output> output{
+    "output",
+    Output::pairs,
+    {{"pairs", Output::pairs}, {"count", Output::count}, {"digest", Output::digest}},
+    "OUTPUT",
+    "what a walk hands out; contacts need pairs"};
+inline constexpr Setting<std::int64_t> group_size{"group_size", 128, Range{1, 1024}, "GROUP_SIZE",
+                                                  "work-items per work-group (1 on host)"};
+inline constexpr Setting<std::int64_t> work_items{"work_items", 2048, Range{1, 1 << 20}, "",
+                                                  "work-items per compute unit of the kernels that stride"};
+inline constexpr Setting<std::int64_t> pair_capacity{"pair_capacity", 1048576, Range{1, word_limit}, "",
+                                                     "candidate pairs there is room for at first"};
+inline constexpr Setting<std::int64_t> contact_capacity{"contact_capacity", 1048576, Range{1, word_limit}, "",
+                                                        "contacts there is room for at first"};
+
+} // namespace tandem::parameters

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/pipeline.h"
+
+#include "algorithms/parameters/table.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+LaunchShape shape_of(const Settings& settings, const DeviceInfo& info) {
+    const auto group_size = static_cast<std::uint32_t>(settings[parameters::group_size]);
+    const auto items = static_cast<std::uint64_t>(settings[parameters::work_items]) * info.compute_units;
+    return {group_size, static_cast<std::uint32_t>(std::max<std::uint64_t>(1, items / group_size))};
+}
+
+Status::Writes writes_of(const Settings& settings) {
+    return is_published(settings) ? Status::Writes::blocking : Status::Writes::queued;
+}
+
+/// Bodies and an algorithm's own steps over them.
+struct Foundation {
+    std::shared_ptr<Bodies> bodies;
+    Steps steps;
+};
+
+Foundation build(const Traversal& traversal, Device& device, const Scene& scene, const Settings& settings,
+                 LaunchShape shape) {
+    const auto sharing = is_published(settings) ? Bodies::Sharing::none : Bodies::Sharing::by_mesh;
+    Foundation built{std::make_shared<Bodies>(device, scene, geometry_of(settings), sharing), {}};
+    built.steps = traversal.build({device, scene, settings, *built.bodies, shape});
+    return built;
+}
+
+/// Builds; where a limit set by hand is too low, builds once more without it to say what would be enough.
+Foundation build_within(const Traversal& traversal, Device& device, const Scene& scene,
+                        const Settings& settings, LaunchShape shape) {
+    try {
+        return build(traversal, device, scene, settings, shape);
+    } catch (const OutOfMemory&) {
+        const auto limit = device.memory_limit();
+        if (limit == Device::no_memory_limit) throw;
+        device.set_memory_limit(Device::no_memory_limit);
+        std::size_t bytes = 0;
+        try {
+            const auto built = build(traversal, device, scene, settings, shape);
+            bytes = built.bodies->bytes() + built.steps.hierarchy->bytes();
+        } catch (const OutOfMemory&) {
+            device.set_memory_limit(limit);
+            throw;
+        }
+        device.set_memory_limit(limit);
+        throw OutOfMemory(fmt::format("{}: bodies and hierarchy of scene {} take {} bytes, and the limit of "
+                                      "its memory is {}; raise --memory, or take fewer bodies",
+                                      device.info().id, scene.name, bytes, limit));
+    }
+}
+
+} // namespace
+
+std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* const> own, bool published) {
+    const auto geometry = geometry_parameters();
+    std::vector<const Parameter*> all(geometry.begin(), geometry.end());
+    all.insert(all.end(), {&parameters::contact_rule, &parameters::decision, &parameters::broad,
+                           &parameters::body_pair_capacity});
+    if (published) all.push_back(&parameters::residency);
+    all.insert(all.end(), {&parameters::output, &parameters::group_size, &parameters::work_items,
+                           &parameters::pair_capacity, &parameters::contact_capacity});
+    all.insert(all.end(), own.begin(), own.end());
+    return all;
+}
+
+bool is_published(const Settings& settings) {
+    return settings.has(parameters::residency) && settings[parameters::residency] == Residency::published;
+}
+
+Pipeline::Pipeline(const Traversal& traversal, Device& on, const Scene& scene, Settings fitted)
+    : device(on),
+      settings(std::move(fitted)),
+      shape(shape_of(settings, on.info())),
+      output(settings[parameters::output]),
+      status(on, writes_of(settings)) {
+    auto foundation = build_within(traversal, on, scene, settings, shape);
+    bodies = std::move(foundation.bodies);
+    steps = std::move(foundation.steps);
+    body_pairs = std::make_unique<BodyPairs>(Ground{on, scene, settings, *bodies, shape}, *steps.hierarchy,
+                                             writes_of(settings));
+    const bool contacting =
+        output == Output::pairs && settings[parameters::contact_rule] != ContactRule::none;
+    if (contacting) contacts = std::make_unique<ContactStage>(*bodies, contact_settings_of(settings), shape);
+    tools = std::make_shared<AnswerTools>(bodies, shape, contacting);
+    answers = std::make_unique<AnswerPool>(on, real_bytes(bodies->geometry()),
+                                           output == Output::pairs ? settings[parameters::pair_capacity] : 1,
+                                           contacting ? settings[parameters::contact_capacity] : 0);
+    compile(false);
+}
+
+void Pipeline::count(bool on) {
+    counting = on;
+    compile(false);
+}
+
+void Pipeline::compile(bool windowed) {
+    const WalkBuild wanted{output, counting, windowed};
+    if (built == wanted) return;
+    steps.walker->compile(wanted);
+    built = wanted;
+}
+
+WalkTask Pipeline::task(const AnswerBuffers& answer, Interlude* interlude) {
+    return {body_pairs->room().buffer(),
+            body_pairs->room().capacity(),
+            body_pairs->searched(),
+            body_pairs->on_host(),
+            answer,
+            status,
+            interlude};
+}
+
+FrameResult Pipeline::counts() const {
+    FrameResult result;
+    result.body_pairs = status.counter(STATUS_BODY_PAIRS);
+    result.count = status.counter(STATUS_PAIRS);
+    result.contacts = status.counter(STATUS_CONTACTS);
+    result.degenerate = status.counter(STATUS_DEGENERATE);
+    result.rejected = status.counter(STATUS_REJECTED);
+    result.undecided_by_filter = status.counter(STATUS_UNDECIDED_BY_FILTER);
+    result.undecided_by_double = status.counter(STATUS_UNDECIDED_BY_DOUBLE);
+    result.batches = 1;
+    if (output == Output::digest)
+        result.summed =
+            Digest{result.count, status.counter(STATUS_DIGEST_A), status.counter(STATUS_DIGEST_B)};
+    return result;
+}
+
+void Pipeline::add_part(FrameResult& result, std::shared_ptr<AnswerBuffers> buffers) const {
+    if (output == Output::pairs)
+        result.parts.push_back(device_part(tools, std::move(buffers), result.count, result.contacts));
+}
+
+} // namespace tandem

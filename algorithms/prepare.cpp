@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// From resolved settings to a session: what fits a device, and which data path runs it.
+#include "algorithms/pipeline.h"
+#include "algorithms/published/published_session.h"
+#include "algorithms/resident_session.h"
+#include "algorithms/split_session.h"
+#include "scenes/error.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace tandem {
+
+namespace {
+
+/// What the device lacks for the geometry and the decision.
+void check_arithmetic(const Settings& settings, const DeviceInfo& info) {
+    const auto geometry = geometry_of(settings);
+    if (geometry.rounding == Rounding::directed && !info.has_directed_rounding)
+        throw InputError(
+            fmt::format("setting rounding=directed is impossible on {}, which adds to nearest only; "
+                        "choose safe, or a cuda device",
+                        info.id));
+    if (geometry.precision == Precision::fp64 && !info.has_double)
+        throw InputError(fmt::format("setting precision=double is impossible on {}; choose float", info.id));
+    if (contact_settings_of(settings).decision != DecisionPrecision::fp32 && !info.has_double)
+        throw InputError(
+            fmt::format("setting decision={} is impossible on {}, which has no double; choose fp32",
+                        settings.text("decision"), info.id));
+}
+
+/// "host + opencl:0"
+std::string names_of(std::span<Device* const> devices) {
+    std::vector<std::string> names;
+    for (const auto* device : devices) names.push_back(device->info().id);
+    return fmt::format("{}", fmt::join(names, " + "));
+}
+
+} // namespace
+
+Steps Traversal::build(const Ground& ground) const { return do_build(ground); }
+
+Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info) const {
+    check_arithmetic(settings, info);
+    auto fitting = settings;
+    const auto wanted = settings[tandem::parameters::group_size];
+    if (info.max_group_size == 1)
+        fitting.set(tandem::parameters::group_size(1));
+    else if (wanted > info.max_group_size)
+        throw InputError(fmt::format("setting group_size={} is impossible on {}; it takes at most {}", wanted,
+                                     info.id, info.max_group_size));
+    if (settings[tandem::parameters::broad] == Broad::device && is_published(settings))
+        throw InputError("setting broad=device does not go with residency=published, whose bounds are the "
+                         "host's; choose broad=sphere");
+    do_check(fitting, info);
+    return fitting;
+}
+
+void Traversal::check(std::span<Device* const> devices, const Settings& settings) const {
+    for (const auto* device : devices) fitted(settings, device->info());
+    if (devices.size() > 1 && is_published(settings))
+        throw InputError(
+            fmt::format("{} with residency=published cannot split a frame between {}: the paper's data path "
+                        "is one device's; name one device, or leave residency and preset out",
+                        name(), names_of(devices)));
+}
+
+std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, const Scene& scene,
+                                            const Settings& settings) const {
+    if (devices.empty()) throw InputError(fmt::format("{} needs a device to run on", name()));
+    if (scene.bodies.empty()) throw InputError(fmt::format("scene {} has no bodies", scene.name));
+    check(devices, settings);
+    std::vector<Settings> fitting;
+    for (const auto* device : devices) fitting.push_back(fitted(settings, device->info()));
+    if (devices.size() > 1) return split_session(*this, devices, scene, std::move(fitting));
+    auto& device = *devices.front();
+    return is_published(settings) ? published_session(*this, device, scene, fitting.front())
+                                  : resident_session(*this, device, scene, fitting.front());
+}
+
+} // namespace tandem

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/bodies/bodies.h"
+#include "algorithms/hierarchy/hierarchy.h"
+#include "algorithms/traversal.h"
+
+namespace tandem {
+
+/// Bodies and hierarchy as the paper's code has them (tvcg18.md 1.2, prox.md 2.11): every step converts all
+/// bodies on the host, uploads vertices, transforms, reads the vertices back, uploads tetrahedra and nodes,
+/// refits, reads the nodes back, and uploads everything again for the traversal. Buffers persist, which is
+/// kinder than the original.
+class PublishedFrame {
+public:
+    /// `bodies` share nothing. Both must outlive this.
+    PublishedFrame(const Bodies& bodies, Hierarchy& hierarchy, LaunchShape shape);
+
+    void update(const Frame& frame);
+
+private:
+    /// A frame's bodies, converted.
+    struct Converted {
+        std::vector<std::byte> vertices, poses, nodes;
+        std::vector<std::uint32_t> tetrahedra, vertex_bodies;
+        std::vector<std::uint8_t> boundary;
+        bool rigid = false; ///< some body is: there is a transform
+    };
+
+    Converted convert(const Frame& frame) const;
+    void transform(Converted& converted);
+    void refit(const Frame& frame, Converted& converted);
+    void upload(const Buffer& to, std::span<const std::byte> bytes);
+    void download(const Buffer& from, std::vector<std::byte>& bytes);
+
+    const Bodies& bodies_;
+    Hierarchy& hierarchy_;
+    Device& device_;
+    std::uint32_t group_size_;
+    Kernel transform_kernel_;
+    Buffer local_vertices_, vertex_bodies_; ///< vertices before the transform, and whose they are
+};
+
+} // namespace tandem

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/resident_session.h"
+
+#include "algorithms/batches.h"
+
+namespace tandem {
+
+namespace {
+
+class ResidentSession final : public Session {
+public:
+    ResidentSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted)
+        : steps_(traversal, device, scene, std::move(fitted)), devices_{&device} {}
+
+private:
+    void do_reset() override;
+    FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override;
+    void do_count_work(bool on) override { steps_.count(on); }
+    std::span<Device* const> do_devices() const override { return devices_; }
+    const Settings& do_settings() const override { return steps_.settings; }
+
+    void launch(const AnswerBuffers& answer);
+    bool grow(AnswerBuffers& answer);
+    FrameResult run_whole();
+
+    Pipeline steps_;
+    std::array<Device*, 1> devices_;
+    std::uint64_t batches_ = 1; ///< to begin a frame with
+};
+
+void ResidentSession::do_reset() {
+    steps_.body_pairs->reset();
+    batches_ = 1;
+}
+
+/// The frame's commands from body pairs to contacts.
+void ResidentSession::launch(const AnswerBuffers& answer) {
+    steps_.status.begin(steps_.body_pairs->on_host().size());
+    steps_.body_pairs->launch(steps_.status);
+    const auto task = steps_.task(answer);
+    if (task.most_pairs() == 0) return;
+    steps_.steps.walker->launch(task);
+    if (steps_.makes_contacts()) steps_.contacts->launch(answer, 0, answer.pairs.rows(), steps_.status);
+}
+
+/// Makes room for what the status counts; true when the frame has to run again.
+bool ResidentSession::grow(AnswerBuffers& answer) {
+    const auto& status = steps_.status;
+    bool again = steps_.steps.walker->grow(status);
+    again |= steps_.body_pairs->grow(status);
+    if (const auto found = status.counter(STATUS_PAIRS);
+        steps_.output == Output::pairs && found > answer.pairs.rows()) {
+        answer.pairs.grow(found);
+        again = true;
+    }
+    if (const auto contacts = status.counter(STATUS_CONTACTS);
+        steps_.makes_contacts()
+        && contacts > std::min(answer.contact_ids.rows(), answer.contact_values.rows())) {
+        answer.contact_ids.grow(contacts);
+        answer.contact_values.grow(contacts);
+        again = true;
+    }
+    return again;
+}
+
+FrameResult ResidentSession::run_whole() {
+    auto answer = steps_.answers->take();
+    for (std::uint64_t retries = 0;; ++retries) {
+        launch(*answer);
+        steps_.status.read();
+        if (grow(*answer)) continue;
+        auto result = steps_.counts();
+        result.retries = retries;
+        if (steps_.counting) steps_.steps.walker->report(steps_.status, result.work);
+        steps_.add_part(result, std::move(answer));
+        return result;
+    }
+}
+
+FrameResult ResidentSession::do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
+    steps_.bodies->update(frame);
+    steps_.steps.hierarchy->refit(frame);
+    try {
+        steps_.body_pairs->begin(frame, body_pairs);
+        if (batches_ == 1) return run_whole();
+    } catch (const OutOfMemory&) {
+        batches_ = 2;
+    }
+    return run_in_batches(steps_, frame, body_pairs, batches_);
+}
+
+} // namespace
+
+std::unique_ptr<Session> resident_session(const Traversal& traversal, Device& device, const Scene& scene,
+                                          Settings fitted) {
+    return std::make_unique<ResidentSession>(traversal, device, scene, std::move(fitted));
+}
+
+} // namespace tandem

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/walker.h"
+
+#include "algorithms/parameters/table.h"
+
+namespace tandem {
+
+void WalkBuild::add_to(Defines& defines) const {
+    define(defines, parameters::output, output);
+    defines["COUNT_WORK"] = counting ? "1" : "0";
+    defines["WINDOWED"] = windowed ? "1" : "0";
+}
+
+} // namespace tandem

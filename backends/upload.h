@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "backends/device.h"
+
+namespace tandem {
+
+/// A new buffer that holds `bytes`, booked under Stage::write. Throws OutOfMemory or DeviceError.
+inline Buffer uploaded(Device& device, std::span<const std::byte> bytes, std::string_view label) {
+    auto buffer = device.allocate(bytes.size(), label);
+    const StageScope scope(device, Stage::write);
+    device.upload(buffer, bytes);
+    return buffer;
+}
+
+} // namespace tandem

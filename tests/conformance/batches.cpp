@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+// Frames that do not fit into memory, and memory that is not to be had: the answer is the same, part after
+// part, and a session that could not go on can be used again.
+#include "tests/support/cells.h"
+#include "tests/support/flawed.h"
+#include "tests/support/scenes.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+using ::testing::HasSubstr;
+
+/// Limits a device's memory to what it has given and so much more, for as long as it lives.
+class Limited {
+public:
+    Limited(Device& device, std::size_t more) : device_(device) {
+        device.set_memory_limit(device.bytes_allocated() + more);
+    }
+    ~Limited() { device_.set_memory_limit(Device::no_memory_limit); }
+    Limited(const Limited&) = delete;
+    Limited& operator=(const Limited&) = delete;
+
+private:
+    Device& device_;
+};
+
+class Batches : public testing::TestWithParam<std::string> {
+protected:
+    std::unique_ptr<Session> prepare(const Traversal& traversal, const Scene& scene,
+                                     const SettingTexts& given) {
+        const std::array devices{&on};
+        return traversal.prepare(devices, scene,
+                                 resolve(traversal.parameters(), {}, given, traversal.name()));
+    }
+
+    /// Bytes that a session takes when everything else is as small as can be.
+    std::size_t least_bytes(const Traversal& traversal, const Scene& scene, SettingTexts given) {
+        given["pair_capacity"] = given["contact_capacity"] = given["body_pair_capacity"] = "1";
+        if (traversal.name() == "gproximity") given["queue_bytes"] = "65536";
+        if (traversal.name() == "chunked") given["seed_capacity"] = "1";
+        const auto before = on.bytes_allocated();
+        const auto session = prepare(traversal, scene, given);
+        return on.bytes_allocated() - before;
+    }
+
+    static void expect_equal(const FrameResult& result, const ReferenceAnswer& right) {
+        EXPECT_EQ(result.count, right.digest.count);
+        EXPECT_EQ(result.contacts, right.contacts);
+        EXPECT_EQ(result.digest(), right.digest);
+        EXPECT_EQ(result.contact_digest(), right.contact_digest);
+        EXPECT_EQ(result.download(), right.pairs);
+        EXPECT_EQ(result.degenerate, right.degenerate);
+        EXPECT_EQ(result.rejected, right.rejected);
+        EXPECT_EQ(result.undecided_by_filter, right.undecided_by_filter);
+        EXPECT_EQ(result.undecided_by_double, right.undecided_by_double);
+        const auto contacts = result.download_contacts();
+        EXPECT_EQ(contacts.size(), right.contacts);
+        EXPECT_TRUE(std::is_sorted(contacts.begin(), contacts.end(), [](const auto& a, const auto& b) {
+            return std::tie(a.pair, a.feature) < std::tie(b.pair, b.feature);
+        }));
+    }
+
+    Device& on = device(GetParam());
+};
+
+/// Several body pairs, with every decision, by all algorithms: fewer bytes than pairs and contacts want.
+TEST_P(Batches, GiveTheSameAnswer) {
+    const auto scene = crowd(71, 10, 0.9);
+    for (const auto* traversal : algorithms())
+        for (const std::string decision : {"fp32", "recheck", "exact"})
+            for (const std::string precision : {"float", "double"}) {
+                const SettingTexts given{
+                    {"decision", decision}, {"precision", precision}, {"contact_rule", "sat"}, {"k", "8"}};
+                SCOPED_TRACE(std::string(traversal->name()) + text(given));
+                const auto frame = scene.frame(0);
+                const auto settings = resolve(traversal->parameters(), {}, given, traversal->name());
+                const auto right = reference(scene, frame, geometry_of(settings), true, Method::brute_force,
+                                             contact_settings_of(settings));
+                const auto wanted = 16 * right.digest.count + 72 * right.contacts;
+                const Limited limit(on, least_bytes(*traversal, scene, given) + wanted / 10);
+                const auto session = prepare(*traversal, scene, given);
+                const auto result = session->run(frame);
+                EXPECT_GT(result.batches, 1u);
+                expect_equal(result, right);
+                expect_equal(session->run(frame), right); // begins with as many parts
+                session->reset();
+                expect_equal(session->run(frame), right);
+            }
+}
+
+/// One body pair alone is split by its items; the digest that a walk sums, and the count, know no pairs.
+TEST_P(Batches, SplitABodyPairByItems) {
+    auto scene = boxes_scene(7, 2); // of which the first two bodies
+    auto frame = scene.frame(0);
+    scene.bodies.pop_back();
+    frame.poses.pop_back();
+    frame.deformed.pop_back();
+    const auto right = reference(scene, frame, {}, true, Method::sweep);
+    ASSERT_GT(right.digest.count, 2000u);
+    const BodyPair only{0, 1};
+    for (const auto* traversal : algorithms())
+        for (const SettingTexts& more :
+             {SettingTexts{}, SettingTexts{{"leaves", "2"}, {"seed_threshold", "1"}, {"seed_capacity", "1"}},
+              SettingTexts{{"leaves", "2"}, {"seed_threshold", "1"}, {"schedule", "item"}}}) {
+            if (traversal->name() != "chunked" && !more.empty()) continue;
+            SCOPED_TRACE(std::string(traversal->name()) + text(more));
+            const Limited limit(on, least_bytes(*traversal, scene, more) + 8 * right.digest.count);
+            const auto session = prepare(*traversal, scene, more);
+            const auto result = session->run(frame, {&only, 1});
+            EXPECT_GT(result.batches, 1u);
+            expect_equal(result, right);
+        }
+}
+
+TEST_P(Batches, ALimitBelowBodiesAndHierarchySaysWhatTheyTake) {
+    const auto scene = crowd(72, 5, 0.9);
+    for (const auto* traversal : algorithms()) {
+        const Limited limit(on, 5000);
+        try {
+            prepare(*traversal, scene, {});
+            FAIL();
+        } catch (const OutOfMemory& error) {
+            EXPECT_THAT(error.what(), HasSubstr("bodies and hierarchy of scene"));
+            EXPECT_THAT(error.what(),
+                        HasSubstr(fmt::format("the limit of its memory is {}", on.memory_limit())));
+            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+        }
+        EXPECT_EQ(on.bytes_allocated() + 5000, on.memory_limit()); // nothing is left behind
+    }
+}
+
+/// No memory at all for more than there is: the run fails, and the next one, with memory again, is right.
+TEST_P(Batches, ASessionWithoutMemoryCanBeUsedAgain) {
+    const auto scene = crowd(73, 2, 0.4);
+    const auto frame = scene.frame(0);
+    const auto right = reference(scene, frame, {}, true, Method::brute_force);
+    for (const auto* traversal : algorithms())
+        for (const std::string residency : {"resident", "published"}) {
+            SCOPED_TRACE(fmt::format("{} {}", traversal->name(), residency));
+            const auto session = prepare(*traversal, scene,
+                                         {{"residency", residency},
+                                          {"pair_capacity", "1"},
+                                          {"contact_capacity", "1"},
+                                          {"decision", "exact"}});
+            for (int i = 0; i < 2; ++i) {
+                const Limited limit(on, 0);
+                try {
+                    expect_equal(session->run(frame), right); // in batches of what there was
+                } catch (const OutOfMemory&) {}
+            }
+            auto expected = reference(scene, frame, {}, true, Method::brute_force,
+                                      {ContactRule::opposing, DecisionPrecision::exact});
+            expect_equal(session->run(frame), expected);
+        }
+}
+
+/// An answer belongs to who holds it: the next runs leave it alone, and take no memory once it is gone.
+TEST_P(Batches, AnAnswerOutlivesTheNextRuns) {
+    const auto scene = crowd(74, 8, 0.8);
+    for (const auto* traversal : algorithms())
+        for (const std::string residency : {"resident", "published"}) {
+            const auto session = prepare(*traversal, scene, {{"residency", residency}});
+            std::vector<ReferenceAnswer> right;
+            for (std::size_t i = 0; i < 2; ++i)
+                right.push_back(reference(scene, scene.frame(i), {}, true, Method::brute_force));
+            ASSERT_NE(right[0].digest, right[1].digest);
+            std::vector<FrameResult> results;
+            for (std::size_t i = 0; i < 4; ++i) results.push_back(session->run(scene.frame(i % 2)));
+            for (std::size_t i = 0; i < 4; ++i) expect_equal(results[i], right[i % 2]);
+            const auto bytes = on.bytes_allocated();
+            results.clear();
+            for (std::size_t i = 0; i < 4; ++i) session->run(scene.frame(i % 2));
+            EXPECT_EQ(on.bytes_allocated(), bytes);
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, Batches, testing::ValuesIn(device_names()),
+                         [](const auto& test) { return device_label(test.param); });
+
+/// One cell on several devices, among them the same kind twice.
+class Split : public testing::Test {
+protected:
+    static std::unique_ptr<Session> prepare(const Traversal& traversal, const Scene& scene,
+                                            const SettingTexts& given) {
+        const std::array devices{&device("host"), &device("opencl:0")};
+        return traversal.prepare(devices, scene,
+                                 resolve(traversal.parameters(), {}, given, traversal.name()));
+    }
+};
+
+TEST_F(Split, PartsAddUp) {
+    const auto scene = crowd(75, 9, 0.9);
+    for (const auto* traversal : algorithms())
+        for (const std::string output : {"pairs", "digest", "count"})
+            for (const std::string broad : {"device", "sphere"}) {
+                SCOPED_TRACE(fmt::format("{} {} {}", traversal->name(), output, broad));
+                const auto session = prepare(*traversal, scene, {{"output", output}, {"broad", broad}});
+                EXPECT_EQ(session->devices().size(), 2u);
+                for (std::size_t i = 0; i < 2; ++i) {
+                    const auto right = reference(scene, scene.frame(i), {}, true, Method::brute_force);
+                    const auto result = session->run(scene.frame(i));
+                    EXPECT_EQ(result.count, right.digest.count);
+                    if (output != "count") {
+                        EXPECT_EQ(result.digest(), right.digest);
+                    }
+                    if (output != "pairs") continue;
+                    EXPECT_EQ(result.parts.size(), 2u);
+                    EXPECT_EQ(result.download(), right.pairs);
+                    EXPECT_EQ(result.contact_digest(), right.contact_digest);
+                    for (const auto& part : result.parts) EXPECT_GT(part->pairs().count, 0u);
+                }
+            }
+}
+
+TEST_F(Split, ThePapersDataPathIsOneDevices) {
+    const auto scene = crowd(76, 3, 0.9);
+    for (const auto* traversal : algorithms()) {
+        try {
+            prepare(*traversal, scene, {{"residency", "published"}});
+            FAIL();
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.what(), HasSubstr("cannot split a frame between host + opencl:0"));
+        }
+    }
+}
+
+TEST_F(Split, CountsOfWorkAddUp) {
+    const auto scene = crowd(77, 9, 0.9);
+    const auto& traversal = algorithm("chunked");
+    const SettingTexts given{{"broad", "sphere"}, {"seed_threshold", "1e7"}};
+    const auto both = prepare(traversal, scene, given);
+    const std::array one{&device("host")};
+    const auto alone =
+        traversal.prepare(one, scene, resolve(traversal.parameters(), {}, given, traversal.name()));
+    both->count_work(true);
+    alone->count_work(true);
+    const auto frame = scene.frame(0);
+    EXPECT_EQ(both->run(frame).work, alone->run(frame).work);
+}
+
+} // namespace
+} // namespace tandem
