@@ -9,8 +9,10 @@
 #define ROOT_TEST 1
 #endif
 
-// Where a level's seeds stand: the starts of all body pairs and their sum.
-DEVICE ulong row_of_level(uint level, uint pair_count) { return level * ((ulong)pair_count + 1); }
+// Where a level's seeds stand: the starts of all body pairs and their sum. Written so for NVIDIA's compiler:
+// with level * (pair_count + 1) it gives traverse_in_groups 64 registers instead of 72 at k = 8, which is 9 %
+// slower.
+DEVICE ulong row_of_level(uint level, uint pair_count) { return (ulong)level * pair_count + level; }
 
 // seeds[row_of_level(level) + pair] = number of chunk pairs that body pair starts with at that level.
 KERNEL void count_seeds(GLOBAL const real* volumes, GLOBAL const uint* trees, GLOBAL const uint* levels,

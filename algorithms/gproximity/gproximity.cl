@@ -172,8 +172,13 @@ KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* trees, 
     Tally tally = empty_tally();
     if (LOCAL_ID == 0u) take_items(shared, counts[GROUP_ID]);
     BARRIER;
+    if (shared[STOP]
+        != 0u) { // nothing to begin with: the whole group leaves, so that its loop runs once at least
+        if (LOCAL_ID == 0u) ATOMIC_ADD(idle, 1u);
+        return;
+    }
     uint stop;
-    do { // once at least, as loops with barriers have to; a group without items stops at its end
+    do {
         const uint size = shared[SIZE];
         const uint stored = shared[STORED];
         for (uint i = LOCAL_ID; i < shared[TAKE] * ITEM_WORDS; i += (uint)GROUP_SIZE)
