@@ -51,7 +51,7 @@ struct AdversarialTally {
 };
 
 /// Makes pairs of a family, bounds and tests them by the kernels of the walks on every cell
-/// (kdop/pair_list.h) and compares with the truth: by construction, or the oracle's decision of the very
+/// (hierarchy/pair_list.h) and compares with the truth: by construction, or the oracle's decision of the very
 /// vertices. Pairs are those of hard_pair(family, 5 seed + i, 0.., difficulty), i the number of the
 /// difficulty. Families of whole scenes and those that are not finite have none and throw InputError.
 AdversarialTally run_adversarial(const HardFamily& family, std::span<const AdversarialCell> cells,

@@ -27,7 +27,7 @@ int run_cell(const Cell& cell, const Job& job, References& references, const Sam
 /// A line that says what scene it is, one for tetrahedra of negative volume and one for flawed ones.
 void print_scene(const Scene& scene, const FrameRange& range);
 
-/// Safe and directed bounds miss nothing that meets (theorems of algorithms/kdop); the others promise
+/// Safe and directed bounds miss nothing that meets (theorems of algorithms/bounds); the others promise
 /// nothing.
 bool misses_against_its_promise(const Measurement& m);
 

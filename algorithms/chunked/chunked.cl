@@ -83,9 +83,7 @@ DEVICE ulong seed_total(ulong own, GLOBAL const uint* status, uint level, uint h
     return own + (above < handed_capacity ? above : handed_capacity);
 }
 
-// An expansion pops one node pair and pushes at most four a depth lower in both, or two a depth lower in one
-// of them: of a walk of LEAF_BITS depths in both at most three for each depth wait.
-#define STACK_DEPTH (3 * LEAF_BITS + 1)
+#define STACK_DEPTH MOST_WAITING(LEAF_BITS)
 
 // Schedule `item`, the paper's: every work-item walks seed after seed, a fixed stride apart, each to its end,
 // with a stack of its own. One launch takes the seeds of one level: `seeds` holds the starts of that level's
@@ -134,10 +132,10 @@ KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL 
 // A work-group's stack: rows of body pair, chunk of a, chunk of b, node pair. Seeds are looked at a batch of
 // at most BATCH at a time, while there are fewer rows than work-items; SHARED_RESERVE is what the walk of one
 // row can add.
-#define ROW_WORDS 4
-#define BATCH (8 * GROUP_SIZE)
-#define SHARED_RESERVE (3 * LEAF_BITS + 1)
-#define SHARED_ROWS (GROUP_SIZE + BATCH + GROUP_SIZE + SHARED_RESERVE)
+#define ROW_WORDS SHARED_ROW_WORDS
+#define BATCH BATCH_SEEDS(GROUP_SIZE)
+#define SHARED_RESERVE MOST_WAITING(LEAF_BITS)
+#define SHARED_ROWS SHARED_ROW_COUNT(GROUP_SIZE, LEAF_BITS)
 
 // Word by word, so that neighbouring work-items use different banks.
 DEVICE void push_row(LOCAL uint* rows, uint count, LOCAL uint* pushed, uint pair, uint chunk_a, uint chunk_b,

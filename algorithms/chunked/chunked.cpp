@@ -2,6 +2,7 @@
 #include "algorithms/chunked/chunked.h"
 
 #include "algorithms/chunked/chunked_walker.h"
+#include "algorithms/chunked/levels.clh"
 #include "algorithms/published/chunked_seeds.h"
 #include "algorithms/pipeline.h"
 #include "scenes/error.h"
@@ -40,6 +41,23 @@ std::uint32_t leaves_of(const Settings& settings) {
     return given;
 }
 
+/// Bytes of local memory that a work-group's walk takes.
+std::uint64_t local_bytes(Schedule who, std::uint64_t group_size, std::uint64_t leaf_bits) {
+    return who == Schedule::group ? SHARED_ROW_COUNT(group_size, leaf_bits) * SHARED_ROW_WORDS * 4 + 12
+                                  : MOST_WAITING(leaf_bits) * group_size * 4;
+}
+
+/// Throws InputError when the stacks of a work-group exceed the device's local memory.
+void check_local_memory(const Settings& settings, const DeviceInfo& info) {
+    const auto group_size = static_cast<std::uint64_t>(settings[parameters::group_size]);
+    const auto needed = local_bytes(settings[schedule], group_size, ceil_log2(leaves_of(settings)));
+    if (needed > info.local_bytes)
+        throw InputError(fmt::format(
+            "setting group_size={} needs {} bytes of local memory with schedule={} and {} has {}; "
+            "lower it, or leaves",
+            group_size, needed, settings.text(schedule.name), info.id, info.local_bytes));
+}
+
 class Chunked : public Traversal {
 public:
     std::string_view name() const override { return "chunked"; }
@@ -55,7 +73,9 @@ public:
     std::span<const Counter> counters() const override { return all_counters; }
 
 private:
-    void do_check(const Settings& settings, const DeviceInfo&) const override { leaves_of(settings); }
+    void do_check(const Settings& settings, const DeviceInfo& info) const override {
+        check_local_memory(settings, info);
+    }
 
     Steps do_build(const Ground& ground) const override {
         auto trees =

@@ -89,6 +89,25 @@ TEST(Settings, DecisionsWithCertaintyNeedDouble) {
                   "none"));
 }
 
+/// 48 KiB, as a CUDA device gives a kernel: what its compiler would refuse is said beforehand.
+TEST(Settings, StacksMustFitLocalMemory) {
+    DeviceInfo info;
+    info.id = "cuda:9";
+    info.max_group_size = 1024;
+    info.local_bytes = 49152;
+    const auto check = [&](const SettingTexts& given) {
+        return message_of([&] { algorithm("chunked").fitted(with(given), info); });
+    };
+    EXPECT_EQ(check({{"group_size", "256"}}), "no error");
+    EXPECT_THAT(
+        check({{"group_size", "512"}}),
+        HasSubstr("group_size=512 needs 82140 bytes of local memory with schedule=group and cuda:9 has "
+                  "49152"));
+    EXPECT_EQ(check({{"group_size", "512"}, {"schedule", "item"}}), "no error");
+    EXPECT_THAT(check({{"group_size", "1024"}, {"schedule", "item"}, {"leaves", "16384"}}),
+                HasSubstr("needs 176128 bytes"));
+}
+
 TEST(Settings, EveryPresetResolves) {
     std::size_t presets = 0;
     for (const auto* traversal : algorithms()) {

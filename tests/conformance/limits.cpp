@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// Kernels at body pairs past 2^31, where twice a number wraps in 32 bits. No scene has so many: tables that
+// are empty but for one row are mapped without memory behind them, and a walk is given one seed, or one item,
+// of that pair. Host kernels are the text of all others.
+#include "algorithms/chunked/levels.clh"
+#include "algorithms/gproximity/queues.clh"
+#include "algorithms/sources.h"
+#include "tests/support/cells.h"
+#include "tests/support/flawed.h"
+#include "tests/support/prepared_trees.h"
+
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+constexpr std::uint32_t far_pair = 0x80000005; ///< twice it is 10 in 32 bits
+constexpr std::uint32_t pair_count = 0x80000008;
+
+/// Zeros of any size, of which only what is touched takes memory.
+class Zeros {
+public:
+    explicit Zeros(std::size_t bytes)
+        : bytes_(bytes),
+          memory_(mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE,
+                       -1, 0)) {
+        if (memory_ == MAP_FAILED) throw std::bad_alloc();
+    }
+    ~Zeros() { munmap(memory_, bytes_); }
+    Zeros(const Zeros&) = delete;
+    Zeros& operator=(const Zeros&) = delete;
+
+    std::uint32_t* words() const { return static_cast<std::uint32_t*>(memory_); }
+    Buffer adopted(Device& device) const { return device.adopt(memory_, bytes_, "zeros"); }
+
+private:
+    std::size_t bytes_;
+    void* memory_;
+};
+
+class Limits : public testing::Test {
+protected:
+    Limits() {
+        on.update(scene.frame(0));
+        pairs.words()[2 * std::size_t{far_pair}] = 0;
+        pairs.words()[2 * std::size_t{far_pair} + 1] = 1;
+        words[STATUS_BODY_PAIRS] = pair_count;
+        auto two = scene;
+        two.bodies.pop_back();
+        auto frame = scene.frame(0);
+        frame.poses.pop_back();
+        frame.deformed.pop_back();
+        expected = reference(two, frame, {}, false, Method::sweep).digest.count;
+    }
+
+    Kernel compile(const char* file, const char* entry, Defines more = {}) {
+        auto defines = on.trees.defines(1);
+        defines.merge(more);
+        return host.compile(kernel_source(file), entry, defines);
+    }
+
+    Buffer uploaded(std::span<const std::byte> bytes) {
+        auto buffer = host.allocate(bytes.size(), "test");
+        const StageScope scope(host, Stage::write);
+        host.upload(buffer, bytes);
+        return buffer;
+    }
+
+    std::uint32_t found_by(const Kernel& kernel, std::span<const Argument> arguments, const Buffer& status) {
+        const StageScope scope(host, Stage::traverse);
+        host.launch(kernel, {1, 1}, arguments);
+        host.download(status, std::as_writable_bytes(std::span(words)));
+        return words[STATUS_PAIRS];
+    }
+
+    Device& host = device("host");
+    Scene scene = boxes_scene(3, 2);
+    PreparedTrees on{host, scene, {}, 16384, 1}; ///< one chunk a body
+    Zeros pairs{8 * std::size_t{pair_count}};
+    Zeros starts{8 * (std::size_t{pair_count} + 1)};
+    std::vector<std::uint32_t> words = std::vector<std::uint32_t>(STATUS_WORDS);
+    std::uint64_t expected = 0;
+};
+
+TEST_F(Limits, ChunkedWalksAPairPastHalfOfAllNumbers) {
+    ASSERT_GT(expected, 100u);
+    for (const auto* entry : {"traverse", "traverse_in_groups"}) {
+        words.assign(STATUS_WORDS, 0);
+        words[STATUS_BODY_PAIRS] = pair_count;
+        words[STATUS_LEVELS] = 1; // a seed that was handed down
+        const auto status = uploaded(bytes_of(words));
+        const auto handed = uploaded(bytes_of(std::vector<std::uint32_t>{far_pair, 0, 0}));
+        const auto found = host.allocate(expected * 16, "found");
+        const auto table = pairs.adopted(host);
+        const auto seeds = starts.adopted(host);
+        const std::array<Argument, 16> arguments{on.trees.nodes(),
+                                                 on.trees.tree_table(),
+                                                 on.trees.level_table(),
+                                                 on.bodies.row_table(),
+                                                 on.bodies.ids(),
+                                                 table,
+                                                 pair_count,
+                                                 0u,
+                                                 seeds,
+                                                 handed,
+                                                 1u,
+                                                 handed,
+                                                 0u,
+                                                 found,
+                                                 static_cast<std::uint32_t>(expected),
+                                                 status};
+        EXPECT_EQ(found_by(compile("algorithms/chunked/chunked.cl", entry), arguments, status), expected);
+        std::vector<std::uint32_t> rows(expected * 4);
+        const StageScope scope(host, Stage::read);
+        host.download(found, std::as_writable_bytes(std::span(rows)));
+        for (std::size_t i = 0; i < rows.size(); i += 4) {
+            ASSERT_EQ(rows[i], 0u);
+            ASSERT_EQ(rows[i + 1], 1u);
+        }
+    }
+}
+
+TEST_F(Limits, QueuesWalkAPairPastHalfOfAllNumbers) {
+    const auto status = uploaded(bytes_of(words));
+    constexpr std::uint32_t capacity = 100000;
+    std::vector<std::uint32_t> items(3 * capacity);
+    items[0] = far_pair;
+    items[1] = items[2] = 1;
+    const auto queue = uploaded(bytes_of(items));
+    const auto counts = uploaded(bytes_of(std::vector<std::uint32_t>{1}));
+    const auto idle = uploaded(bytes_of(std::vector<std::uint32_t>{0}));
+    const auto found = host.allocate(expected * 16, "found");
+    const auto table = pairs.adopted(host);
+    const std::array<Argument, 12> arguments{on.trees.nodes(),
+                                             on.trees.tree_table(),
+                                             on.bodies.row_table(),
+                                             on.bodies.ids(),
+                                             table,
+                                             queue,
+                                             counts,
+                                             capacity,
+                                             idle,
+                                             found,
+                                             static_cast<std::uint32_t>(expected),
+                                             status};
+    const Defines defines{{"LOCAL_QUEUE", "50000"}, {"REFILL", "1"}, {"FULL_EXIT", "0"}, {"IDLE_LIMIT", "9"}};
+    EXPECT_EQ(found_by(compile("algorithms/gproximity/gproximity.cl", "traverse_queues", defines), arguments,
+                       status),
+              expected);
+}
+
+} // namespace
+} // namespace tandem
