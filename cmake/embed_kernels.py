@@ -48,8 +48,7 @@ def named(text, geometry):
 
 def host_variant(kernels, geometry, geometries, identifier):
     """Kernels of one geometry; one that does not name all of it is in the first variant of what it does name."""
-    out = ['#include "backends/host/dialect.h"']
-    rows = []
+    out, rows = [], []
     for index, (name, text) in enumerate(kernels.items()):
         own = named(text, geometry)
         if geometry != next(g for g in geometries if named(text, g) == own):
@@ -72,8 +71,8 @@ def host_variant(kernels, geometry, geometries, identifier):
             rows.append(f'{{"{name}", "{entry}", "{";".join(own)}", {call}::run, {call}::count, '
                         f"{{{scope}::runtime, {len(names)}}}}},")
     out += [f"extern const std::span<const tandem::host::HostKernel> {identifier};",
-            "static const tandem::host::HostKernel rows[] = {", *rows, "};",
-            f"const std::span<const tandem::host::HostKernel> {identifier}(rows);", ""]
+            f"static const tandem::host::HostKernel {identifier}_rows[] = {{", *rows, "};",
+            f"const std::span<const tandem::host::HostKernel> {identifier}({identifier}_rows);", ""]
     return "\n".join(out)
 
 
@@ -91,6 +90,7 @@ def main():
     parser.add_argument("--root", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path)
     parser.add_argument("--geometries", nargs="+")
+    parser.add_argument("--each", type=int, default=1, help="geometries in a file")
     parser.add_argument("--kernels", nargs="+")
     parser.add_argument("--flatten", help="only print this kernel file with its headers")
     arguments = parser.parse_args()
@@ -100,10 +100,12 @@ def main():
     arguments.out.mkdir(parents=True, exist_ok=True)
     kernels = {name: "\n".join(flatten(arguments.root, name, set())) + "\n" for name in arguments.kernels}
     write(arguments.out / "sources.cpp", sources(kernels))
-    identifiers = []
-    for geometry in arguments.geometries:
-        identifiers.append("host_" + re.sub(r"\W", "_", geometry))
-        write(arguments.out / f"{identifiers[-1]}.cpp", host_variant(kernels, geometry, arguments.geometries, identifiers[-1]))
+    identifiers = ["host_" + re.sub(r"\W", "_", geometry) for geometry in arguments.geometries]
+    variants = [host_variant(kernels, geometry, arguments.geometries, identifier)
+                for geometry, identifier in zip(arguments.geometries, identifiers)]
+    for part, first in enumerate(range(0, len(variants), arguments.each)):
+        write(arguments.out / f"host_{part}.cpp",
+              "\n".join(['#include "backends/host/dialect.h"', *variants[first:first + arguments.each]]))
     write(arguments.out / "host_table.cpp", host_table(identifiers))
 
 

@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: MIT
-# tandem_kernels(TARGET): flattens each kernel file of algorithms/ with its headers, embeds the texts, and compiles
-# them for the host backend in every listed geometry. Called where the target is made: generated sources are known
-# in one directory only.
+# tandem_kernels(TARGET K:AXES...): flattens each kernel file of algorithms/ with its headers, embeds the texts, and
+# compiles them for the host backend in every listed geometry, in both precisions. Called where the target is made:
+# generated sources are known in one directory only.
 function(tandem_kernels target)
-  set(out ${PROJECT_BINARY_DIR}/kernels)
+  set(out ${PROJECT_BINARY_DIR}/kernels/${target})
   set(script ${PROJECT_SOURCE_DIR}/cmake/embed_kernels.py)
   file(GLOB_RECURSE kernels CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/algorithms/*.cl)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/backends/portable.h
        ${PROJECT_SOURCE_DIR}/algorithms/*.clh)
   set(geometries)
-  set(directions 6:0 8:0 8:1 12:0 14:0 16:0 18:0 20:0 24:0 26:0)
-  if(TANDEM_SANITIZE) # sanitized kernels take long to compile, and k = 8 and 18 reach every line
-    set(directions 8:0 18:0)
-  endif()
-  foreach(k_axes ${directions})
+  foreach(k_axes ${ARGN})
     string(REPLACE ":" ";" pair ${k_axes})
     list(GET pair 0 k)
     list(GET pair 1 axes)
@@ -21,19 +17,22 @@ function(tandem_kernels target)
       list(APPEND geometries "AXES=${axes},K=${k},PRECISION=${precision}")
     endforeach()
   endforeach()
+  # Some geometries a file: reading the headers takes as long as compiling one.
+  list(LENGTH geometries count)
   set(generated ${out}/sources.cpp ${out}/host_table.cpp)
-  foreach(geometry ${geometries})
-    string(MAKE_C_IDENTIFIER ${geometry} name)
-    list(APPEND generated ${out}/host_${name}.cpp)
+  set(each 4)
+  math(EXPR last "(${count} - 1) / ${each}")
+  foreach(part RANGE ${last})
+    list(APPEND generated ${out}/host_${part}.cpp)
   endforeach()
   add_custom_command(OUTPUT ${generated}
     COMMAND ${Python3_EXECUTABLE} ${script} --root ${PROJECT_SOURCE_DIR} --out ${out} --geometries ${geometries}
-            --kernels ${kernels}
+            --each ${each} --kernels ${kernels}
     DEPENDS ${script} ${kernels} ${headers} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     COMMENT "Flattening kernels" VERBATIM)
   target_sources(${target} PRIVATE ${generated})
   set(options -Wno-unused-function -Wno-unused-variable -Wno-unused-parameter -Wno-unknown-pragmas -Wno-type-limits)
-  if(TANDEM_SANITIZE)
+  if(TANDEM_SANITIZE OR target STREQUAL tandem-checked)
     # g++ 12 with -fsanitize=bounds reads temporaries in certainty.clh that it has not written: it warns of them, and
     # verdicts then differ from those of every other build. Addresses are still checked.
     list(APPEND options -fno-sanitize=bounds)

@@ -3,6 +3,7 @@
 #include "tests/support/prepared_trees.h"
 #include "algorithms/bodies/pack.h"
 #include "tests/support/cells.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/scenes.h"
 
 #include <cmath>
@@ -16,11 +17,7 @@ using namespace testing_support;
 
 std::vector<Geometry> geometries() {
     std::vector<Geometry> all;
-#ifdef TANDEM_FEW_GEOMETRIES
-    for (const int k : {8, 18})
-#else
-    for (const int k : {6, 8, 12, 14, 16, 18, 20, 24, 26})
-#endif
+    for (const int k : sanitized() ? std::vector{8, 18} : std::vector{6, 8, 12, 14, 16, 18, 20, 24, 26})
         for (const auto precision : {Precision::fp32, Precision::fp64}) {
             all.push_back({.k = k, .precision = precision});
             if (k != 8 && k != 26) continue; // these have every kind of direction

@@ -7,6 +7,7 @@
 #include "scenes/error.h"
 #include "tests/support/cells.h"
 #include "tests/support/leaf_slabs.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/scenes.h"
 
 #include <gmock/gmock.h>
@@ -50,11 +51,7 @@ TEST(BoundsAnswers, SafeAndNearestAgreeWithoutCornersAndEveryCellWithItsOwnRefer
     const auto scene = far_crowd(81, 3000);
     const auto range = make_frames(scene, 0, 1);
     References references(scene, range);
-#ifdef TANDEM_FEW_PAIRS // a sanitized build has these only, see cmake/kernels.cmake
-    for (const int k : {8, 18}) {
-#else
-    for (const int k : {8, 12, 18}) {
-#endif
+    for (const int k : sanitized() ? std::vector{8, 18} : std::vector{8, 12, 18}) {
         std::map<std::string, Digest> digests;
         for (const std::string rounding : {"nearest", "safe", "published"}) {
             const auto found =

@@ -5,6 +5,7 @@
 #include "algorithms/contacts/exact/decision.h"
 #include "tests/support/cells.h"
 #include "tests/support/leaf_slabs.h"
+#include "tests/support/sanitized.h"
 
 #include <cstdlib>
 #include <fmt/format.h>
@@ -15,13 +16,8 @@ namespace {
 
 using namespace testing_support;
 
-#ifdef TANDEM_FEW_PAIRS // a sanitized build has these only, see cmake/kernels.cmake
-const std::vector<int> all_k{8, 18};
-constexpr std::uint64_t usual_draws = 14000;
-#else
-const std::vector<int> all_k{6, 8, 12, 14, 16, 18, 20, 24, 26};
-constexpr std::uint64_t usual_draws = 140000;
-#endif
+const auto all_k = sanitized() ? std::vector{8, 18} : std::vector{6, 8, 12, 14, 16, 18, 20, 24, 26};
+const std::uint64_t usual_draws = sanitized() ? 14000 : 140000;
 constexpr double offsets[] = {0, 1, 10, 100, 1000, 1e4, 1e6};
 /// Where the origin may be: corners of a cube, an edge, and where x + y + z cancels.
 constexpr std::array<double, 3> places[] = {{1, 1, 1}, {1, -1, 1}, {-1, 1, 0}, {0.5, 0.5, -1}, {1, -1, 0}};

@@ -4,6 +4,7 @@
 #include "algorithms/contacts/exact/lattice.h"
 #include "scenes/parallel.h"
 #include "tests/support/oracle_pairs.h"
+#include "tests/support/sanitized.h"
 
 #include <atomic>
 #include <gtest/gtest.h>
@@ -14,11 +15,7 @@ namespace {
 
 using namespace testing_support;
 
-#ifdef TANDEM_FEW_PAIRS
-constexpr unsigned parts = 1;
-#else
-constexpr unsigned parts = 15;
-#endif
+const unsigned parts = sanitized() ? 1 : 15;
 constexpr unsigned families = static_cast<unsigned>(Family::count);
 
 class OracleFilter : public testing::TestWithParam<unsigned> {

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: MIT
+# tandem_unity(TARGET [EXPRESSION...]): compiles the files of a folder together, which takes a third of the time. Unnamed
+# namespaces of files that are compiled together are one: files whose names there are others' as well make a unit of
+# their own for each EXPRESSION that their path, from the root and without .cpp, matches.
+function(tandem_unity target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source ${sources})
+    cmake_path(IS_PREFIX PROJECT_BINARY_DIR ${source} generated)
+    cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE path)
+    if(generated OR NOT path MATCHES "^[a-z_/0-9]+\\.cpp$")
+      continue()
+    endif()
+    cmake_path(GET path PARENT_PATH group)
+    foreach(expression ${ARGN})
+      if(path MATCHES "^${expression}\\.cpp$")
+        set(group ${expression})
+      endif()
+    endforeach()
+    string(MAKE_C_IDENTIFIER "${group}" group)
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+  endforeach()
+endfunction()
