@@ -53,36 +53,37 @@ Scene self_intersecting(Random& random, double overlap) {
     return still({ring(overlap)}, {at({0, 0, 0}), second});
 }
 
+constexpr HardFamily deforming_table[] = {
+    {.row = 36,
+     .group = 'e',
+     .name = "inverting",
+     .summary = "an element whose corner is pushed through the opposite face",
+     .knob = {"share of its height", -1, 1, 0.01},
+     .truth = HardTruth::oracle,
+     .metric = "CLS",
+     .fails = "normals and signs of volume that trust the orientation",
+     .pair = pushed_through},
+    {.row = 37,
+     .group = 'e',
+     .name = "self-intersecting",
+     .summary = "two bars bent into rings whose ends lie in each other",
+     .knob = {"angle of the ends within each other", 0, 3, 0.5},
+     .truth = HardTruth::oracle,
+     .metric = "MISS, share of pairs that overlap doubly",
+     .fails = "methods that take a point to be in one element",
+     .scene = self_intersecting},
+    {.row = 38,
+     .group = 'e',
+     .name = "collapsing",
+     .summary = "an element that loses height from pair to pair until it has none",
+     .knob = {"halvings a pair", 0, 4, 1},
+     .truth = HardTruth::program,
+     .metric = "CLS",
+     .fails = "a class that flips on the way to zero",
+     .pair = collapsing}};
+
 } // namespace
 
-std::vector<HardFamily> deforming_families() {
-    return {{36,
-             'e',
-             "inverting",
-             "an element whose corner is pushed through the opposite face",
-             {"share of its height", -1, 1, 0.01},
-             HardTruth::oracle,
-             "CLS",
-             "normals and signs of volume that trust the orientation",
-             pushed_through},
-            {.row = 37,
-             .group = 'e',
-             .name = "self-intersecting",
-             .summary = "two bars bent into rings whose ends lie in each other",
-             .knob = {"angle of the ends within each other", 0, 3, 0.5},
-             .truth = HardTruth::oracle,
-             .metric = "MISS, share of pairs that overlap doubly",
-             .fails = "methods that take a point to be in one element",
-             .scene = self_intersecting},
-            {38,
-             'e',
-             "collapsing",
-             "an element that loses height from pair to pair until it has none",
-             {"halvings a pair", 0, 4, 1},
-             HardTruth::program,
-             "CLS",
-             "a class that flips on the way to zero",
-             collapsing}};
-}
+std::span<const HardFamily> deforming_families() { return deforming_table; }
 
 } // namespace tandem::hard

@@ -10,12 +10,14 @@ namespace tandem {
 
 namespace {
 
+/// The groups overlap in the catalogue: its order is that of the rows.
 std::vector<HardFamily> all_families() {
     std::vector<HardFamily> all;
-    for (const auto& group : {hard::bounding_families(), hard::tolerance_families(),
-                              hard::decision_families(), hard::shape_families(), hard::contact_families(),
-                              hard::deforming_families(), hard::capacity_families()})
+    for (const auto group : {hard::bounding_families(), hard::tolerance_families(), hard::decision_families(),
+                             hard::shape_families(), hard::contact_families(), hard::deforming_families(),
+                             hard::capacity_families()})
         all.insert(all.end(), group.begin(), group.end());
+    std::ranges::sort(all, {}, &HardFamily::row);
     return all;
 }
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-// The groups of the catalogue, one file each.
+// The groups of the catalogue, one file and one table each.
 #pragma once
 
 #include "scenes/hard/hard.h"
 
-#include <vector>
+#include <span>
 
 namespace tandem::hard {
 
-std::vector<HardFamily> bounding_families();  ///< a
-std::vector<HardFamily> tolerance_families(); ///< b
-std::vector<HardFamily> decision_families();  ///< c
-std::vector<HardFamily> shape_families();     ///< c, shapes and sizes
-std::vector<HardFamily> contact_families();   ///< d
-std::vector<HardFamily> deforming_families(); ///< e
-std::vector<HardFamily> capacity_families();  ///< f
+std::span<const HardFamily> bounding_families();  ///< a
+std::span<const HardFamily> tolerance_families(); ///< b
+std::span<const HardFamily> decision_families();  ///< c
+std::span<const HardFamily> shape_families();     ///< c, shapes and sizes; inside out is in decision.cpp
+std::span<const HardFamily> contact_families();   ///< d
+std::span<const HardFamily> deforming_families(); ///< e
+std::span<const HardFamily> capacity_families();  ///< f
 
 } // namespace tandem::hard

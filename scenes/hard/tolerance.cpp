@@ -45,37 +45,38 @@ Scene refits(Random& random, double frames) {
     return scene;
 }
 
+constexpr HardFamily tolerance_table[] = {
+    {.row = 11,
+     .group = 'b',
+     .name = "tolerance-scale",
+     .summary = "random near pairs of another size",
+     .knob = {"size", 1e-6, 1e6, 1e-3},
+     .truth = HardTruth::oracle,
+     .metric = "MISS, FPR",
+     .fails = "absolute tolerances: at 1e-6 everything overlaps",
+     .pair = scaled_pair},
+    {.row = 12,
+     .group = 'b',
+     .name = "tolerance-gap",
+     .summary =
+         "parallel faces as far apart as the paper's tolerance, give or take some units in the last place",
+     .knob = {"units above the tolerance", -64, 64, 1},
+     .truth = HardTruth::construction,
+     .metric = "false pairs at gap > tolerance",
+     .fails = "tolerances added after rounding",
+     .pair = gap_near_tolerance},
+    {.row = 13,
+     .group = 'b',
+     .name = "refit-order",
+     .summary = "two boxes of tetrahedra deformed anew in every frame",
+     .knob = {"frames", 2, 1000, 8},
+     .truth = HardTruth::oracle,
+     .metric = "equality with a fresh build",
+     .fails = "hierarchies that widen in place",
+     .scene = refits}};
+
 } // namespace
 
-std::vector<HardFamily> tolerance_families() {
-    return {
-        {11,
-         'b',
-         "tolerance-scale",
-         "random near pairs of another size",
-         {"size", 1e-6, 1e6, 1e-3},
-         HardTruth::oracle,
-         "MISS, FPR",
-         "absolute tolerances: at 1e-6 everything overlaps",
-         scaled_pair},
-        {12,
-         'b',
-         "tolerance-gap",
-         "parallel faces as far apart as the paper's tolerance, give or take some units in the last place",
-         {"units above the tolerance", -64, 64, 1},
-         HardTruth::construction,
-         "false pairs at gap > tolerance",
-         "tolerances added after rounding",
-         gap_near_tolerance},
-        {.row = 13,
-         .group = 'b',
-         .name = "refit-order",
-         .summary = "two boxes of tetrahedra deformed anew in every frame",
-         .knob = {"frames", 2, 1000, 8},
-         .truth = HardTruth::oracle,
-         .metric = "equality with a fresh build",
-         .fails = "hierarchies that widen in place",
-         .scene = refits}};
-}
+std::span<const HardFamily> tolerance_families() { return tolerance_table; }
 
 } // namespace tandem::hard
