@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// run, check and accuracy: cells of a scene, measured and compared.
+#include "harness/command_line/actions.h"
+#include "harness/command_line/sets.h"
+#include "harness/commands.h"
+#include "scenes/error.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+namespace tandem {
+
+namespace {
+
+TruthAmount parse_truth(const std::string& text) {
+    if (text == "none") return TruthAmount::none;
+    if (text == "pairs") return TruthAmount::pairs;
+    if (text == "contacts") return TruthAmount::contacts;
+    throw InputError(fmt::format("--truth {}: give none, pairs or contacts", text));
+}
+
+constexpr auto scene_help = "NAME, NAME:par=value,..., a scene description (.json) or a recording (.frames)";
+
+/// What is measured: the scene's meshes and frames, and the cells.
+void add_cell_options(CLI::App& app, RunOptions& options, std::vector<std::string>& sets) {
+    app.add_option("--mesh", options.meshes, "a scene of mesh files instead")->expected(1)->take_all();
+    app.add_option("--pose", options.poses, "\"tx ty tz qw qx qy qz\", one per --mesh, in order")
+        ->expected(1)
+        ->take_all();
+    app.add_option("--algorithm", options.request.algorithms,
+                   "A,B (see 'tandem algorithms'); all when left out")
+        ->delimiter(',');
+    app.add_option(
+           "--preset", options.request.presets,
+           "P,Q or all (see 'tandem algorithms'); when left out each algorithm's first, for check all")
+        ->delimiter(',');
+    app.add_option("--device", options.request.devices,
+                   "D,E or all (see 'tandem devices'), D+E for one cell on both; when left out opencl:0, for "
+                   "check all")
+        ->delimiter(',');
+    app.add_option("--frames", options.frames, "FIRST:LAST, both inclusive; all when left out");
+    app.add_option("--set", sets, "NAME=V1,V2: several values make several cells")->expected(1)->take_all();
+}
+
+/// add_cell_options and how they are run: what `run`, `check` and `accuracy` have in common.
+void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string>& sets) {
+    add_cell_options(app, options, sets);
+    app.add_option("--out", options.out, "append records to this JSON-lines file");
+    app.add_option("--require", options.require, "devices or backends whose absence is a failure")
+        ->delimiter(',');
+    app.add_option_function<std::string>(
+           "--truth", [&options](const std::string& text) { options.truth = parse_truth(text); },
+           "compare with the exact truth: none, pairs (every pair of every frame; the default) or contacts "
+           "(depths, "
+           "normals and points too)")
+        ->option_text("none|pairs|contacts");
+    app.add_option("--truth-contacts", options.truth_contacts,
+                   "exact contacts of at most so many pairs a frame; all when left out")
+        ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40));
+    app.add_option_function<std::string>(
+           "--degenerate",
+           [&options](const std::string& text) { options.degenerate = degenerate_named(text); },
+           "tetrahedra of zero volume and with coordinates that are not finite: flat (the first take part, "
+           "the "
+           "second are refused; the default), skip (neither takes part) or reject (both are refused)")
+        ->option_text("flat|skip|reject");
+    app.add_option("--memory", options.memory,
+                   "take at most so many bytes of a device's memory; frames that need more run in batches "
+                   "(4096, 512MB, 2GiB)")
+        ->transform(CLI::AsSizeValue(false))
+        ->option_text("BYTES");
+    app.add_flag("--quiet", options.quiet, "no progress line");
+}
+
+/// add_run_options with the other defaults of `accuracy`, which is about the truth and cannot leave it out.
+void add_accuracy_run_options(CLI::App& app, RunOptions& options, std::vector<std::string>& sets) {
+    options.truth_contacts = 1000;
+    add_run_options(app, options, sets);
+    app.remove_option(app.get_option("--truth"));
+    app.get_option("--algorithm")->description("A,B (see 'tandem algorithms'); chunked when left out");
+    app.get_option("--frames")->description("FIRST:LAST, both inclusive; ten in the middle when left out");
+    app.get_option("--set")->description(
+        "NAME=V1,V2: these cells; when left out k, precision and rounding, then "
+        "precision, decision and contact rule");
+    app.get_option("--truth-contacts")
+        ->description("exact contacts of at most so many pairs a frame; 1000 when left out");
+}
+
+} // namespace
+
+Action add_run(CLI::App& app) {
+    auto given = std::make_shared<Given<RunOptions>>();
+    auto& options = given->options;
+    app.add_option("scene", options.scene, scene_help);
+    add_run_options(app, options, given->sets);
+    app.add_option("--repeat", options.repeat, "samples per cell")->check(CLI::Range(1, 1000));
+    app.add_option("--profile", options.profile, "only replay the frames N times, for a profiler")
+        ->check(CLI::Range(1, 1000000));
+    app.add_option("--dump-pairs", options.dump_pairs,
+                   "write the first finished cell's candidate pairs as CSV");
+    app.add_option("--dump-contacts", options.dump_contacts,
+                   "write the first finished cell's contacts as CSV");
+    app.add_flag("!--no-count", options.count, "leave out the replay that counts work");
+    app.add_flag("!--no-check", options.check, "do not compare with the reference");
+    return [given] {
+        given->options.request.sets = parse_sets(given->sets);
+        return run_command(given->options);
+    };
+}
+
+Action add_check(CLI::App& app) {
+    auto given = std::make_shared<Given<RunOptions>>();
+    app.add_option("scene", given->options.scene, scene_help);
+    add_run_options(app, given->options, given->sets);
+    return [given] {
+        given->options.request.sets = parse_sets(given->sets);
+        return check_command(given->options);
+    };
+}
+
+Action add_accuracy(CLI::App& app) {
+    auto given = std::make_shared<Given<AccuracyOptions>>();
+    auto& options = given->options;
+    app.add_option("scenes", options.scenes, scene_help);
+    add_accuracy_run_options(app, options.run, given->sets);
+    app.add_option("--repeat", options.run.repeat, "samples per cell")->check(CLI::Range(1, 1000));
+    app.add_flag("!--no-check", options.run.check, "do not compare with the reference; the truth stays");
+    app.add_option("--figures", options.figures,
+                   "draw the records of --out, or of FOLDER/accuracy.jsonl without it, into this folder")
+        ->option_text("FOLDER");
+    return [given] {
+        given->options.run.request.sets = parse_sets(given->sets);
+        return accuracy_command(given->options);
+    };
+}
+
+} // namespace tandem

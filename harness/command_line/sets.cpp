@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include "harness/command_line/sets.h"
+#include "scenes/error.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace tandem {
+
+std::vector<std::pair<std::string, std::vector<std::string>>>
+parse_sets(const std::vector<std::string>& texts) {
+    std::vector<std::pair<std::string, std::vector<std::string>>> sets;
+    for (const auto& text : texts) {
+        const auto equals = text.find('=');
+        if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+            throw InputError(fmt::format("--set {}: give NAME=VALUE or NAME=VALUE,VALUE", text));
+        if (text.starts_with("degenerate="))
+            throw InputError(
+                fmt::format("--set {0}: it is said of frames, for all cells; give --degenerate {1}", text,
+                            text.substr(equals + 1)));
+        sets.emplace_back(text.substr(0, equals), CLI::detail::split(text.substr(equals + 1), ','));
+    }
+    return sets;
+}
+
+} // namespace tandem

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// simulate and export, and what lists devices, scenes and algorithms.
+#include "harness/command_line/actions.h"
+#include "harness/command_line/sets.h"
+#include "harness/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+namespace tandem {
+
+namespace {
+
+/// What is simulated, how far, and what is written.
+void add_motion_options(CLI::App& app, SimulateOptions& options) {
+    app.add_option("scene", options.scene,
+                   "NAME, NAME:par=value,... or a scene description with dynamics (.json)");
+    app.add_option("-o,--output", options.recording, "record frames in this file, FILE.frames");
+    app.add_option("--steps", options.steps, "steps in all; those of the scene when left out")
+        ->check(CLI::Range(std::size_t{1}, std::size_t{100000000}));
+    app.add_option("--record", options.record,
+                   "append a line a step with its times and one for the run to this JSON-lines file");
+    app.add_flag("--resume", options.resume, "go on with the recording from its last checkpoint");
+    app.add_option("--checkpoint", options.every, "steps from one checkpoint to the next")
+        ->check(CLI::Range(std::size_t{1}, std::size_t{100000000}));
+    app.add_option("--dynamics", options.dynamics,
+                   "NAME=VALUE: a setting of the motion (see 'tandem scenes')")
+        ->expected(1)
+        ->take_all();
+}
+
+/// Of a command that lists something and has no other option.
+Action add_listing(CLI::App& app, int (*list)(bool json)) {
+    auto json = std::make_shared<bool>(false);
+    app.add_flag("--json", *json, "as JSON");
+    return [json, list] { return list(*json); };
+}
+
+} // namespace
+
+Action add_simulate(CLI::App& app) {
+    auto given = std::make_shared<Given<SimulateOptions>>();
+    auto& options = given->options;
+    add_motion_options(app, options);
+    app.add_option("--algorithm", options.request.algorithms, "that finds contacts; chunked when left out");
+    app.add_option("--preset", options.request.presets, "of it (see 'tandem algorithms')");
+    app.add_option("--device", options.request.devices, "where contacts are found; opencl:0 when left out");
+    app.add_option(
+           "--set", given->sets,
+           "NAME=VALUE: a setting of the algorithm; contact_rule=sat and decision=recheck when left out")
+        ->expected(1)
+        ->take_all();
+    app.add_option("--require", options.require, "devices or backends whose absence is a failure")
+        ->delimiter(',');
+    app.add_flag("--quiet", options.quiet, "no progress line");
+    return [given] {
+        given->options.request.sets = parse_sets(given->sets);
+        return simulate_command(given->options);
+    };
+}
+
+Action add_export(CLI::App& app) {
+    auto given = std::make_shared<ExportOptions>();
+    auto& options = *given;
+    app.add_option("scene", options.scene, "NAME, NAME:par=value,..., a scene description or a recording");
+    app.add_option("--mesh", options.meshes, "a scene of mesh files instead")->expected(1)->take_all();
+    app.add_option("--pose", options.poses, "\"tx ty tz qw qx qy qz\", one per --mesh, in order")
+        ->expected(1)
+        ->take_all();
+    app.add_option("--frames", options.frames, "FIRST:LAST, both inclusive; all when left out");
+    app.add_option("--every", options.every, "every so many of these frames only")
+        ->check(CLI::Range(1, 1000000));
+    app.add_option("--vtu", options.vtu, "into this folder for ParaView: tetrahedra of every frame");
+    app.add_option("--glb", options.glb, "into this file for viewers: surfaces, moved by an animation");
+    auto* contacts = app.add_flag("--contacts", options.contacts, "contacts of every frame beside the .vtu");
+    app.add_option("--device", options.device, "the device that finds them; host when left out")
+        ->needs(contacts);
+    return [given] { return export_command(*given); };
+}
+
+Action add_devices(CLI::App& app) {
+    auto given = std::make_shared<DevicesOptions>();
+    auto& options = *given;
+    app.add_option("--require", options.require, "devices or backends whose absence is a failure")
+        ->delimiter(',');
+    auto* measure = app.add_flag("--measure", options.measure,
+                                 "measure what each can do: bandwidths, launches, overlap tests");
+    app.add_option("--device", options.devices, "measure D,E only")->delimiter(',')->needs(measure);
+    app.add_option("--out", options.out, "append the measurements to this JSON-lines file")->needs(measure);
+    app.add_flag("--json", options.json, "as JSON");
+    return [given] { return devices_command(*given); };
+}
+
+Action add_scenes(CLI::App& app) { return add_listing(app, scenes_command); }
+
+Action add_algorithms(CLI::App& app) { return add_listing(app, algorithms_command); }
+
+} // namespace tandem
