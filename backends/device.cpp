@@ -37,6 +37,13 @@ void check_group_size(const DeviceInfo& device, const KernelFacts& kernel, std::
                     device.name, kernel.entry, group_size, most));
 }
 
+[[noreturn]] void refuse_without_stage(const DeviceInfo& device, Command command, std::string_view label) {
+    constexpr std::string_view names[] = {"launch", "upload", "download", "clear"};
+    throw std::logic_error(fmt::format("{} ({}): {} of '{}' outside any StageScope; say which stage it is",
+                                       device.id, device.name, names[static_cast<std::size_t>(command)],
+                                       label));
+}
+
 /// Keeps the device's count of live bytes right, whoever drops the last handle.
 std::shared_ptr<Buffer::Impl> counted(std::shared_ptr<Buffer::Impl> impl,
                                       const std::shared_ptr<std::size_t>& count) {
@@ -52,16 +59,17 @@ std::shared_ptr<Buffer::Impl> counted(std::shared_ptr<Buffer::Impl> impl,
 
 void Device::record(Event event, Clock::time_point begin) {
     event.host_ns = nanoseconds_since(begin);
-    event.stage = stage_;
     trace_.events.push_back(std::move(event));
 }
 
 template<class Work>
 void Device::submit(Event event, std::string_view label, const Work& work) {
+    if (!stage_) refuse_without_stage(info(), event.command, label);
     if (clocks_ == Clocks::off) {
         work();
         return;
     }
+    event.stage = *stage_;
     waited_ = false;
     const auto begin = Clock::now();
     event.ticket = work();
@@ -157,15 +165,16 @@ Trace Device::finish() {
         return {};
     }
     const auto begin = Clock::now();
-    const bool pending = !trace_.events.empty() && !trace_.events.back().blocked;
     do_finish();
-    if (pending) record({.command = Command::wait, .label = "finish", .blocked = true}, begin);
+    // Only what is still in flight is waited for: its stage is that of the command submitted last.
+    const auto last = std::find_if(trace_.events.rbegin(), trace_.events.rend(),
+                                   [](const Event& e) { return e.command != Command::host_work; });
+    if (last != trace_.events.rend() && !last->blocked)
+        record({.command = Command::wait, .stage = last->stage, .label = "finish", .blocked = true}, begin);
     for (auto& event : trace_.events)
         if (event.ticket != 0) std::tie(event.begin_ns, event.device_ns) = do_interval(event.ticket);
     return std::exchange(trace_, {});
 }
-
-Stage Device::set_stage(Stage stage) { return std::exchange(stage_, stage); }
 
 void Device::set_clocks(Clocks clocks) {
     finish();
@@ -187,8 +196,7 @@ HostWork::HostWork(Device& device, Stage stage, std::string_view label)
 
 HostWork::~HostWork() {
     if (!timed_ || device_.clocks() == Clocks::off) return;
-    const StageScope scope(device_, stage_);
-    device_.record({.command = Command::host_work, .label = std::string(label_)}, begin_);
+    device_.record({.command = Command::host_work, .stage = stage_, .label = std::string(label_)}, begin_);
 }
 
 } // namespace tandem

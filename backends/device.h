@@ -9,11 +9,13 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 namespace tandem {
@@ -145,8 +147,10 @@ enum class Clocks { off, on };
 
 /// One device of one backend. The public functions record what they do in the trace, where clocks are on, and
 /// leave the doing to the private ones, so that a command cannot run unrecorded nor be recorded twice.
-/// Commands run in order. A device is used from one thread at a time; two devices may be used from two.
-/// A thread's current CUDA context is left as it was. Every function may throw DeviceError.
+/// A command (upload, download, clear, launch) belongs to a stage of a frame: outside any StageScope it
+/// throws std::logic_error that names it, whether clocks are on or off. Commands run in order. A device is
+/// used from one thread at a time; two devices may be used from two. A thread's current CUDA context is left
+/// as it was. Every function may throw DeviceError.
 class Device {
 public:
     virtual ~Device() = default;
@@ -182,8 +186,6 @@ public:
     /// where clocks are off.
     Trace finish();
 
-    /// Books what follows under `stage`; returns the stage before.
-    Stage set_stage(Stage stage);
     /// Waits, drops what was recorded since the last finish(), then switches clocks on or off.
     void set_clocks(Clocks clocks);
     Clocks clocks() const { return clocks_; }
@@ -209,6 +211,7 @@ protected:
 
 private:
     friend class HostWork;
+    friend class StageScope;
 
     struct Compiled {
         Kernel kernel;
@@ -238,18 +241,20 @@ private:
     template<class Work>
     void submit(Event event, std::string_view label, const Work& work);
     void record(Event event, std::chrono::steady_clock::time_point begin);
+    std::optional<Stage> set_stage(std::optional<Stage> stage) { return std::exchange(stage_, stage); }
 
     std::map<std::string, Compiled> kernels_;
     std::vector<KernelFacts> asked_;
     std::shared_ptr<std::size_t> allocated_ = std::make_shared<std::size_t>(0);
     std::size_t memory_limit_ = no_memory_limit;
     Trace trace_;
-    Stage stage_ = Stage::write;
+    std::optional<Stage> stage_; ///< none outside every StageScope
     Clocks clocks_ = Clocks::off;
     bool waited_ = false;
 };
 
-/// Books commands of its lifetime under a stage.
+/// Books commands of its lifetime under a stage; an inner scope's stage stands until it ends. Dies before its
+/// device.
 class StageScope {
 public:
     StageScope(Device& device, Stage stage) : device_(device), before_(device.set_stage(stage)) {}
@@ -259,7 +264,7 @@ public:
 
 private:
     Device& device_;
-    Stage before_;
+    std::optional<Stage> before_;
 };
 
 /// Times host work that belongs to a stage; the only clock outside the device's commands. Does nothing where

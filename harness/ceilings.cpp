@@ -112,6 +112,7 @@ Samples Bench::upload_pinned(const Buffer& buffer, std::span<const std::byte> by
 }
 
 Ceilings Bench::run() {
+    const StageScope scope(device_, Stage::traverse); // nothing of a frame: no one looks at the stage
     Ceilings c;
     const auto from = device_.allocate(large_, "source");
     const auto to = device_.allocate(large_, "target");

@@ -26,7 +26,10 @@ std::vector<std::uint32_t> PublishedChunkedWalker::seeds_of_level(std::span<cons
 
 void PublishedChunkedWalker::do_launch(const WalkTask& task) {
     wanted_ = 0;
-    device().clear(starts().buffer(), starts().buffer().bytes()); // no seeds made on the device
+    {
+        const StageScope scope(device(), Stage::write);
+        device().clear(starts().buffer(), starts().buffer().bytes()); // no seeds made on the device
+    }
     std::uint64_t from_above = 0;
     for (std::uint32_t level = top_level() + 1; level-- > 0;) {
         std::vector<std::uint32_t> seeds;

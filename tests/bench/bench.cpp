@@ -29,6 +29,7 @@ std::uint32_t group_size(const Device& device) { return device.info().max_group_
 void transfer(benchmark::State& state, Device& device, bool up) {
     std::vector<std::byte> bytes(static_cast<std::size_t>(state.range(0)));
     const auto buffer = device.allocate(bytes.size(), "transfer");
+    const StageScope scope(device, up ? Stage::write : Stage::read);
     for ([[maybe_unused]] auto _ : state) {
         if (up)
             device.upload(buffer, bytes, 0, true);
@@ -44,6 +45,7 @@ void launch_latency(benchmark::State& state, Device& device) {
     const auto kernel = device.compile(kernel_source("algorithms/bounds/ceilings.cl"), "do_nothing",
                                        geometry_defines({}, group_size(device)));
     const auto empty = device.allocate(64, "empty");
+    const StageScope scope(device, Stage::traverse);
     const std::array<Argument, 1> arguments{empty};
     device.launch(kernel, {1, group_size(device)}, arguments);
     device.finish();
@@ -92,6 +94,7 @@ void broad_on_device(benchmark::State& state, Device& device) {
     const auto scene = make_scene(fmt::format("pile:bodies={},mesh=grain1,frames=1", state.range(0)));
     testing_support::PreparedTrees on(device, scene, {}, 32, group_size(device));
     BroadStage stage(on.bodies, on.trees, {group_size(device), 64 * device.info().compute_units});
+    const StageScope scope(device, Stage::broad);
     const auto status = device.allocate(STATUS_WORDS * 4, "status");
     const auto room = static_cast<std::uint32_t>(std::min<std::uint64_t>(stage.most_pairs(), 1 << 22));
     const auto pairs = device.allocate(std::size_t{room} * sizeof(BodyPair), "body pairs");

@@ -94,6 +94,7 @@ public:
 
     /// The pairs found, sorted; their number in `count`. Checks that nothing is written past `capacity`.
     std::vector<BodyPair> found(std::uint32_t capacity, std::uint64_t& count) {
+        const StageScope scope(on_.bodies.device(), Stage::broad);
         std::vector<std::uint32_t> rows(2 * (capacity + stage_.most_pairs() + 1), guard);
         const auto pairs = on_.bodies.device().allocate(rows.size() * 4, "pairs and guards");
         on_.bodies.device().upload(pairs, bytes_of(rows));

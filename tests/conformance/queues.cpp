@@ -20,6 +20,7 @@ protected:
     std::array<std::uint32_t, 2> plan(std::uint32_t group_size, const std::vector<std::uint32_t>& counts,
                                       std::vector<std::uint32_t>& starts) {
         auto& on = device(GetParam());
+        const StageScope scope(on, Stage::balance);
         const auto queues = static_cast<std::uint32_t>(counts.size());
         const auto kernel = on.compile(kernel_source("algorithms/gproximity/gproximity.cl"), "plan_balance",
                                        {{"K", "8"},

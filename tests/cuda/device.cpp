@@ -62,6 +62,7 @@ void every_operation(Device& device, const After& after) {
         operation();
         after(what);
     };
+    const StageScope scope(device, Stage::traverse);
     Buffer words;
     Kernel kernel;
     std::vector<std::uint32_t> values(16, 1);
@@ -118,6 +119,7 @@ TEST_F(CudaDevice, AContextThatIsNoneCannotBeAdopted) {
 }
 
 TEST_F(CudaDevice, FramesTakeNothingFromTheHeap) {
+    const StageScope scope(*device, Stage::traverse);
     const auto words = device->allocate(4096, "a buffer with a label that is long");
     const auto kernel = test::compile(*device, "do_nothing");
     const std::array<Argument, 3> arguments{words, 1u, 2.0};
@@ -139,6 +141,7 @@ TEST_F(CudaDevice, FramesTakeNothingFromTheHeap) {
 /// Memory that a command in flight reads may be freed by whoever catches the error.
 TEST_F(CudaDevice, AnErrorWaitsForWhatIsInFlight) {
     const auto waits = entry_of_stub<unsigned long()>("stub_waits");
+    const StageScope scope(*device, Stage::traverse);
     const auto words = device->allocate(64, "words");
     const auto kernel = test::compile(*device, "do_nothing");
     const std::array<Argument, 1> arguments{words};
@@ -152,6 +155,7 @@ TEST_F(CudaDevice, AnErrorWaitsForWhatIsInFlight) {
 }
 
 TEST_F(CudaDevice, ArgumentsHaveALimit) {
+    const StageScope scope(*device, Stage::traverse);
     const auto words = device->allocate(64, "words");
     const auto kernel = test::compile(*device, "do_nothing");
     const std::vector<Argument> arguments(33, Argument(words));
@@ -163,6 +167,7 @@ TEST_F(CudaDevice, ArgumentsHaveALimit) {
 }
 
 TEST_F(CudaDevice, ErrorsOfMemoryAreTold) {
+    const StageScope scope(*device, Stage::traverse);
     const auto words = device->allocate(64, "words");
     const auto kernel = test::compile(*device, "do_nothing");
     const std::array<Argument, 1> arguments{words};

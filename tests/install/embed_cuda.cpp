@@ -57,6 +57,7 @@ bool follows(tandem::Device& device, Handle context, Handle stream) {
                 && call("cuCtxSetCurrent", before);
     if (!good) return false;
     std::vector<std::byte> back(bytes);
+    const tandem::StageScope scope(device, tandem::Stage::read);
     device.download(device.adopt(reinterpret_cast<void*>(memory), bytes, "the application's"), back);
     for (const auto byte : back) good &= byte == std::byte{0x5a};
     return good & call("cuCtxSetCurrent", context) & call("cuMemFree_v2", memory)

@@ -26,6 +26,7 @@ bool follows(tandem::Device& device, cl_command_queue queue, cl_mem memory) {
         return false;
     const auto adopted = device.adopt(memory, bytes, "the application's");
     std::vector<std::byte> back(bytes);
+    const tandem::StageScope scope(device, tandem::Stage::read);
     device.download(adopted, back);
     for (const auto byte : back)
         if (byte != std::byte{value}) return false;

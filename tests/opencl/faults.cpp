@@ -32,6 +32,7 @@ Outcome outcome(int code, const Call& call) {
 
 TEST(OpenclFaults, WhichCodesAreOfMemory) {
     const auto device = open_device();
+    const StageScope scope(*device, Stage::write);
     for (const int code : {-4, -5, -6, -61})
         EXPECT_EQ(outcome(code, [&] { device->allocate(64, "words"); }), Outcome::has_no_memory) << code;
     EXPECT_EQ(outcome(-34, [&] { device->allocate(64, "words"); }), Outcome::fails);
@@ -47,6 +48,7 @@ TEST(OpenclFaults, WhichCodesAreOfMemory) {
 /// Every kind of command, uploads that are waited for and others; the words that are left.
 std::vector<std::uint32_t> every_command(Device& device) {
     constexpr std::size_t count = std::size_t{1} << 18;
+    const StageScope scope(device, Stage::write);
     const auto words = device.allocate(count * 4, "words");
     device.upload(words, bytes_of(std::vector<std::uint32_t>(count, 1)));
     device.clear(words, 32);
@@ -86,6 +88,7 @@ TEST_P(EveryCall, FailsCleanly) {
 TEST_P(EveryCall, LeavesADeviceThatCanBeDropped) {
     const auto run = [](Device& device) {
         every_command(device);
+        const StageScope scope(device, Stage::write);
         const auto words = device.allocate(std::size_t{1} << 20, "in flight at the end");
         device.upload(words, bytes_of(std::vector<std::uint32_t>(std::size_t{1} << 18, 1)));
     };

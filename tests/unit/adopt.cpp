@@ -24,6 +24,7 @@ TEST(Adopt, WorksOnTheApplicationsQueueAndMemory) {
     ASSERT_EQ(code, CL_SUCCESS);
     {
         const auto device = opencl::adopt(context, id, queue);
+        const StageScope scope(*device, Stage::read);
         const auto buffer = device->adopt(memory, 16, "the application's");
         std::vector<std::uint32_t> back(4);
         device->download(buffer, std::as_writable_bytes(std::span(back)));

@@ -142,6 +142,7 @@ private:
     }
 
     Device& device_;
+    StageScope scope_{device_, tandem::Stage::contact};
     std::uint32_t group_size_;
     Buffer bodies_, poses_, tetrahedra_, vertices_, boundary_, ids_, found_, verdicts_, undecided_by_filter_,
         undecided_by_double_;

@@ -22,6 +22,7 @@ TEST(Registry, HasHostAndOpencl) {
 
 TEST(Device, CopiesUploadsAtOnceAndReadsBack) {
     for (auto* device : devices()) {
+        const StageScope scope(*device, Stage::write);
         std::vector<std::uint32_t> values(1000);
         std::iota(values.begin(), values.end(), 7u);
         const auto buffer = device->allocate(4000, "numbers");
@@ -69,6 +70,70 @@ TEST(Device, TracesEveryCommandOnceUnderItsStage) {
         EXPECT_EQ(trace.events[2].command, Command::download);
         EXPECT_TRUE(trace.events[2].blocked);
         EXPECT_TRUE(device->finish().events.empty());
+    }
+}
+
+/// What a std::logic_error of `call` says.
+template<class Call>
+std::string refusal_of(const Call& call) {
+    try {
+        call();
+    } catch (const std::logic_error& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(Device, RefusesCommandsOutsideAnyStage) {
+    for (auto* device : devices()) {
+        const auto words = device->allocate(64, "words");
+        const auto kernel = test::compile(*device, "do_nothing");
+        const std::array<Argument, 1> arguments{words};
+        std::vector<std::uint32_t> values(16, 1);
+        const auto bytes = std::as_writable_bytes(std::span(values));
+        const auto expect_refused = [&] {
+            EXPECT_THAT(refusal_of([&] { device->upload(words, bytes); }),
+                        testing::HasSubstr("upload of 'words' outside any StageScope"));
+            EXPECT_THAT(refusal_of([&] { device->download(words, bytes); }),
+                        testing::HasSubstr("download of 'words' outside"));
+            EXPECT_THAT(refusal_of([&] { device->clear(words, 64); }),
+                        testing::HasSubstr("clear of 'words' outside"));
+            EXPECT_THAT(refusal_of([&] {
+                            device->launch(kernel, {1, 1}, arguments);
+                        }),
+                        testing::HasSubstr("launch of 'do_nothing' outside"));
+        };
+        for (const auto clocks : {Clocks::off, Clocks::on}) {
+            device->set_clocks(clocks);
+            expect_refused();
+            {
+                const StageScope scope(*device, Stage::write);
+                device->upload(words, bytes);
+            }
+            expect_refused();
+            EXPECT_EQ(device->finish().events.size(), clocks == Clocks::on ? 2u : 0u); // and the wait
+        }
+        device->set_clocks(Clocks::off);
+    }
+}
+
+TEST(Device, BooksTheWaitUnderTheStageOfTheLastCommand) {
+    for (auto* device : devices()) {
+        device->set_clocks(Clocks::on);
+        const auto words = device->allocate(64, "words");
+        {
+            const StageScope outer(*device, Stage::write);
+            device->clear(words, 64);
+            const StageScope scope(*device, Stage::seed);
+            device->clear(words, 64);
+        }
+        { const HostWork work(*device, Stage::postprocess, "thinking"); }
+        const auto trace = device->finish();
+        device->set_clocks(Clocks::off);
+        ASSERT_EQ(trace.events.size(), 4u) << device->info().id;
+        EXPECT_EQ(trace.events[0].stage, Stage::write);
+        EXPECT_EQ(trace.events[3].command, Command::wait);
+        EXPECT_EQ(trace.events[3].stage, Stage::seed);
     }
 }
 

@@ -18,6 +18,7 @@ public:
     explicit Frames(Device& device) : device_(device), nothing_(test::compile(device, "do_nothing")) {}
 
     void run(std::size_t count) {
+        const StageScope scope(device_, Stage::traverse);
         const std::array<Argument, 1> arguments{words_};
         for (std::size_t i = 0; i < count; ++i) {
             device_.upload(words_, bytes_of(values_));
@@ -73,6 +74,7 @@ TEST(DeviceCost, SwitchingClocksDropsWhatWasRecorded) {
 TEST(DeviceCost, CopiesOfUploadsAreBounded) {
     constexpr std::size_t words = std::size_t{1} << 18;
     for (auto* device : test::devices()) {
+        const StageScope scope(*device, Stage::write);
         const auto buffer = device->allocate(words * 4, "a MiB");
         device->set_clocks(Clocks::on);
         const auto before = heap();

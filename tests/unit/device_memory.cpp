@@ -15,6 +15,7 @@ using testing::HasSubstr;
 TEST(DeviceMemory, ALimitIsKeptAndNamed) {
     for (auto* device : devices()) {
         ASSERT_EQ(device->memory_limit(), Device::no_memory_limit);
+        const StageScope scope(*device, Stage::write);
         const auto held = device->allocate(4096, "held");
         const auto in_use = device->bytes_allocated();
         const auto limit = in_use + 1000;
@@ -80,6 +81,7 @@ TEST(DeviceMemoryDeathTest, TheHostsIsAnErrorOfMemoryToo) {
 
 TEST(DeviceGroups, ThatAreTooLargeAreRefused) {
     for (auto* device : devices()) {
+        const StageScope scope(*device, Stage::traverse);
         const auto kernel = test::compile(*device, "do_nothing");
         const auto words = device->allocate(64, "words");
         const std::array<Argument, 1> arguments{words};

@@ -41,6 +41,7 @@ inline Kernel compile(Device& device, const std::string& entry, Defines defines 
 template<class T>
 std::vector<T> downloaded(Device& device, const Buffer& buffer, std::size_t count) {
     std::vector<T> values(count);
+    const StageScope scope(device, Stage::read);
     device.download(buffer, std::as_writable_bytes(std::span(values)));
     return values;
 }

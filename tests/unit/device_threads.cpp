@@ -51,6 +51,7 @@ public:
 
 private:
     std::unique_ptr<Device> device_ = host::make_device();
+    StageScope scope_{*device_, Stage::traverse};
     std::uint32_t pairs_;
     Kernel kernel_;
     Buffer status_ = device_->allocate(STATUS_WORDS * 4, "status");
@@ -83,6 +84,7 @@ public:
 
 private:
     std::unique_ptr<Device> device_ = host::make_device();
+    StageScope scope_{*device_, Stage::traverse};
     float distance_;
     Kernel kernel_;
     Buffer poses_ = device_->allocate(32 * 4, "poses"), bodies_ = device_->allocate(4, "bodies"),
