@@ -35,6 +35,7 @@ Relation relation_of(Known known) {
                                       : Relation::overlapping;
 }
 
+/// Without rounding.
 TetraCorners widened(const FloatCorners& corners) {
     TetraCorners result;
     for (unsigned i = 0; i < 4; ++i)
@@ -90,6 +91,8 @@ public:
     }
 
 private:
+    /// Poses move all pairs of a batch alike, so that the truth is decided for the world vertices they give;
+    /// pairs in world coordinates bring their own truth or are decided one by one.
     void make(Batch& batch, std::uint64_t number) {
         if (family_.pose != nullptr)
             make_posed(batch, number);
@@ -114,6 +117,8 @@ private:
         });
     }
 
+    /// Pair `index` of the family at `place` of the batch. Of pairs known by construction a sample is decided
+    /// as well: a contradiction is an error of the construction or of the oracle.
     void make_pair(Batch& batch, std::uint64_t index, std::uint64_t place) const {
         const auto pair = hard_pair(family_, seed_, index, difficulty_);
         for (unsigned i = 0; i < 4; ++i)

@@ -41,6 +41,7 @@ private:
                                      std::min<std::size_t>(bytes, device_.info().max_allocation / 4) / turn)
                * turn;
     }
+    /// k matters to the overlap test alone; the others are the same for all.
     Kernel kernel(std::string_view entry, int k = 18) {
         return device_.compile(kernel_source(file), entry, geometry_defines({.k = k}, group_));
     }
@@ -92,6 +93,8 @@ Samples Bench::per_second(double amount, const Work& work) {
     return samples;
 }
 
+/// Every work-item tests boxes that it holds in registers, `turns` times in a row: no memory is in the way. A
+/// device with few lanes takes a twentieth of the turns, to end in about the same time.
 Samples Bench::overlaps(int k) {
     constexpr std::uint32_t rounds = 2000;
     const auto nodes = device_.allocate(static_cast<std::size_t>(k) * 8, "nodes");
@@ -106,6 +109,7 @@ Samples Bench::overlaps(int k) {
     return per_second(tests, [&] { launch(entry, arguments); });
 }
 
+/// Only the device can time it: the host copies to page-locked memory and goes on.
 Samples Bench::upload_pinned(const Buffer& buffer, std::span<const std::byte> bytes) {
     if (!device_.info().stages_pinned) return {};
     return per_second(static_cast<double>(bytes.size()), [&] { device_.upload(buffer, bytes); });

@@ -33,6 +33,7 @@ int check_cells(const Job& job, const RunOptions& options, RecordFile& file, con
     return code;
 }
 
+/// One line a cell: its answer against the reference, then against the truth.
 void print_matrix_header() {
     fmt::print("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n", "device",
                "algorithm", "preset", "pairs", "missing", "extra", "retry", "contacts", "contacts equal",

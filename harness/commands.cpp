@@ -20,6 +20,7 @@ namespace tandem {
 
 namespace {
 
+/// Writes what was asked for in a replay of its own: files take longer than frames.
 void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts) {
     if (!pairs && !contacts) return;
     const auto session = cell.algorithm->prepare(cell.devices, job.scene, cell.settings);
@@ -47,6 +48,7 @@ std::string truth_of(const AnswerErrors& e) {
                        e.meeting(), e.pairs.disjoint);
 }
 
+/// The last line of a cell: right, or by how much not.
 std::string verdict(const Measurement& m) {
     const auto& a = m.agreement;
     if (a.frames == 0) return "not checked";

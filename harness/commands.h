@@ -16,18 +16,18 @@ struct RunOptions {
     std::vector<std::string> meshes; ///< --mesh: instead of a scene
     std::vector<std::string> poses;  ///< --pose "tx ty tz qw qx qy qz", in the order of the meshes
     Request request;
-    std::string frames; ///< "FIRST:LAST" or "N"; empty: all frames of the scene
-    std::size_t repeat = 3;
-    std::size_t profile = 0; ///< replay so often, with nothing else, for a profiler
-    std::string out;
-    std::string dump_pairs, dump_contacts;
-    std::vector<std::string> require; ///< devices or backends whose absence is a failure
-    bool check = true;
-    bool count = true;                      ///< replay once more with kernels that count their work
-    TruthAmount truth = TruthAmount::pairs; ///< compare answers with the exact truth
-    std::size_t truth_contacts = 0;         ///< of this many pairs a frame at most; 0: all
-    Degenerate degenerate = Degenerate::flat;
-    std::size_t memory = 0; ///< bytes that each device may give; 0: what it has
+    std::string frames;                       ///< "FIRST:LAST" or "N"; empty: all frames of the scene
+    std::size_t repeat = 3;                   ///< samples of each cell
+    std::size_t profile = 0;                  ///< replay so often, with nothing else, for a profiler
+    std::string out;                          ///< append records to this file; empty: none are written
+    std::string dump_pairs, dump_contacts;    ///< CSV files of the first cell that finishes; empty: none
+    std::vector<std::string> require;         ///< devices or backends whose absence is a failure
+    bool check = true;                        ///< compare answers with the reference
+    bool count = true;                        ///< replay once more with kernels that count their work
+    TruthAmount truth = TruthAmount::pairs;   ///< compare answers with the exact truth
+    std::size_t truth_contacts = 0;           ///< of this many pairs a frame at most; 0: all
+    Degenerate degenerate = Degenerate::flat; ///< what becomes of flawed tetrahedra
+    std::size_t memory = 0;                   ///< bytes that each device may give; 0: what it has
     bool quiet = false;
 };
 
@@ -40,11 +40,11 @@ struct AccuracyOptions {
 
 /// Options of `tandem devices`.
 struct DevicesOptions {
-    bool json = false;
+    bool json = false;                ///< one JSON document instead of lines
     bool measure = false;             ///< measure the ceilings of each
     std::vector<std::string> devices; ///< of these only; empty: all
     std::string out;                  ///< append records of ceilings
-    std::vector<std::string> require;
+    std::vector<std::string> require; ///< as of RunOptions
 };
 
 /// Options of `tandem export`.
@@ -68,7 +68,7 @@ struct SimulateOptions {
     bool resume = false;
     std::vector<std::string> dynamics; ///< NAME=VALUE over the scene's
     Request request;                   ///< how contacts are found: one cell
-    std::vector<std::string> require;
+    std::vector<std::string> require;  ///< as of RunOptions
     bool quiet = false;
 };
 

@@ -16,6 +16,8 @@ public:
     DumpFile(const std::string& path, std::string_view header);
 
     explicit operator bool() const { return file_ != nullptr; }
+    /// Appends a line each, in the order given. Coordinates are in the scene's units, the shortest decimals
+    /// that read back as the same numbers. Throws InputError when the file cannot take them.
     void pairs(std::size_t frame, std::span<const Pair> pairs);
     void contacts(std::size_t frame, std::span<const ContactPoint> contacts);
 

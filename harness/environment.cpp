@@ -33,6 +33,7 @@ std::uint64_t number_in(const std::string& path, std::string_view name, std::uin
 
 constexpr auto unlimited = ~std::uint64_t{0};
 
+/// What ulimit -v leaves; unlimited where there is none.
 std::uint64_t free_address_space() {
     rlimit limit{};
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return unlimited;

@@ -17,6 +17,7 @@ struct Environment {
     std::string compiler;
 };
 
+/// Of this process, now. Never throws: what cannot be read is unknown.
 Environment environment();
 
 /// Bytes that this process can still get: the least of what Linux calls available, the rest of its control

@@ -13,6 +13,7 @@ namespace tandem {
 
 namespace {
 
+/// By the same rules as of `tandem run`.
 Scene open_scene(const ExportOptions& options) {
     RunOptions run;
     run.scene = options.scene;
@@ -47,6 +48,7 @@ public:
         session_ = cell_.algorithm->prepare(cell_.devices, scene, cell_.settings);
     }
 
+    /// Coordinates are checked frame by frame: export opens them one at a time, however many there are.
     std::vector<ContactPoint> of(const Frame& frame) {
         check_coordinates({&cell_, 1}, scene_, {0, 0, {frame}});
         return session_->run(frame).download_contacts();

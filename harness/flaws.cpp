@@ -51,6 +51,7 @@ void add_stretches(std::vector<Stretch>& stretches, const Vertices& vertices, co
         stretches.push_back({&vertices, &mesh.tetrahedra, first, &target, {}});
 }
 
+/// A tetrahedron is of one kind: with a coordinate that is not finite it has no volume to speak of.
 void look_through(Stretch& stretch) {
     const auto end = std::min(stretch.tetrahedra->size(), stretch.first + stretch_length);
     for (auto t = stretch.first; t < end; ++t) {
@@ -95,6 +96,8 @@ public:
         }
     }
 
+    /// A rigid body has the flaws of its mesh, whatever its pose; one whose pose is not finite has no
+    /// tetrahedron that is.
     Found found(std::size_t frame, std::size_t body) const {
         if (scene_.bodies[body].deformable) return deformed_[frame * scene_.bodies.size() + body];
         if (finite(frames_[frame].poses[body])) return rigid_[scene_.bodies[body].mesh];
@@ -113,6 +116,7 @@ private:
     std::vector<Found> deformed_; ///< [frame * bodies + body]
 };
 
+/// Adds one frame of a body; the first frame with any gives the examples.
 void count(Flaws& flaws, FlawedBody& body, const Found& found, std::size_t frame) {
     if (!found.any()) return;
     if (body.degenerate + body.non_finite == 0) {
@@ -152,6 +156,8 @@ Flaws counted(const Search& search, const Scene& scene, std::size_t first, std::
     return flaws;
 }
 
+/// Lists them as skipped and puts something finite in their place, which nothing looks at but arithmetic that
+/// goes over whole bodies.
 void leave_out(const Search& search, const Scene& scene, std::span<Frame> frames) {
     for (std::size_t i = 0; i < frames.size(); ++i)
         for (std::size_t body = 0; body < scene.bodies.size(); ++body) {

@@ -17,6 +17,7 @@ namespace tandem {
 
 namespace {
 
+/// "tx ty tz qw qx qy qz". The bounds on the squared norm keep normalising clear of overflow and of 0 / 0.
 Pose parse_pose(const std::string& text) {
     std::istringstream in(text);
     std::array<double, 7> v{};
@@ -30,6 +31,7 @@ Pose parse_pose(const std::string& text) {
     return {Eigen::Quaterniond(v[3], v[4], v[5], v[6]).normalized(), Eigen::Vector3d(v[0], v[1], v[2])};
 }
 
+/// One number of `whole`, which the message repeats as it was given.
 std::size_t parse_number(std::string_view text, const std::string& whole) {
     std::size_t value = 0;
     const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -94,6 +96,7 @@ void check_required(const std::vector<BackendReport>& backends, const std::vecto
     }
 }
 
+/// The question depends on the precision alone, so that it is asked once for each and not for each cell.
 void check_coordinates(std::span<const Cell> cells, const Scene& scene, const FrameRange& range) {
     std::set<Precision> seen;
     for (const auto& cell : cells) {

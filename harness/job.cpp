@@ -24,6 +24,7 @@ Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells) {
     return job;
 }
 
+/// A device that fails costs its own cell: the record says why, and the next cell goes on.
 int run_cell(const Cell& cell, const Job& job, References& references, const SampleOptions& sampling,
              RecordFile& file, const Progress& progress, Measurement& out) {
     std::string failure;

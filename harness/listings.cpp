@@ -22,6 +22,7 @@ std::vector<std::string> words_of(const Parameter& parameter) {
     return words;
 }
 
+/// Numbers have a range, words their choices.
 Json parameters_json(std::span<const Parameter* const> parameters) {
     Json json = Json::array();
     for (const auto* p : parameters) {
@@ -167,6 +168,8 @@ void print_dynamics() {
 
 } // namespace
 
+/// Backends without devices are listed with their reason; --require is looked at last, so that the list is
+/// there to see.
 int devices_command(const DevicesOptions& options) {
     const auto backends = discover();
     if (options.measure) return measure_devices(backends, options);

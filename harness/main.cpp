@@ -11,6 +11,7 @@ namespace {
 
 using tandem::InputError;
 
+/// A subcommand: its name and summary in the help, and what adds its options.
 struct Command {
     const char* name;
     const char* summary;
@@ -27,6 +28,7 @@ constexpr Command commands[] = {
     {"scenes", "scenes the program makes, with their parameters", tandem::add_scenes},
     {"algorithms", "algorithms with their presets and settings", tandem::add_algorithms}};
 
+/// Reads the line, then does what its subcommand says. Every mistake in the line is an InputError.
 int dispatch(int argc, char** argv) {
     CLI::App app{"tandem: ways of walking bounding-volume hierarchies in tandem, measured and checked"};
     app.require_subcommand(1);
@@ -47,6 +49,8 @@ int dispatch(int argc, char** argv) {
 
 } // namespace
 
+/// Exit codes: 0 ok, 1 a check failed (from the command), 2 bad use or bad input, 3 a device or the machine
+/// failed.
 int main(int argc, char** argv) {
     try {
         return dispatch(argc, argv);

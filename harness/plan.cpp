@@ -12,6 +12,7 @@ namespace tandem {
 
 namespace {
 
+/// Why backends have no devices, in brackets; empty when all have some.
 std::string reasons(const std::vector<BackendReport>& backends) {
     std::string text;
     for (const auto& backend : backends)
@@ -53,6 +54,7 @@ std::vector<const Traversal*> choose_algorithms(const Request& request) {
     return chosen;
 }
 
+/// A setting that only some of the algorithms have is no mistake: the others go without it.
 void check_sets(const Request& request, std::span<const Traversal* const> chosen) {
     std::set<std::string> known;
     for (const auto* traversal : chosen)
@@ -166,6 +168,8 @@ std::vector<Cell> plan(const Request& request, std::span<const DeviceGroup> devi
     return cells;
 }
 
+/// Settings that are as the preset has them are not named, so that equal cells read the same however they
+/// were asked for.
 std::string describe(const Cell& cell) {
     const auto base = resolve(cell.algorithm->parameters(), preset(*cell.algorithm, cell.preset).values, {},
                               cell.algorithm->name());

@@ -21,6 +21,7 @@ using Json = nlohmann::ordered_json;
 
 std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
 
+/// Negative and empty mean not known, which is null in a record.
 Json known(std::int64_t value) { return value < 0 ? Json(nullptr) : Json(value); }
 
 Json known(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
@@ -29,6 +30,7 @@ Json digest_json(const Digest& digest) {
     return {{"count", digest.count}, {"a", hex(digest.a)}, {"b", hex(digest.b)}};
 }
 
+/// Raw samples with their order statistics; the samples alone when there are none.
 Json with_summary(const std::vector<std::int64_t>& samples) {
     Json json{{"samples", samples}};
     if (samples.empty()) return json;
@@ -37,6 +39,7 @@ Json with_summary(const std::vector<std::int64_t>& samples) {
     return json;
 }
 
+/// A sample is the sum over the frames of one replay; the frames themselves stand beside it.
 Json total_json(const Measurement& m) {
     std::vector<std::int64_t> sums;
     for (const auto& frames : m.total_ns)
@@ -46,6 +49,7 @@ Json total_json(const Measurement& m) {
     return json;
 }
 
+/// One number of one stage, by frame.
 template<class Value>
 std::vector<Value> column(const Measurement& m, std::size_t stage, Value StageSample::*member) {
     std::vector<Value> values;
@@ -134,6 +138,7 @@ Json record_environment() {
 
 namespace {
 
+/// "name=value,..." in the order of names: part of the key by which records are compared.
 std::string settings_key(const SettingTexts& settings) {
     std::string key;
     for (const auto& [name, value] : settings)
@@ -141,6 +146,7 @@ std::string settings_key(const SettingTexts& settings) {
     return key;
 }
 
+/// Null when nothing was compared (--no-check).
 Json agreement_json(const Measurement& m, const Scene& scene) {
     const auto& a = m.agreement;
     if (a.frames == 0) return nullptr;
@@ -180,6 +186,7 @@ Json spread_json(const std::vector<double>& samples) {
     return s ? Json{{"median", s->median}, {"p99", s->p99}, {"max", s->maximum}} : Json();
 }
 
+/// Null where contacts were not compared with exact ones.
 Json contact_errors_json(const AnswerErrors& e) {
     if (!e.contacts) return nullptr;
     const auto& c = *e.contacts;
@@ -266,9 +273,11 @@ std::string status_of(const Measurement& m, const std::string& failure) {
 
 Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, const Measurement& m,
                  const std::string& failure) {
+    // Those the device took; of a cell that failed before that, those that were asked for.
     const auto settings = (m.settings.empty() ? cell.settings : m.settings).texts();
     Json json;
     json["schema"] = 2;
+    // What was measured, without when and how fast: records of one key are comparable.
     json["key"] = fmt::format("{}|{}|{}@{}|{}:{}{}|{}", cell.algorithm->name(), name_of(cell.devices),
                               scene.key, hex(scene.digest), range.first, range.last,
                               handling_key(range.flaws), settings_key(settings));
@@ -311,6 +320,7 @@ void RecordFile::append(const Json& record) {
     if (file_ < 0) return;
     // File names need not be UTF-8; JSON must be.
     const auto line = record.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    // One write: lines of several processes that append to one file do not mix.
     const bool written = write(file_, line.data(), line.size()) == static_cast<ssize_t>(line.size());
     // Pipes and terminals cannot be synchronised.
     if (!written || (fsync(file_) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP))

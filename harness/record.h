@@ -27,6 +27,7 @@ public:
     RecordFile(const RecordFile&) = delete;
     RecordFile& operator=(const RecordFile&) = delete;
 
+    /// On disk when it returns. Throws InputError when the line cannot be written whole.
     void append(const nlohmann::ordered_json& record);
 
 private:

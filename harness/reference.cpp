@@ -58,6 +58,8 @@ Real nearest_sum(std::span<const Real> terms, Real& partial) {
 }
 
 /// The same with every addition rounded in a mode of fesetround.
+/// volatile keeps the compiler from moving additions over fesetround, which it takes for a call like any
+/// other.
 template<class Real>
 Real directed_sum(std::span<const Real> terms, int mode) {
     volatile Real sum = terms[0];
@@ -83,6 +85,7 @@ std::pair<Real, Real> project(const std::array<Real, 3>& point, const std::array
         terms[count++] = direction[i] > 0 ? point[i] : -point[i];
         if (drift != nullptr) off += (*drift)[i];
     }
+    // The release divides by the length of the direction: sqrt(2) or sqrt(3), as constants.
     if (rounding == Rounding::published && count > 1)
         for (auto& term : terms)
             term *=
@@ -114,6 +117,8 @@ std::array<Real, 3> drift_in(const Scene& scene, const Frame& frame, const Geome
     return {static_cast<Real>(bound[0]), static_cast<Real>(bound[1]), static_cast<Real>(bound[2])};
 }
 
+/// Slabs of all tetrahedra of one body, vertex by vertex and direction by direction: no tree, no sharing
+/// between tetrahedra.
 template<class Real>
 Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& geometry, std::size_t body) {
     const auto axes = directions(geometry);
@@ -187,6 +192,7 @@ void sweep(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
     }
 }
 
+/// Brute force: every pair of tetrahedra by the test alone.
 template<class Real, class Hit>
 void test_all(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
     for (std::uint32_t ta = 0; ta < a.slabs.size() / (2 * a.axes); ++ta)
@@ -194,6 +200,8 @@ void test_all(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
             if (overlapping(a.tetrahedron(ta), b.tetrahedron(tb), a.axes, a.published)) hit(ta, tb);
 }
 
+/// Contacts of some of the pairs. Sums of a digest do not depend on the order, so that parts may be added as
+/// they end.
 template<class Real>
 void add_contacts(const Scene& scene, const std::vector<Bounds<Real>>& bounds, std::span<const Pair> pairs,
                   const ContactSettings& settings, ReferenceAnswer& answer, std::mutex& mutex) {

@@ -71,6 +71,8 @@ private:
     std::vector<Digest> digests_; ///< [frame] of the checking replay
 };
 
+/// Pairs are told apart one by one where there are pairs. With output=count or digest only sums are left: a
+/// wrong sum with the right count is at least one pair missing and one too many.
 void Sampler::compare(const ReferenceAnswer& expected, const FrameResult& result, const Digest& digest,
                       const Digest& contacts) {
     auto& agreement = out_.agreement;
@@ -94,6 +96,7 @@ void Sampler::compare(const ReferenceAnswer& expected, const FrameResult& result
     if (makes_contacts() && contacts != expected.contact_digest) ++agreement.contact_frames_wrong;
 }
 
+/// The truth keeps errors by digest, so that the answer is downloaded only when no other cell gave the same.
 void Sampler::add_errors(Truths& truths, std::size_t index, const FrameResult& result, const Digest& digest,
                          const Digest& contacts, const Report& report) {
     FrameAnswer answer;
@@ -106,12 +109,15 @@ void Sampler::add_errors(Truths& truths, std::size_t index, const FrameResult& r
     out_.errors->add(truths.errors(geometry_, index, answer, report));
 }
 
+/// The first replay, which also warms up: kernels compile at their first launch on some devices, buffers grow
+/// to their size, and every later sample is held against the digests kept here.
 void Sampler::check(References& references, const SampleOptions& options, const std::string& name) {
     session_->reset();
     for (std::size_t i = 0; i < range_.frames.size(); ++i) {
         const auto frame = fmt::format("frame {} of {}", i + 1, range_.frames.size());
         options.progress(fmt::format("{}: checking {}", name, frame));
         const auto result = run(i);
+        // output=count makes no digest: its count stands for it, and for the whole where it is right.
         const bool counted = out_.settings[parameters::output] == Output::count;
         auto digest = counted ? Digest{result.count, 0, 0} : result.digest();
         const auto contacts = result.contact_digest();
@@ -146,6 +152,7 @@ void Sampler::add_counts(const FrameResult& result) {
     out_.batches += result.batches;
 }
 
+/// One sample. The answer is looked at between the frames, outside the span that is timed.
 void Sampler::time() {
     session_->reset();
     std::vector<std::int64_t> frames;
@@ -162,6 +169,8 @@ void Sampler::time() {
     out_.total_ns.push_back(std::move(frames));
 }
 
+/// One replay with a clock around every command. It is slower than the samples, so that nothing of it goes
+/// into the headline.
 void Sampler::break_down() {
     session_->reset();
     for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
@@ -188,6 +197,7 @@ void Sampler::break_down() {
     for (auto* device : cell_.devices) device->set_clocks(Clocks::off);
 }
 
+/// Kernels that count their work are other kernels; what they take is not measured.
 void Sampler::count() {
     session_->reset();
     session_->count_work(true);
@@ -271,6 +281,7 @@ Measurement measure(const Cell& cell, const Scene& scene, const FrameRange& rang
     Measurement out;
     const auto name = describe(cell);
     options.progress(fmt::format("{}: preparing", name));
+    // Facts of kernels from here on are those of this cell; the ones of the cells before are dropped.
     for (auto* device : cell.devices) device->take_kernels();
     Sampler sampler(cell, scene, range, out);
     sampler.check(references, options, name);

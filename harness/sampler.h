@@ -31,6 +31,7 @@ class References {
 public:
     References(const Scene& scene, const FrameRange& range) : scene_(scene), range_(range) {}
 
+    /// Of frame number `index` of the range; serial host code that may take minutes on a large scene.
     const ReferenceAnswer& answer(const Geometry& geometry, const ContactSettings& contacts,
                                   std::size_t index);
 

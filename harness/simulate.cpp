@@ -22,6 +22,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// A scene with dynamics, with the settings of --dynamics over its own.
 Scene open_scene(const SimulateOptions& options) {
     if (options.scene.empty()) throw InputError("no scene; name one, see 'tandem scenes'");
     auto scene = make_scene(options.scene);
@@ -51,6 +52,8 @@ void prefer_certain_contacts(Request& request, std::span<const DeviceGroup> devi
     if (std::all_of(devices.begin(), devices.end(), have_double)) prefer("decision", "recheck");
 }
 
+/// The one cell that finds contacts. Throws InputError when more are asked for, or one that makes no
+/// contacts.
 Cell only_cell(const SimulateOptions& options, const std::vector<BackendReport>& backends) {
     auto request = options.request;
     if (request.algorithms.empty()) request.algorithms = {std::string(algorithms().front()->name())};
@@ -91,6 +94,7 @@ public:
     void restore(Simulation& simulation) {
         if (!writer_) return;
         const auto checkpoint = writer_->restore();
+        // A new recording: the state before the first step is the first to go back to.
         if (!checkpoint) {
             save(simulation);
             return;
@@ -143,6 +147,7 @@ void run_steps(const SimulateOptions& options, std::size_t last, Simulation& sim
         const auto report = simulation.step(detect);
         const auto wall = since(begin);
         auto search = finder.take();
+        // The device does not see what the host does between searches.
         book(search, Stage::reduce, report.reduce_ns);
         book(search, Stage::solve, report.solve_ns);
         totals.add(report, search, wall);
@@ -173,6 +178,8 @@ void ContactFinder::find(const Frame& frame, std::vector<ContactPoint>& contacts
     for (auto* device : session_->devices()) {
         const auto stages = by_stage(device->finish());
         for (std::size_t i = 0; i < stages.size(); ++i) search_.stages[i] += stages[i];
+        // The host finds body pairs inside run(): its share is taken out of the narrow phase, as the paper
+        // splits them.
         if (!host_broad_) continue;
         const auto broad = stages[static_cast<std::size_t>(Stage::broad)].host_ns;
         search_.broad_ns += broad;
@@ -197,6 +204,7 @@ int simulate_command(const SimulateOptions& options) {
                vertex_count(scene), tetrahedron_count(scene), describe(cell));
     if (simulation.steps_done() > 0) fmt::print("goes on after step {}\n", simulation.steps_done());
     RunTotals totals;
+    // A run that breaks off leaves a line that says how far it came and why it ended.
     try {
         ContactFinder finder(cell, scene, !options.record.empty());
         run_steps(options, last, simulation, finder, journal, file, totals);

@@ -22,6 +22,7 @@ std::int64_t initialize_ns(const Search& search) {
     return device_ns(search, Stage::transform) + device_ns(search, Stage::refit);
 }
 
+/// Stages in which nothing happened are left out, so that lines stay short: there is one for each step.
 Json stages_json(const StageSamples& stages) {
     auto json = Json::object();
     for (std::size_t i = 0; i < stages.size(); ++i) {
@@ -40,6 +41,7 @@ Json energies_json(const StepReport& report) {
     return {{"kinetic", report.kinetic}, {"potential", report.potential}, {"elastic", report.elastic}};
 }
 
+/// Of an even number the mean of the middle two; 0 of none.
 double median(std::vector<std::size_t> values) {
     if (values.empty()) return 0;
     std::sort(values.begin(), values.end());
@@ -123,6 +125,8 @@ Json run_record(const Cell& cell, const Scene& scene, const RunTotals& t, const 
     return json;
 }
 
+/// Untimed runs cannot tell initialization from the narrow phase: both are one row then, and its own is left
+/// out.
 std::string run_table(const RunTotals& t, bool timed) {
     const auto other =
         t.wall_ns - t.broad_ns - t.narrow_ns - t.reduce_ns - t.assemble_ns - t.solve_ns - t.move_ns;

@@ -9,6 +9,7 @@ namespace tandem {
 
 namespace {
 
+/// Linear between order statistics: definition 7 of Hyndman and Fan.
 double quantile(const std::vector<double>& sorted, double fraction) {
     const double at = fraction * static_cast<double>(sorted.size() - 1);
     const auto below = static_cast<std::size_t>(std::floor(at));
@@ -16,6 +17,9 @@ double quantile(const std::vector<double>& sorted, double fraction) {
     return sorted[below] + (at - std::floor(at)) * (sorted[above] - sorted[below]);
 }
 
+/// Ascending medians of resamples of the same size, drawn with replacement. The seed is fixed and the
+/// generator specified to the bit, unlike distributions of the library, so that every machine gives the same
+/// interval.
 std::vector<double> bootstrap_medians(const std::vector<double>& samples) {
     std::mt19937_64 random(20180606);
     std::vector<double> medians(1000);
@@ -36,6 +40,7 @@ Summary summarise(std::span<const std::int64_t> samples) {
     std::sort(sorted.begin(), sorted.end());
     Summary summary{quantile(sorted, 0.5), quantile(sorted, 0.25), quantile(sorted, 0.75), sorted.front(),
                     sorted.back()};
+    // Every resample has the same median.
     if (sorted.front() == sorted.back()) return summary;
     const auto medians = bootstrap_medians(sorted);
     summary.low = quantile(medians, 0.025);
@@ -46,6 +51,7 @@ Summary summarise(std::span<const std::int64_t> samples) {
 std::optional<Spread> spread(std::vector<double> samples) {
     if (samples.empty()) return std::nullopt;
     std::sort(samples.begin(), samples.end());
+    // The nearest rank: always a sample, never a mixture of two.
     const auto at = [&](double share) {
         const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(samples.size())));
         return samples[std::max<std::size_t>(rank, 1) - 1];

@@ -10,6 +10,7 @@ namespace tandem {
 
 namespace {
 
+/// Over the frames of the breakdown run.
 StageSample sum_of(const Measurement& m, Stage stage) {
     StageSample sum;
     for (const auto& frame : m.stages) sum += frame[static_cast<std::size_t>(stage)];
@@ -28,6 +29,7 @@ double broad_ms(const Measurement& m) {
     return sum_of(m, Stage::broad).launches > 0 ? device_ms(m, Stage::broad) : host_ms(m, Stage::broad);
 }
 
+/// One number over all frames and stages.
 template<class Member>
 std::uint64_t over_stages(const Measurement& m, Member member) {
     std::uint64_t sum = 0;
@@ -36,6 +38,7 @@ std::uint64_t over_stages(const Measurement& m, Member member) {
     return sum;
 }
 
+/// The median sample; of a cell without samples (check, --repeat 0) the span of the breakdown run.
 double total_ms(const Measurement& m) {
     std::vector<std::int64_t> sums;
     for (const auto& frames : m.total_ns)
@@ -45,6 +48,7 @@ double total_ms(const Measurement& m) {
     return summarise(sums).median * 1e-6;
 }
 
+/// Kernels of the walk and its contacts, without transform, refit and broad phase.
 double kernels_ms(const Measurement& m) {
     double sum = 0;
     for (const auto stage : {Stage::seed, Stage::traverse, Stage::balance, Stage::contact})
@@ -63,6 +67,7 @@ std::uint64_t count_of(const std::vector<std::uint64_t>& values) {
     return std::accumulate(values.begin(), values.end(), std::uint64_t{0});
 }
 
+/// describe() without the device, which has a column of its own.
 std::string label(const Cell& cell) {
     const auto text = describe(cell);
     return text.substr(0, text.rfind(" on "));

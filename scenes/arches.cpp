@@ -42,6 +42,8 @@ Mesh ring_stone(const Amphitheatre& shape, double height) {
 
 } // namespace
 
+/// Heights are rounded to the grid before they are added up, so that stones meet exactly; the arch is as high
+/// as its keystone's upper vertices.
 Arch::Arch(Assembly& assembly, const ArchShape& shape) : shape_(shape) {
     if (shape.stones % 2 == 0)
         throw InputError("an arch with an even number of stones has no keystone; give an odd number");
@@ -58,6 +60,7 @@ Arch::Arch(Assembly& assembly, const ArchShape& shape) : shape_(shape) {
 void Arch::place(Assembly& assembly, double turn_angle, double x, double base, double z,
                  bool keystone) const {
     const auto rotation = turn({0, 1, 0}, turn_angle);
+    // Pillars stand under the middle of the arch's ring.
     for (const double side : {1.0, -1.0}) {
         const auto foot = rotated(rotation, {side * 0.5 * (shape_.outer + shape_.inner), 0, 0});
         for (std::uint64_t i = 0; i < shape_.segments; ++i) {

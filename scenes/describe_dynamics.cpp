@@ -78,6 +78,7 @@ void deform(const Mesh& mesh, Pose& pose, std::vector<Eigen::Vector3d>& vertices
     pose = {};
 }
 
+/// A scene with one material need not name it.
 BodyDynamics read_body(const Json& json, const Place& place, const Materials& materials) {
     BodyDynamics body;
     if (json.contains("poses")) (place / "poses").fail("has no use in a scene with dynamics; leave it out");

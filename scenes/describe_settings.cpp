@@ -57,6 +57,7 @@ std::string text_of(const Json& json, const char* name, const Place& place, cons
     return setting.words[choice(json[name], place / name, name, setting.words)];
 }
 
+/// By way of the setting's text, so that a description and --dynamics pass the same checks.
 void read(const Json& json, const char* name, const Place& place, std::string_view setting_name,
           Dynamics& dynamics) {
     if (!json.contains(name)) return;

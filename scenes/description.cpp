@@ -20,6 +20,7 @@ namespace {
 
 using namespace description;
 
+/// Brought to unit length: descriptions are written by hand.
 Eigen::Quaterniond quaternion(double w, double x, double y, double z, const Place& place) {
     if (!(w * w + x * x + y * y + z * z > 0)) place.fail("must not be the zero quaternion");
     return unit(Eigen::Quaterniond(w, x, y, z));
@@ -40,6 +41,7 @@ struct Motion {
     }
 };
 
+/// A file is looked for beside the description, not where the program runs.
 Mesh read_source(const Json& json, const Place& place, const std::filesystem::path& folder) {
     if (json.contains("file")) return read_mesh((folder / text(json["file"], place / "file")).string());
     if (json.contains("box")) {
@@ -66,6 +68,8 @@ Mesh read_one(const Json& json, const Place& place, const std::filesystem::path&
     return mesh;
 }
 
+/// Velocity in units a frame, spin as axis and radians a frame. Angles are limited, since the sine of a large
+/// one has lost its digits.
 Motion read_motion(const Json& json, const Place& place, std::size_t frames) {
     Motion motion;
     if (json.contains("position")) motion.start.translation = vector(json["position"], place / "position");
@@ -112,6 +116,7 @@ Body read_body(const Json& json, const Place& place, const std::map<std::string,
     return body;
 }
 
+/// Throws InputError with the line where the JSON breaks off.
 Json parse(const std::string& path) {
     std::ifstream file(path);
     if (!file || std::filesystem::is_directory(path))
@@ -126,6 +131,7 @@ Json parse(const std::string& path) {
     }
 }
 
+/// Made when asked for: a scripted scene has no frames in memory.
 Frame frame_of(const std::vector<Motion>& motions, std::size_t index) {
     Frame frame;
     frame.deformed.resize(motions.size());

@@ -14,7 +14,8 @@ public:
         state_ = (state_ ^ word) * 0x100000001b3u;
         state_ ^= state_ >> 32;
     }
-    void add(double number) { add(std::bit_cast<std::uint64_t>(number + 0.0)); }
+    void add(double number) { add(std::bit_cast<std::uint64_t>(number + 0.0)); } // -0 is 0
+    /// With its length, so that two texts in a row differ from one.
     void add(std::string_view text) {
         add(std::uint64_t{text.size()});
         for (const char c : text) add(std::uint64_t{static_cast<unsigned char>(c)});

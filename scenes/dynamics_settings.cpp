@@ -12,6 +12,7 @@ namespace tandem {
 
 namespace {
 
+/// The whole text, without a locale; NaN is outside every range.
 template<class Number>
 Number number(std::string_view name, std::string_view text, Number least, Number most) {
     Number value{};

@@ -11,6 +11,7 @@ namespace tandem {
 
 namespace {
 
+/// Six times the signed volume, in a fixed order of operations.
 double determinant(const Mesh& mesh, const Tetrahedron& t) {
     const Eigen::Vector3d a = mesh.vertices[t[1]] - mesh.vertices[t[0]];
     const Eigen::Vector3d b = mesh.vertices[t[2]] - mesh.vertices[t[0]];
@@ -26,6 +27,7 @@ struct Face {
     std::uint32_t corner; ///< the one opposite
 };
 
+/// So that faces of the same vertices lie side by side, without a hash of them.
 std::vector<Face> sorted_faces(const Mesh& mesh) {
     std::vector<Face> faces;
     faces.reserve(mesh.tetrahedra.size() * 4);

@@ -52,6 +52,7 @@ std::vector<std::pair<Box, std::size_t>> inside(const Solid& solid, const Box& r
     return found;
 }
 
+/// Tetrahedra of each whose boxes meet the other body's, then pairs of them in the order of x.
 bool meet(const Solid& a, const Solid& b) {
     const double slack = tolerance * std::min(a.box.diagonal().norm(), b.box.diagonal().norm());
     const auto of_b = inside(b, a.box);
@@ -63,6 +64,7 @@ bool meet(const Solid& a, const Solid& b) {
     return false;
 }
 
+/// Least and largest coordinate along an axis that need not be of unit length.
 std::array<double, 2> range(const Corners3& corners, const Eigen::Vector3d& axis) {
     std::array<double, 2> result{axis.dot(corners[0]), axis.dot(corners[0])};
     for (const auto& corner : corners) {
@@ -115,6 +117,7 @@ std::optional<std::array<std::size_t, 2>> first_overlap(const Scene& scene, cons
     for (auto a = solids.begin(); a != solids.end(); ++a)
         for (auto b = a + 1; b != solids.end() && b->box.min().x() <= a->box.max().x(); ++b) {
             const std::array<std::size_t, 2> pair{std::min(a->body, b->body), std::max(a->body, b->body)};
+            // The sweep is in the order of x; the answer is the first in the order of numbers.
             if (!a->box.intersects(b->box) || (first && *first < pair) || !meet(*a, *b)) continue;
             first = pair;
         }

@@ -16,6 +16,7 @@ namespace {
 constexpr double spin_per_frame = 0.03;  ///< radians
 constexpr double drift_per_frame = 0.01; ///< of the mesh's radius
 
+/// A body that turns and drifts in every frame.
 struct Mover {
     Eigen::Vector3d centre, drift, axis;
     Eigen::Quaterniond rotation;

@@ -5,6 +5,7 @@
 
 namespace tandem {
 
+/// The constants are those of SplitMix64.
 std::uint64_t Random::next() {
     state_ += 0x9e3779b97f4a7c15u;
     auto x = state_;

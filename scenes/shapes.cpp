@@ -16,8 +16,11 @@ constexpr double grid = 0x1p18;
 
 using Triangle = std::array<std::uint32_t, 3>;
 
+/// Rounded to single precision; -0 becomes 0.
 double single(double x) { return static_cast<double>(static_cast<float>(x)) + 0.0; }
 
+/// Sizes that are right in double may be flat when rounded: such a mesh is refused here and not found out
+/// later.
 Mesh completed(Mesh mesh, const std::string& name) {
     mesh.name = name;
     complete_mesh(mesh, name);

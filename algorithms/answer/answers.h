@@ -19,16 +19,20 @@ struct AnswerBuffers {
 /// a session and its results.
 class AnswerTools {
 public:
+    /// `contacts`: whether there will be any; their kernel is compiled only then. Throws DeviceError.
     AnswerTools(std::shared_ptr<const Bodies> bodies, LaunchShape shape, bool contacts);
 
     /// Of the first rows of a buffer. They launch, and wait for the sums.
     Digest digest(const Buffer& pairs, std::uint64_t count) const;
     Digest contact_digest(const AnswerBuffers& buffers, std::uint64_t contacts) const;
+    /// A row of pairs.clh, which numbers tetrahedra by position, as a pair in input order.
     Pair pair_of(const std::array<std::uint32_t, 4>& row) const;
     Device& device() const { return bodies_->device(); }
+    /// Whether contact values are doubles.
     bool in_double() const { return bodies_->geometry().precision == Precision::fp64; }
 
 private:
+    /// What the last kernel summed up; waits for it.
     Digest sums(std::uint64_t count) const;
 
     std::shared_ptr<const Bodies> bodies_;
@@ -78,7 +82,9 @@ public:
     std::shared_ptr<AnswerBuffers> take_what_fits(std::uint64_t pairs, std::uint64_t contacts);
 
 private:
+    /// Throws OutOfMemory.
     std::shared_ptr<AnswerBuffers> make(std::uint64_t pairs, std::uint64_t contacts) const;
+    /// Of one contact in both of its buffers.
     std::size_t contact_bytes() const;
 
     Device& device_;

@@ -34,6 +34,8 @@ class AnswerPart {
 public:
     virtual ~AnswerPart() = default;
 
+    /// The pairs where they are. Digests are of these and of the contacts, in input order's numbers, so that
+    /// they do not depend on the device.
     virtual PairBuffer pairs() const = 0;
     virtual Digest digest() const = 0;
     virtual Digest contact_digest() const = 0;
@@ -59,6 +61,7 @@ struct FrameResult {
     std::optional<Digest> summed;                   ///< output=digest: of the pairs
     std::vector<std::shared_ptr<const AnswerPart>> parts; ///< none unless output=pairs
 
+    /// False with output=count or digest, which keep none.
     bool has_pairs() const { return !parts.empty(); }
     /// Of pairs and contacts, summed where they are. Not part of a measured frame. Of an answer that only
     /// counts the sums are 0.

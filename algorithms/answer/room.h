@@ -25,6 +25,7 @@ public:
     std::uint32_t capacity() const { return static_cast<std::uint32_t>(rows_); }
     /// Throws OutOfMemory when there is none.
     const Buffer& buffer() const;
+    /// Bytes of a row.
     std::size_t row_bytes() const { return row_bytes_; }
 
 private:

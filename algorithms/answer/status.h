@@ -14,6 +14,7 @@ public:
     /// How words travel: resident ones wait for nothing, published ones as the paper's code did.
     enum class Writes { queued, blocking };
 
+    /// `device` must outlive it. Throws OutOfMemory.
     Status(Device& device, Writes writes);
 
     /// Clears all words but the number of body pairs: those the host has found, or 0.
@@ -34,6 +35,7 @@ public:
     const Words& words() const { return words_; }
     void write(const Words& words);
 
+    /// STATUS_WORDS words.
     const Buffer& buffer() const { return buffer_; }
 
 private:

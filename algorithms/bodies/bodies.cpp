@@ -69,6 +69,7 @@ std::vector<std::byte> Bodies::shared_vertices() const {
     return bytes;
 }
 
+/// What never changes: tetrahedra, ids, boundary, rows, and the vertices of meshes in their own frames.
 void Bodies::upload_static() {
     std::vector<std::uint32_t> tetrahedra, ids;
     std::vector<std::uint8_t> boundary;
@@ -114,6 +115,8 @@ std::vector<std::byte> Bodies::packed_poses(const Frame& frame) const {
     return bytes;
 }
 
+/// A scene in which nothing rigid moves uploads its poses once. With placement=exact deformable bodies have a
+/// drift that changes with their vertices and travels with the pose.
 void Bodies::upload_poses(const Frame& frame) {
     const auto moves = [this](const Body& body) {
         return !body.fixed && (!body.deformable || geometry_.placement == Placement::exact);
@@ -129,6 +132,7 @@ void Bodies::upload_poses(const Frame& frame) {
     fresh_ = false;
 }
 
+/// Vertices of deformable bodies lie behind one another, so that one upload takes them all.
 void Bodies::upload_deformed(const Frame& frame) {
     std::vector<std::byte> bytes;
     std::uint64_t first = vertex_total_;

@@ -37,6 +37,7 @@ public:
     const Row& row(std::size_t body) const { return rows_[body]; }
     /// The body's mesh as the device has it.
     const OrderedMesh& mesh(std::size_t body) const { return meshes_[scene_.bodies[body].mesh]; }
+    /// Rows of vertices(): of meshes where they are shared, of bodies where not.
     std::uint64_t vertex_total() const { return vertex_total_; }
     /// Bytes of device memory in all buffers.
     std::size_t bytes() const;

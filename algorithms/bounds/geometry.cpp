@@ -12,6 +12,7 @@ namespace {
 
 using Direction = std::array<int, 3>;
 
+/// Directions of planes that face each other: k/2 of them. Integers, so that a slab is a sum of coordinates.
 constexpr Direction coordinates[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 constexpr Direction corners[] = {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
 constexpr Direction edges[] = {{1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
@@ -21,6 +22,8 @@ constexpr std::array<const Parameter*, 5> declared{&parameters::k, &parameters::
 
 } // namespace
 
+/// Coordinates, diagonals of the cube, of its faces, in this order; k = 8 is the paper's four diagonals, or
+/// three coordinates and a diagonal.
 std::vector<Direction> directions(const Geometry& geometry) {
     std::vector<Direction> result;
     const auto add = [&](auto& set, std::size_t count) { result.insert(result.end(), set, set + count); };

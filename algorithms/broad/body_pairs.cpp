@@ -44,6 +44,7 @@ void BodyPairs::begin(const Frame& frame, std::optional<std::span<const BodyPair
     } else if (stage_) {
         on_host_ = {};
         searches_ = true;
+        // Once a session: bodies move little from frame to frame, and a stale order costs time, not pairs.
         if (!sorted_) stage_->sort(frame);
         sorted_ = true;
     } else {

@@ -38,6 +38,7 @@ public:
     bool searched() const { return searches_; }
     /// The pairs at hand where the host knows them.
     std::span<const BodyPair> on_host() const { return on_host_; }
+    /// Rows of two words, body a and body b, a < b.
     const Room& room() const { return room_; }
 
 private:

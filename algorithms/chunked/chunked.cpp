@@ -30,6 +30,7 @@ const std::vector<Preset> all_presets{
 
 constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds};
 
+/// Tetrahedra of a chunk: given, or as many as its bytes hold (paper, section 3.1).
 std::uint32_t leaves_of(const Settings& settings) {
     const auto given = static_cast<std::uint32_t>(settings[leaves]);
     if (given == 0)

@@ -29,6 +29,7 @@ protected:
     const Room& starts() const { return starts_; }
     /// Seeds handed down to a level, and from outside; rows of SEED_WORDS words.
     const Room& handed(std::uint32_t level) const { return handed_[level % 2]; }
+    /// Room for so many in both; what was there is lost. Throws OutOfMemory.
     void reserve_handed(std::uint64_t seeds);
 
 private:
@@ -38,6 +39,7 @@ private:
     void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
 
     void find_top_level();
+    /// Counts the seeds of every body pair and level, then turns counts into starts.
     void make_seeds(const WalkTask& task);
 
     const ChunkTrees& trees_;

@@ -5,6 +5,7 @@
 
 namespace tandem {
 
+/// How contacts of a candidate pair are made, and what decides first whether it meets.
 struct ContactSettings {
     ContactRule rule = ContactRule::opposing;
     DecisionPrecision decision = DecisionPrecision::fp32;

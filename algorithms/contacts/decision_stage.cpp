@@ -10,6 +10,7 @@ namespace tandem {
 namespace {
 
 constexpr std::uint8_t verdict_apart = 1, verdict_meets = 2;
+/// Two tetrahedra of four corners of three coordinates.
 constexpr std::size_t corner_reals = 24;
 
 using Corners = std::array<std::array<double, 3>, 4>;

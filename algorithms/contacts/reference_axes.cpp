@@ -43,6 +43,7 @@ void for_each_axis(const ReferencePair<Real>& pair, const Boundaries& boundaries
         }
 }
 
+/// Of a tetrahedron by itself, whatever mesh it is in.
 constexpr Boundaries all_faces{15, 15};
 
 /// The least translation as measure. Boundaries without a face: no axis, and an infinite measure.
@@ -153,6 +154,7 @@ std::vector<Contact<Real>> axis_contacts(const ReferencePair<Real>& pair, Contac
     const auto meetings = pair.meetings();
     auto [normal, overlap] = least_translation(pair, restricted ? boundaries : all_faces);
     bool along_normal = false; // the depth is
+    // A common volume as thin as rounding has no direction of its own.
     if (rule == ContactRule::clip && overlap > pair.tolerance())
         if (const auto n = area_normal(pair)) {
             normal = *n;

@@ -50,6 +50,7 @@ std::optional<unsigned> first_crossed(const ReferencePair<Real>& pair, unsigned 
 
 } // namespace
 
+/// A contact for each corner inside the other, with the boundary face whose plane is nearest.
 template<class Real>
 std::vector<Contact<Real>> vertex_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries) {
     std::vector<Contact<Real>> result;
@@ -66,6 +67,7 @@ std::vector<Contact<Real>> vertex_contacts(const ReferencePair<Real>& pair, cons
     return result;
 }
 
+/// A contact for each edge that leaves the other through a boundary face, at its inner corner.
 template<class Real>
 std::vector<Contact<Real>> consistent_contacts(const ReferencePair<Real>& pair,
                                                const Boundaries& boundaries) {

@@ -14,6 +14,7 @@ namespace tandem::contact_reference {
 template<class Real>
 using Vector = std::array<Real, 3>;
 
+/// Edges by their corners and faces by theirs, opposite corner i, in the order of features.
 constexpr unsigned edge_ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 constexpr unsigned face_corners[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
 
@@ -40,6 +41,7 @@ Vector<Real> operator/(const Vector<Real>& a, Real b) {
     return {a[0] / b, a[1] / b, a[2] / b};
 }
 
+/// x and y first, then z: as the kernels add.
 template<class Real>
 Real dot(const Vector<Real>& a, const Vector<Real>& b) {
     const Real xy = a[0] * b[0] + a[1] * b[1];
@@ -69,11 +71,13 @@ Real scale_of(Real length) {
     return std::ldexp(Real(1), std::min(1 - exponent, std::numeric_limits<Real>::max_exponent - 1));
 }
 
+/// A tetrahedron and its planes.
 template<class Real>
 struct Tetrahedron {
     Corners<Real> corners; ///< relative to A's first one and scaled
     Corners<Real> normals; ///< outward, of the face opposite each corner
 
+    /// Along the face's normal, times its length; negative inside.
     Real distance(unsigned face, const Vector<Real>& p) const {
         return dot(normals[face], p - corners[face_corners[face][0]]);
     }
@@ -106,6 +110,7 @@ std::optional<Corners<Real>> outward_normals(const Corners<Real>& world) {
     return normals;
 }
 
+/// Divided by the largest component first, so that its square neither overflows nor underflows.
 template<class Real>
 Vector<Real> unit(const Vector<Real>& a) {
     const auto shorter = a / largest(a);

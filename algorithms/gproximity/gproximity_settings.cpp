@@ -12,6 +12,7 @@ namespace tandem {
 
 namespace {
 
+/// A body pair and two nodes.
 constexpr std::uint64_t item_bytes = 12;
 
 constexpr Setting<std::int64_t> groups{"groups", 0, Range{0, 1 << 20}, "",
@@ -91,6 +92,7 @@ std::uint32_t number(const Settings& settings, const Setting<std::int64_t>& sett
     return static_cast<std::uint32_t>(settings[setting]);
 }
 
+/// Items of one queue when queue_bytes are shared out evenly.
 std::uint32_t capacity_from_bytes(const Settings& settings, std::uint32_t queues) {
     const auto items = static_cast<std::uint64_t>(settings[queue_bytes]) / (item_bytes * queues);
     if (items > MOST_QUEUE_ITEMS)

@@ -8,6 +8,7 @@
 
 namespace tandem {
 
+/// The settings that only this algorithm has, and its presets.
 std::span<const Parameter* const> gproximity_parameters();
 std::span<const Preset> gproximity_presets();
 

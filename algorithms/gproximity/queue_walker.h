@@ -29,6 +29,7 @@ private:
     virtual void do_clear_idle();
     virtual void do_after_launch() {}
 
+    /// Bytes of one of the two arrays of queues.
     std::uint64_t queue_bytes() const;
     std::uint64_t queue_room() const;
     void reserve_queues(std::uint32_t capacity);

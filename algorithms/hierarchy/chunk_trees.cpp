@@ -17,6 +17,7 @@ constexpr std::uint32_t level_words = 4;
 constexpr std::uint32_t job_words = 8;
 constexpr std::uint32_t most_top_items = 1024; ///< of a level that one work-group refits
 
+/// Rounded up.
 std::uint64_t groups_for(std::uint64_t items, std::uint64_t per_group) {
     return (items + per_group - 1) / per_group;
 }
@@ -93,6 +94,8 @@ void ChunkTrees::plan_strips() {
     }
 }
 
+/// Adds the jobs of one strip: a row for each subtree whose root is at depth `top` of a chunk, of fixed
+/// bodies or of the others.
 void ChunkTrees::plan_strip(std::uint32_t level, bool fixed, std::uint32_t top) {
     const auto& scene = bodies_.scene();
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) {
@@ -113,6 +116,8 @@ void ChunkTrees::plan_strip(std::uint32_t level, bool fixed, std::uint32_t top) 
     }
 }
 
+/// Tables that no frame changes. Bodies that move come first, so that a refit of these alone is a shorter
+/// launch.
 void ChunkTrees::upload_static() {
     tree_table_ = uploaded(device_, bytes_of(trees_), "trees");
     level_table_ = uploaded(device_, bytes_of(level_rows_), "levels");
@@ -135,6 +140,7 @@ std::size_t ChunkTrees::do_bytes() const {
     return sum;
 }
 
+/// Bottom up: a strip reads what the one before it wrote.
 void ChunkTrees::launch_strips(bool all) {
     for (const auto& s : strips_) {
         const auto per_group = strips_of_group(shape_, s.height);

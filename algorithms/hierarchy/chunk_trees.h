@@ -40,6 +40,7 @@ private:
     struct Tree {
         std::uint32_t nodes = 0, levels = 0, level_count = 0, items = 0;
     };
+    /// One launch of refit_strips: jobs of one level, those of bodies that move first.
     struct Strip {
         std::uint32_t level, height, first_job, jobs, dynamic_jobs;
     };

@@ -23,11 +23,13 @@ public:
     /// tetrahedron t's in Morton order.
     void add(std::uint32_t first_slot, std::span<const Level> levels, std::span<const std::uint32_t> skipped,
              std::span<const std::uint32_t> positions);
+    /// What was collected, ended by the last start.
     Emptied take();
 
 private:
     std::vector<std::uint32_t> add_level(std::uint32_t first_slot, std::span<const Level> levels,
                                          std::uint32_t index, std::span<const std::uint32_t> items);
+    /// Nodes of one round depend on none of it, only on earlier ones.
     void begin_round();
 
     std::uint32_t leaves_, end_;

@@ -28,6 +28,7 @@ struct OrderedMesh {
     std::vector<std::uint8_t> boundary;    ///< as Mesh::boundary, by position
 };
 
+/// Of a complete mesh.
 OrderedMesh ordered(const Mesh& mesh);
 
 } // namespace tandem

@@ -79,6 +79,7 @@ SettingTexts Preset::texts() const {
     return texts;
 }
 
+/// The defaults, the preset over them, what is given over both.
 Settings resolve(std::span<const Parameter* const> parameters, std::span<const Assignment> preset,
                  const SettingTexts& given, std::string_view algorithm) {
     Settings settings(parameters);

@@ -30,6 +30,7 @@ void PublishedChunkedWalker::do_launch(const WalkTask& task) {
         const StageScope scope(device(), Stage::write);
         device().clear(starts().buffer(), starts().buffer().bytes()); // no seeds made on the device
     }
+    // From the top: walks of a level may hand pairs down to the next, behind which its own seeds are put.
     std::uint64_t from_above = 0;
     for (std::uint32_t level = top_level() + 1; level-- > 0;) {
         std::vector<std::uint32_t> seeds;

@@ -87,6 +87,8 @@ void PublishedFrame::refit(const Frame& frame, Converted& converted) {
     upload(hierarchy_.nodes(), converted.nodes);
     hierarchy_.refit(frame, true);
     download(hierarchy_.nodes(), converted.nodes);
+    // Two copies of all nodes: the release kept its trees on the host and flattened them anew for the
+    // traversal.
     std::vector<std::byte> host_trees;
     {
         const HostWork work(device_, Stage::postprocess, "store trees");
@@ -99,6 +101,7 @@ void PublishedFrame::refit(const Frame& frame, Converted& converted) {
     upload(hierarchy_.nodes(), converted.nodes);
 }
 
+/// In the order of the release: transform, refit, traversal, each with all its inputs uploaded again.
 void PublishedFrame::update(const Frame& frame) {
     auto converted = convert(frame);
     transform(converted);

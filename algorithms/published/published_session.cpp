@@ -25,6 +25,7 @@ private:
     std::uint64_t pairs_ = 0, contacts_ = 0; ///< whose contacts are made; that are on the host
 };
 
+/// The release made contacts after every level or batch, and read them back at once.
 void ContactsBetween::part_walked() {
     steps_.status.read();
     const auto found = steps_.status.counter(STATUS_PAIRS);

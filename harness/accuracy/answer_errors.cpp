@@ -25,6 +25,7 @@ bool finite(const ContactPoint& c) {
 
 /// The contacts of one pair in the sorted list.
 std::span<const ContactPoint> contacts_of(std::span<const ContactPoint> contacts, const Pair& pair) {
+    // Only the pair is compared: one pair may have several contacts.
     const auto [first, last] =
         std::equal_range(contacts.begin(), contacts.end(), ContactPoint{pair, 0, {}, {}, 0},
                          [](const auto& a, const auto& b) { return a.pair < b.pair; });
@@ -82,6 +83,7 @@ void compare(const ContactTruth& truth, double size, std::span<const ContactPoin
         errors.not_finite += static_cast<std::uint64_t>(bad);
         return;
     }
+    // Depth is a signed distance, negative inside.
     const auto& deepest = *std::min_element(contacts.begin(), contacts.end(),
                                             [](const auto& a, const auto& b) { return a.depth < b.depth; });
     const double wrong = std::abs(-deepest.depth - truth.depth);
@@ -150,6 +152,7 @@ DecisionMatrix decision_matrix(const FrameTruth& truth, std::span<const Pair> ca
                                std::span<const ContactPoint> contacts) {
     DecisionMatrix matrix{};
     const auto count_row = [&](unsigned row, std::span<const Pair> pairs, auto counts) {
+        // Each part starts its cursors by a search and then walks along with its pairs.
         const auto parts = in_parts(pairs);
         std::vector<std::array<std::uint64_t, 3>> found(parts.size());
         parallel_for(parts.size(), [&](std::size_t i) {
@@ -163,6 +166,7 @@ DecisionMatrix decision_matrix(const FrameTruth& truth, std::span<const Pair> ca
         for (const auto& part : found)
             for (unsigned column = 0; column < 3; ++column) matrix[row][column] += part[column];
     };
+    // A candidate counts in row 0 when neither list has it; the lists are rows 1 and 2 as they are.
     const auto every = [](const Pair&) { return [](const Pair&) { return true; }; };
     count_row(0, candidates, [&](const Pair& first) {
         return [touching = PairCursor(truth.touching, first),
@@ -182,6 +186,7 @@ ContactTruths contact_truths(const Scene& scene, const Frame& frame, Precision p
     const auto count = most == 0 ? all.size() : std::min(most, all.size());
     result.every = count == all.size();
     std::vector<Pair> chosen;
+    // Evenly over the order, which is by bodies: a part of the list would be a part of the scene.
     for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
     const auto corners = pair_corners(scene, frame, precision, chosen);
     std::vector<std::optional<ContactTruth>> truths(chosen.size());

@@ -47,6 +47,7 @@ std::vector<Axis> axes_of_contacts(const Traversal& traversal) {
             {"contact_rule", choices(traversal, "contact_rule", "none")}};
 }
 
+/// Both sweeps hold the defaults: such a cell is measured once.
 bool same(const Cell& a, const Cell& b) {
     return a.algorithm == b.algorithm && a.preset == b.preset && a.settings == b.settings
            && a.devices == b.devices;

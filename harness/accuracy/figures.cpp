@@ -54,6 +54,7 @@ Figures::Figures(std::string folder) : folder_(std::move(folder)), python_(pytho
 }
 
 void Figures::draw(const std::string& records) const {
+    // What has been printed comes before what the script prints.
     std::fflush(stdout);
     if (!succeeds({python_, "-c", std::string(figures_script()), records, folder_}, false))
         throw InputError(fmt::format("--figures: nothing drawn; the records are in {}", records));

@@ -25,6 +25,8 @@ struct Corral {
 };
 
 /// Weights of the point nearest the origin in the affine hull, negative ones too.
+/// Least norm under the constraint that weights sum up to 1: the Gram matrix bordered by ones (Wolfe 1976,
+/// step 2).
 Eigen::VectorXd affine_weights(const std::vector<Vector3d>& points) {
     const auto n = static_cast<Eigen::Index>(points.size());
     Eigen::MatrixXd system = Eigen::MatrixXd::Ones(n + 1, n + 1);
@@ -47,6 +49,8 @@ void settle(Corral& corral) {
                 corral.weights[i] = wanted(static_cast<Eigen::Index>(i));
             return;
         }
+        // The largest step that leaves no weight negative; the point whose weight it brings to 0 leaves
+        // (Wolfe's step 3).
         double step = 1;
         std::size_t leaving = 0;
         for (std::size_t i = 0; i < corral.points.size(); ++i) {
@@ -83,6 +87,7 @@ double distance_to_hull(std::span<const std::array<double, 3>> vertices, const s
     };
     Corral corral{{*std::min_element(points.begin(), points.end(), by_norm)}, {1}};
     auto nearest = corral.points.front();
+    // Wolfe's test for the end: no point is nearer the origin along the nearest one by more than rounding.
     const double tolerance = 8 * std::numeric_limits<double>::epsilon() * size;
     // Every turn comes nearer, so it ends; rounding could make it turn for ever among equals.
     for (std::size_t turn = 0; turn < 16 * points.size(); ++turn) {

@@ -24,6 +24,7 @@ void check_room(const FrameTruth& first, std::size_t frames) {
 
 } // namespace
 
+/// Found once and kept, for all cells of the same positions.
 const FrameTruth& Truths::truth_of(const Place& place, const Report& report) {
     if (const auto found = truths_.find(place); found != truths_.end()) return found->second;
     const auto& [positions, index] = place;

@@ -23,6 +23,7 @@ struct BodyDrift {
     double of_bound = 0;
 };
 
+/// Where the frame puts it, without rounding.
 Vector<mpq_class> exact_vertex(const Scene& scene, const Frame& frame, std::size_t body, std::size_t vertex) {
     if (scene.bodies[body].deformable) {
         const auto& v = frame.deformed[body][vertex];
@@ -40,6 +41,7 @@ double spacing(double x) {
                                   : std::max(std::ilogb(x) - std::numeric_limits<Real>::digits + 1, least));
 }
 
+/// Of one body, by vertex: the difference is taken in rationals and rounded once, as its size is.
 template<class Real>
 BodyDrift drift_in(const Scene& scene, const Frame& frame, std::size_t body) {
     constexpr auto precision = sizeof(Real) == 8 ? Precision::fp64 : Precision::fp32;

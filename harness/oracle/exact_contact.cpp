@@ -15,6 +15,8 @@ mpq_class squared(const Facet<mpz_class>& facet) {
     return result;
 }
 
+/// The depth is the distance of the origin from the nearest facet of the difference A - B, in units of the
+/// lattice squared until the end. Facets that tie within the slack give one normal each.
 void push_apart(const Lattice<mpz_class>& lattice, double slack, ExactContact& result) {
     std::vector<std::pair<mpq_class, Vector<mpz_class>>> facets;
     for_each_facet(lattice.a, lattice.b, all_facets, [&](Facet<mpz_class> facet) {

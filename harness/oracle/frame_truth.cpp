@@ -22,6 +22,7 @@ using namespace oracle;
 /// Corners of all tetrahedra of every body.
 using World = std::vector<std::vector<TetraCorners>>;
 
+/// Widened to double without rounding, whatever the precision.
 template<class Real>
 World world_in(const Scene& scene, const Frame& frame) {
     World world(scene.bodies.size());
@@ -200,6 +201,7 @@ PairErrors errors_of(const FrameTruth& truth, std::span<const Pair> candidates) 
 FrameTruth frame_truth(const Scene& scene, const Frame& frame, Positions positions, const Report& report,
                        std::uint64_t memory) {
     const auto tetrahedra = tetrahedron_count(scene);
+    // What is taken before the number of near pairs is known.
     const auto own = tetrahedra * (sizeof(TetraCorners) + sizeof(Box));
     if (own > memory) refuse(tetrahedra, "at least ", 0, own, memory);
     FrameTruth truth;

@@ -15,6 +15,7 @@ struct Plane {
     mpz_class offset;
 };
 
+/// Normals are turned away from the opposite corner, so that the order of corners does not matter.
 std::array<Plane, 4> planes(const Points<mpz_class>& corners) {
     std::array<Plane, 4> result;
     for (unsigned i = 0; i < 4; ++i) {
@@ -45,6 +46,8 @@ std::optional<std::pair<mpq_class, mpq_class>> clip(const Vector<mpz_class>& p, 
     return std::pair{low, high};
 }
 
+/// The ends of the part of each edge that lies in the other tetrahedron, given by its planes; an edge that
+/// only touches it gives one point twice.
 void add_ends(const Points<mpz_class>& corners, const std::array<Plane, 4>& other,
               std::vector<RationalPoint>& vertices) {
     for (const auto& edge : edges) {
@@ -62,6 +65,8 @@ void add_ends(const Points<mpz_class>& corners, const std::array<Plane, 4>& othe
 
 /// Sorts the vertices of a convex polygon in a plane of this normal around its first vertex.
 void go_around(std::vector<RationalPoint>& polygon, const Vector<mpz_class>& normal) {
+    // Projected along an axis that the normal has a part of, the polygon stays convex and does not become a
+    // line.
     const unsigned drop = normal[0] != 0 ? 0 : normal[1] != 0 ? 1 : 2;
     const unsigned u = (drop + 1) % 3, v = (drop + 2) % 3;
     std::sort(polygon.begin(), polygon.end(),

@@ -25,6 +25,7 @@ std::array<Points<mpz_class>, 2> on_lattice(const Points<mpq_class>& a, const Po
     return result;
 }
 
+/// Doubles are rationals: nothing is rounded here.
 Points<mpq_class> exactly(const Posed& posed) {
     if (posed.pose != nullptr) return posed_corners(*posed.pose, posed.own);
     Points<mpq_class> result;
@@ -38,6 +39,8 @@ Points<mpq_class> exactly(const Posed& posed) {
 Vector<mpq_class> posed_point(const Pose& pose, const Vector<double>& point) {
     const mpq_class w(pose.rotation.w()), x(pose.rotation.x()), y(pose.rotation.y()), z(pose.rotation.z());
     const Vector<mpq_class> p{mpq_class(point[0]), mpq_class(point[1]), mpq_class(point[2])};
+    // M(q) / (q . q): dividing once takes the place of the square root of a unit quaternion, which is
+    // irrational.
     const mpq_class square = w * w + x * x + y * y + z * z;
     const Vector<mpq_class> rows[3]{
         {w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)},
@@ -56,6 +59,7 @@ Points<mpq_class> posed_corners(const Pose& pose, const TetraCorners& corners) {
 
 Decision decide(const Points<mpq_class>& a, const Points<mpq_class>& b, FacetSet unsure) {
     const auto [p, q] = on_lattice(a, b);
+    // Facets of the difference need two solids; flat ones are a linear program.
     if (orientation(p) == 0 || orientation(q) == 0)
         return {hulls_meet(p, q) ? Relation::touching : Relation::disjoint, Tier::program};
     auto found = Relation::overlapping;
@@ -71,6 +75,7 @@ Decision decide(const Posed& a, const Posed& b) {
     if (!all_finite(a.near) || !all_finite(b.near)) return {Relation::invalid, Tier::screen};
     const auto filtered = filter(a.near, b.near, std::max(a.off, b.off));
     if (filtered.disjoint) return {Relation::disjoint, Tier::filter};
+    // No facet is unsure and both have a volume: the origin is inside all of them.
     if (filtered.unsure == 0 && filtered.volume[0] && filtered.volume[1])
         return {Relation::overlapping, Tier::filter};
     return decide(exactly(a), exactly(b), filtered.unsure);

@@ -37,6 +37,7 @@ double rounded(mpz_class whole, bool inexact, long exponent) {
 
 double nearest(const mpq_class& x) {
     const mpz_class magnitude = abs(x.get_num());
+    // So that the quotient has digits + 3 bits at least, and a remainder alone tells what is dropped.
     const long exponent = bits(magnitude) - bits(x.get_den()) - (digits + 3);
     const mpz_class above =
         exponent < 0 ? mpz_class(magnitude << static_cast<unsigned long>(-exponent)) : magnitude;

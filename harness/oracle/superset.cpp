@@ -48,6 +48,7 @@ Boxes::Boxes(std::span<const TetraCorners> corners, std::span<const std::uint32_
     }
 }
 
+/// Empty boxes meet nothing, so that invalid and skipped tetrahedra need no case of their own.
 std::vector<std::uint32_t> near(const Boxes& body, const Box& other) {
     std::vector<std::uint32_t> result;
     for (std::uint32_t i = 0; i < body.tetrahedra.size(); ++i)

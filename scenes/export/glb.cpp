@@ -61,6 +61,8 @@ void Builder::add_materials() {
               {{"baseColorFactor", {r, g, b, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}}});
 }
 
+/// Rigid bodies of one mesh share its data, and the mesh too when they have the same colour; a deformable
+/// body has data of its own.
 std::size_t Builder::mesh_of(const Frame& frame, std::size_t body) {
     const auto index = scene_.bodies[body].mesh;
     const auto& mesh = scene_.meshes[index];
@@ -102,6 +104,7 @@ void write_glb(const std::string& path, const Scene& scene, std::span<const std:
             throw InputError(fmt::format("{}: would have {} bytes, glTF ends at {}; export fewer frames",
                                          path, bytes, most));
     };
+    // Before anything is made: the animation is nearly all of a large file.
     check(exporting::animation_bytes(scene, frames.size()));
     GlbFile file;
     Builder builder(file, scene);

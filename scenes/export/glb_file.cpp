@@ -28,6 +28,8 @@ Json bound(std::span<const float> values, std::size_t components, Choose choose)
     return bounds;
 }
 
+/// Chunks of a GLB are multiples of 4 bytes: text is padded by blanks, data by zeros (glTF 2.0, section
+/// 4.4.3).
 void put_chunk(std::string& out, std::string_view type, std::string bytes, char padding) {
     while (bytes.size() % 4 != 0) bytes.push_back(padding);
     recording::put(out, static_cast<std::uint32_t>(bytes.size()));
@@ -44,12 +46,14 @@ std::size_t GlbFile::add(const char* array, Json object) {
     return json_[array].size() - 1;
 }
 
+/// From `offset` to the end of what has been written.
 std::size_t GlbFile::view(std::size_t offset, int target) {
     Json view = {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", binary_.size() - offset}};
     if (target != no_target) view["target"] = target;
     return add("bufferViews", std::move(view));
 }
 
+/// Bounds are required of positions and of times of an animation, and harm no other accessor.
 std::size_t GlbFile::floats(std::span<const float> values, std::size_t components, bool vertices) {
     const auto offset = binary_.size();
     for (const float value : values) recording::put_float(binary_, value);

@@ -11,6 +11,7 @@ namespace tandem {
 
 namespace {
 
+/// VTK_TETRA of vtkCellType.h.
 constexpr std::uint8_t vtk_tetra = 10;
 
 /// All bodies of a frame as one grid.

@@ -12,6 +12,7 @@ namespace tandem::exporting {
 
 namespace {
 
+/// As zlib stream, which is what vtkZLibDataCompressor reads.
 std::string deflated(std::string_view bytes) {
     auto size = compressBound(bytes.size());
     std::string out(size, '\0');

@@ -30,6 +30,8 @@ std::vector<Eigen::Vector3d> world_vertices(const Scene& scene, const Frame& fra
     return vertices;
 }
 
+/// Faces of the boundary, outward also where a tetrahedron is inverted; vertices that are on none are left
+/// out and the others numbered anew.
 Surface surface_of(const Mesh& mesh) {
     Surface surface;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {

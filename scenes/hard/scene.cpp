@@ -33,6 +33,7 @@ std::vector<Vertices> pair_vertices(const HardFamily& family, std::uint64_t seed
     return bodies;
 }
 
+/// One mesh of separate tetrahedra, four vertices each.
 Mesh pair_mesh(Vertices vertices) {
     Mesh mesh;
     mesh.name = "hard";
@@ -45,6 +46,8 @@ Mesh pair_mesh(Vertices vertices) {
     return mesh;
 }
 
+/// A frame is a function of its number, so that frames can be made in any order. Families outlive every
+/// scene: they are tables of the program.
 std::function<Frame(std::size_t)> pair_frames(const HardFamily& family, std::uint64_t seed, double difficulty,
                                               std::uint64_t together) {
     if (family.pose != nullptr)

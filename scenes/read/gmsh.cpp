@@ -33,6 +33,7 @@ bool read_version(GmshFile& file) {
     return !two;
 }
 
+/// Found by its end: what is in between may be binary.
 void skip_section(Scanner& in, std::string_view name) {
     const auto end = in.text().find(fmt::format("$End{}", name.substr(1)), in.at());
     if (end == std::string_view::npos)
@@ -41,6 +42,7 @@ void skip_section(Scanner& in, std::string_view name) {
     in.seek(end);
 }
 
+/// A count that is too small leaves numbers where the end should be.
 void end_section(Scanner& in, std::string_view name) {
     const auto wanted = fmt::format("$End{}", name.substr(1));
     const auto word = in.token(wanted);

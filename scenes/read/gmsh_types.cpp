@@ -58,6 +58,7 @@ void NodeTags::add(std::uint64_t tag) {
     tags_.push_back(tag);
 }
 
+/// Most files number nodes in a row, which needs no table; the first tag that occurs twice otherwise.
 std::optional<std::uint64_t> NodeTags::index() {
     if (consecutive_) return std::nullopt;
     sorted_.reserve(tags_.size());

@@ -18,6 +18,7 @@ bool is_foreign(std::string_view keyword) {
     return std::any_of(foreign.begin(), foreign.end(), [&](auto name) { return keyword.starts_with(name); });
 }
 
+/// Keywords begin with a letter, numbers never do.
 bool is_keyword(std::string_view token) {
     return (token[0] >= 'A' && token[0] <= 'Z') || (token[0] >= 'a' && token[0] <= 'z');
 }

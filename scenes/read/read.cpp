@@ -48,6 +48,7 @@ bool opens(std::string_view text, const Format& format) {
                        [&](auto opening) { return !opening.empty() && text.starts_with(opening); });
 }
 
+/// A file is what it begins with; its name counts only where that says nothing.
 const Format* by_content(std::string_view bytes) {
     // The signature of legacy VTK looks like a comment of the other text formats.
     if (opens(bytes, formats[3])) return &formats[3];

@@ -20,6 +20,7 @@ std::size_t line_of(std::string_view text, std::size_t at) {
     return 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
 }
 
+/// For messages, which are one line of printable text whatever the file holds.
 std::string quoted(std::string_view token) {
     constexpr std::size_t longest = 40;
     std::string shown(token.substr(0, longest));
@@ -28,6 +29,7 @@ std::string quoted(std::string_view token) {
     return "'" + shown + (token.size() > longest ? "...'" : "'");
 }
 
+/// Passes blanks and comments.
 bool Scanner::done() {
     while (at_ < text_.size()) {
         if (comment_ != '\0' && text_[at_] == comment_)

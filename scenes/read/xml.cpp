@@ -32,6 +32,7 @@ std::size_t Xml::find(std::string_view end, std::size_t from, std::size_t tag) c
     return at;
 }
 
+/// Comments, declarations and processing instructions are passed over.
 std::optional<Tag> Xml::next() {
     while (true) {
         const auto open = text_.find('<', at_);
@@ -51,6 +52,7 @@ std::optional<Tag> Xml::next() {
     }
 }
 
+/// Either quote; entities are left as they are, since no name or number of the format needs one.
 void Xml::read_attributes(Tag& tag, std::string_view inside) const {
     auto at = std::min(inside.find_first_of(blanks), inside.size());
     tag.name = inside.substr(0, at);

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::string_view magic("\x89TDMCP\r\n", 8);
 constexpr std::uint32_t version = 1;
+/// Magic, version, digest, step, frames, size: 8 + 4 + 4 * 8.
 constexpr std::size_t bytes_before_state = 44;
 
 } // namespace

@@ -36,6 +36,7 @@ bool is_rotation(const Eigen::Quaterniond& q) {
     return std::fabs((q.w() * q.w() + q.x() * q.x()) + (q.y() * q.y() + q.z() * q.z()) - 1) < slack;
 }
 
+/// False when float holds it not, or when it is no rotation.
 bool put_pose(std::string& out, const Pose& pose) {
     const auto& q = pose.rotation;
     const auto& t = pose.translation;
@@ -48,6 +49,7 @@ bool put_vertices(std::string& out, const std::vector<Eigen::Vector3d>& vertices
     return finite;
 }
 
+/// Widened without rounding.
 double get_float(read::Cursor& in) {
     return static_cast<double>(std::bit_cast<float>(in.get<std::uint32_t>("a number")));
 }

@@ -64,6 +64,8 @@ RecordedBody read_body(read::Cursor& in) {
 
 } // namespace
 
+/// Step, time and checksum; 7 floats of a rigid body, 3 of each vertex of a deformable one; fixed bodies
+/// stand in the scene.
 std::uint64_t frame_bytes(const RecordingHeader& header) {
     std::uint64_t bytes = 8 + 8 + 4;
     for (const auto& body : header.bodies) {

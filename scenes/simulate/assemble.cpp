@@ -20,6 +20,8 @@ std::vector<std::size_t> first_vertices(const Model& model) {
     return first;
 }
 
+/// A body that is fixed or deformable keeps a node that no impulse moves, so that numbers of bodies are
+/// numbers of nodes.
 std::vector<Node> make_nodes(const Model& model, const Motion& motion) {
     std::vector<Node> nodes(model.bodies.size());
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
@@ -41,6 +43,7 @@ std::array<double, 4> weights_of(const std::array<Eigen::Vector3d, 4>& corners,
                                  const Eigen::Vector3d& point) {
     Eigen::Matrix3d edges;
     for (int i = 0; i < 3; ++i) edges.col(i) = corners[static_cast<std::size_t>(i) + 1] - corners[0];
+    // A flat tetrahedron gives infinities here, which are noticed below.
     const double det = determinant(edges);
     const Eigen::Vector3d local = apply(adjugate(edges), point - corners[0]) / det;
     std::array<double, 4> weights = {1 - ((local.x() + local.y()) + local.z()), local.x(), local.y(),
@@ -115,6 +118,8 @@ private:
         problem_.attachments.push_back(attachment);
     }
 
+    /// Whether an impulse changes anything there: not on fixed bodies, nor where all corners with weight are
+    /// pinned.
     bool movable(const Side& side) const {
         bool result = false;
         for_each_node(problem_, side, Eigen::Vector3d::Zero(),

@@ -90,6 +90,7 @@ void clock_state(Visitor& visit, Time& clock) {
     visit(clock.passes);
 }
 
+/// Fixed bodies have no state; what the others have is known from the model, so that no lengths are stored.
 template<class Visitor, class Moving>
 void bodies(Visitor& visit, const Model& model, Moving& motion) {
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
@@ -122,6 +123,7 @@ void from_bytes(const Model& model, std::span<const std::byte> bytes, Motion& mo
         throw InputError(
             fmt::format("the saved state belongs to a scene of digest {:016x}, not to '{}' ({:016x})", digest,
                         model.scene->name, model.scene->digest));
+    // For its sizes; nothing is taken over unless all can be read.
     Motion result = starting_motion(model);
     Clock time;
     clock_state(read, time);

@@ -11,6 +11,7 @@ namespace tandem::simulate {
 
 namespace {
 
+/// Columns: the edges from corner 0, at rest Dm and deformed Ds of Sifakis and Barbic; F = Ds Dm^-1.
 Eigen::Matrix3d edges(const Tetrahedron& t, std::span<const Eigen::Vector3d> positions) {
     Eigen::Matrix3d result;
     for (int i = 0; i < 3; ++i)
@@ -18,6 +19,7 @@ Eigen::Matrix3d edges(const Tetrahedron& t, std::span<const Eigen::Vector3d> pos
     return result;
 }
 
+/// tr(R'F) - 3 = tr(S - 1): the stretch without the rotation. P = 2 mu (F - R) + lambda tr(R'F - 1) R.
 Response corotational(const ElasticMesh& mesh, const Eigen::Matrix3d& f) {
     const Eigen::Matrix3d r = closest_rotation(f);
     const double stretch = trace(multiply(r.transpose(), f)) - 3;
@@ -25,6 +27,7 @@ Response corotational(const ElasticMesh& mesh, const Eigen::Matrix3d& f) {
             2 * mesh.mu * (f - r) + mesh.lambda * stretch * r};
 }
 
+/// Of Green's strain, which no rotation changes: P = F (2 mu E + lambda tr(E) 1).
 Response saint_venant_kirchhoff(const ElasticMesh& mesh, const Eigen::Matrix3d& f) {
     const Eigen::Matrix3d green = 0.5 * (multiply(f.transpose(), f) - Eigen::Matrix3d::Identity());
     const double volumetric = trace(green);
@@ -38,6 +41,7 @@ void add_masses(ElasticMesh& result, double density) {
         for (const auto corner : element.corners) result.masses[corner] += density * element.volume / 4;
 }
 
+/// Inverse masses; a vertex without any would be moved by no force and every impulse.
 void pin(ElasticMesh& result, const Mesh& mesh, const Elastic& elastic) {
     for (std::size_t i = 0; i < result.masses.size(); ++i) {
         if (!(result.masses[i] > 0))
@@ -65,6 +69,7 @@ ElasticMesh make_elastic_mesh(const Mesh& mesh, const Elastic& elastic, double d
     for (const auto& t : mesh.tetrahedra) {
         const Eigen::Matrix3d rest = edges(t, mesh.vertices);
         const double det = determinant(rest);
+        // A flat element has no deformation gradient and no volume to hold energy in.
         if (det != 0) result.elements.push_back({t, adjugate(rest) / det, std::fabs(det) / 6});
     }
     result.masses.resize(mesh.vertices.size());
@@ -85,6 +90,8 @@ void add_elastic_forces(const ElasticMesh& mesh, std::span<const Eigen::Vector3d
                         std::span<Eigen::Vector3d> forces) {
     for (const auto& element : mesh.elements) {
         const auto stress = response(mesh, gradient(element, positions)).stress;
+        // The force at corner i + 1 is minus column i of V P Dm^-T, that at corner 0 what makes the sum zero
+        // (Sifakis and Barbic, 4.2).
         const Eigen::Matrix3d pulls = multiply(stress, element.inverse_rest.transpose()) * element.volume;
         const auto& corners = element.corners;
         for (int i = 0; i < 3; ++i) {
@@ -98,6 +105,7 @@ void add_damping_forces(const ElasticMesh& mesh, std::span<const Eigen::Vector3d
                         std::span<Eigen::Vector3d> forces) {
     if (mesh.damping == 0) return;
     for (const auto& element : mesh.elements) {
+        // (1 + delta_ij) times the velocities: the sum over all corners and the own one once more.
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
         for (const auto corner : element.corners) sum += velocities[corner];
         const double factor = mesh.damping * element.volume / 20;

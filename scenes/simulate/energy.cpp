@@ -11,6 +11,7 @@ namespace tandem::simulate {
 
 namespace {
 
+/// 0.5 m v.v + 0.5 L.w with the momentum L and the spin w = I^-1 L.
 Energies rigid_energies(const Model& model, const RigidState& state, const BodyModel& body) {
     return {.kinetic = 0.5 * body.mass.mass * dot(state.velocity, state.velocity)
                        + 0.5 * dot(state.angular, spin(body, state)),
@@ -56,6 +57,7 @@ double extent(const Model& model, const Motion& motion) {
     return box.isEmpty() ? 0 : length(box.diagonal());
 }
 
+/// kg; one of the two terms is zero.
 double mass_of(const BodyModel& body) {
     double mass = body.mass.mass;
     for (const double part : body.elastic.masses) mass += part;
@@ -101,6 +103,7 @@ double highest_energy(const Model& model, const Motion& start) {
         const auto& body = model.bodies[i];
         if (body.kind == Kind::fixed) continue;
         const auto part = energies_of(model, start, i);
+        // The velocity of the largest correction that one step makes of a penetration.
         const double correction = greatest_correction * body.size / dynamics.stepping.step;
         total += part.total();
         reach += part.kinetic + part.elastic + mass_of(body) * (fall + correction * correction);

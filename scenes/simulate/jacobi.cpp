@@ -23,6 +23,7 @@ struct Touches {
     std::vector<Touch> all;
 };
 
+/// Both ends of every contact; impulses act on b, and the other way on a.
 template<class Visit>
 void for_each_touch(const Problem& problem, Visit visit) {
     for (std::uint32_t i = 0; i < problem.rows.size(); ++i) {
@@ -38,6 +39,8 @@ void for_each_touch(const Problem& problem, Visit visit) {
     }
 }
 
+/// By counting: how many of each node, where each begins, then the touches themselves. Nodes that nothing
+/// moves have none.
 Touches gather(const Problem& problem) {
     Touches touches;
     touches.first.assign(problem.nodes.size() + 1, 0);
@@ -79,10 +82,13 @@ private:
         std::size_t begin, end;
     };
 
+    /// An equal share, by position alone: results do not depend on which thread takes it.
     Part part(std::size_t count, std::size_t thread) const {
         return {count * thread / changes_.size(), count * (thread + 1) / changes_.size()};
     }
 
+    /// What every thread does. Between two barriers rows are written and nodes read, or the other way round;
+    /// one thread judges for all.
     void work(std::size_t thread) {
         move_nodes(thread);
         barrier_.arrive_and_wait();

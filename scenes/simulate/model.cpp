@@ -11,6 +11,7 @@ namespace tandem::simulate {
 
 namespace {
 
+/// Every message names the scene: a description may be one of many.
 [[noreturn]] void refuse(const Scene& scene, const std::string& what) {
     throw InputError(fmt::format("scene '{}': {}", scene.name, what));
 }
@@ -19,8 +20,10 @@ bool finite(const Eigen::Vector3d& v) {
     return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
 }
 
+/// False for NaN, as every check here is written.
 bool within(double value, double low, double high) { return value >= low && value <= high; }
 
+/// One density a material, kg/m^3, and a surface for every two of them, in both orders.
 void check_materials(const Scene& scene, const Materials& materials) {
     const auto count = materials.names.size();
     if (materials.densities.size() != count || materials.surfaces.size() != count * count)
@@ -51,6 +54,8 @@ void check_stepping(const Scene& scene, const Dynamics& dynamics) {
     if (!finite(dynamics.gravity)) refuse(scene, "gravity is not finite");
 }
 
+/// The limits of an isotropic material that is stable: Young's modulus above 0, Poisson's ratio within
+/// -1..0.5, both open, since Lame's lambda is infinite at 0.5.
 void check_elastic(const Scene& scene, const Elastic& elastic) {
     if (!(elastic.young > 0) || !std::isfinite(elastic.young) || !(elastic.poisson > -1)
         || !(elastic.poisson < 0.5) || !within(elastic.damping, 0, 1e300))
@@ -67,6 +72,7 @@ void check_sizes(const Scene& scene, const Dynamics& dynamics, const Frame& star
                                   bodies, dynamics.bodies.size(), start.poses.size(), start.deformed.size()));
 }
 
+/// Indices first, then numbers: what comes later may use what was checked before.
 void check_body(const Model& model, std::size_t i) {
     const auto& body = model.scene->bodies[i];
     const auto& moves = model.dynamics->bodies[i];
@@ -94,6 +100,7 @@ void check_body(const Model& model, std::size_t i) {
             fmt::format("is deformable, but its start has not the {} vertices of its mesh", vertices));
 }
 
+/// Of the box around the mesh, m: the length by which distances at the body are measured.
 double longest_edge(const Mesh& mesh) {
     if (mesh.vertices.empty()) return 0;
     Eigen::Vector3d low = mesh.vertices.front(), high = low;
@@ -104,6 +111,7 @@ double longest_edge(const Mesh& mesh) {
     return (high - low).maxCoeff();
 }
 
+/// A fixed body has a size and a material only: no impulse changes it.
 BodyModel make_body(const Model& model, std::size_t i) {
     const auto& body = model.scene->bodies[i];
     const auto& mesh = model.scene->meshes[body.mesh];

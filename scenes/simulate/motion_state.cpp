@@ -7,6 +7,7 @@ namespace tandem::simulate {
 
 namespace {
 
+/// The spin (rad/s, world) becomes the momentum R I R' w, which is the state.
 RigidState starting_rigid(const BodyModel& body, const BodyDynamics& moves, const Pose& pose) {
     RigidState state;
     state.rotation = unit(pose.rotation);
@@ -17,6 +18,7 @@ RigidState starting_rigid(const BodyModel& body, const BodyDynamics& moves, cons
     return state;
 }
 
+/// Velocity and spin about the centre of mass of all vertices; pinned ones stand still.
 SoftState starting_soft(const ElasticMesh& mesh, const BodyDynamics& moves,
                         const std::vector<Eigen::Vector3d>& vertices) {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -42,6 +44,7 @@ void turn_on(const BodyModel& body, RigidState& state, double time) {
     state.rotation = turned(start, time * spin(body, state));
 }
 
+/// Explicit: forces at the present positions, which limits the step by the stiffest element.
 void kick_soft(const ElasticMesh& mesh, SoftState& state, const Eigen::Vector3d& gravity, double time) {
     std::vector<Eigen::Vector3d> forces(state.positions.size(), Eigen::Vector3d::Zero());
     add_elastic_forces(mesh, state.positions, forces);

@@ -35,6 +35,7 @@ struct Motion {
     double length = 0;             ///< s, of the step whose impulses these are
 };
 
+/// At frame 0 with the velocities of the dynamics; no impulses.
 Motion starting_motion(const Model& model);
 
 /// Positions after `time` (s) of free motion: velocities and momenta stay.
@@ -43,8 +44,11 @@ void drift(const Model& model, Motion& motion, double time);
 /// Velocities after `time` (s) of gravity, damping and elastic forces at the present positions.
 void kick(const Model& model, Motion& motion, double time);
 
+/// Poses of rigid bodies about the mesh's own origin, vertices of deformable ones; fixed bodies as at the
+/// start.
 Frame frame_of(const Model& model, const Motion& motion);
 
+/// R I^-1 R', 1 / (kg m^2).
 Eigen::Matrix3d world_inverse_inertia(const BodyModel& body, const RigidState& state);
 Eigen::Vector3d spin(const BodyModel& body, const RigidState& state); ///< rad/s
 
@@ -55,6 +59,7 @@ struct Energies {
 
     double total() const { return kinetic + potential + elastic; }
 };
+/// Of one body; all zero for a fixed one.
 Energies energies_of(const Model& model, const Motion& motion, std::size_t body);
 
 /// The sum over all bodies. Throws InputError naming `step`, the body and its values when one of them is not

@@ -55,6 +55,7 @@ Eigen::Matrix3d mobility(const Problem& problem, const Side& side, const Eigen::
     return result;
 }
 
+/// r-factors of one row from its 3x3 block `k`: 1 / A_nn for the normal, one for both tangents.
 void set_row_factors(ContactRow& row, const Eigen::Matrix3d& k) {
     const Eigen::Vector3d along = apply(k, row.normal);
     const Eigen::Vector3d across = apply(k, row.tangent);
@@ -69,6 +70,7 @@ void set_row_factors(ContactRow& row, const Eigen::Matrix3d& k) {
     row.mixed_binormal = dot(row.binormal, along);
 }
 
+/// By how many sides each node is touched: into so many parts its mass is split.
 std::vector<double> contacts_per_node(const Problem& problem) {
     std::vector<double> counts(problem.nodes.size(), 0);
     const auto count = [&](std::uint32_t node, double, const Eigen::Vector3d&) { counts[node] += 1; };

@@ -15,12 +15,14 @@ using namespace simulate;
 
 constexpr std::uint64_t passes_before_doubling = 10;
 
+/// Only elastic forces, which are explicit, ask for shorter steps; rigid bodies have none.
 bool adapts(const Model& model) {
     return model.dynamics->stepping.adaptive_tolerance > 0
            && std::any_of(model.bodies.begin(), model.bodies.end(),
                           [](const BodyModel& body) { return body.kind == Kind::soft; });
 }
 
+/// m, over the vertices of deformable bodies.
 double largest_difference(const Motion& a, const Motion& b) {
     double most = 0;
     for (std::size_t i = 0; i < a.soft.size(); ++i)
@@ -84,6 +86,7 @@ struct Simulation::State {
         return full;
     }
 
+    /// Doubled after ten steps in a row that passed at once, never beyond the step asked for.
     void lengthen(bool at_once) {
         clock.passes = at_once ? clock.passes + 1 : 0;
         if (clock.passes < passes_before_doubling) return;

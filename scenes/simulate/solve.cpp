@@ -15,6 +15,7 @@ Eigen::Vector3d proximal(const ContactRow& row, const Eigen::Vector3d& velocity,
     Eigen::Vector3d result;
     const double normal_velocity = dot(row.normal, velocity) + row.bias;
     result.x() = std::max(0.0, row.impulse.x() - scale * row.factor_normal * normal_velocity);
+    // The tangents see what the new normal impulse does to them: rows are solved as blocks, normal first.
     const double change = result.x() - row.impulse.x();
     const double slide = dot(row.tangent, velocity) + row.mixed_tangent * change;
     const double slip = dot(row.binormal, velocity) + row.mixed_binormal * change;
@@ -31,11 +32,13 @@ Eigen::Vector3d proximal(const ContactRow& row, const Eigen::Vector3d& velocity,
 }
 
 Convergence::Verdict Convergence::judge(double change) {
+    // The change over the reduction, as at full r-factors.
     const double before = residual_;
     residual_ = change / scale_;
     if (residual_ <= settings_.absolute_tolerance
         || std::fabs(residual_ - before) < settings_.relative_tolerance * before)
         return Verdict::converged;
+    // As the caller undoes the pass, the residual of the one before stands.
     if (change > allowed_) {
         scale_ *= reduction;
         residual_ = before;

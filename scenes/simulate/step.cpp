@@ -29,6 +29,7 @@ private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+/// What a search must keep to; a normal is off unit length by the rounding of single precision at most.
 bool sound(const Model& model, const ContactPoint& contact) {
     const auto exists = [&](std::uint32_t body, std::uint32_t tet) {
         return body < model.bodies.size()
@@ -50,6 +51,7 @@ std::vector<ContactPoint> reduce(const Model& model, std::span<const ContactPoin
     return reduce_contacts(contacts, sizes, model.dynamics->reduction);
 }
 
+/// m, at least 0: depths are negative inside.
 double deepest(std::span<const ContactPoint> contacts) {
     double depth = 0;
     for (const auto& contact : contacts) depth = std::max(depth, -contact.depth);
@@ -92,6 +94,7 @@ void check_contacts(const Model& model, std::span<const ContactPoint> contacts, 
 Outcome advance(const Model& model, const Motion& from, double length, std::size_t step,
                 const Detect& detect) {
     Outcome outcome{from, {}, {}};
+    // Half a step of motion, then the contacts there.
     auto& [motion, midway, report] = outcome;
     report.length = length;
     Stopwatch watch;
@@ -109,6 +112,7 @@ Outcome advance(const Model& model, const Motion& from, double length, std::size
     report.deepest = deepest(kept);
     watch.lap(report.reduce_ns);
 
+    // Velocities of the whole step: forces first, then the impulses that contacts need.
     auto problem = assemble(model, from, kept, length, motion);
     watch.lap(report.assemble_ns);
     const auto solved =

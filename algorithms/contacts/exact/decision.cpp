@@ -14,6 +14,7 @@ namespace {
 
 using namespace oracle;
 
+/// By comparisons alone, which round nothing.
 bool boxes_apart(const TetraCorners& a, const TetraCorners& b) {
     for (unsigned axis = 0; axis < 3; ++axis) {
         const auto low = [axis](const TetraCorners& c) {
@@ -41,6 +42,7 @@ std::optional<Relation> by_facets(const Lattice<Number>& lattice, const Filtered
     return relation;
 }
 
+/// A flat tetrahedron has no facets to go by; being without interior it touches whatever it meets.
 Decision by_program(const TetraCorners& a, const TetraCorners& b) {
     const auto lattice = big_lattice(a, b);
     return {hulls_meet(lattice.a, lattice.b) ? Relation::touching : Relation::disjoint, Tier::program};

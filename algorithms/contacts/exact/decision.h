@@ -30,6 +30,7 @@ constexpr unsigned tier_count = 5;
 constexpr std::array tier_names{"screen", "filter", "integers", "big_integers", "program"};
 static_assert(tier_names.size() == tier_count);
 
+/// How a pair lies, and the tier that knew it.
 struct Decision {
     Relation relation = Relation::invalid;
     Tier tier = Tier::screen;

@@ -22,6 +22,7 @@ constexpr std::array<std::array<unsigned, 3>, 4> faces{{{1, 2, 3}, {0, 2, 3}, {0
 /// A set of candidate facets: bit i the face i of A, bit 4 + i that of B, bit 8 + 6 i + j the product of edge
 /// i of A and edge j of B.
 using FacetSet = std::uint64_t;
+/// 8 faces and 36 products of edges.
 constexpr FacetSet all_facets = (FacetSet{1} << 44) - 1;
 constexpr FacetSet face_bit(unsigned body, unsigned face) { return FacetSet{1} << (4 * body + face); }
 constexpr FacetSet edges_bit(unsigned a, unsigned b) { return FacetSet{1} << (8 + 6 * a + b); }
@@ -94,6 +95,7 @@ std::optional<Facet<Number>> edges_facet(const Points<Number>& a, const Points<N
     return Facet<Number>{std::move(normal), std::move(gap)};
 }
 
+/// The sign of the volume: 0 for corners in a plane.
 template<class Number>
 int orientation(const Points<Number>& p) {
     return sign(dot(cross(minus(p[1], p[0]), minus(p[2], p[0])), minus(p[3], p[0])));
