@@ -17,6 +17,11 @@ std::vector<const Traversal*>& listed() {
     return all;
 }
 
+std::vector<std::span<const KernelSource>>& known_sources() {
+    static std::vector<std::span<const KernelSource>> all{kernel_sources()};
+    return all;
+}
+
 } // namespace
 
 std::span<const Traversal* const> algorithms() { return listed(); }
@@ -46,9 +51,12 @@ const Preset& preset(const Traversal& traversal, std::string_view name) {
     throw InputError(unknown(fmt::format("preset of {}", traversal.name()), name, names));
 }
 
+void add_kernel_sources(std::span<const KernelSource> sources) { known_sources().push_back(sources); }
+
 const KernelSource& kernel_source(std::string_view name) {
-    for (const auto& source : kernel_sources())
-        if (source.name == name) return source;
+    for (const auto& sources : known_sources())
+        for (const auto& source : sources)
+            if (source.name == name) return source;
     throw DeviceError(fmt::format("no kernel file '{}' in this program", name));
 }
 

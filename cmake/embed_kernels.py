@@ -32,12 +32,20 @@ def write(path, text):
         path.touch()
 
 
-def sources(kernels):
+def handed_out(row, names, function, own):
+    """How rows reach those who look for them: the library's by a function, a program's own by adding themselves."""
+    table = f"static const {row} all[] = {{{', '.join(names)}}};"
+    if own:
+        return f"{table}\n[[maybe_unused]] static const bool added = (add_{function}(all), true);"
+    return f"std::span<const {row}> {function}() {{\n    {table}\n    return all;\n}}"
+
+
+def sources(kernels, own):
     out = ['#include "algorithms/sources.h"', "namespace tandem {", "namespace {"]
     for index, (name, text) in enumerate(kernels.items()):
         out.append(f'constexpr KernelSource source_{index}{{"{name}",\nR"KERNEL({text})KERNEL"}};')
-    out += ["constexpr KernelSource all[] = {" + ", ".join(f"source_{i}" for i in range(len(kernels))) + "};",
-            "} // namespace", "std::span<const KernelSource> kernel_sources() { return all; }", "} // namespace tandem", ""]
+    names = [f"source_{index}" for index in range(len(kernels))]
+    out += ["} // namespace", handed_out("KernelSource", names, "kernel_sources", own), "} // namespace tandem", ""]
     return "\n".join(out)
 
 
@@ -76,12 +84,12 @@ def host_variant(kernels, geometry, geometries, identifier):
     return "\n".join(out)
 
 
-def host_table(identifiers):
+def host_table(identifiers, own):
     out = ['#include "backends/host/dialect.h"']
     out += [f"extern const std::span<const tandem::host::HostKernel> {name};" for name in identifiers]
-    out += ["namespace tandem::host {", "std::span<const std::span<const HostKernel>> host_kernels() {",
-            "    static const std::span<const HostKernel> all[] = {" + ", ".join("::" + n for n in identifiers) + "};",
-            "    return all;", "}", "} // namespace tandem::host", ""]
+    names = ["::" + name for name in identifiers]
+    out += ["namespace tandem::host {", handed_out("std::span<const HostKernel>", names, "host_kernels", own),
+            "} // namespace tandem::host", ""]
     return "\n".join(out)
 
 
@@ -92,6 +100,7 @@ def main():
     parser.add_argument("--geometries", nargs="+")
     parser.add_argument("--each", type=int, default=1, help="geometries in a file")
     parser.add_argument("--kernels", nargs="+")
+    parser.add_argument("--own", default="", help="the target whose own these are; left out for the library")
     parser.add_argument("--flatten", help="only print this kernel file with its headers")
     arguments = parser.parse_args()
     if arguments.flatten:
@@ -99,14 +108,15 @@ def main():
         return
     arguments.out.mkdir(parents=True, exist_ok=True)
     kernels = {name: "\n".join(flatten(arguments.root, name, set())) + "\n" for name in arguments.kernels}
-    write(arguments.out / "sources.cpp", sources(kernels))
-    identifiers = ["host_" + re.sub(r"\W", "_", geometry) for geometry in arguments.geometries]
+    write(arguments.out / "sources.cpp", sources(kernels, arguments.own))
+    identifiers = ["_".join(filter(None, ["host", re.sub(r"\W", "_", arguments.own), re.sub(r"\W", "_", geometry)]))
+                   for geometry in arguments.geometries]
     variants = [host_variant(kernels, geometry, arguments.geometries, identifier)
                 for geometry, identifier in zip(arguments.geometries, identifiers)]
     for part, first in enumerate(range(0, len(variants), arguments.each)):
         write(arguments.out / f"host_{part}.cpp",
               "\n".join(['#include "backends/host/dialect.h"', *variants[first:first + arguments.each]]))
-    write(arguments.out / "host_table.cpp", host_table(identifiers))
+    write(arguments.out / "host_table.cpp", host_table(identifiers, arguments.own))
 
 
 main()

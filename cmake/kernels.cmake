@@ -1,15 +1,24 @@
 # SPDX-License-Identifier: MIT
-# tandem_kernels(TARGET K:AXES...): flattens each kernel file of algorithms/ with its headers, embeds the texts, and
-# compiles them for the host backend in every listed geometry, in both precisions. Called where the target is made:
-# generated sources are known in one directory only.
+# tandem_kernels(TARGET K:AXES... [FOLDER F]): flattens each kernel file of algorithms/ with its headers, embeds the texts,
+# and compiles them for the host backend in every listed geometry, in both precisions. With a FOLDER of the project its
+# files instead, which add themselves to the library's in a program that TARGET is, or whose objects it is. Called where
+# the target is made: generated sources are known in one directory only.
 function(tandem_kernels target)
+  cmake_parse_arguments(PARSE_ARGV 1 given "" "FOLDER" "")
+  set(folder algorithms)
   set(out ${PROJECT_BINARY_DIR}/kernels/${target})
+  set(own)
+  if(given_FOLDER)
+    set(folder ${given_FOLDER})
+    set(own --own ${target})
+  endif()
   set(script ${PROJECT_SOURCE_DIR}/cmake/embed_kernels.py)
-  file(GLOB_RECURSE kernels CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/algorithms/*.cl)
+  file(GLOB_RECURSE kernels CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/${folder}/*.cl)
+  list(TRANSFORM kernels PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE files)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/backends/portable.h
-       ${PROJECT_SOURCE_DIR}/algorithms/*.clh)
+       ${PROJECT_SOURCE_DIR}/algorithms/*.clh ${PROJECT_SOURCE_DIR}/${folder}/*.clh)
   set(geometries)
-  foreach(k_axes ${ARGN})
+  foreach(k_axes ${given_UNPARSED_ARGUMENTS})
     string(REPLACE ":" ";" pair ${k_axes})
     list(GET pair 0 k)
     list(GET pair 1 axes)
@@ -27,8 +36,8 @@ function(tandem_kernels target)
   endforeach()
   add_custom_command(OUTPUT ${generated}
     COMMAND ${Python3_EXECUTABLE} ${script} --root ${PROJECT_SOURCE_DIR} --out ${out} --geometries ${geometries}
-            --each ${each} --kernels ${kernels}
-    DEPENDS ${script} ${kernels} ${headers} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+            --each ${each} --kernels ${kernels} ${own}
+    DEPENDS ${script} ${files} ${headers} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     COMMENT "Flattening kernels" VERBATIM)
   target_sources(${target} PRIVATE ${generated})
   set(options -Wno-unused-function -Wno-unused-variable -Wno-unused-parameter -Wno-unknown-pragmas -Wno-type-limits)

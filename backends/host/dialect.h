@@ -67,8 +67,12 @@ struct HostKernel {
     std::span<const RuntimeDefine> runtime;
 };
 
-/// Every kernel compiled into this program (generated).
+/// Kernels of the project by variant (generated).
 std::span<const std::span<const HostKernel>> host_kernels();
+
+/// Adds variants of a program's own kernels; cmake/kernels.cmake generates the call. They must live as long
+/// as the program. Not thread-safe.
+void add_host_kernels(std::span<const std::span<const HostKernel>> variants);
 
 template<class T>
 T argument_as(const Argument& argument) {

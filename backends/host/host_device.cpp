@@ -139,8 +139,13 @@ std::pair<std::string, Defines> split(const Defines& defines) {
     return {fixed, rest};
 }
 
+std::vector<std::span<const HostKernel>>& known_variants() {
+    static std::vector<std::span<const HostKernel>> all(host_kernels().begin(), host_kernels().end());
+    return all;
+}
+
 const HostKernel* find_row(std::string_view source, std::string_view entry, std::string_view fixed) {
-    for (const auto& variant : host_kernels())
+    for (const auto& variant : known_variants())
         for (const auto& row : variant)
             if (row.source == source && row.entry == entry && row.defines == fixed) return &row;
     return nullptr;
@@ -174,6 +179,10 @@ std::shared_ptr<Kernel::Impl> HostDevice::do_compile(const KernelSource& source,
 }
 
 } // namespace
+
+void add_host_kernels(std::span<const std::span<const HostKernel>> variants) {
+    known_variants().insert(known_variants().end(), variants.begin(), variants.end());
+}
 
 std::unique_ptr<Device> make_device() { return std::make_unique<HostDevice>(); }
 
