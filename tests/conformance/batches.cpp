@@ -140,13 +140,10 @@ TEST_P(Batches, ASessionWithoutMemoryCanBeUsedAgain) {
     const auto frame = scene.frame(0);
     const auto right = reference(scene, frame, {}, true, Method::brute_force);
     for (const auto* traversal : algorithms())
-        for (const std::string residency : {"resident", "published"}) {
-            SCOPED_TRACE(fmt::format("{} {}", traversal->name(), residency));
-            const auto session = prepare(*traversal, scene,
-                                         {{"residency", residency},
-                                          {"pair_capacity", "1"},
-                                          {"contact_capacity", "1"},
-                                          {"decision", "exact"}});
+        for (auto given : residencies_of(*traversal)) {
+            given.insert({{"pair_capacity", "1"}, {"contact_capacity", "1"}, {"decision", "exact"}});
+            SCOPED_TRACE(std::string(traversal->name()) + text(given));
+            const auto session = prepare(*traversal, scene, given);
             for (int i = 0; i < 2; ++i) {
                 const Limited limit(on, 0);
                 try {
@@ -163,8 +160,8 @@ TEST_P(Batches, ASessionWithoutMemoryCanBeUsedAgain) {
 TEST_P(Batches, AnAnswerOutlivesTheNextRuns) {
     const auto scene = crowd(74, 8, 0.8);
     for (const auto* traversal : algorithms())
-        for (const std::string residency : {"resident", "published"}) {
-            const auto session = prepare(*traversal, scene, {{"residency", residency}});
+        for (const auto& given : residencies_of(*traversal)) {
+            const auto session = prepare(*traversal, scene, given);
             std::vector<ReferenceAnswer> right;
             for (std::size_t i = 0; i < 2; ++i)
                 right.push_back(reference(scene, scene.frame(i), {}, true, Method::brute_force));
@@ -220,6 +217,7 @@ TEST_F(Split, PartsAddUp) {
 TEST_F(Split, ThePapersDataPathIsOneDevices) {
     const auto scene = crowd(76, 3, 0.9);
     for (const auto* traversal : algorithms()) {
+        if (!declares(*traversal, "residency")) continue;
         try {
             prepare(*traversal, scene, {{"residency", "published"}});
             FAIL();

@@ -38,29 +38,27 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
                            of("broad", {"sphere", "device"}),
                            of("body_pair_capacity", {"1", "65536"}),
                            of("pair_capacity", {"1", "100000"}),
-                           of("contact_capacity", {"1", "100000"})};
-    if (traversal.name() == "chunked") {
-        axes.push_back(of("leaves", {"2", "4", "32"}));
-        axes.push_back(of("seed_threshold", {"0", "1", "40", "1e7"}));
-        axes.push_back(of("seed_target", {"1000", "1048576"}));
-        axes.push_back(of("seed_capacity", {"1", "65536"}));
-        axes.push_back(of("root_test", {"yes", "no"}));
-        axes.push_back(of("schedule", {"group", "item"}));
-        axes.push_back(of("descent", {"larger", "both"}));
-    }
-    if (traversal.name() == "gproximity") {
-        axes.push_back(of("groups", {"8", "13"}));
-        axes.push_back(of("local_queue", {"4", "200"}));
-        axes.push_back(of("initial_items", {"1", "0"}));
-        axes.push_back(of("queue_capacity", {"4", "1000"}));
-        axes.push_back(of("idle_limit", {"1", "1000"}));
-        axes.push_back(of("batch", {"0", "5"}));
-        axes.push_back(of("upload", {"seeds", "queues"}));
-        axes.push_back(of("refill", {"yes", "no"}));
-        axes.push_back(of("full_exit", {"yes", "no"}));
-        axes.push_back(of("balance", {"parallel", "serial"}));
-        axes.push_back(of("balance_group_size", {"1", "32"}));
-    }
+                           of("contact_capacity", {"1", "100000"}),
+                           // What some have for themselves.
+                           of("leaves", {"2", "4", "32"}),
+                           of("seed_threshold", {"0", "1", "40", "1e7"}),
+                           of("seed_target", {"1000", "1048576"}),
+                           of("seed_capacity", {"1", "65536"}),
+                           of("root_test", {"yes", "no"}),
+                           of("schedule", {"group", "item"}),
+                           of("descent", {"larger", "both"}),
+                           of("groups", {"8", "13"}),
+                           of("local_queue", {"4", "200"}),
+                           of("initial_items", {"1", "0"}),
+                           of("queue_capacity", {"4", "1000"}),
+                           of("idle_limit", {"1", "1000"}),
+                           of("batch", {"0", "5"}),
+                           of("upload", {"seeds", "queues"}),
+                           of("refill", {"yes", "no"}),
+                           of("full_exit", {"yes", "no"}),
+                           of("balance", {"parallel", "serial"}),
+                           of("balance_group_size", {"1", "32"})};
+    std::erase_if(axes, [&](const Axis& axis) { return !declares(traversal, axis.front().begin()->first); });
     return axes;
 }
 
@@ -71,7 +69,7 @@ std::vector<SettingTexts> possible(const std::vector<SettingTexts>& rows) {
     for (const auto& row : rows) {
         auto possible = row;
         if (row.at("broad") == "device") {
-            possible["residency"] = "resident";
+            if (row.contains("residency")) possible["residency"] = "resident";
             if (row.contains("batch")) possible["batch"] = "0";
             if (row.contains("upload")) possible["upload"] = "seeds";
         }
@@ -134,6 +132,11 @@ protected:
 TEST_P(CoveringArray, Chunked) { cover("chunked", 100, 7); }
 // With queues of four items and a balance after each, every body pair takes thousands of launches.
 TEST_P(CoveringArray, Gproximity) { cover("gproximity", 200, 4); }
+TEST_P(CoveringArray, EveryOther) {
+    for (const auto* traversal : algorithms())
+        if (traversal->name() != "chunked" && traversal->name() != "gproximity")
+            cover(traversal->name(), 300, 7);
+}
 
 TEST_P(Conformance, EveryPreset) {
     auto& on = device(GetParam());

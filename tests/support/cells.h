@@ -38,6 +38,17 @@ inline std::string device_label(const std::string& device) {
     return name;
 }
 
+inline bool declares(const Traversal& traversal, std::string_view setting) {
+    const auto all = traversal.parameters();
+    return std::any_of(all.begin(), all.end(), [&](const auto* p) { return p->name == setting; });
+}
+
+/// Every data path that the algorithm has.
+inline std::vector<SettingTexts> residencies_of(const Traversal& traversal) {
+    if (!declares(traversal, "residency")) return {{}};
+    return {{{"residency", "resident"}}, {{"residency", "published"}}};
+}
+
 /// Values of one setting (or of several at once, written "k=8,axes=coordinate").
 using Axis = std::vector<SettingTexts>;
 
