@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+// An algorithm of the tests with a hierarchy and a walk of its own: this file, lbvh.cl, and the line at the
+// end that lists it.
+#include "algorithms/parameters/table.h"
+#include "algorithms/pipeline.h"
+#include "algorithms/sources.h"
+#include "backends/upload.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace tandem {
+
+namespace {
+
+constexpr std::size_t status_leaf_hits = STATUS_OWN; ///< STATUS_LEAF_HITS of lbvh.cl
+
+constexpr Counter leaf_hits{"leaf_hits", "candidate pairs", "leaves that queries reached"};
+constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds, leaf_hits};
+
+const std::vector<Preset> all_presets{
+    {"resident", "everything resident, body pairs included", {parameters::broad(Broad::device)}}};
+
+const KernelSource& source() { return kernel_source("tests/algorithms/lbvh.cl"); }
+
+/// Which nodes a mesh's trees have, as lbvh.cl numbers them.
+struct Topology {
+    std::vector<std::uint32_t> children; ///< two an inner node
+    std::vector<std::uint32_t> depths;   ///< the first inner node of each depth, and their number
+};
+
+/// Halves the Morton order until one item is left: no path is longer than ceil(log2 items).
+Topology halved(std::uint32_t items) {
+    struct Range {
+        std::uint32_t first, end;
+    };
+    Topology tree;
+    const auto inner = items - 1;
+    std::uint32_t numbered = 1;
+    std::vector<Range> row; // the inner nodes of a depth
+    if (items > 1) row.push_back({0, items});
+    while (!row.empty()) {
+        tree.depths.push_back(static_cast<std::uint32_t>(tree.children.size() / 2));
+        std::vector<Range> below;
+        for (const auto& [first, end] : row) {
+            const auto middle = first + (end - first) / 2;
+            for (const auto& half : {Range{first, middle}, Range{middle, end}}) {
+                const bool is_leaf = half.end - half.first == 1;
+                tree.children.push_back(is_leaf ? inner + half.first : numbered++);
+                if (!is_leaf) below.push_back(half);
+            }
+        }
+        row = std::move(below);
+    }
+    tree.depths.push_back(inner);
+    return tree;
+}
+
+/// One tree a body; bodies with one mesh share its rows of children.
+class StoredTrees final : public Hierarchy {
+public:
+    StoredTrees(const Bodies& bodies, std::uint32_t group_size);
+
+    const Bodies& bodies() const { return bodies_; }
+    const Buffer& tree_table() const { return tree_table_; } ///< TREE_WORDS words a body
+    const Buffer& children() const { return children_; }
+    std::uint32_t most_items() const { return most_items_; } ///< of a body
+
+private:
+    /// A row of lbvh.cl.
+    struct Tree {
+        std::uint32_t nodes = 0, children = 0, depths = 0, depth_count = 0;
+    };
+
+    void do_refit(const Frame& frame, bool all) override;
+    const Buffer& do_volumes() const override { return volumes_; }
+    const Buffer& do_nodes() const override { return nodes_; }
+    std::size_t do_bytes() const override;
+
+    void lay_out();
+    void upload_order();
+    void leave_out(const Frame& frame);
+
+    const Bodies& bodies_;
+    Device& device_;
+    std::uint32_t group_size_;
+    std::uint32_t most_items_ = 1;
+    std::uint32_t moving_bodies_ = 0; ///< how many in body_order_ are not fixed; they come first
+    std::uint64_t slots_ = 0;
+    bool fresh_ = true; ///< fixed bodies need a refit: there was no frame yet, or it skipped others
+    std::vector<Tree> trees_;
+    std::vector<std::vector<std::uint32_t>> skipped_; ///< by the last frame
+    Buffer nodes_, volumes_, tree_table_, children_, depths_, skipped_flags_, body_order_;
+    Kernel kernel_;
+};
+
+StoredTrees::StoredTrees(const Bodies& bodies, std::uint32_t group_size)
+    : bodies_(bodies), device_(bodies.device()), group_size_(group_size) {
+    lay_out();
+    upload_order();
+    const auto node = static_cast<std::uint64_t>(bodies.geometry().k) * real_bytes(bodies.geometry());
+    nodes_ = device_.allocate(slots_ * node, "nodes");
+    volumes_ = device_.allocate(bodies.count() * node, "volumes");
+    skipped_flags_ = device_.allocate(slots_ * 4, "skipped tetrahedra");
+    device_.clear(skipped_flags_, slots_ * 4);
+    kernel_ = device_.compile(source(), "refit_trees", geometry_defines(bodies.geometry(), group_size));
+}
+
+/// Uploads the rows of trees, and those of children and depths, which belong to meshes.
+void StoredTrees::lay_out() {
+    std::vector<Tree> of_mesh;
+    std::vector<std::uint32_t> children, depths;
+    for (const auto& mesh : bodies_.scene().meshes) {
+        const auto tree = halved(static_cast<std::uint32_t>(mesh.tetrahedra.size()));
+        of_mesh.push_back({0, static_cast<std::uint32_t>(children.size() / 2),
+                           static_cast<std::uint32_t>(depths.size()),
+                           static_cast<std::uint32_t>(tree.depths.size() - 1)});
+        children.insert(children.end(), tree.children.begin(), tree.children.end());
+        depths.insert(depths.end(), tree.depths.begin(), tree.depths.end());
+    }
+    for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
+        const auto items = bodies_.row(body).tetrahedron_count;
+        trees_.push_back(of_mesh[bodies_.scene().bodies[body].mesh]);
+        trees_.back().nodes = static_cast<std::uint32_t>(slots_);
+        slots_ += 2 * std::uint64_t{items} - 1;
+        most_items_ = std::max(most_items_, items);
+    }
+    if (slots_ > std::numeric_limits<std::uint32_t>::max())
+        throw DeviceError("scene: more than 2^32 nodes; leave bodies out");
+    tree_table_ = uploaded(device_, bytes_of(trees_), "trees");
+    children_ = uploaded(device_, bytes_of(children), "children");
+    depths_ = uploaded(device_, bytes_of(depths), "depths");
+}
+
+void StoredTrees::upload_order() {
+    std::vector<std::uint32_t> order(bodies_.count());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto moving = [&](std::uint32_t body) { return !bodies_.scene().bodies[body].fixed; };
+    moving_bodies_ =
+        static_cast<std::uint32_t>(std::stable_partition(order.begin(), order.end(), moving) - order.begin());
+    body_order_ = uploaded(device_, bytes_of(order), "bodies to refit");
+}
+
+std::size_t StoredTrees::do_bytes() const {
+    std::size_t sum = 0;
+    for (const auto* buffer :
+         {&nodes_, &volumes_, &tree_table_, &children_, &depths_, &skipped_flags_, &body_order_})
+        sum += buffer->bytes();
+    return sum;
+}
+
+/// Flags the leaves that the frame skips, when they are others than those of the frame before.
+void StoredTrees::leave_out(const Frame& frame) {
+    if (frame.skipped == skipped_) return;
+    std::vector<std::uint32_t> flags(slots_);
+    {
+        const HostWork work(device_, Stage::preprocess, "skipped tetrahedra");
+        for (std::size_t body = 0; body < frame.skipped.size(); ++body) {
+            const auto positions = inverse(bodies_.mesh(body).ids);
+            const auto first_leaf = trees_[body].nodes + positions.size() - 1;
+            for (const auto tetrahedron : frame.skipped[body]) flags[first_leaf + positions[tetrahedron]] = 1;
+        }
+    }
+    fresh_ = true;
+    const StageScope scope(device_, Stage::write);
+    device_.upload(skipped_flags_, bytes_of(flags));
+    skipped_ = frame.skipped;
+}
+
+void StoredTrees::do_refit(const Frame& frame, bool all) {
+    leave_out(frame);
+    const auto bodies = all || fresh_ ? bodies_.count() : moving_bodies_;
+    if (bodies == 0) return;
+    const StageScope scope(device_, Stage::refit);
+    const std::array<Argument, 11> arguments{nodes_,
+                                             volumes_,
+                                             tree_table_,
+                                             children_,
+                                             depths_,
+                                             skipped_flags_,
+                                             body_order_,
+                                             bodies_.row_table(),
+                                             bodies_.poses(),
+                                             bodies_.tetrahedra(),
+                                             bodies_.vertices()};
+    device_.launch(kernel_, {bodies, group_size_}, arguments);
+    fresh_ = false;
+}
+
+/// A query of body b's tree for every tetrahedron of body a.
+class LeafQueries final : public Walker {
+public:
+    LeafQueries(const StoredTrees& trees, LaunchShape shape) : trees_(trees), shape_(shape) {}
+
+private:
+    void do_compile(const WalkBuild& build) override;
+    void do_launch(const WalkTask& task) override;
+    bool do_grow(const Status&) override { return false; }
+    void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
+
+    const StoredTrees& trees_;
+    LaunchShape shape_;
+    Kernel kernel_;
+};
+
+void LeafQueries::do_compile(const WalkBuild& build) {
+    auto defines = geometry_defines(trees_.bodies().geometry(), shape_.group_size);
+    build.add_to(defines);
+    kernel_ = trees_.bodies().device().compile(source(), "query_leaves", defines);
+}
+
+void LeafQueries::do_launch(const WalkTask& task) {
+    const auto& bodies = trees_.bodies();
+    const StageScope scope(bodies.device(), Stage::traverse);
+    const auto blocks = (trees_.most_items() + shape_.group_size - 1) / shape_.group_size;
+    const std::array<Argument, 11> arguments{trees_.nodes(),
+                                             trees_.tree_table(),
+                                             trees_.children(),
+                                             bodies.row_table(),
+                                             bodies.ids(),
+                                             task.body_pairs,
+                                             task.pair_room,
+                                             blocks,
+                                             task.answer.pairs.buffer(),
+                                             task.answer.pairs.capacity(),
+                                             task.status.buffer()};
+    bodies.device().launch(kernel_, {shape_.groups, shape_.group_size}, arguments);
+}
+
+void LeafQueries::do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
+    work[counters::bvtt_nodes.name] += status.counter(STATUS_BVTT_NODES);
+    work[counters::seeds.name] += status.counter(STATUS_SEEDS);
+    work[leaf_hits.name] += status.counter(status_leaf_hits);
+}
+
+class Lbvh : public Traversal {
+public:
+    std::string_view name() const override { return "lbvh"; }
+    std::string_view summary() const override {
+        return "a binary tree per body over the Morton order, halved, with stored children; each tetrahedron "
+               "of one body queries the other's tree";
+    }
+    std::span<const Parameter* const> parameters() const override {
+        static const auto all = pipeline_parameters({}, false);
+        return all;
+    }
+    std::span<const Preset> presets() const override { return all_presets; }
+    std::span<const Counter> counters() const override { return all_counters; }
+
+private:
+    void do_check(const Settings&, const DeviceInfo&) const override {}
+
+    Steps do_build(const Ground& ground) const override {
+        auto trees = std::make_unique<StoredTrees>(ground.bodies, ground.shape.group_size);
+        auto queries = std::make_unique<LeafQueries>(*trees, ground.shape);
+        return {std::move(trees), std::move(queries)};
+    }
+};
+
+const Lbvh lbvh;
+
+} // namespace
+
+[[maybe_unused]] static const bool listed = (add_algorithm(lbvh), true);
+
+} // namespace tandem

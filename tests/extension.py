@@ -1,0 +1,59 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""extension.py PROGRAM SOURCE: a program with an algorithm of its own, lbvh: what is listed, run, recorded and checked."""
+import json
+import sys
+import unittest
+
+from program import Case, tandem
+
+SCENE = "pile:bodies=4,frames=1"
+OWN = "leaf_hits"
+
+
+class Extension(Case):
+    def test_it_is_listed(self):
+        status, out, errors = tandem("algorithms")
+        self.assertEqual((status, errors), (0, []))
+        own = out[out.index("\nlbvh: "):]
+        for word in ("stored children", "resident", "rounding", OWN, "[candidate pairs]"):
+            self.assertIn(word, own)
+        status, out, errors = tandem("algorithms", "--json")
+        self.assertEqual((status, errors), (0, []))
+        entries = {entry["name"]: entry for entry in json.loads(out)}
+        self.assertEqual(list(entries), ["chunked", "gproximity", "lbvh"])
+        self.assertEqual([counter["name"] for counter in entries["lbvh"]["counters"]], ["bvtt_nodes", "seeds", OWN])
+        self.assertNotIn("residency", [parameter["name"] for parameter in entries["lbvh"]["parameters"]])
+        self.assertNotIn(OWN, json.dumps(entries["chunked"]))
+
+    def test_it_is_run_and_recorded(self):
+        out = self.work / "run.jsonl"
+        status, text, errors = tandem("run", SCENE, "--algorithm", "chunked,lbvh", "--device", "host", "--repeat", 1, "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual(text.count(": right: "), 2, text)
+        self.assertRegex(text, r"(?m)^lbvh resident +host +\d")
+        chunked, lbvh = self.records(out)
+        self.assertEqual([record["algorithm"] for record in (chunked, lbvh)], ["chunked", "lbvh"])
+        for name in ("digest", "contact_digest"):
+            self.assertEqual(lbvh["agreement"][name], chunked["agreement"][name])
+        counters = lbvh["work"]["counters"]
+        self.assertEqual(set(counters), {"bvtt_nodes", "seeds", OWN})
+        self.assertNotIn(OWN, chunked["work"]["counters"])
+        # A leaf is reached when two leaves overlap: once a candidate pair.
+        self.assertGreater(counters[OWN], 0)
+        self.assertEqual(counters[OWN], lbvh["agreement"]["digest"]["count"])
+        self.assertGreater(counters["bvtt_nodes"], counters["seeds"])
+
+    def test_it_is_checked(self):
+        devices = ("host", "opencl:0")
+        status, out, errors = tandem("check", SCENE, "--device", ",".join(devices))
+        self.assertEqual((status, errors), (0, []), out)
+        rows = [line.split() for line in out.splitlines() if line.split()[:1] and line.split()[0] in devices]
+        own = [row for row in rows if row[1] == "lbvh"]
+        self.assertEqual([row[:3] for row in own], [[device, "lbvh", "resident"] for device in devices], out)
+        self.assertEqual({tuple(row[4:6]) for row in rows}, {("0", "0")}, out)
+        self.assertIn("\nall agree with the reference\n", out)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)
