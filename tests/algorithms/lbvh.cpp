@@ -78,7 +78,8 @@ private:
     const Buffer& do_nodes() const override { return nodes_; }
     std::size_t do_bytes() const override;
 
-    void lay_out();
+    std::vector<Tree> lay_out_meshes();
+    void lay_out_bodies(const std::vector<Tree>& of_mesh);
     void upload_order();
     void leave_out(const Frame& frame);
 
@@ -97,18 +98,19 @@ private:
 
 StoredTrees::StoredTrees(const Bodies& bodies, std::uint32_t group_size)
     : bodies_(bodies), device_(bodies.device()), group_size_(group_size) {
-    lay_out();
+    lay_out_bodies(lay_out_meshes());
     upload_order();
     const auto node = static_cast<std::uint64_t>(bodies.geometry().k) * real_bytes(bodies.geometry());
     nodes_ = device_.allocate(slots_ * node, "nodes");
     volumes_ = device_.allocate(bodies.count() * node, "volumes");
     skipped_flags_ = device_.allocate(slots_ * 4, "skipped tetrahedra");
+    const StageScope scope(device_, Stage::write);
     device_.clear(skipped_flags_, slots_ * 4);
     kernel_ = device_.compile(source(), "refit_trees", geometry_defines(bodies.geometry(), group_size));
 }
 
-/// Uploads the rows of trees, and those of children and depths, which belong to meshes.
-void StoredTrees::lay_out() {
+/// Uploads the rows of children and depths, which belong to meshes. Returns where those of each mesh are.
+std::vector<StoredTrees::Tree> StoredTrees::lay_out_meshes() {
     std::vector<Tree> of_mesh;
     std::vector<std::uint32_t> children, depths;
     for (const auto& mesh : bodies_.scene().meshes) {
@@ -119,6 +121,12 @@ void StoredTrees::lay_out() {
         children.insert(children.end(), tree.children.begin(), tree.children.end());
         depths.insert(depths.end(), tree.depths.begin(), tree.depths.end());
     }
+    children_ = uploaded(device_, bytes_of(children), "children");
+    depths_ = uploaded(device_, bytes_of(depths), "depths");
+    return of_mesh;
+}
+
+void StoredTrees::lay_out_bodies(const std::vector<Tree>& of_mesh) {
     for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
         const auto items = bodies_.row(body).tetrahedron_count;
         trees_.push_back(of_mesh[bodies_.scene().bodies[body].mesh]);
@@ -129,8 +137,6 @@ void StoredTrees::lay_out() {
     if (slots_ > std::numeric_limits<std::uint32_t>::max())
         throw DeviceError("scene: more than 2^32 nodes; leave bodies out");
     tree_table_ = uploaded(device_, bytes_of(trees_), "trees");
-    children_ = uploaded(device_, bytes_of(children), "children");
-    depths_ = uploaded(device_, bytes_of(depths), "depths");
 }
 
 void StoredTrees::upload_order() {
