@@ -170,15 +170,16 @@ KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* trees, 
     LOCAL_ARRAY(uint, shared, 4);
     GLOBAL uint* own = items + (ulong)GROUP_ID * queue_capacity * ITEM_WORDS;
     Tally tally = empty_tally();
-    if (LOCAL_ID == 0u) take_items(shared, counts[GROUP_ID]);
-    BARRIER;
-    if (shared[STOP]
-        != 0u) { // nothing to begin with: the whole group leaves, so that its loop runs once at least
-        if (LOCAL_ID == 0u) ATOMIC_ADD(idle, 1u);
-        return;
+    uint idles =
+        0; // of work-item 0: the group has nothing to begin with, and others need not wait for its end
+    if (LOCAL_ID == 0u) {
+        take_items(shared, counts[GROUP_ID]);
+        idles = shared[STOP];
+        if (idles != 0u) ATOMIC_ADD(idle, 1u);
     }
+    BARRIER;
     uint stop;
-    do {
+    do { // once at least, as loops with barriers have to; a group without items stops at its end
         const uint size = shared[SIZE];
         const uint stored = shared[STORED];
         for (uint i = LOCAL_ID; i < shared[TAKE] * ITEM_WORDS; i += (uint)GROUP_SIZE)
@@ -210,7 +211,7 @@ KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* trees, 
         own[(ulong)shared[STORED] * ITEM_WORDS + i] = queue[i];
     if (LOCAL_ID == 0u) {
         counts[GROUP_ID] = shared[STORED] + shared[SIZE];
-        ATOMIC_ADD(idle, 1u);
+        if (idles == 0u) ATOMIC_ADD(idle, 1u);
     }
     flush(&tally, status);
 }
