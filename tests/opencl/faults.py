@@ -32,11 +32,16 @@ class Faults(unittest.TestCase):
         self.assertEqual(run(self.folder, SHIM_COUNT=count), (0, []))
         calls = int(count.read_text())
         self.assertGreater(calls, 40)
+        survived = 0
         for call in range(1, calls):
             with self.subTest(call=call):
                 status, errors = run(self.folder, SHIM_CALL=call)
+                if (status, errors) == (0, []): # a buffer that grows: it asked again, for just what is needed
+                    survived += 1
+                    continue
                 self.assertEqual((status, len(errors)), (3, 1), errors)
                 self.assertRegex(errors[0], "^tandem: opencl:0.*(failed with code -5, out of resources|does not compile)")
+        self.assertLessEqual(survived, 2)
         # The last is the wait of the device's end: the work is done, and what may be read still is not freed.
         self.assertEqual(run(self.folder, SHIM_CALL=calls), (0, []))
 

@@ -69,6 +69,7 @@ TEST(Settings, DecisionsWithCertaintyNeedDouble) {
     DeviceInfo info;
     info.id = "opencl:9";
     info.max_group_size = 256;
+    info.local_bytes = 32768;
     info.has_double = false;
     for (const std::string decision : {"recheck", "fp64", "exact"})
         EXPECT_EQ(message_of([&] {
