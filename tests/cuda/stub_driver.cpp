@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <vector>
 
 using namespace tandem::cuda;
 
@@ -26,21 +27,23 @@ std::map<DevicePointer, std::size_t> sizes;
 constexpr Result invalid_context = 201;
 constexpr Result invalid_handle = 400;
 
-char primary; ///< stands for the device's primary context
-thread_local Context current = nullptr;
+char primary;                            ///< stands for the device's primary context
+thread_local std::vector<Context> stack; ///< a thread's contexts, the current one last
+
+Context current() { return stack.empty() ? nullptr : stack.back(); }
 std::map<Stream, Context> streams; ///< of each that was made, its context
 std::map<std::pair<Stream, Context>, unsigned long> calls;
 unsigned long waits = 0;
 
 /// Of a call that needs a context.
-Result in_context() { return current != nullptr ? 0 : invalid_context; }
+Result in_context() { return current() != nullptr ? 0 : invalid_context; }
 
 /// Of a call on a stream.
 Result on(Stream stream) {
-    ++calls[{stream, current}];
-    if (current == nullptr) return invalid_context;
+    ++calls[{stream, current()}];
+    if (current() == nullptr) return invalid_context;
     const auto found = streams.find(stream);
-    return stream == nullptr || (found != streams.end() && found->second == current) ? 0 : invalid_handle;
+    return stream == nullptr || (found != streams.end() && found->second == current()) ? 0 : invalid_handle;
 }
 
 std::size_t memory() { return static_cast<std::size_t>(number("STUB_MEMORY", 1L << 32)); }
@@ -108,20 +111,29 @@ Result cuDevicePrimaryCtxRetain(Context* context, DeviceHandle) {
 }
 Result cuDevicePrimaryCtxRelease_v2(DeviceHandle) { return 0; }
 Result cuCtxCreate_v2(Context* context, unsigned, DeviceHandle) {
-    *context = current = reinterpret_cast<Context>(new char);
+    stack.push_back(reinterpret_cast<Context>(new char));
+    *context = stack.back();
     return 0;
 }
 Result cuCtxDestroy_v2(Context context) {
-    if (current == context) current = nullptr;
+    std::erase(stack, context);
     delete reinterpret_cast<char*>(context);
     return 0;
 }
 Result cuCtxGetCurrent(Context* context) {
-    *context = current;
+    *context = current();
     return 0;
 }
 Result cuCtxSetCurrent(Context context) {
-    current = context;
+    // As the driver has it: the top of the stack is replaced, and with none popped.
+    if (!stack.empty()) stack.pop_back();
+    if (context != nullptr) stack.push_back(context);
+    return 0;
+}
+Result cuCtxPopCurrent_v2(Context* context) {
+    *context = current();
+    if (stack.empty()) return invalid_context;
+    stack.pop_back();
     return 0;
 }
 Result cuCtxGetDevice(DeviceHandle* device) {
@@ -134,7 +146,7 @@ Result cuMemGetInfo_v2(std::size_t* free, std::size_t* total) {
     return in_context();
 }
 Result cuMemAlloc_v2(DevicePointer* pointer, std::size_t bytes) {
-    if (current == nullptr) return invalid_context;
+    if (current() == nullptr) return invalid_context;
     if (in_use + bytes > memory()) return out_of_memory;
     *pointer = reinterpret_cast<DevicePointer>(std::calloc(1, bytes));
     sizes[*pointer] = bytes;
@@ -142,7 +154,7 @@ Result cuMemAlloc_v2(DevicePointer* pointer, std::size_t bytes) {
     return 0;
 }
 Result cuMemFree_v2(DevicePointer pointer) {
-    if (current == nullptr) return invalid_context;
+    if (current() == nullptr) return invalid_context;
     in_use -= sizes.at(pointer);
     sizes.erase(pointer);
     std::free(reinterpret_cast<void*>(pointer));
@@ -170,7 +182,7 @@ Result cuMemsetD8Async(DevicePointer to, unsigned char value, std::size_t bytes,
 }
 Result cuStreamCreate(Stream* stream, unsigned) {
     *stream = reinterpret_cast<Stream>(new char);
-    streams[*stream] = current;
+    streams[*stream] = current();
     return in_context();
 }
 Result cuStreamDestroy_v2(Stream stream) {
@@ -183,7 +195,7 @@ Result cuStreamSynchronize(Stream stream) {
     return launched && number("STUB_FAULT", 0) != 0 ? 700 : on(stream);
 }
 Result cuEventCreate(EventHandle* event, unsigned) {
-    return current != nullptr ? make(event) : invalid_context;
+    return current() != nullptr ? make(event) : invalid_context;
 }
 Result cuEventDestroy_v2(EventHandle) { return in_context(); }
 Result cuEventRecord(EventHandle, Stream stream) { return on(stream); }
@@ -192,7 +204,7 @@ Result cuEventElapsedTime(float* ms, EventHandle, EventHandle) {
     return in_context();
 }
 Result cuModuleLoadData(Module* module, const void*) {
-    return current != nullptr ? make(module) : invalid_context;
+    return current() != nullptr ? make(module) : invalid_context;
 }
 Result cuModuleUnload(Module) { return in_context(); }
 Result cuModuleGetFunction(Function* function, Module, const char*) { return make(function); }

@@ -90,6 +90,18 @@ bool arrived(Handle context, Handle stream) {
     return here > 50 && here == all();
 }
 
+/// A context that is not current: the driver makes a new one current, on top of those before.
+bool create(Handle& context) {
+    Handle popped = nullptr;
+    return call("cuCtxCreate_v2", &context, 0u, 0) && call("cuCtxPopCurrent_v2", &popped);
+}
+
+/// A stream of the context's own.
+bool create_stream(Handle context, Handle& stream) {
+    return call("cuCtxSetCurrent", context) && call("cuStreamCreate", &stream, 1u)
+           && call("cuCtxSetCurrent", Handle{});
+}
+
 } // namespace
 
 int main() {
@@ -97,8 +109,7 @@ int main() {
     Handle other = nullptr;
     Handle stream = nullptr;
     if (!check(library() != nullptr, "no driver (looked for libcuda.so.1)")) return 77;
-    if (!call("cuInit", 0u) || !call("cuCtxCreate_v2", &other, 0u, 0)
-        || !call("cuCtxCreate_v2", &context, 0u, 0) || !call("cuStreamCreate", &stream, 1u))
+    if (!call("cuInit", 0u) || !create(other) || !create(context) || !create_stream(context, stream))
         return 1;
     bool good = true;
     for (auto* current : {context, other, Handle{}}) good &= run(context, stream, current);

@@ -9,7 +9,16 @@ here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cmake --install "$build" --prefix "$work/prefix" >/dev/null
-cmake -S "$here" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
+# Libraries are where the build found them, which may be nowhere that a stranger would look.
+given=()
+found() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
+for name in CMAKE_BUILD_RPATH CMAKE_INCLUDE_PATH CMAKE_LIBRARY_PATH OpenCL_INCLUDE_DIR OpenCL_LIBRARY ZLIB_INCLUDE_DIR \
+  ZLIB_LIBRARY; do
+  value=$(found "$name")
+  if [ -n "$value" ]; then given+=("-D$name=$value"); fi
+done
+cmake -S "$here" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix;$(found CMAKE_PREFIX_PATH)" "${given[@]}" \
+  >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }
 cmake --build "$work/consumer" >"$work/log" || { cat "$work/log" >&2; exit 1; }
 "$work/prefix/bin/tandem" scenes >/dev/null
 
