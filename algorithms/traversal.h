@@ -77,6 +77,7 @@ public:
     virtual std::string_view name() const = 0;
     virtual std::string_view summary() const = 0;
     virtual std::span<const Parameter* const> parameters() const = 0;
+    /// One at least; the first is what tests and tables take where none is named.
     virtual std::span<const Preset> presets() const = 0;
     /// What its walks count.
     virtual std::span<const Counter> counters() const = 0;

@@ -170,8 +170,8 @@ KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* trees, 
     LOCAL_ARRAY(uint, shared, 4);
     GLOBAL uint* own = items + (ulong)GROUP_ID * queue_capacity * ITEM_WORDS;
     Tally tally = empty_tally();
-    uint idles =
-        0; // of work-item 0: the group has nothing to begin with, and others need not wait for its end
+    // Of work-item 0: the group has nothing to begin with, and others need not wait for its end.
+    uint idles = 0;
     if (LOCAL_ID == 0u) {
         take_items(shared, counts[GROUP_ID]);
         idles = shared[STOP];

@@ -16,6 +16,15 @@ using namespace testing_support;
 
 class BroadSessions : public testing::TestWithParam<std::string> {};
 
+bool refused(const Traversal& traversal, std::span<Device* const> devices, const Settings& settings) {
+    try {
+        traversal.check(devices, settings);
+        return false;
+    } catch (const InputError&) {
+        return true;
+    }
+}
+
 /// Every preset with every broad phase gives the answer of the reference, or says why it cannot.
 TEST_P(BroadSessions, EveryPresetWithEveryBroadPhase) {
     auto& on = device(GetParam());
@@ -29,8 +38,10 @@ TEST_P(BroadSessions, EveryPresetWithEveryBroadPhase) {
                 const auto settings = resolve(traversal->parameters(), p.values, given, traversal->name());
                 const std::array devices{&on};
                 SCOPED_TRACE(fmt::format("{} {}{}", traversal->name(), p.name, text(given)));
-                if (broad == "device" && p.name != "resident" && p.name != "fair") {
-                    EXPECT_THROW(traversal->check(devices, settings), InputError);
+                if (refused(*traversal, devices, settings)) {
+                    // Only where the host makes what a launch starts from, and for the first preset of none.
+                    EXPECT_EQ(broad, "device");
+                    EXPECT_NE(p.name, traversal->presets().front().name);
                     continue;
                 }
                 const auto session = traversal->prepare(devices, scene, settings);

@@ -223,6 +223,7 @@ TEST_P(Skipping, AgreesWithTheTruth) {
             const auto session = traversal->prepare(
                 devices, scene, resolve(traversal->parameters(), {}, {}, traversal->name()));
             const auto pairs = run_among_all(*session, scene, frame).download();
+            for (const auto& pair : pairs) EXPECT_FALSE(is_skipped(frame, pair)) << traversal->name();
             const auto errors = pair_errors(truth, pairs);
             EXPECT_EQ(errors.missed_touching + errors.missed_overlapping, 0u) << traversal->name();
             EXPECT_EQ(errors.invalid, 0u) << traversal->name();

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// A session that runs for days: the memory of the process stays what it was, frame after frame.
+#include "tests/support/cells.h"
+#include "tests/support/scenes.h"
+
+#include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+/// Bytes of memory that the process holds.
+std::int64_t resident_bytes() {
+    std::int64_t size = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> size >> resident;
+    return resident * sysconf(_SC_PAGESIZE);
+}
+
+/// Frames of bodies that meet and part, every result asked and dropped, every hundredth kept for a while, as
+/// a simulator would. The first tenth may fill caches; what comes then may not hold more than a page for
+/// every thousand frames.
+void expect_flat_memory(const std::string& on, std::size_t frames) {
+    const auto scene = crowd(3, 4, 0.6);
+    for (const auto* traversal : algorithms()) {
+        const std::array devices{&device(on)};
+        const auto settings =
+            resolve(traversal->parameters(), {}, {{"pair_capacity", "4096"}, {"contact_capacity", "4096"}},
+                    traversal->name());
+        const auto session = traversal->prepare(devices, scene, settings);
+        const std::vector<Frame> poses{scene.frame(0), scene.frame(1)};
+        FrameResult kept;
+        std::uint64_t pairs = 0;
+        std::int64_t before = 0;
+        for (std::size_t i = 0; i < frames; ++i) {
+            if (i == frames / 10) before = resident_bytes();
+            auto result = session->run(poses[i % 2]);
+            pairs += result.count;
+            if (i % 100 == 0) kept = std::move(result);
+        }
+        EXPECT_GT(pairs, frames) << traversal->name();
+        EXPECT_EQ(kept.digest().count, kept.count) << traversal->name();
+        EXPECT_LT(resident_bytes() - before, static_cast<std::int64_t>(frames) / 1000 * 4096 + (1 << 18))
+            << traversal->name() << " on " << on;
+    }
+}
+
+TEST(Endurance, TenThousandFramesLeaveMemoryFlat) { expect_flat_memory("host", 10000); }
+
+/// On every device.
+TEST(EnduranceLong, AHundredThousandFramesLeaveMemoryFlat) {
+    for (const auto& on : device_names()) expect_flat_memory(on, 100000);
+}
+
+} // namespace
+} // namespace tandem
