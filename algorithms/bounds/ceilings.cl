@@ -36,7 +36,7 @@ KERNEL void do_nothing(GLOBAL uint* out) {
     if (GLOBAL_ID == 0xffffffffu) out[0] = 1u;
 }
 
-// rounds * SLABS closed overlap tests of K comparisons each, a work-item. The slabs of b rotate so that no
+// rounds * DIRECTIONS closed overlap tests of K comparisons each, a work-item. The slabs of b rotate so that no
 // comparison repeats, and grow a little after each turn so that no turn repeats.
 KERNEL void test_overlaps(GLOBAL const real* nodes, GLOBAL uint* counts, uint rounds, uint turns) {
     real a[K];
@@ -45,11 +45,11 @@ KERNEL void test_overlaps(GLOBAL const real* nodes, GLOBAL uint* counts, uint ro
     for (int i = 0; i < K; ++i) b[i] = nodes[K + i] + (real)(GLOBAL_ID & 7u);
     uint found = 0u;
     for (uint round = 0; round < rounds; ++round) {
-        UNROLL for (int turn = 0; turn < SLABS; ++turn) {
+        UNROLL for (int turn = 0; turn < DIRECTIONS; ++turn) {
             int apart = 0;
-            UNROLL for (int axis = 0; axis < SLABS; ++axis) {
-                const int other = (axis + turn) % SLABS;
-                apart |= (a[axis] > b[other + SLABS]) | (b[other] > a[axis + SLABS]);
+            UNROLL for (int axis = 0; axis < DIRECTIONS; ++axis) {
+                const int other = (axis + turn) % DIRECTIONS;
+                apart |= (a[axis] > b[other + DIRECTIONS]) | (b[other] > a[axis + DIRECTIONS]);
             }
             found += apart == 0 ? 1u : 0u;
         }

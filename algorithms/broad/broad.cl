@@ -7,40 +7,40 @@
 #include "algorithms/answer/status.clh"
 #include "algorithms/bounds/volume.clh"
 
-// A volume here is SLABS rows {lower, upper}.
+// A volume here is DIRECTIONS rows {lower, upper}.
 
 // Copies the root volumes of a tile into the order of bodies and makes their union. A work-group a tile.
 KERNEL void bound_tiles(GLOBAL const real* volumes, GLOBAL const uint* order, uint body_count,
                         GLOBAL RealPair* roots, GLOBAL RealPair* unions) {
-    LOCAL_ARRAY(RealPair, tile, BROAD_TILE * SLABS);
+    LOCAL_ARRAY(RealPair, tile, BROAD_TILE * DIRECTIONS);
     const uint first = GROUP_ID * BROAD_TILE;
     const uint count = body_count - first < BROAD_TILE ? body_count - first : BROAD_TILE;
-    for (uint i = LOCAL_ID; i < count * SLABS; i += GROUP_SIZE) {
-        GLOBAL const real* root = volume_of(volumes, order[first + i / SLABS]);
+    for (uint i = LOCAL_ID; i < count * DIRECTIONS; i += GROUP_SIZE) {
+        GLOBAL const real* root = volume_of(volumes, order[first + i / DIRECTIONS]);
         RealPair slab;
-        slab.x = root[i % SLABS];
-        slab.y = root[i % SLABS + SLABS];
+        slab.x = root[i % DIRECTIONS];
+        slab.y = root[i % DIRECTIONS + DIRECTIONS];
         tile[i] = slab;
-        roots[(ulong)first * SLABS + i] = slab;
+        roots[(ulong)first * DIRECTIONS + i] = slab;
     }
     BARRIER;
-    for (uint axis = LOCAL_ID; axis < SLABS; axis += GROUP_SIZE) {
+    for (uint axis = LOCAL_ID; axis < DIRECTIONS; axis += GROUP_SIZE) {
         RealPair all = tile[axis];
         for (uint i = 1; i < count; ++i) {
-            const RealPair own = tile[i * SLABS + axis];
+            const RealPair own = tile[i * DIRECTIONS + axis];
             all.x = MINIMUM(own.x, all.x);
             all.y = MAXIMUM(own.y, all.y);
         }
-        unions[(ulong)GROUP_ID * SLABS + axis] = all;
+        unions[(ulong)GROUP_ID * DIRECTIONS + axis] = all;
     }
 }
 
 // Whether pairs of these tiles are to be looked at; each pair of tiles is, once.
 DEVICE int tiles_overlap(GLOBAL const RealPair* unions, uint row, uint column) {
-    GLOBAL const RealPair* a = unions + (ulong)row * SLABS;
-    GLOBAL const RealPair* b = unions + (ulong)column * SLABS;
+    GLOBAL const RealPair* a = unions + (ulong)row * DIRECTIONS;
+    GLOBAL const RealPair* b = unions + (ulong)column * DIRECTIONS;
     if (column < row) return 0;
-    for (int axis = 0; axis < SLABS; ++axis)
+    for (int axis = 0; axis < DIRECTIONS; ++axis)
         if (starts_beyond(a[axis].x, b[axis].y) || starts_beyond(b[axis].x, a[axis].y)) return 0;
     return 1;
 }
@@ -48,7 +48,7 @@ DEVICE int tiles_overlap(GLOBAL const RealPair* unions, uint row, uint column) {
 // Closed overlap: touching overlaps. Most bodies are apart on their first axes, so that whole groups leave.
 DEVICE int volumes_overlap(const RealPair* a, LOCAL const RealPair* b) {
     int apart = 0;
-    UNROLL for (int axis = 0; axis < SLABS; ++axis) {
+    UNROLL for (int axis = 0; axis < DIRECTIONS; ++axis) {
         const RealPair slab = b[axis];
         apart |= starts_beyond(a[axis].x, slab.y);
         apart |= starts_beyond(slab.x, a[axis].y);
@@ -60,11 +60,11 @@ DEVICE int volumes_overlap(const RealPair* a, LOCAL const RealPair* b) {
 // Bit c: the body at `position` overlaps column c, which follows it in the order.
 DEVICE uint overlapping_columns(GLOBAL const RealPair* roots, uint position, LOCAL const RealPair* columns,
                                 uint first, uint count) {
-    RealPair own[SLABS];
+    RealPair own[DIRECTIONS];
     uint hits = 0;
-    UNROLL for (int axis = 0; axis < SLABS; ++axis) own[axis] = roots[(ulong)position * SLABS + axis];
+    UNROLL for (int axis = 0; axis < DIRECTIONS; ++axis) own[axis] = roots[(ulong)position * DIRECTIONS + axis];
     NO_UNROLL for (uint column = 0; column < count; ++column) {
-        if (volumes_overlap(own, columns + column * SLABS)) hits |= 1u << column;
+        if (volumes_overlap(own, columns + column * DIRECTIONS)) hits |= 1u << column;
     }
     return position < first ? hits : hits & 0xfffffffeu << (position - first);
 }
@@ -99,7 +99,7 @@ DEVICE void write_pairs(GLOBAL uint* pairs, uint capacity, uint index, GLOBAL co
 KERNEL void find_body_pairs(GLOBAL const RealPair* roots, GLOBAL const RealPair* unions,
                             GLOBAL const uint* order, uint body_count, uint moving_count, GLOBAL uint* pairs,
                             uint capacity, GLOBAL uint* status) {
-    LOCAL_ARRAY(RealPair, columns, BROAD_TILE * SLABS);
+    LOCAL_ARRAY(RealPair, columns, BROAD_TILE * DIRECTIONS);
     LOCAL_ARRAY(uint, chosen, GROUP_SIZE);
     LOCAL_ARRAY(uint, shared, 3);
     const uint tiles = (body_count + BROAD_TILE - 1u) / BROAD_TILE;
@@ -124,8 +124,8 @@ KERNEL void find_body_pairs(GLOBAL const RealPair* roots, GLOBAL const RealPair*
             uint row = rows_from + LOCAL_ID;
             uint rows_done = rows_from;
             NO_UNROLL for (uint c = LOCAL_ID; c < column_count; c += GROUP_SIZE) {
-                UNROLL for (int axis = 0; axis < SLABS; ++axis) {
-                    columns[c * SLABS + axis] = roots[(ulong)(from + c) * SLABS + axis];
+                UNROLL for (int axis = 0; axis < DIRECTIONS; ++axis) {
+                    columns[c * DIRECTIONS + axis] = roots[(ulong)(from + c) * DIRECTIONS + axis];
                 }
             }
             do {

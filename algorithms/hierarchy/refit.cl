@@ -67,17 +67,17 @@ DEVICE void bound_tetrahedron(const Refit* refit, LOCAL const uint* strip, uint 
     Point corner[4];
     load_corners_of(refit->poses, refit->tetrahedra, refit->vertices, strip[JOB_BODY],
                     strip[JOB_TETRAHEDRA] + item, strip[JOB_VERTICES], strip[JOB_FLAGS], corner);
-    for (int axis = 0; axis < SLABS; ++axis) {
+    for (int axis = 0; axis < DIRECTIONS; ++axis) {
         node[axis] = REAL_INFINITY;
-        node[axis + SLABS] = -REAL_INFINITY;
+        node[axis + DIRECTIONS] = -REAL_INFINITY;
     }
     const Point drift = drift_at(refit->poses, strip[JOB_BODY]);
-    for (int i = 0; i < 4; ++i) widen_by_point(corner[i], drift, node, node + SLABS);
+    for (int i = 0; i < 4; ++i) widen_by_point(corner[i], drift, node, node + DIRECTIONS);
     for (int word = 0; word < K; ++word) node[word] = node[word] + (real)0;
 }
 
 // The word of a node over two.
-#define MERGED(word, a, b) ((word) < SLABS ? MINIMUM(a, b) : MAXIMUM(a, b))
+#define MERGED(word, a, b) ((word) < DIRECTIONS ? MINIMUM(a, b) : MAXIMUM(a, b))
 
 DEVICE Unit unit_of(const real* values) {
     Unit unit;
@@ -161,9 +161,9 @@ DEVICE void make_pairs(const Refit* refit, LOCAL const uint* strips, uint strip_
         if (at.node >= 2u * at.strip[JOB_ITEMS]) continue;
         const uint inner = is_leaf(at.node, at.strip[JOB_ITEMS]) ? 0u : 1u;
         real both[K];
-        for (int axis = 0; axis < SLABS; ++axis) {
+        for (int axis = 0; axis < DIRECTIONS; ++axis) {
             both[axis] = REAL_INFINITY;
-            both[axis + SLABS] = -REAL_INFINITY;
+            both[axis + DIRECTIONS] = -REAL_INFINITY;
         }
         NO_UNROLL for (uint child = 0; child <= inner; ++child) {
             real values[K];
@@ -275,7 +275,7 @@ DEVICE void merge_depth(GLOBAL real* nodes, uint first, GLOBAL const uint* level
         GLOBAL const real* child = nodes + (ulong)(chunk.base + first_child(node)) * K + word;
         const real a = child[0];
         const real b = child[K];
-        nodes[(ulong)(chunk.base + node) * K + word] = word < SLABS ? MINIMUM(a, b) : MAXIMUM(a, b);
+        nodes[(ulong)(chunk.base + node) * K + word] = word < DIRECTIONS ? MINIMUM(a, b) : MAXIMUM(a, b);
     }
 }
 
@@ -302,10 +302,10 @@ KERNEL void refit_tops(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const ui
     } while (level < level_count);
     GLOBAL const uint* top = rows + (ulong)(level_count - 1u) * LEVEL_WORDS;
     for (uint word = LOCAL_ID; word < (uint)K; word += GROUP_SIZE) {
-        real all = word < SLABS ? REAL_INFINITY : -REAL_INFINITY;
+        real all = word < DIRECTIONS ? REAL_INFINITY : -REAL_INFINITY;
         for (uint chunk = 0; chunk < top[LEVEL_CHUNKS]; ++chunk) {
             const real own = node_at(nodes, chunk_at(first, top, chunk).base + ROOT_NODE)[word];
-            all = word < SLABS ? MINIMUM(own, all) : MAXIMUM(own, all);
+            all = word < DIRECTIONS ? MINIMUM(own, all) : MAXIMUM(own, all);
         }
         volumes[(ulong)body * K + word] = all;
     }
@@ -317,7 +317,7 @@ KERNEL void refit_tops(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const ui
 #define HOLDS_NOTHING 0xffffffffu
 
 DEVICE real emptied_word(GLOBAL const real* nodes, uint a, uint b, uint word) {
-    if (a == HOLDS_NOTHING) return word < SLABS ? REAL_INFINITY : -REAL_INFINITY;
+    if (a == HOLDS_NOTHING) return word < DIRECTIONS ? REAL_INFINITY : -REAL_INFINITY;
     return MERGED(word, node_at(nodes, a)[word], node_at(nodes, b)[word]);
 }
 

@@ -40,15 +40,15 @@ DEVICE void bound_tetrahedron(GLOBAL const uint* bodies, GLOBAL const real* pose
                               GLOBAL const uint* tetrahedra, GLOBAL const real* vertices, uint body,
                               uint item, int takes_part, GLOBAL real* node) {
     real slabs[K];
-    for (int axis = 0; axis < SLABS; ++axis) {
+    for (int axis = 0; axis < DIRECTIONS; ++axis) {
         slabs[axis] = REAL_INFINITY;
-        slabs[axis + SLABS] = -REAL_INFINITY;
+        slabs[axis + DIRECTIONS] = -REAL_INFINITY;
     }
     if (takes_part) {
         Point corner[4];
         load_corners(bodies, poses, tetrahedra, vertices, body, item, corner);
         const Point drift = drift_at(poses, body);
-        for (int i = 0; i < 4; ++i) widen_by_point(corner[i], drift, slabs, slabs + SLABS);
+        for (int i = 0; i < 4; ++i) widen_by_point(corner[i], drift, slabs, slabs + DIRECTIONS);
     }
     for (int word = 0; word < K; ++word) node[word] = slabs[word] + (real)0;
 }
@@ -62,7 +62,7 @@ DEVICE void merge_depth(GLOBAL real* nodes, GLOBAL const uint* children, GLOBAL 
         GLOBAL const real* b = nodes + (ulong)child[1] * K;
         for (int word = 0; word < K; ++word)
             nodes[(ulong)node * K + word] =
-                word < SLABS ? MINIMUM(a[word], b[word]) : MAXIMUM(a[word], b[word]);
+                word < DIRECTIONS ? MINIMUM(a[word], b[word]) : MAXIMUM(a[word], b[word]);
     }
 }
 
