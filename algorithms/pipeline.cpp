@@ -29,7 +29,9 @@ struct Foundation {
 Foundation build(const Traversal& traversal, Device& device, const Scene& scene, const Settings& settings,
                  LaunchShape shape) {
     const auto sharing = is_published(settings) ? Bodies::Sharing::none : Bodies::Sharing::by_mesh;
-    Foundation built{std::make_shared<Bodies>(device, scene, geometry_of(settings), sharing), {}};
+    Foundation built{std::make_shared<Bodies>(device, scene, geometry_of(settings), sharing,
+                                              settings[parameters::builder]),
+                     {}};
     built.steps = traversal.build({device, scene, settings, *built.bodies, shape});
     return built;
 }
@@ -63,11 +65,11 @@ Foundation build_within(const Traversal& traversal, Device& device, const Scene&
 std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* const> own, bool published) {
     const auto geometry = geometry_parameters();
     std::vector<const Parameter*> all(geometry.begin(), geometry.end());
-    all.insert(all.end(), {&parameters::contact_rule, &parameters::decision, &parameters::broad,
-                           &parameters::body_pair_capacity});
+    all.insert(all.end(), {&parameters::builder, &parameters::contact_rule, &parameters::decision,
+                           &parameters::broad, &parameters::body_pair_capacity});
     if (published) all.push_back(&parameters::residency);
     all.insert(all.end(), {&parameters::output, &parameters::group_size, &parameters::work_items,
-                           &parameters::pair_capacity, &parameters::contact_capacity});
+                           &parameters::threads, &parameters::pair_capacity, &parameters::contact_capacity});
     all.insert(all.end(), own.begin(), own.end());
     return all;
 }

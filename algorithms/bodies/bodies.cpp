@@ -22,10 +22,10 @@ std::vector<std::uint32_t> inverse(std::span<const std::uint32_t> order) {
     return positions;
 }
 
-Bodies::Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sharing sharing)
+Bodies::Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sharing sharing, Builder builder)
     : device_(device), scene_(scene), geometry_(geometry), sharing_(sharing) {
     for (const auto& mesh : scene.meshes) {
-        meshes_.push_back(ordered(mesh));
+        meshes_.push_back(ordered(mesh, builder));
         if (geometry.placement == Placement::exact) reaches_.push_back(reach_of(mesh.vertices));
     }
     lay_out();

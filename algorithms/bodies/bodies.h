@@ -7,7 +7,7 @@
 
 namespace tandem {
 
-/// A scene's bodies on one device: tetrahedra along the Z-curve, vertices and poses. Whatever hierarchy
+/// A scene's bodies on one device: tetrahedra in a builder's order, vertices and poses. Whatever hierarchy
 /// stands over them, item i of a body is its tetrahedron at position i.
 class Bodies {
 public:
@@ -24,7 +24,8 @@ public:
 
     /// Uploads what is static; `scene` must outlive this. Throws DeviceError when there are more than 2^32
     /// vertices or tetrahedra, OutOfMemory when they do not fit.
-    Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sharing sharing);
+    Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sharing sharing,
+           Builder builder = Builder::morton);
 
     /// Enqueues the upload of what `frame` moves: poses, and vertices of deformable bodies. For
     /// Sharing::by_mesh; the published data path uploads everything itself.
@@ -37,6 +38,8 @@ public:
     const Row& row(std::size_t body) const { return rows_[body]; }
     /// The body's mesh as the device has it.
     const OrderedMesh& mesh(std::size_t body) const { return meshes_[scene_.bodies[body].mesh]; }
+    /// By the scene's number of the mesh.
+    const OrderedMesh& ordered_mesh(std::size_t number) const { return meshes_[number]; }
     /// Rows of vertices(): of meshes where they are shared, of bodies where not.
     std::uint64_t vertex_total() const { return vertex_total_; }
     /// Bytes of device memory in all buffers.

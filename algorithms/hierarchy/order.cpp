@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/hierarchy/order.h"
 
+#include "algorithms/hierarchy/sah_order.h"
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -65,9 +67,9 @@ std::vector<std::uint32_t> morton_order(const Mesh& mesh) {
     return morton_order(centroids);
 }
 
-OrderedMesh ordered(const Mesh& mesh) {
+OrderedMesh ordered(const Mesh& mesh, Builder builder) {
     OrderedMesh result;
-    result.ids = morton_order(mesh);
+    result.ids = builder == Builder::sah ? sah_order(mesh) : morton_order(mesh);
     constexpr auto unseen = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint32_t> renumbered(mesh.vertices.size(), unseen);
     for (const auto id : result.ids) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/parameters/choices.h"
 #include "scenes/mesh.h"
 
 #include <cstdint>
@@ -20,7 +21,7 @@ std::vector<std::uint32_t> morton_order(const std::vector<Eigen::Vector3d>& poin
 /// The same for the mesh's tetrahedra by their centroids (paper, section 3.1).
 std::vector<std::uint32_t> morton_order(const Mesh& mesh);
 
-/// A mesh as the device wants it: tetrahedra in Morton order, vertices renumbered by first use.
+/// A mesh as the device wants it: tetrahedra in a builder's order, vertices renumbered by first use.
 struct OrderedMesh {
     std::vector<std::uint32_t> tetrahedra; ///< 4 vertex numbers each, new numbering
     std::vector<std::uint32_t> ids;        ///< position -> tetrahedron in input order
@@ -29,6 +30,6 @@ struct OrderedMesh {
 };
 
 /// Of a complete mesh.
-OrderedMesh ordered(const Mesh& mesh);
+OrderedMesh ordered(const Mesh& mesh, Builder builder = Builder::morton);
 
 } // namespace tandem

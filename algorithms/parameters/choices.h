@@ -41,6 +41,18 @@ enum class Residency {
     published ///< as the paper's code: everything converted, uploaded and read back in every frame
 };
 
+/// In which order a body's tetrahedra stand, and so which of them share a node.
+enum class Builder {
+    morton, ///< along the Z-curve, as the paper
+    sah     ///< cut by the surface area heuristic into runs of 32, 32^2, ...
+};
+
+/// Directions that the leaves of a hierarchy of tiles have bounds along.
+enum class Slabs {
+    three, ///< the first three of the geometry's; the others are decided from vertices
+    all
+};
+
 /// What a walk hands out.
 enum class Output { pairs, count, digest };
 

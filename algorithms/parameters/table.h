@@ -47,6 +47,21 @@ inline constexpr Setting<Placement> placement{
     "whose contacts no slab may miss: those of the world vertices as rounded, or those of the scene's own "
     "vertices where its poses put them exactly (safe and directed, wider slabs)"};
 
+inline constexpr Setting<Builder> builder{"builder",
+                                          Builder::morton,
+                                          {{"morton", Builder::morton}, {"sah", Builder::sah}},
+                                          "",
+                                          "order of a body's tetrahedra, from which trees are made: morton: "
+                                          "along the Z-curve, as the paper; sah: cut by "
+                                          "the surface area heuristic into runs of 32, 32^2, ..."};
+inline constexpr Setting<Slabs> slabs{"slabs",
+                                      Slabs::three,
+                                      {{"three", Slabs::three}, {"all", Slabs::all}},
+                                      "SLABS",
+                                      "directions that leaves have bounds along: three of the k/2, with the "
+                                      "others decided from the vertices of "
+                                      "pairs that pass, or all"};
+
 inline constexpr Setting<ContactRule> contact_rule{
     "contact_rule",
     ContactRule::opposing,
@@ -100,6 +115,9 @@ inline constexpr Setting<std::int64_t> group_size{"group_size", 128, Range{1, 10
                                                   "work-items per work-group (1 on host)"};
 inline constexpr Setting<std::int64_t> work_items{"work_items", 2048, Range{1, 1 << 20}, "",
                                                   "work-items per compute unit of the kernels that stride"};
+inline constexpr Setting<std::int64_t> threads{
+    "threads", 0, Range{0, 4096}, "",
+    "threads that run the work-groups of device host; 0: one for each core; other devices ignore it"};
 inline constexpr Setting<std::int64_t> pair_capacity{"pair_capacity", 1048576, Range{1, word_limit}, "",
                                                      "candidate pairs there is room for at first"};
 inline constexpr Setting<std::int64_t> contact_capacity{"contact_capacity", 1048576, Range{1, word_limit}, "",
