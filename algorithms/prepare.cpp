@@ -38,6 +38,22 @@ std::string names_of(std::span<Device* const> devices) {
 
 } // namespace
 
+/// Other sessions may have used the devices otherwise.
+void Session::prepare_devices() const {
+    const auto threads = static_cast<std::uint32_t>(settings()[parameters::threads]);
+    for (auto* device : devices()) device->set_threads(threads);
+}
+
+FrameResult Session::run(const Frame& frame) {
+    prepare_devices();
+    return do_run(frame, std::nullopt);
+}
+
+FrameResult Session::run(const Frame& frame, std::span<const BodyPair> body_pairs) {
+    prepare_devices();
+    return do_run(frame, body_pairs);
+}
+
 Steps Traversal::build(const Ground& ground) const { return do_build(ground); }
 
 Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info) const {

@@ -34,11 +34,9 @@ public:
     void reset() { do_reset(); }
     /// Finds the candidate pairs of `frame` and their contacts, and waits until they are known. Coordinates
     /// must pass check_range (bodies/range.h). Body pairs are found inside, as setting broad says.
-    FrameResult run(const Frame& frame) { return do_run(frame, std::nullopt); }
+    FrameResult run(const Frame& frame);
     /// The same among these body pairs, of which there may be 2^32 - 1.
-    FrameResult run(const Frame& frame, std::span<const BodyPair> body_pairs) {
-        return do_run(frame, body_pairs);
-    }
+    FrameResult run(const Frame& frame, std::span<const BodyPair> body_pairs);
     /// Switches to kernels that count their work and make no contacts (and back); such runs are never timed.
     void count_work(bool on) { do_count_work(on); }
     std::span<Device* const> devices() const { return do_devices(); }
@@ -46,6 +44,8 @@ public:
     const Settings& settings() const { return do_settings(); }
 
 private:
+    void prepare_devices() const;
+
     virtual void do_reset() = 0;
     virtual FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) = 0;
     virtual void do_count_work(bool on) = 0;

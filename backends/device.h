@@ -190,6 +190,11 @@ public:
     void set_clocks(Clocks clocks);
     Clocks clocks() const { return clocks_; }
 
+    /// How many threads run the work-groups of a launch where that is the host's to do; 0, which is the
+    /// default: one for each core. Answers do not depend on it. Other devices have work-items of their own,
+    /// and ignore it.
+    void set_threads(std::uint32_t threads) { do_set_threads(threads); }
+
     /// The facts of every kernel asked for since the last call, each once; compile_ms is 0 for those that
     /// were there already.
     std::vector<KernelFacts> take_kernels();
@@ -233,6 +238,7 @@ private:
     virtual std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) = 0;
     virtual void do_finish() = 0;
     virtual void do_set_clocks(Clocks clocks) = 0;
+    virtual void do_set_threads(std::uint32_t) {}
     /// Begin and duration in device nanoseconds of a finished command; releases the ticket.
     virtual std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) = 0;
 

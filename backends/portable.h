@@ -33,6 +33,39 @@
 #define TEAM_BARRIER BARRIER
 #endif
 
+// Lanes are what a tile has 32 of. A team of LANE_STEP work-items works on a tile, and each does what is said
+// FOR_LANES for every LANE_STEP-th lane: on a GPU a lane is a work-item of a warp; on the host device, where
+// groups have one work-item, it is a loop that the compiler turns into vector code. Where it has no barrier
+// for a warp the group is the team, and work-items past the last lane only wait. What a lane keeps from one
+// FOR_LANES to the next is an array `type name[LANE_PARTS]`, of which a lane's is name[part]. No barriers
+// inside.
+#define LANES 32
+#if GROUP_SIZE % LANES == 0 && (GROUP_SIZE == LANES || defined(__CUDACC__) || defined(__NV_CL_C_VERSION))
+#define LANE_STEP LANES
+#define LANE_BARRIER TEAM_BARRIER
+#define FOR_LANES for (uint part = 0, lane = LANE_ID; part < 1u && lane < (uint)LANES; ++part)
+#else
+#define LANE_STEP GROUP_SIZE
+#define LANE_BARRIER BARRIER
+#define FOR_LANES for (uint part = 0, lane = LANE_ID; lane < (uint)LANES; ++part, lane += (uint)LANE_STEP)
+#endif
+#define LANE_PARTS ((LANES + LANE_STEP - 1) / LANE_STEP)
+#define LANE_TEAMS (GROUP_SIZE / LANE_STEP)
+#define LANE_TEAM (LOCAL_ID / LANE_STEP)
+#define LANE_ID (LOCAL_ID % LANE_STEP) // of a work-item in its team
+// Lanes that are a warp tell each other without memory which of them ...: a bit for each.
+#if LANE_STEP == LANES && defined(__CUDACC__)
+#define LANES_ARE_WARP 1
+#define LANES_THAT(condition) __ballot_sync(0xffffffffu, (condition))
+#define FROM_FIRST_LANE(value) __shfl_sync(0xffffffffu, (value), 0)
+#elif LANE_STEP == LANES && defined(__NV_CL_C_VERSION)
+#define LANES_ARE_WARP 1
+#define LANES_THAT(condition) lanes_that(condition)
+#define FROM_FIRST_LANE(value) from_first_lane(value)
+#else
+#define LANES_ARE_WARP 0
+#endif
+
 #if defined(__OPENCL_C_VERSION__)
 #pragma OPENCL FP_CONTRACT OFF
 #if PRECISION == 64
@@ -57,6 +90,7 @@
 #define ATOMIC_READ(pointer) atomic_or((pointer), 0u)
 #define LOCAL_ATOMIC_ADD(pointer, value) atomic_add((pointer), (value))
 #define COUNT_LEADING_ZEROS(value) ((uint)clz((uint)(value)))
+#define COUNT_ONES(value) ((uint)popcount((uint)(value)))
 #define SQUARE_ROOT(value) sqrt(value)
 #define ABSOLUTE(value) fabs(value)
 #ifdef __NV_CL_C_VERSION // one instruction there; elsewhere the library's care for NaN costs more
@@ -85,6 +119,7 @@
 #define ATOMIC_READ(pointer) atomicOr((pointer), 0u)
 #define LOCAL_ATOMIC_ADD(pointer, value) atomicAdd((pointer), (value))
 #define COUNT_LEADING_ZEROS(value) ((uint)__clz((int)(value)))
+#define COUNT_ONES(value) ((uint)__popc((uint)(value)))
 #define SQUARE_ROOT(value) sqrt(value)
 #define ABSOLUTE(value) fabs(value)
 #define MINIMUM(a, b) fmin((a), (b))
@@ -107,10 +142,14 @@ typedef unsigned long ulong; // 64 bits where CUDA runs on Linux, as glibc has i
 #define KERNEL static
 #define GLOBAL
 #define LOCAL
+#ifdef LOCAL_ON_STACK
+#define LOCAL_ARRAY(type, name, count) type name[count]
+#else
 #define LOCAL_ARRAY(type, name, count)                                                                       \
     static thread_local std::vector<type> name##_storage;                                                    \
     name##_storage.resize(count);                                                                            \
     type* const name = name##_storage.data()
+#endif
 #define DEVICE static inline
 #define BARRIER ((void)0)
 #define BARRIER_GLOBAL ((void)0)
@@ -118,9 +157,10 @@ typedef unsigned long ulong; // 64 bits where CUDA runs on Linux, as glibc has i
 #define GROUP_ID (tandem::host::group_id)
 #define GROUP_COUNT (tandem::host::group_count)
 #define ATOMIC_ADD(pointer, value) tandem::host::fetch_add((pointer), (value))
-#define ATOMIC_READ(pointer) (*(pointer))
-#define LOCAL_ATOMIC_ADD(pointer, value) tandem::host::fetch_add((pointer), (value))
+#define ATOMIC_READ(pointer) __atomic_load_n((pointer), __ATOMIC_RELAXED)
+#define LOCAL_ATOMIC_ADD(pointer, value) tandem::host::fetch_add_locally((pointer), (value))
 #define COUNT_LEADING_ZEROS(value) ((uint)__builtin_clz((uint)(value)))
+#define COUNT_ONES(value) ((uint)__builtin_popcount((uint)(value)))
 #define SQUARE_ROOT(value) std::sqrt(value)
 #define ABSOLUTE(value) std::fabs(value)
 #define MINIMUM(a, b) ((a) < (b) ? (a) : (b))
@@ -157,6 +197,55 @@ DEVICE void counter_add_wide(GLOBAL uint* counter, ulong value) {
     const uint before = ATOMIC_ADD(counter, low);
     const uint high = (uint)(value >> 32) + (before + low < before ? 1u : 0u);
     if (high != 0u) ATOMIC_ADD(counter + 1, high);
+}
+
+#if LANES_ARE_WARP && defined(__NV_CL_C_VERSION)
+DEVICE uint lanes_that(int condition) {
+    uint all;
+    asm volatile("{ .reg .pred p; setp.ne.s32 p, %1, 0; vote.sync.ballot.b32 %0, p, 0xffffffff; }"
+                 : "=r"(all)
+                 : "r"(condition));
+    return all;
+}
+
+DEVICE uint from_first_lane(uint value) {
+    uint first;
+    asm volatile("shfl.sync.idx.b32 %0, %1, 0, 31, 0xffffffff;" : "=r"(first) : "r"(value));
+    return first;
+}
+#endif
+
+// What a team of lanes counts, all of it in each call. In a warp every work-item has the number; elsewhere it
+// is a word of local memory.
+typedef struct {
+    LOCAL uint* word;
+    uint value;
+} LaneCounter;
+
+// Begins, or begins again, at `value`: between the last look of any work-item and the next place taken there
+// has to be a LANE_BARRIER on either side.
+DEVICE void begin_count(LaneCounter* counter, uint value) {
+    if (LANES_ARE_WARP)
+        counter->value = value;
+    else if (LANE_ID == 0u)
+        *counter->word = value;
+}
+
+// A place for a lane that is `wanting` one.
+DEVICE uint take_place(LaneCounter* counter, int wanting) {
+#if LANES_ARE_WARP
+    const uint all = LANES_THAT(wanting);
+    const uint place = counter->value + COUNT_ONES(all & ((1u << LANE_ID) - 1u));
+    counter->value += COUNT_ONES(all);
+    return place;
+#else
+    return wanting ? LOCAL_ATOMIC_ADD(counter->word, 1u) : 0u;
+#endif
+}
+
+// How many places have been taken; after a LANE_BARRIER.
+DEVICE uint places_taken(const LaneCounter* counter) {
+    return LANES_ARE_WARP ? counter->value : *counter->word;
 }
 
 #endif

@@ -54,30 +54,50 @@ def named(text, geometry):
     return [pair for pair in geometry.split(",") if re.search(rf"\b{pair.split('=')[0]}\b", text)]
 
 
-def host_variant(kernels, geometry, geometries, identifier):
-    """Kernels of one geometry; one that does not name all of it is in the first variant of what it does name."""
+def choices(text):
+    """What a text is compiled for besides its geometry: SLABS decides of the size of arrays."""
+    return [["SLABS=0"], ["SLABS=1"]] if re.search(r"^#if SLABS\b", text, re.M) else [[]]
+
+
+def has_lanes(text):
+    """Whether a kernel file has loops over lanes, which the compiler turns into vector code."""
+    return re.search(r"^(?!#define|//).*\bFOR_LANES\b", text, re.M) is not None
+
+
+def host_variant(kernels, geometry, geometries, identifier, level):
+    """Kernels of one geometry; one that does not name all of it is in the first variant of what it does name. `level`: of
+    the instructions that the file is compiled for, x86-64-v2, -v3 or -v4; 0: of any processor."""
     out, rows = [], []
-    for index, (name, text) in enumerate(kernels.items()):
+    variants = [(name, text, choice) for name, text in kernels.items() for choice in choices(text)]
+    for index, (name, text, choice) in enumerate(variants):
         own = named(text, geometry)
         if geometry != next(g for g in geometries if named(text, g) == own):
+            continue
+        own = own + choice
+        # The higher levels have what is measured most: the lowest one serves the rest everywhere.
+        if level > 2 and ("PRECISION=64" in own or "SLABS=1" in own):
             continue
         fixed = dict(pair.split("=") for pair in own)
         defaults = {key: value for key, value in DEFAULT.findall(text) if key not in fixed and key != "GROUP_SIZE"}
         names = sorted(defaults)
+        # Local memory of known size: nothing is shared with files that are compiled for other processors.
+        stack = ["#define LOCAL_ON_STACK"] if has_lanes(text) else []
         # A namespace of this variant's own: types of one name differ between variants.
         scope = f"{identifier}_kernel_{index}"
         out += [f"namespace {scope} {{", "#undef TANDEM_PORTABLE_H"]
-        out += [f"#define {key} {value}" for key, value in fixed.items()] + ["#define GROUP_SIZE 1"]
+        out += [f"#define {key} {value}" for key, value in fixed.items()] + ["#define GROUP_SIZE 1"] + stack
         for key in names:
             out += [f"static constinit thread_local long runtime_{key} = {defaults[key]};", f"#define {key} runtime_{key}"]
         out += [text, f'#line 1 "{identifier}"', "static const tandem::host::RuntimeDefine runtime[] = {"]
         out += [f'{{"{key}", [](long value) {{ runtime_{key} = value; }}, {defaults[key]}}},' for key in names] + ["{nullptr, nullptr, 0}};", "}"]
-        macros = set(re.findall(r"^#\s*define (\w+)", text, re.M)) | set(fixed) | set(names) | {"GROUP_SIZE"}
+        macros = set(re.findall(r"^#\s*define (\w+)", text, re.M)) | set(fixed) | set(names) | {"GROUP_SIZE", "LOCAL_ON_STACK"}
         out += [f"#undef {macro}" for macro in sorted(macros)]
         for entry in ENTRY.findall(text):
             call = f"tandem::host::Invoke<&{scope}::{entry}>"
             rows.append(f'{{"{name}", "{entry}", "{";".join(own)}", {call}::run, {call}::count, '
-                        f"{{{scope}::runtime, {len(names)}}}}},")
+                        f"{{{scope}::runtime, {len(names)}}}, {level}}},")
+    if not rows:
+        return ""
     out += [f"extern const std::span<const tandem::host::HostKernel> {identifier};",
             f"static const tandem::host::HostKernel {identifier}_rows[] = {{", *rows, "};",
             f"const std::span<const tandem::host::HostKernel> {identifier}({identifier}_rows);", ""]
@@ -100,6 +120,7 @@ def main():
     parser.add_argument("--geometries", nargs="+")
     parser.add_argument("--each", type=int, default=1, help="geometries in a file")
     parser.add_argument("--kernels", nargs="+")
+    parser.add_argument("--levels", nargs="*", type=int, default=[], help="that files with lanes are compiled for instead")
     parser.add_argument("--own", default="", help="the target whose own these are; left out for the library")
     parser.add_argument("--flatten", help="only print this kernel file with its headers")
     arguments = parser.parse_args()
@@ -109,13 +130,18 @@ def main():
     arguments.out.mkdir(parents=True, exist_ok=True)
     kernels = {name: "\n".join(flatten(arguments.root, name, set())) + "\n" for name in arguments.kernels}
     write(arguments.out / "sources.cpp", sources(kernels, arguments.own))
-    identifiers = ["_".join(filter(None, ["host", re.sub(r"\W", "_", arguments.own), re.sub(r"\W", "_", geometry)]))
-                   for geometry in arguments.geometries]
-    variants = [host_variant(kernels, geometry, arguments.geometries, identifier)
-                for geometry, identifier in zip(arguments.geometries, identifiers)]
-    for part, first in enumerate(range(0, len(variants), arguments.each)):
-        write(arguments.out / f"host_{part}.cpp",
-              "\n".join(['#include "backends/host/dialect.h"', *variants[first:first + arguments.each]]))
+    identifiers = []
+    for level in [0, *arguments.levels]:
+        these = {name: text for name, text in kernels.items() if not arguments.levels or has_lanes(text) == (level != 0)}
+        own = re.sub(r"\W", "_", arguments.own)
+        names = ["_".join(filter(None, ["host", own, f"v{level}" if level else "", re.sub(r"\W", "_", geometry)]))
+                 for geometry in arguments.geometries]
+        variants = [host_variant(these, geometry, arguments.geometries, name, level)
+                    for geometry, name in zip(arguments.geometries, names)]
+        for part, first in enumerate(range(0, len(variants), arguments.each)):
+            write(arguments.out / (f"host_v{level}_{part}.cpp" if level else f"host_{part}.cpp"),
+                  "\n".join(['#include "backends/host/dialect.h"', *variants[first:first + arguments.each]]))
+        identifiers += [name for name, variant in zip(names, variants) if variant]
     write(arguments.out / "host_table.cpp", host_table(identifiers, arguments.own))
 
 

@@ -31,12 +31,23 @@ function(tandem_kernels target)
   set(generated ${out}/sources.cpp ${out}/host_table.cpp)
   set(each 4)
   math(EXPR last "(${count} - 1) / ${each}")
+  # Kernels with lanes are compiled for several levels of x86-64, of which the host device takes the highest that the
+  # processor has; elsewhere, and where sanitizers are what matters, for what everything is compiled for.
+  set(levels)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT given_FOLDER AND NOT TANDEM_SANITIZE
+     AND NOT target STREQUAL tandem-checked)
+    set(levels 2 3 4)
+  endif()
   foreach(part RANGE ${last})
     list(APPEND generated ${out}/host_${part}.cpp)
+    foreach(level ${levels})
+      list(APPEND generated ${out}/host_v${level}_${part}.cpp)
+      set(of_level_${level} ${of_level_${level}} ${out}/host_v${level}_${part}.cpp)
+    endforeach()
   endforeach()
   add_custom_command(OUTPUT ${generated}
     COMMAND ${Python3_EXECUTABLE} ${script} --root ${PROJECT_SOURCE_DIR} --out ${out} --geometries ${geometries}
-            --each ${each} --kernels ${kernels} ${own}
+            --each ${each} --levels ${levels} --kernels ${kernels} ${own}
     DEPENDS ${script} ${files} ${headers} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     COMMENT "Flattening kernels" VERBATIM)
   target_sources(${target} PRIVATE ${generated})
@@ -47,4 +58,8 @@ function(tandem_kernels target)
     list(APPEND options -fno-sanitize=bounds)
   endif()
   set_source_files_properties(${generated} PROPERTIES COMPILE_OPTIONS "${options}" SKIP_PRECOMPILE_HEADERS ON)
+  foreach(level ${levels})
+    set_source_files_properties(${of_level_${level}} PROPERTIES COMPILE_OPTIONS "${options};-march=x86-64-v${level}"
+                                SKIP_UNITY_BUILD_INCLUSION ON)
+  endforeach()
 endfunction()

@@ -5,6 +5,7 @@
 #include "harness/flaws.h"
 #include "harness/plan.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct RunOptions {
     TruthAmount truth = TruthAmount::pairs;   ///< compare answers with the exact truth
     std::size_t truth_contacts = 0;           ///< of this many pairs a frame at most; 0: all
     Degenerate degenerate = Degenerate::flat; ///< what becomes of flawed tetrahedra
+    std::optional<std::size_t> threads;       ///< of device host, as setting threads
     std::size_t memory = 0;                   ///< bytes that each device may give; 0: what it has
     bool quiet = false;
 };

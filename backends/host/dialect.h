@@ -17,30 +17,42 @@ using ulong = unsigned long;
 
 namespace tandem::host {
 
-/// The work-group that runs; groups run one after the other on the calling thread, and each thread has its
-/// own.
+// Functions here are always inlined: files for processors of some kinds must not leave any for all
+// (tests/levels.sh).
+
+/// The work-group that a thread runs, and whether other threads run groups of the same launch.
 inline constinit thread_local uint group_id = 0;
 inline constinit thread_local uint group_count = 1;
+inline constinit thread_local bool in_parallel = false;
 
-inline uint fetch_add(uint* pointer, uint value) { return std::exchange(*pointer, *pointer + value); }
+/// Of memory that all work-groups share.
+[[gnu::always_inline]] inline uint fetch_add(uint* pointer, uint value) {
+    if (in_parallel) return __atomic_fetch_add(pointer, value, __ATOMIC_RELAXED);
+    return std::exchange(*pointer, *pointer + value);
+}
+
+/// Of a work-group's own memory.
+[[gnu::always_inline]] inline uint fetch_add_locally(uint* pointer, uint value) {
+    return std::exchange(*pointer, *pointer + value);
+}
 
 /// The sum rounded down and up, from operations that round to nearest: what was rounded off is a number of
 /// the same kind (Knuth's exact sum, Muller et al. 2018, 4.3), and its sign says on which side the sum is.
 template<class Real>
-Real rounded_off(Real a, Real b, Real sum) {
+[[gnu::always_inline]] inline Real rounded_off(Real a, Real b, Real sum) {
     const Real of_b = sum - a;
     const Real of_a = sum - of_b;
     return (a - of_a) + (b - of_b);
 }
 
 template<class Real>
-Real add_down(Real a, Real b) {
+[[gnu::always_inline]] inline Real add_down(Real a, Real b) {
     const Real sum = a + b;
     return rounded_off(a, b, sum) < 0 ? std::nextafter(sum, -std::numeric_limits<Real>::infinity()) : sum;
 }
 
 template<class Real>
-Real add_up(Real a, Real b) {
+[[gnu::always_inline]] inline Real add_up(Real a, Real b) {
     const Real sum = a + b;
     return rounded_off(a, b, sum) > 0 ? std::nextafter(sum, std::numeric_limits<Real>::infinity()) : sum;
 }
@@ -65,6 +77,7 @@ struct HostKernel {
     void (*run)(std::span<const Argument>);
     std::size_t argument_count;
     std::span<const RuntimeDefine> runtime;
+    int level; ///< x86-64-v2, -v3 or -v4, whose instructions it has; 0: those of any processor
 };
 
 /// Kernels of the project by variant (generated).
@@ -77,10 +90,13 @@ void add_host_kernels(std::span<const std::span<const HostKernel>> variants);
 template<class T>
 T argument_as(const Argument& argument) {
     if constexpr (std::is_pointer_v<T>) {
-        return reinterpret_cast<T>(static_cast<HostBuffer*>(std::get<Buffer::Impl*>(argument.value()))->data);
+        // A kernel's parameters and a launch's arguments are two texts of the project; nothing is thrown
+        // here.
+        return reinterpret_cast<T>(
+            static_cast<HostBuffer*>(*std::get_if<Buffer::Impl*>(&argument.value()))->data);
     } else {
         T value{};
-        std::memcpy(&value, std::get<Argument::Scalar>(argument.value()).bytes.data(), sizeof(T));
+        std::memcpy(&value, std::get_if<Argument::Scalar>(&argument.value())->bytes.data(), sizeof(T));
         return value;
     }
 }

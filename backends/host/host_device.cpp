@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <new>
 #include <stdexcept>
-#include <thread>
+#include <tbb/blocked_range.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <unistd.h>
 
 namespace tandem::host {
@@ -24,20 +27,36 @@ std::uint64_t physical_memory() {
            * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
 }
 
-DeviceInfo describe() {
+/// The level of the processor's instructions: 2, 3 or 4 of x86-64; 0 elsewhere.
+int processor_level() {
+#if defined(__x86_64__)
+    return __builtin_cpu_supports("x86-64-v4")   ? 4
+           : __builtin_cpu_supports("x86-64-v3") ? 3
+           : __builtin_cpu_supports("x86-64-v2") ? 2
+                                                 : 0;
+#else
+    return 0;
+#endif
+}
+
+DeviceInfo describe(int level) {
     DeviceInfo info;
     info.id = "host";
     info.name = "host C++";
     info.driver = "none";
     info.compiler = fmt::format("g++ {}", __VERSION__);
+    if (level != 0) info.compiler += fmt::format(", lanes for x86-64-v{}", level);
     info.global_bytes = physical_memory();
     info.max_allocation = info.global_bytes / 2;
     info.local_bytes = 1u << 20;
+    info.compute_units = static_cast<std::uint32_t>(tbb::info::default_concurrency());
     return info;
 }
 
 class HostDevice : public Device {
 public:
+    explicit HostDevice(int level) : level_(level) {}
+
     const DeviceInfo& info() const override { return info_; }
 
 private:
@@ -86,11 +105,39 @@ private:
         if (arguments.size() != impl.row->argument_count)
             throw DeviceError(fmt::format("host: kernel '{}' takes {} arguments, got {}", impl.row->entry,
                                           impl.row->argument_count, arguments.size()));
-        for (const auto& [set, value] : impl.runtime) set(value);
         return timed([&] {
-            group_count = static_cast<uint>(grid.groups);
-            for (group_id = 0; group_id < group_count; ++group_id) impl.row->run(arguments);
+            if (grid.groups == 1 || threads() == 1)
+                run_groups(impl, grid.groups, {0, grid.groups}, arguments, false);
+            else
+                arena_.execute([&] {
+                    tbb::parallel_for(Groups(0, grid.groups), [&](const Groups& groups) {
+                        run_groups(impl, grid.groups, groups, arguments, true);
+                    });
+                });
         });
+    }
+
+    using Groups = tbb::blocked_range<std::uint64_t>;
+
+    /// Some of a launch's groups, one after the other on the calling thread.
+    static void run_groups(const HostKernelImpl& kernel, std::uint64_t count, const Groups& groups,
+                           std::span<const Argument> arguments, bool others) {
+        for (const auto& [set, value] : kernel.runtime) set(value);
+        group_count = static_cast<uint>(count);
+        in_parallel = others;
+        for (auto group = groups.begin(); group != groups.end(); ++group) {
+            group_id = static_cast<uint>(group);
+            kernel.row->run(arguments);
+        }
+    }
+
+    int threads() const { return arena_.max_concurrency(); }
+
+    void do_set_threads(std::uint32_t threads) override {
+        const auto wanted = threads == 0 ? tbb::info::default_concurrency() : static_cast<int>(threads);
+        if (wanted == this->threads()) return;
+        arena_.terminate();
+        arena_.initialize(wanted);
     }
 
     void do_finish() override {}
@@ -122,7 +169,9 @@ private:
         return intervals_.size();
     }
 
-    DeviceInfo info_ = describe();
+    int level_; ///< of the instructions that kernels may have
+    DeviceInfo info_ = describe(level_);
+    tbb::task_arena arena_{tbb::info::default_concurrency()};
     std::vector<std::pair<std::int64_t, std::int64_t>> intervals_;
 };
 
@@ -131,7 +180,7 @@ std::pair<std::string, Defines> split(const Defines& defines) {
     std::string fixed;
     Defines rest;
     for (const auto& [name, value] : defines) {
-        if (name == "K" || name == "AXES" || name == "PRECISION")
+        if (name == "K" || name == "AXES" || name == "PRECISION" || name == "SLABS")
             fixed += fmt::format("{}{}={}", fixed.empty() ? "" : ";", name, value);
         else
             rest[name] = value;
@@ -144,17 +193,22 @@ std::vector<std::span<const HostKernel>>& known_variants() {
     return all;
 }
 
-const HostKernel* find_row(std::string_view source, std::string_view entry, std::string_view fixed) {
+/// The one with most instructions of those that the device may use.
+const HostKernel* find_row(std::string_view source, std::string_view entry, std::string_view fixed,
+                           int level) {
+    const HostKernel* best = nullptr;
     for (const auto& variant : known_variants())
         for (const auto& row : variant)
-            if (row.source == source && row.entry == entry && row.defines == fixed) return &row;
-    return nullptr;
+            if (row.source == source && row.entry == entry && row.defines == fixed && row.level <= level
+                && (!best || row.level > best->level))
+                best = &row;
+    return best;
 }
 
 std::shared_ptr<Kernel::Impl> HostDevice::do_compile(const KernelSource& source, std::string_view entry,
                                                      const Defines& defines) {
     const auto [fixed, rest] = split(defines);
-    const auto* row = find_row(source.name, entry, fixed);
+    const auto* row = find_row(source.name, entry, fixed, level_);
     if (!row)
         throw DeviceError(
             fmt::format("host: kernel '{}' of {} is not compiled for {}; the host has the K that setting k "
@@ -184,6 +238,8 @@ void add_host_kernels(std::span<const std::span<const HostKernel>> variants) {
     known_variants().insert(known_variants().end(), variants.begin(), variants.end());
 }
 
-std::unique_ptr<Device> make_device() { return std::make_unique<HostDevice>(); }
+std::unique_ptr<Device> make_device(int most_level) {
+    return std::make_unique<HostDevice>(std::min(most_level, processor_level()));
+}
 
 } // namespace tandem::host

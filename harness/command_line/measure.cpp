@@ -20,6 +20,13 @@ TruthAmount parse_truth(const std::string& text) {
     throw InputError(fmt::format("--truth {}: give none, pairs or contacts", text));
 }
 
+/// The texts of --set, and what else sets a setting.
+auto sets_of(const std::vector<std::string>& texts, const RunOptions& options) {
+    auto sets = parse_sets(texts);
+    if (options.threads) sets.push_back({"threads", {std::to_string(*options.threads)}});
+    return sets;
+}
+
 constexpr auto scene_help = "NAME, NAME:par=value,..., a scene description (.json) or a recording (.frames)";
 
 /// What is measured: the scene's meshes and frames, and the cells.
@@ -40,6 +47,10 @@ void add_cell_options(CLI::App& app, RunOptions& options, std::vector<std::strin
                    "check all")
         ->delimiter(',');
     app.add_option("--frames", options.frames, "FIRST:LAST, both inclusive; all when left out");
+    app.add_option(
+           "--threads", options.threads,
+           "threads that run work-groups of device host, as --set threads=N; when left out one for each core")
+        ->check(CLI::Range(0, 4096));
     app.add_option("--set", sets, "NAME=V1,V2: several values make several cells")->expected(1)->take_all();
 }
 
@@ -104,7 +115,7 @@ Action add_run(CLI::App& app) {
     app.add_flag("!--no-count", options.count, "leave out the replay that counts work");
     app.add_flag("!--no-check", options.check, "do not compare with the reference");
     return [given] {
-        given->options.request.sets = parse_sets(given->sets);
+        given->options.request.sets = sets_of(given->sets, given->options);
         return run_command(given->options);
     };
 }
@@ -114,7 +125,7 @@ Action add_check(CLI::App& app) {
     app.add_option("scene", given->options.scene, scene_help);
     add_run_options(app, given->options, given->sets);
     return [given] {
-        given->options.request.sets = parse_sets(given->sets);
+        given->options.request.sets = sets_of(given->sets, given->options);
         return check_command(given->options);
     };
 }
@@ -130,7 +141,7 @@ Action add_accuracy(CLI::App& app) {
                    "draw the records of --out, or of FOLDER/accuracy.jsonl without it, into this folder")
         ->option_text("FOLDER");
     return [given] {
-        given->options.run.request.sets = parse_sets(given->sets);
+        given->options.run.request.sets = sets_of(given->sets, given->options.run);
         return accuracy_command(given->options);
     };
 }
