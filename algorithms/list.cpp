@@ -2,6 +2,7 @@
 #include "algorithms/chunked/chunked.h"
 #include "algorithms/gproximity/gproximity.h"
 #include "algorithms/sources.h"
+#include "algorithms/tiled/tiled.h"
 #include "algorithms/traversal.h"
 #include "scenes/error.h"
 
@@ -13,7 +14,7 @@ namespace tandem {
 namespace {
 
 std::vector<const Traversal*>& listed() {
-    static std::vector<const Traversal*> all{&chunked(), &gproximity()};
+    static std::vector<const Traversal*> all{&chunked(), &gproximity(), &tiled()};
     return all;
 }
 

@@ -129,7 +129,7 @@ class Records(Case):
             return done.returncode, done.stdout + done.stderr
 
         good, bad, empty = (self.work / name for name in ("good.jsonl", "bad.jsonl", "empty.jsonl"))
-        tandem("run", "--mesh", self.good, "--device", "host", "--out", good)
+        tandem("run", "--mesh", self.good, "--device", "host", "--algorithm", "chunked,gproximity", "--out", good)
         line = good.read_text().splitlines()[0]
         bad.write_text(line + "\n" + line.replace('"count":0,', '"count":-1,', 1) + "\n" + line[:100] + "\n")
         empty.write_text("")

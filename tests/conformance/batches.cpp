@@ -40,9 +40,9 @@ protected:
 
     /// Bytes that a session takes when everything else is as small as can be.
     std::size_t least_bytes(const Traversal& traversal, const Scene& scene, SettingTexts given) {
-        given["pair_capacity"] = given["contact_capacity"] = given["body_pair_capacity"] = "1";
+        for (const auto* parameter : traversal.parameters())
+            if (parameter->name.ends_with("_capacity")) given[std::string(parameter->name)] = "1";
         if (traversal.name() == "gproximity") given["queue_bytes"] = "65536";
-        if (traversal.name() == "chunked") given["seed_capacity"] = "1";
         const auto before = on.bytes_allocated();
         const auto session = prepare(traversal, scene, given);
         return on.bytes_allocated() - before;

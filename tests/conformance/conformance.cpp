@@ -4,6 +4,7 @@
 #include "tests/support/cells.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/scenes.h"
+#include "scenes/error.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -32,7 +33,9 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
                             {{"rounding", "nearest"}},
                             {{"rounding", "published"}},
                             {{"rounding", "safe"}, {"placement", "exact"}}},
-                           of("group_size", {"1", "8", "32", "64"}),
+                           of("group_size", traversal.name() == "tiled"
+                                                ? std::vector<std::string>{"1", "8", "32", "64", "128", "256"}
+                                                : std::vector<std::string>{"1", "8", "32", "64"}),
                            of("residency", {"resident", "published"}),
                            of("work_items", {"64", "2048"}),
                            of("broad", {"sphere", "device"}),
@@ -44,6 +47,9 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
                            of("seed_threshold", {"0", "1", "40", "1e7"}),
                            of("seed_target", {"1000", "1048576"}),
                            of("seed_capacity", {"1", "65536"}),
+                           of("builder", {"morton", "sah"}),
+                           of("slabs", {"three", "all"}),
+                           of("tile_pair_capacity", {"1", "65536"}),
                            of("root_test", {"yes", "no"}),
                            of("schedule", {"group", "item"}),
                            of("descent", {"larger", "both"}),
@@ -79,6 +85,22 @@ std::vector<SettingTexts> possible(const std::vector<SettingTexts>& rows) {
         all.back()["broad"] = "sphere";
     }
     return all;
+}
+
+/// The row with groups as large as the device has local memory for.
+SettingTexts fitted(const Traversal& traversal, Device& on, SettingTexts row) {
+    const std::array devices{&on};
+    for (;;) {
+        try {
+            traversal.check(devices, resolve(traversal.parameters(), {}, row, traversal.name()));
+            return row;
+        } catch (const InputError& error) {
+            const auto size = std::stoi(row.at("group_size"));
+            if (std::string_view(error.what()).find("local memory") == std::string_view::npos || size == 1)
+                throw;
+            row["group_size"] = std::to_string(size / 2);
+        }
+    }
 }
 
 /// Runs both frames of `scene` and compares pairs, digests and contacts with the reference.
@@ -121,7 +143,8 @@ protected:
         for (auto i = part; i < rows.size(); i += parts) {
             std::uint64_t pairs = 0;
             std::uint64_t contacts = 0;
-            expect_right(on, traversal, crowd(seed + i, bodies, 0.8), rows[i], pairs, contacts);
+            expect_right(on, traversal, crowd(seed + i, bodies, 0.8), fitted(traversal, on, rows[i]), pairs,
+                         contacts);
             EXPECT_GT(pairs, 0u) << text(rows[i]);
             EXPECT_GT(contacts, 0u) << text(rows[i]);
             if (HasFailure()) return;
@@ -132,10 +155,11 @@ protected:
 TEST_P(CoveringArray, Chunked) { cover("chunked", 100, 7); }
 // With queues of four items and a balance after each, every body pair takes thousands of launches.
 TEST_P(CoveringArray, Gproximity) { cover("gproximity", 200, 4); }
+TEST_P(CoveringArray, Tiled) { cover("tiled", 400, 7); }
 TEST_P(CoveringArray, EveryOther) {
     for (const auto* traversal : algorithms())
-        if (traversal->name() != "chunked" && traversal->name() != "gproximity")
-            cover(traversal->name(), 300, 7);
+        if (const auto name = traversal->name(); name != "chunked" && name != "gproximity" && name != "tiled")
+            cover(name, 300, 7);
 }
 
 TEST_P(Conformance, EveryPreset) {

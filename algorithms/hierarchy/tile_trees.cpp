@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/hierarchy/tile_trees.h"
+
+#include "algorithms/sources.h"
+#include "backends/upload.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace tandem {
+
+namespace {
+
+constexpr std::uint32_t lanes = TileShapes::lanes;
+constexpr std::uint32_t count_shift = 8;         ///< TILE_COUNT_SHIFT
+constexpr std::uint32_t nothing = 0xffffffff;    ///< NO_TILE, NO_BODY
+constexpr std::uint64_t most_tiles = 1ull << 27; ///< so that a word numbers their boxes
+
+std::uint32_t in_tiles(std::uint32_t boxes) { return (boxes + lanes - 1) / lanes; }
+
+/// Levels of a tree over so many tetrahedra, the top tile's included.
+std::uint32_t levels_over(std::uint32_t items) {
+    std::uint32_t levels = 1;
+    for (auto boxes = items; boxes > lanes; boxes = in_tiles(boxes)) ++levels;
+    return levels;
+}
+
+} // namespace
+
+TileTrees::TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size)
+    : bodies_(bodies), device_(bodies.device()), slabs_(slabs), group_size_(group_size), shapes_(bodies) {
+    lay_out();
+    plan_refit();
+    tile_table_ = uploaded(device_, bytes_of(tile_rows()), "tiles");
+    std::vector<std::uint32_t> tops;
+    for (const auto& first : first_tiles_) tops.push_back(first.back());
+    tops_ = uploaded(device_, bytes_of(tops), "top tiles");
+    const auto& geometry = bodies.geometry();
+    const auto real = static_cast<std::uint64_t>(real_bytes(geometry));
+    const auto k = static_cast<std::uint64_t>(geometry.k);
+    const auto leaf_words = slabs == Slabs::three ? std::min<std::uint64_t>(k, 6) : k;
+    leaves_ = device_.allocate(first_upper() * leaf_words * lanes * real, "leaf tiles");
+    uppers_ = device_.allocate(std::max<std::uint64_t>(1, tile_count_ - first_upper()) * k * lanes * real,
+                               "upper tiles");
+    roots_ = device_.allocate(tile_count_ * k * real, "roots of tiles");
+    volumes_ = device_.allocate(bodies.count() * k * real, "volumes");
+    taking_part_ = device_.allocate(std::uint64_t{first_upper()} * 4, "tetrahedra that take part");
+    upload_taking_part({});
+    const auto& source = kernel_source("algorithms/hierarchy/refit_tiles.cl");
+    leaf_kernel_ = device_.compile(source, "refit_leaf_tiles", defines(group_size));
+    upper_kernel_ = device_.compile(source, "refit_upper_tiles", defines(group_size));
+}
+
+Defines TileTrees::defines(std::uint32_t group_size) const {
+    auto defines = geometry_defines(bodies_.geometry(), group_size);
+    define(defines, parameters::slabs, slabs_);
+    return defines;
+}
+
+/// Boxes of a body's level; level 0: its tetrahedra.
+std::uint32_t TileTrees::boxes_of(std::uint32_t body, std::uint32_t level) const {
+    auto boxes = bodies_.row(body).tetrahedron_count;
+    for (; level > 0; --level) boxes = in_tiles(boxes);
+    return boxes;
+}
+
+/// Numbers tiles level after level, those of bodies that move first.
+void TileTrees::lay_out() {
+    order_.resize(bodies_.count());
+    std::iota(order_.begin(), order_.end(), 0u);
+    std::stable_partition(order_.begin(), order_.end(),
+                          [&](std::uint32_t body) { return !bodies_.scene().bodies[body].fixed; });
+    first_tiles_.resize(bodies_.count());
+    std::uint64_t count = 0;
+    for (std::uint32_t level = 0; level == level_first_.size(); ++level) {
+        const auto first = count;
+        for (const auto body : order_) {
+            if (level >= levels_over(bodies_.row(body).tetrahedron_count)) continue;
+            first_tiles_[body].push_back(static_cast<std::uint32_t>(count));
+            count += in_tiles(boxes_of(body, level));
+            if (count > most_tiles)
+                throw DeviceError(fmt::format("scene: more than {} tiles of {} boxes; leave bodies out",
+                                              most_tiles, lanes));
+        }
+        if (count > first) level_first_.push_back(static_cast<std::uint32_t>(first));
+    }
+    tile_count_ = static_cast<std::uint32_t>(count);
+}
+
+std::vector<TileTrees::Tile> TileTrees::tile_rows() const {
+    std::vector<Tile> rows(tile_count_);
+    for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
+        const auto& first = first_tiles_[body];
+        const auto shapes = shapes_.first_row(bodies_.scene().bodies[body].mesh);
+        std::uint32_t items = lanes; // below a tile of the level
+        for (std::uint32_t level = 0; level < first.size(); ++level, items *= lanes) {
+            const auto boxes = boxes_of(body, level);
+            for (std::uint32_t tile = 0; tile < in_tiles(boxes); ++tile) {
+                const auto count = std::min(lanes, boxes - tile * lanes);
+                const auto below = level == 0 ? shapes + tile : first[level - 1] + tile * lanes;
+                rows[first[level] + tile] = {body, below, tile * items, level | count << count_shift};
+            }
+        }
+    }
+    return rows;
+}
+
+/// The units of one body that make `level` and the level above.
+void TileTrees::add_units(std::uint32_t body, std::uint32_t level, std::vector<Unit>& units) const {
+    const auto& first = first_tiles_[body];
+    if (level >= first.size()) return;
+    const auto tiles = in_tiles(boxes_of(body, level));
+    const bool has_parents = level + 1 < first.size();
+    const bool is_whole = level + 2 >= first.size();
+    for (std::uint32_t unit = 0; unit * lanes < tiles; ++unit)
+        units.push_back({first[level] + unit * lanes, std::min(lanes, tiles - unit * lanes),
+                         has_parents ? first[level + 1] + unit : nothing, is_whole ? body : nothing});
+}
+
+void TileTrees::plan_refit() {
+    for (std::uint32_t level = 0; level < levels(); level += 2) {
+        std::vector<Unit> units;
+        Step step;
+        for (const auto body : order_) {
+            add_units(body, level, units);
+            if (!bodies_.scene().bodies[body].fixed)
+                step.moving_units = static_cast<std::uint32_t>(units.size());
+        }
+        step.units = static_cast<std::uint32_t>(units.size());
+        step.table = uploaded(device_, bytes_of(units), "units of a refit");
+        steps_.push_back(std::move(step));
+    }
+}
+
+std::size_t TileTrees::do_bytes() const {
+    auto sum = shapes_.bytes();
+    for (const auto* buffer : {&leaves_, &uppers_, &roots_, &volumes_, &tile_table_, &tops_, &taking_part_})
+        sum += buffer->bytes();
+    for (const auto& step : steps_) sum += step.table.bytes();
+    return sum;
+}
+
+/// A bit for every tetrahedron that is there and that the frame does not skip.
+void TileTrees::upload_taking_part(const Frame& frame) {
+    std::vector<std::uint32_t> words(first_upper());
+    {
+        const HostWork work(device_, Stage::preprocess, "skipped tetrahedra");
+        for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
+            const auto items = bodies_.row(body).tetrahedron_count;
+            const auto first = first_tiles_[body][0];
+            for (std::uint32_t item = 0; item < items; ++item)
+                words[first + item / lanes] |= 1u << item % lanes;
+            if (frame.skipped.empty() || frame.skipped[body].empty()) continue;
+            const auto positions = inverse(bodies_.mesh(body).ids);
+            for (const auto tetrahedron : frame.skipped[body])
+                words[first + positions[tetrahedron] / lanes] &= ~(1u << positions[tetrahedron] % lanes);
+        }
+    }
+    const StageScope scope(device_, Stage::write);
+    device_.upload(taking_part_, bytes_of(words));
+}
+
+void TileTrees::leave_out(const Frame& frame) {
+    if (frame.skipped == skipped_) return;
+    upload_taking_part(frame);
+    skipped_ = frame.skipped;
+    fresh_ = true;
+}
+
+/// Bottom up, two levels a launch.
+void TileTrees::do_refit(const Frame& frame, bool all) {
+    leave_out(frame);
+    all |= fresh_;
+    const StageScope scope(device_, Stage::refit);
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+        const auto& step = steps_[i];
+        const Grid grid{all ? step.units : step.moving_units, group_size_};
+        if (grid.groups == 0) continue;
+        if (i == 0) {
+            const std::array<Argument, 14> arguments{leaves_,           uppers_,
+                                                     first_upper(),     roots_,
+                                                     volumes_,          step.table,
+                                                     tile_table_,       taking_part_,
+                                                     shapes_.starts(),  shapes_.vertex_numbers(),
+                                                     shapes_.corners(), bodies_.row_table(),
+                                                     bodies_.poses(),   bodies_.vertices()};
+            device_.launch(leaf_kernel_, grid, arguments);
+        } else {
+            const std::array<Argument, 6> arguments{uppers_,  first_upper(), roots_,
+                                                    volumes_, step.table,    tile_table_};
+            device_.launch(upper_kernel_, grid, arguments);
+        }
+    }
+    fresh_ = false;
+}
+
+} // namespace tandem

@@ -1,0 +1,493 @@
+// SPDX-License-Identifier: MIT
+// The tiled walk: a team of lanes tests 32 boxes of one body against 32 of the other at once, without a
+// stack. A launch takes the pairs of tiles of one level, those that the level above has found and the body
+// pairs whose trees end there, and finds those of the next, or, at level 0, candidate pairs.
+#include "backends/portable.h"
+#include "algorithms/answer/emit.clh"
+#include "algorithms/broad/body_pairs.clh"
+#include "algorithms/hierarchy/tiles.clh"
+#include "algorithms/tiled/tile_pairs.clh"
+
+// How many pairs of tiles a level's list has.
+DEVICE uint tile_pair_count(GLOBAL const uint* status, uint level, uint capacity) {
+    GLOBAL const uint* counter = status + STATUS_TILE_PAIRS + 2u * level;
+    return counter[1] != 0u || counter[0] > capacity ? capacity : counter[0];
+}
+
+// Boxes in local memory are read by all lanes at once, four reals at a time.
+#define ROW_UNITS(directions) ((2 * (directions) + 3) / 4)
+
+// A team's words in local memory.
+#define BOXES 0 // boxes of b in its rows
+#define FOUND 1 // pairs that wait, and those not decided
+#define KEPT 2  // pairs that wait
+#define PLACE 3 // where they go
+#define TEAM_WORDS 4
+
+typedef struct {
+    LOCAL RealRow* rows; // boxes of b that overlap the root of a
+    LOCAL uint* numbers; // whose they are
+    LOCAL uint* pairs;   // two words each
+    LOCAL uint* place;
+    LaneCounter boxes, found, kept;
+} Team;
+
+// The pairs of tiles of a launch, and where a team is in them: it takes a few that lie side by side, and so
+// have a's tile in common, then some far on.
+typedef struct {
+    ulong next;
+    uint own, listed; // body pairs that begin here, and pairs of tiles from above
+    uint batch, left;
+} Turns;
+
+#define MOST_IN_BATCH 8u
+
+DEVICE ulong turn_count(const Turns* turns) { return (ulong)turns->own + turns->listed; }
+
+DEVICE Turns first_turn(uint own, uint listed) {
+    Turns turns;
+    const uint teams = GROUP_COUNT * LANE_TEAMS;
+    turns.own = own;
+    turns.listed = listed;
+    const ulong each = (turn_count(&turns) + teams - 1u) / teams;
+    turns.batch = each > MOST_IN_BATCH ? MOST_IN_BATCH : each == 0 ? 1u : (uint)each;
+    turns.next = (ulong)(GROUP_ID * LANE_TEAMS + LANE_TEAM) * turns.batch;
+    turns.left = turns.batch;
+    return turns;
+}
+
+DEVICE void take_turn(Turns* turns) {
+    turns->next += 1u;
+    turns->left -= 1u;
+    if (turns->left != 0u) return;
+    turns->next += (ulong)(GROUP_COUNT * LANE_TEAMS - 1u) * turns->batch;
+    turns->left = turns->batch;
+}
+
+// Which tiles are tested with each other; none past the end.
+typedef struct {
+    uint a, b;
+    int is_any;
+} TilePair;
+
+DEVICE TilePair tile_pair_at(const Turns* turns, GLOBAL const uint* pairs, GLOBAL const uint* tops,
+                             GLOBAL const uint* list) {
+    TilePair pair = {0u, 0u, 0};
+    if (turns->next >= turn_count(turns)) return pair;
+    pair.is_any = 1;
+    if (turns->next < turns->own) {
+        pair.a = tops[body_a_of(pairs, (uint)turns->next)];
+        pair.b = tops[body_b_of(pairs, (uint)turns->next)];
+    } else {
+        GLOBAL const uint* row = list + (turns->next - turns->own) * TILE_PAIR_WORDS;
+        pair.a = row[0];
+        pair.b = row[1];
+    }
+    return pair;
+}
+
+// Closed overlap of slabs, without a branch for each: touching overlaps.
+#define APART(lower_a, upper_a, lower_b, upper_b)                                                            \
+    (ROUNDING == ROUNDING_PUBLISHED                                                                          \
+         ? ((lower_a) - (upper_b) > PUBLISHED_TOLERANCE) | ((lower_b) - (upper_a) > PUBLISHED_TOLERANCE)     \
+         : ((lower_a) > (upper_b)) | ((lower_b) > (upper_a)))
+
+// Boxes in registers: lower ends, then upper ones, a row a word.
+#define LANE_BOX(name, directions) real name[2 * (directions)][LANE_PARTS]
+
+// Lanes' boxes of b that overlap the root of a, which is K reals, to the team's rows.
+#define COLLECT_ROWS(team, box, directions, root)                                                            \
+    {                                                                                                        \
+        uint meets[LANE_PARTS];                                                                              \
+        FOR_LANES {                                                                                          \
+            uint apart = 0;                                                                                  \
+            UNROLL for (uint d = 0; d < (uint)(directions); ++d) apart |=                                    \
+                (uint)APART(root[d], root[DIRECTIONS + d], box[d][part], box[(directions) + d][part]);       \
+            meets[part] = apart == 0u;                                                                       \
+        }                                                                                                    \
+        FOR_LANES {                                                                                          \
+            const uint place = take_place(&(team)->boxes, (int)meets[part]);                                 \
+            if (!meets[part]) continue;                                                                      \
+            (team)->numbers[place] = lane;                                                                   \
+            LOCAL RealRow* row = (team)->rows + place * ROW_UNITS(directions);                               \
+            UNROLL for (uint unit = 0; unit < (uint)ROW_UNITS(directions); ++unit) {                         \
+                RealRow four;                                                                                \
+                four.x = box[4 * unit][part];                                                                \
+                four.y = box[4 * unit + 1][part];                                                            \
+                four.z =                                                                                     \
+                    4 * unit + 2 < 2 * (directions) ? box[(4 * unit + 2) % (2 * (directions))][part] : 0;    \
+                four.w =                                                                                     \
+                    4 * unit + 3 < 2 * (directions) ? box[(4 * unit + 3) % (2 * (directions))][part] : 0;    \
+                row[unit] = four;                                                                            \
+            }                                                                                                \
+        }                                                                                                    \
+    }
+
+#define LOAD_ROW(team, r, directions, row)                                                                   \
+    UNROLL for (uint unit = 0; unit < (uint)ROW_UNITS(directions); ++unit) {                                 \
+        const RealRow four = (team)->rows[(r)*ROW_UNITS(directions) + unit];                                 \
+        row[4 * unit] = four.x;                                                                              \
+        row[4 * unit + 1] = four.y;                                                                          \
+        row[4 * unit + 2] = four.z;                                                                          \
+        row[4 * unit + 3] = four.w;                                                                          \
+    }
+
+// Whether a lane's box of a is apart from a row.
+#define APART_FROM_ROW(row, box, directions, apart)                                                          \
+    UNROLL for (uint d = 0; d < (uint)(directions); ++d) apart |=                                            \
+        (uint)APART(row[d], row[(directions) + d], box[d][part], box[(directions) + d][part]);
+
+DEVICE uint lowest_bit(uint bits) { return 31u - COUNT_LEADING_ZEROS(bits & (~bits + 1u)); }
+
+DEVICE void put_pair(const Team* team, uint place, uint a, uint b) {
+    team->pairs[2u * place] = a;
+    team->pairs[2u * place + 1u] = b;
+}
+
+// The pairs of boxes of a, which are lanes, and rows from `r` on that overlap, behind those that wait: of all
+// rows, or of as many as there is room for. A lane's box has number first_a + lane * step_a, and that of row
+// i first_b + numbers[i] * step_b. `r` moves on. With the rows of a warp the lanes that overlap are known at
+// once; elsewhere each lane keeps a bit for each row, which is vector code on the host, and then writes its
+// own.
+#if LANES_ARE_WARP
+#define FIND_PAIRS(team, rows, r, box, directions, keeps, first_a, step_a, first_b, step_b)                  \
+    NO_UNROLL for (; r < (rows) && places_taken(&(team)->found) <= PAIR_ROOM(LANES_ARE_WARP) - LANES; ++r) { \
+        real row[4 * ROW_UNITS(directions)];                                                                 \
+        LOAD_ROW(team, r, directions, row)                                                                   \
+        FOR_LANES {                                                                                          \
+            uint apart = keeps[part] ^ 1u;                                                                   \
+            APART_FROM_ROW(row, box, directions, apart)                                                      \
+            const uint place = take_place(&(team)->found, apart == 0u);                                      \
+            if (apart == 0u)                                                                                 \
+                put_pair(team, place, (first_a) + lane * (step_a),                                           \
+                         (first_b) + (team)->numbers[r] * (step_b));                                         \
+        }                                                                                                    \
+    }
+#else
+#define FIND_PAIRS(team, rows, r, box, directions, keeps, first_a, step_a, first_b, step_b)                  \
+    {                                                                                                        \
+        uint mask[LANE_PARTS];                                                                               \
+        FOR_LANES mask[part] = 0u;                                                                           \
+        for (; r < (rows); ++r) {                                                                            \
+            real row[4 * ROW_UNITS(directions)];                                                             \
+            LOAD_ROW(team, r, directions, row)                                                               \
+            FOR_LANES {                                                                                      \
+                uint apart = 0;                                                                              \
+                APART_FROM_ROW(row, box, directions, apart)                                                  \
+                mask[part] |= (apart ^ 1u) << r;                                                             \
+            }                                                                                                \
+        }                                                                                                    \
+        FOR_LANES {                                                                                          \
+            uint bits = keeps[part] != 0u ? mask[part] : 0u;                                                 \
+            if (bits == 0u) continue;                                                                        \
+            uint place = LOCAL_ATOMIC_ADD((team)->found.word, COUNT_ONES(bits));                             \
+            for (; bits != 0u; bits &= bits - 1u, ++place)                                                   \
+                put_pair(team, place, (first_a) + lane * (step_a),                                           \
+                         (first_b) + (team)->numbers[lowest_bit(bits)] * (step_b));                          \
+        }                                                                                                    \
+    }
+#endif
+
+// Where the team's pairs go, if they go now; a LANE_BARRIER follows.
+DEVICE void reserve(const Team* team, uint waiting, int now, GLOBAL uint* counter) {
+    if (now && LANE_ID == 0u) *team->place = waiting != 0u ? counter_add(counter, waiting) : 0u;
+}
+
+// Which item a slot is: slots number the boxes of level 0.
+DEVICE WordRow pair_of_slots(GLOBAL const uint* tiles, uint a, uint b) {
+    const Tile tile_a = tile_at(tiles, a / LANES);
+    const Tile tile_b = tile_at(tiles, b / LANES);
+    WordRow pair;
+    pair.x = tile_a.body;
+    pair.y = tile_b.body;
+    pair.z = tile_a.item + a % LANES;
+    pair.w = tile_b.item + b % LANES;
+    return pair;
+}
+
+// Past `capacity` nothing is written.
+DEVICE void write_candidates(const Team* team, uint waiting, GLOBAL const uint* tiles, GLOBAL uint* found,
+                             uint capacity) {
+    const ulong place = *team->place;
+    for (uint i = LANE_ID; i < waiting; i += (uint)LANE_STEP)
+        if (place + i < capacity)
+            ((GLOBAL WordRow*)found)[place + i] =
+                pair_of_slots(tiles, team->pairs[2u * i], team->pairs[2u * i + 1u]);
+}
+
+DEVICE void write_tile_pairs(const Team* team, uint waiting, GLOBAL uint* list, uint capacity) {
+    const ulong place = *team->place;
+    for (uint i = LANE_ID; i < 2u * waiting; i += (uint)LANE_STEP)
+        if (place + i / 2u < capacity) list[place * TILE_PAIR_WORDS + i] = team->pairs[i];
+}
+
+// What a level above 0 tests a tile as: its boxes, or, where it is of a lower level than the launch, its root
+// as the only one.
+DEVICE void load_boxes(GLOBAL const real* uppers, uint first_upper, GLOBAL const real* roots, uint number,
+                       const Tile* tile, uint level, LANE_BOX(box, DIRECTIONS)) {
+    GLOBAL const real* boxes = uppers + (ulong)(number - first_upper) * (K * LANES);
+    GLOBAL const real* root = root_of(roots, number);
+    const int whole = tile->level != level;
+    UNROLL for (uint word = 0; word < (uint)K; ++word) {
+        FOR_LANES {
+            const real nothing = word < (uint)DIRECTIONS ? REAL_INFINITY : -REAL_INFINITY;
+            box[word][part] = !whole ? boxes[word * LANES + lane] : lane == 0u ? root[word] : nothing;
+        }
+    }
+}
+
+// Lanes with items in the window of a windowed walk.
+DEVICE void lanes_in_window(GLOBAL const uint* status, const Tile* tile, uint level, uint* keeps) {
+    const uint shift = tile->level == level ? 5u * level : 5u * (tile->level + 1u);
+    FOR_LANES {
+        const ulong first = tile->item + ((ulong)lane << shift);
+        keeps[part] = (uint)in_window(status, first, first + ((ulong)1 << shift));
+    }
+}
+
+#define TEAM_ARRAYS(row_units)                                                                               \
+    LOCAL_ARRAY(RealRow, all_rows, LANE_TEAMS*(row_units));                                                  \
+    LOCAL_ARRAY(uint, all_numbers, LANE_TEAMS* LANES);                                                       \
+    LOCAL_ARRAY(uint, all_pairs, LANE_TEAMS* PAIR_ROOM(LANES_ARE_WARP) * 2);                                 \
+    LOCAL_ARRAY(uint, all_words, LANE_TEAMS* TEAM_WORDS);                                                    \
+    Team team;                                                                                               \
+    {                                                                                                        \
+        LOCAL uint* words = all_words + LANE_TEAM * TEAM_WORDS;                                              \
+        team.rows = all_rows + LANE_TEAM * (row_units);                                                      \
+        team.numbers = all_numbers + LANE_TEAM * LANES;                                                      \
+        team.pairs = all_pairs + LANE_TEAM * (PAIR_ROOM(LANES_ARE_WARP) * 2);                                \
+        team.place = words + PLACE;                                                                          \
+        team.boxes.word = words + BOXES;                                                                     \
+        team.found.word = words + FOUND;                                                                     \
+        team.kept.word = words + KEPT;                                                                       \
+        begin_count(&team.boxes, 0u);                                                                        \
+        begin_count(&team.found, 0u);                                                                        \
+        begin_count(&team.kept, 0u);                                                                         \
+    }
+
+DEVICE void count_tests(Tally* tally, uint rows, int is_seed) {
+    if (!COUNT_WORK || LANE_ID != 0u) return;
+    tally->tests += (ulong)LANES * (rows + 1u);
+    tally->seeds += is_seed ? 1u : 0u;
+}
+
+// Tiles of `level` or lower ones; what overlaps goes to `below`, the list of level - 1. `begins`: whether
+// body pairs begin here.
+KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL const real* roots,
+                             GLOBAL const uint* tiles, GLOBAL const uint* tops, GLOBAL const uint* pairs,
+                             uint pair_room, uint begins, uint level, GLOBAL const uint* list, uint capacity,
+                             GLOBAL uint* below, uint below_capacity, GLOBAL uint* status) {
+    TEAM_ARRAYS(LANES * ROW_UNITS(DIRECTIONS))
+    GLOBAL uint* counter = status + STATUS_TILE_PAIRS + 2u * (level - 1u);
+    Tally tally = empty_tally();
+    Turns turns = first_turn(begins != 0u ? body_pair_count(pair_room, status) : 0u,
+                             tile_pair_count(status, level, capacity));
+    LANE_BARRIER;
+    do { // once at least, as loops with barriers have to
+        const TilePair pair = tile_pair_at(&turns, pairs, tops, list);
+        const Tile a = tile_at(tiles, pair.a);
+        const Tile b = tile_at(tiles, pair.b);
+        const int highest = a.level > b.level ? a.level == level : b.level == level;
+        const int tested = pair.is_any && highest; // others begin in another launch
+        uint keeps[LANE_PARTS];
+        FOR_LANES keeps[part] = 1u;
+        LANE_BOX(box, DIRECTIONS);
+        if (tested) {
+            GLOBAL const real* root = root_of(roots, pair.a);
+            load_boxes(uppers, first_upper, roots, pair.b, &b, level, box);
+            COLLECT_ROWS(&team, box, DIRECTIONS, root)
+            load_boxes(uppers, first_upper, roots, pair.a, &a, level, box);
+            if (WINDOWED) lanes_in_window(status, &a, level, keeps);
+        }
+        LANE_BARRIER;
+        const uint rows = places_taken(&team.boxes);
+        if (tested) count_tests(&tally, rows, turns.next < turns.own);
+        // Boxes are those of the tiles below, or the tile itself is its only one.
+        const uint first_a = a.level == level ? a.boxes : pair.a;
+        const uint first_b = b.level == level ? b.boxes : pair.b;
+        const uint step_a = a.level == level ? 1u : 0u;
+        const uint step_b = b.level == level ? 1u : 0u;
+        uint r = 0;
+        do {
+            FIND_PAIRS(&team, rows, r, box, DIRECTIONS, keeps, first_a, step_a, first_b, step_b)
+            LANE_BARRIER;
+            const uint waiting = places_taken(&team.found);
+            const int now = waiting >= PAIRS_FLUSHED;
+            reserve(&team, waiting, now, counter);
+            begin_count(&team.boxes, 0u);
+            LANE_BARRIER;
+            if (now) write_tile_pairs(&team, waiting, below, below_capacity);
+            if (now) begin_count(&team.found, 0u);
+            LANE_BARRIER;
+        } while (r < rows);
+        take_turn(&turns);
+    } while (turns.next < turn_count(&turns));
+    const uint waiting = places_taken(&team.found);
+    reserve(&team, waiting, 1, counter);
+    LANE_BARRIER;
+    write_tile_pairs(&team, waiting, below, below_capacity);
+    if (COUNT_WORK) flush(&tally, status);
+}
+
+#if REST_DIRECTIONS > 0
+// Slabs along the directions that leaves have none of, in local memory; those of b, which come last, lie
+// where the vertices are that they are made from.
+#define REST_WORDS (2 * REST_DIRECTIONS)
+#define REST_STRIDE (REST_WORDS | 1)
+#define REST_A_REALS (LANES * REST_STRIDE)
+#define REST_B_REALS (REST_A_REALS > MOST_VERTICES * POINT_REALS ? REST_A_REALS : MOST_VERTICES * POINT_REALS)
+
+DEVICE void rest_slabs(const Shapes* shapes, const Tile* tile, LOCAL const real* points,
+                       real rest[REST_WORDS][LANE_PARTS]) {
+    const Point drift = drift_at(shapes->poses, tile->body);
+    FOR_LANES {
+        real slabs[K];
+        bound_corners(shapes, tile, points, lane, drift, slabs);
+        UNROLL for (uint d = 0; d < (uint)REST_DIRECTIONS; ++d) {
+            rest[d][part] = slabs[LEAF_DIRECTIONS + d];
+            rest[REST_DIRECTIONS + d][part] = slabs[DIRECTIONS + LEAF_DIRECTIONS + d];
+        }
+    }
+}
+
+DEVICE void keep_rest(real rest[REST_WORDS][LANE_PARTS], LOCAL real* kept) {
+    FOR_LANES {
+        UNROLL for (uint word = 0; word < (uint)REST_WORDS; ++word) {
+            kept[lane * REST_STRIDE + word] = rest[word][part];
+        }
+    }
+}
+
+DEVICE int rest_overlaps(LOCAL const real* a, LOCAL const real* b) {
+    uint apart = 0;
+    UNROLL for (uint d = 0; d < (uint)REST_DIRECTIONS; ++d) apart |=
+        (uint)APART(a[d], a[REST_DIRECTIONS + d], b[d], b[REST_DIRECTIONS + d]);
+    return apart == 0u;
+}
+#endif
+
+DEVICE void load_leaves(GLOBAL const real* leaves, uint tile, LANE_BOX(box, LEAF_DIRECTIONS)) {
+    GLOBAL const real* boxes = leaves_of(leaves, tile);
+    UNROLL for (uint word = 0; word < (uint)LEAF_WORDS; ++word) {
+        FOR_LANES box[word][part] = boxes[word * LANES + lane];
+    }
+}
+
+// Whether candidates are pairs as they are found.
+#define IS_DECIDED (REST_DIRECTIONS == 0 && OUTPUT == OUTPUT_PAIRS)
+
+// Tiles of level 0: what overlaps in all of k's directions is a candidate pair.
+KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots, GLOBAL const uint* tiles,
+                            GLOBAL const uint* tops, GLOBAL const uint* pairs, uint pair_room, uint begins,
+                            GLOBAL const uint* list, uint list_capacity, GLOBAL const uint* starts,
+                            GLOBAL const uint* vertex_numbers, GLOBAL const uint* corners,
+                            GLOBAL const uint* bodies, GLOBAL const real* poses, GLOBAL const real* vertices,
+                            GLOBAL const uint* ids, GLOBAL uint* found, uint capacity, GLOBAL uint* status) {
+    TEAM_ARRAYS(LANES * ROW_UNITS(LEAF_DIRECTIONS))
+#if REST_DIRECTIONS > 0
+    LOCAL_ARRAY(real, all_rest, LANE_TEAMS * (REST_A_REALS + REST_B_REALS));
+    LOCAL real* rest_a = all_rest + LANE_TEAM * (REST_A_REALS + REST_B_REALS);
+    LOCAL real* rest_b = rest_a + REST_A_REALS;
+    const Shapes shapes = {starts, vertex_numbers, corners, bodies, poses, vertices};
+    uint rest_of = 0xffffffffu; // the tile that rest_a is of
+#endif
+    Tally tally = empty_tally();
+    Turns turns = first_turn(begins != 0u ? body_pair_count(pair_room, status) : 0u,
+                             tile_pair_count(status, 0u, list_capacity));
+    LANE_BOX(box, LEAF_DIRECTIONS);
+    uint box_of = 0xffffffffu; // the tile whose boxes these are
+    LANE_BARRIER;
+    do { // once at least, as loops with barriers have to
+        const TilePair pair = tile_pair_at(&turns, pairs, tops, list);
+        const Tile a = tile_at(tiles, pair.a);
+        const Tile b = tile_at(tiles, pair.b);
+        const int tested = pair.is_any && a.level == 0u && b.level == 0u; // others begin in another launch
+        uint keeps[LANE_PARTS];
+        FOR_LANES keeps[part] = 1u;
+        if (tested) {
+            GLOBAL const real* root = root_of(roots, pair.a);
+            LANE_BOX(box_b, LEAF_DIRECTIONS);
+            load_leaves(leaves, pair.b, box_b);
+            if (box_of != pair.a) load_leaves(leaves, pair.a, box);
+            box_of = pair.a;
+            COLLECT_ROWS(&team, box_b, LEAF_DIRECTIONS, root)
+            if (WINDOWED) lanes_in_window(status, &a, 0u, keeps);
+        }
+        LANE_BARRIER;
+        const uint rows = places_taken(&team.boxes);
+        if (tested) count_tests(&tally, rows, turns.next < turns.own);
+        uint r = 0;
+        do {
+            FIND_PAIRS(&team, rows, r, box, LEAF_DIRECTIONS, keeps, pair.a * LANES, 1u, pair.b * LANES, 1u)
+            LANE_BARRIER;
+            const uint candidates = places_taken(&team.found);
+            begin_count(&team.boxes, 0u);
+            uint kept = candidates;
+            if (!IS_DECIDED) {
+                uint next = places_taken(&team.kept);
+#if REST_DIRECTIONS > 0
+                const int decides = candidates > next;
+                const int decides_a = decides && rest_of != pair.a;
+                real rest[REST_WORDS][LANE_PARTS];
+                if (decides_a) load_vertices(&shapes, &a, rest_b);
+                LANE_BARRIER;
+                if (decides_a) rest_slabs(&shapes, &a, rest_b, rest);
+                LANE_BARRIER;
+                if (decides_a) keep_rest(rest, rest_a);
+                rest_of = decides_a ? pair.a : rest_of;
+                if (decides) load_vertices(&shapes, &b, rest_b);
+                LANE_BARRIER;
+                if (decides) rest_slabs(&shapes, &b, rest_b, rest);
+                LANE_BARRIER;
+                if (decides) keep_rest(rest, rest_b);
+                LANE_BARRIER;
+#endif
+                do {
+                    uint slot_a[LANE_PARTS];
+                    uint slot_b[LANE_PARTS];
+                    FOR_LANES {
+                        const uint at = next + lane < candidates ? next + lane : 0u;
+                        slot_a[part] = team.pairs[2u * at];
+                        slot_b[part] = team.pairs[2u * at + 1u];
+                    }
+                    LANE_BARRIER;
+                    FOR_LANES {
+                        int is_pair = next + lane < candidates;
+                        const uint lane_a = slot_a[part] % LANES;
+                        const uint lane_b = slot_b[part] % LANES;
+#if REST_DIRECTIONS > 0
+                        is_pair =
+                            is_pair
+                            && rest_overlaps(rest_a + lane_a * REST_STRIDE, rest_b + lane_b * REST_STRIDE);
+#endif
+                        if (OUTPUT == OUTPUT_PAIRS) {
+                            const uint place = take_place(&team.kept, is_pair);
+                            if (is_pair) put_pair(&team, place, slot_a[part], slot_b[part]);
+                        } else if (is_pair) {
+                            tally.count += 1;
+                            if (OUTPUT == OUTPUT_DIGEST)
+                                tally_digest(&tally, bodies, ids, a.body, b.body, a.item + lane_a,
+                                             b.item + lane_b);
+                        }
+                    }
+                    next += LANES;
+                    LANE_BARRIER;
+                } while (next < candidates);
+                kept = places_taken(&team.kept);
+            }
+            const int now = kept >= PAIRS_FLUSHED;
+            reserve(&team, kept, now, status + STATUS_PAIRS);
+            LANE_BARRIER;
+            if (now) write_candidates(&team, kept, tiles, found, capacity);
+            begin_count(&team.found, now ? 0u : kept);
+            begin_count(&team.kept, now ? 0u : kept);
+            LANE_BARRIER;
+        } while (r < rows);
+        take_turn(&turns);
+    } while (turns.next < turn_count(&turns));
+    const uint kept = places_taken(&team.found);
+    reserve(&team, kept, 1, status + STATUS_PAIRS);
+    LANE_BARRIER;
+    if (OUTPUT == OUTPUT_PAIRS) write_candidates(&team, kept, tiles, found, capacity);
+    flush(&tally, status);
+}

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/tiled/tiled.h"
+
+#include "algorithms/pipeline.h"
+#include "algorithms/tiled/tile_pairs.clh"
+#include "algorithms/tiled/tiled_walker.h"
+#include "scenes/error.h"
+
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+constexpr std::array<const Parameter*, 2> own{&parameters::slabs, &tiled_parameters::tile_pair_capacity};
+
+const std::vector<Preset> all_presets{
+    {"resident",
+     "everything resident, body pairs included, one wait per frame",
+     {parameters::broad(Broad::device), parameters::builder(Builder::sah), parameters::group_size(64)}}};
+
+constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds};
+
+/// Local memory in bytes of a work-group of so many teams of lanes, in the greediest of the kernels
+/// (tiled.cl, refit_tiles.cl).
+std::uint64_t local_bytes(const Settings& settings, std::uint64_t teams, bool is_warp) {
+    constexpr std::uint64_t lanes = 32, words = 4, points = 4 * lanes * 3;
+    const auto k = static_cast<std::uint64_t>(settings[parameters::k]);
+    const std::uint64_t real = settings[parameters::precision] == Precision::fp64 ? 8 : 4;
+    const auto leaf_words = settings[parameters::slabs] == Slabs::three ? std::min<std::uint64_t>(k, 6) : k;
+    const auto rows = [&](std::uint64_t reals) { return lanes * ((reals + 3) / 4 * 4 * real + words); };
+    const auto rest = k > leaf_words ? lanes * ((k - leaf_words) | 1) : 0;
+    const auto pairs = (2u * PAIR_ROOM(is_warp) + 4) * words;
+    const auto leaves = rows(leaf_words) + pairs + (rest > 0 ? rest + std::max(rest, points) : 0) * real;
+    const auto uppers = rows(k) + pairs;
+    const auto refit = (points + (lanes + 1) * k) * real;
+    return std::max(teams * std::max(leaves, uppers), teams * refit + lanes * (k | 1) * real);
+}
+
+/// Throws InputError when the teams of a work-group exceed the device's local memory.
+void check_local_memory(const Settings& settings, const DeviceInfo& info) {
+    const auto group_size = static_cast<std::uint64_t>(settings[parameters::group_size]);
+    // Whether lanes are a warp is the compiler's to say (portable.h); elsewhere the group is one team.
+    const auto needed = std::max(local_bytes(settings, 1, false),
+                                 group_size % 32 == 0 ? local_bytes(settings, group_size / 32, true) : 0);
+    if (needed > info.local_bytes)
+        throw InputError(
+            fmt::format("setting group_size={} needs {} bytes of local memory with algorithm tiled and {} "
+                        "has {}; lower it",
+                        group_size, needed, info.id, info.local_bytes));
+}
+
+class Tiled : public Traversal {
+public:
+    std::string_view name() const override { return "tiled"; }
+    std::string_view summary() const override {
+        return "tiles of 32 boxes tested against 32 at once, from the top of each body's tree to its "
+               "tetrahedra, without "
+               "a stack";
+    }
+    std::span<const Parameter* const> parameters() const override {
+        static const auto all = pipeline_parameters(own, false);
+        return all;
+    }
+    std::span<const Preset> presets() const override { return all_presets; }
+    std::span<const Counter> counters() const override { return all_counters; }
+
+private:
+    void do_check(const Settings& settings, const DeviceInfo& info) const override {
+        check_local_memory(settings, info);
+    }
+
+    Steps do_build(const Ground& ground) const override {
+        auto trees = std::make_unique<TileTrees>(ground.bodies, ground.settings[tandem::parameters::slabs],
+                                                 ground.shape.group_size);
+        auto walker = std::make_unique<TiledWalker>(*trees, ground);
+        return {std::move(trees), std::move(walker)};
+    }
+};
+
+} // namespace
+
+const Traversal& tiled() {
+    static const Tiled instance;
+    return instance;
+}
+
+} // namespace tandem

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/traversal.h"
+
+namespace tandem {
+
+/// Tiles of 32 boxes against 32: the paper's chunks without trees inside.
+const Traversal& tiled();
+
+} // namespace tandem

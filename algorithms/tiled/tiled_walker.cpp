@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/tiled/tiled_walker.h"
+
+#include "algorithms/sources.h"
+#include "algorithms/tiled/tile_pairs.clh"
+
+namespace tandem {
+
+namespace {
+
+constexpr std::size_t row_bytes = 4 * TILE_PAIR_WORDS;
+
+} // namespace
+
+TiledWalker::TiledWalker(const TileTrees& trees, const Ground& ground) : trees_(trees), shape_(ground.shape) {
+    const auto rows =
+        first_rows(ground.device, ground.settings[tiled_parameters::tile_pair_capacity], row_bytes, 1.0 / 16);
+    const auto lists = std::max<std::size_t>(1, trees.levels() - 1); // nothing is found for the highest level
+    for (std::size_t level = 0; level < lists; ++level)
+        lists_.emplace_back(ground.device, "pairs of tiles", row_bytes, trees.levels() > 1 ? rows : 1);
+}
+
+void TiledWalker::do_compile(const WalkBuild& build) {
+    auto defines = trees_.defines(shape_.group_size);
+    build.add_to(defines);
+    auto& device = trees_.bodies().device();
+    const auto& source = kernel_source("algorithms/tiled/tiled.cl");
+    upper_kernel_ = device.compile(source, "walk_upper_tiles", defines);
+    leaf_kernel_ = device.compile(source, "walk_leaf_tiles", defines);
+}
+
+bool TiledWalker::do_grow(const Status& status) {
+    bool again = false;
+    for (std::uint32_t level = 0; level + 1 < trees_.levels(); ++level) {
+        const auto found = status.counter(STATUS_TILE_PAIRS + 2 * level);
+        if (found <= lists_[level].rows()) continue;
+        lists_[level].grow(found);
+        again = true;
+    }
+    return again;
+}
+
+void TiledWalker::do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
+    work[counters::bvtt_nodes.name] += status.counter(STATUS_BVTT_NODES);
+    work[counters::seeds.name] += status.counter(STATUS_SEEDS);
+}
+
+void TiledWalker::launch_upper(const WalkTask& task, std::uint32_t level) {
+    const std::array<Argument, 14> arguments{trees_.uppers(),
+                                             trees_.first_upper(),
+                                             trees_.roots(),
+                                             trees_.tile_table(),
+                                             trees_.tops(),
+                                             task.body_pairs,
+                                             task.pair_room,
+                                             std::uint32_t{trees_.is_top(level)},
+                                             level,
+                                             list(level).buffer(),
+                                             level + 1 < trees_.levels() ? list(level).capacity() : 0,
+                                             list(level - 1).buffer(),
+                                             list(level - 1).capacity(),
+                                             task.status.buffer()};
+    trees_.bodies().device().launch(upper_kernel_, {shape_.groups, shape_.group_size}, arguments);
+}
+
+void TiledWalker::launch_leaves(const WalkTask& task) {
+    const auto& bodies = trees_.bodies();
+    const auto& shapes = trees_.shapes();
+    const std::array<Argument, 19> arguments{trees_.leaves(),
+                                             trees_.roots(),
+                                             trees_.tile_table(),
+                                             trees_.tops(),
+                                             task.body_pairs,
+                                             task.pair_room,
+                                             std::uint32_t{trees_.is_top(0)},
+                                             list(0).buffer(),
+                                             trees_.levels() > 1 ? list(0).capacity() : 0,
+                                             shapes.starts(),
+                                             shapes.vertex_numbers(),
+                                             shapes.corners(),
+                                             bodies.row_table(),
+                                             bodies.poses(),
+                                             bodies.vertices(),
+                                             bodies.ids(),
+                                             task.answer.pairs.buffer(),
+                                             task.answer.pairs.capacity(),
+                                             task.status.buffer()};
+    bodies.device().launch(leaf_kernel_, {shape_.groups, shape_.group_size}, arguments);
+}
+
+void TiledWalker::do_launch(const WalkTask& task) {
+    const StageScope scope(trees_.bodies().device(), Stage::traverse);
+    for (auto level = trees_.levels(); --level > 0;) launch_upper(task, level);
+    launch_leaves(task);
+}
+
+} // namespace tandem

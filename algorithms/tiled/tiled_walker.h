@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/answer/room.h"
+#include "algorithms/hierarchy/tile_trees.h"
+#include "algorithms/steps.h"
+
+namespace tandem {
+
+namespace tiled_parameters {
+inline constexpr Setting<std::int64_t> tile_pair_capacity{"tile_pair_capacity", 262144,
+                                                          Range{1, parameters::word_limit}, "",
+                                                          "pairs of tiles a level has room for at first"};
+} // namespace tiled_parameters
+
+/// Pairs of tiles, a launch a level from the highest of any body down to candidate pairs.
+class TiledWalker final : public Walker {
+public:
+    /// Both must outlive this.
+    TiledWalker(const TileTrees& trees, const Ground& ground);
+
+private:
+    void do_compile(const WalkBuild& build) override;
+    void do_launch(const WalkTask& task) override;
+    bool do_grow(const Status& status) override;
+    void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
+
+    /// The pairs of tiles of a level; of the highest one there is none but those that body pairs begin with.
+    const Room& list(std::uint32_t level) const {
+        return lists_[std::min<std::size_t>(level, lists_.size() - 1)];
+    }
+    void launch_upper(const WalkTask& task, std::uint32_t level);
+    void launch_leaves(const WalkTask& task);
+
+    const TileTrees& trees_;
+    LaunchShape shape_;
+    std::vector<Room> lists_; ///< by level
+    Kernel upper_kernel_, leaf_kernel_;
+};
+
+} // namespace tandem

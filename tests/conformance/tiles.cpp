@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// Trees of tiles: the bounds are those of the chunk trees, bit for bit, on every device and for every level,
+// and what a frame skips is in none.
+#include "algorithms/hierarchy/heap.h"
+#include "algorithms/hierarchy/tile_trees.h"
+#include "tests/support/cells.h"
+#include "tests/support/flawed.h"
+#include "tests/support/prepared_trees.h"
+#include "tests/support/sanitized.h"
+#include "tests/support/scenes.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+class Tiles : public testing::TestWithParam<std::string> {
+protected:
+    Device& on = device(GetParam());
+    std::uint32_t group_size = on.info().max_group_size == 1 ? 1 : 64;
+
+    std::vector<float> words_of(const Buffer& buffer) {
+        std::vector<float> words(buffer.bytes() / 4);
+        const StageScope scope(on, Stage::read);
+        on.download(buffer, std::as_writable_bytes(std::span(words)));
+        return words;
+    }
+
+    /// Leaves, every root and every box above, against the leaves of chunk trees over the same bodies.
+    void expect_the_same_bounds(const Scene& scene, const Frame& frame, const Geometry& geometry,
+                                Slabs slabs) {
+        PreparedTrees chunks(on, scene, geometry, 4096, group_size, Bodies::Sharing::by_mesh);
+        chunks.update(frame);
+        Bodies bodies(on, scene, geometry, Bodies::Sharing::by_mesh);
+        TileTrees tiles(bodies, slabs, group_size);
+        bodies.update(frame);
+        tiles.refit(frame);
+        const auto k = static_cast<std::size_t>(geometry.k), half = k / 2;
+        const auto nodes = chunks.nodes<float>();
+        const auto leaves = words_of(tiles.leaves()), roots = words_of(tiles.roots()),
+                   uppers = words_of(tiles.uppers());
+        const auto directions = slabs == Slabs::three ? std::min<std::size_t>(3, half) : half;
+        EXPECT_EQ(words_of(tiles.volumes()), chunks.volumes<float>());
+        for (std::uint32_t body = 0; body < bodies.count(); ++body) {
+            std::vector<std::vector<float>> below; // the boxes of a level
+            const auto items = bodies.row(body).tetrahedron_count;
+            for (std::uint32_t item = 0; item < items; ++item)
+                below.push_back(chunk_leaf(chunks, nodes, body, item, k));
+            for (std::uint32_t level = 0; level < tiles.levels_of(body); ++level) {
+                std::vector<std::vector<float>> merged;
+                for (std::uint32_t box = 0; box < below.size(); ++box) {
+                    const auto tile = tiles.first_tile(body, level) + box / 32;
+                    const auto lane = box % 32;
+                    for (std::size_t word = 0; word < k; ++word) {
+                        const auto axis = word % half;
+                        if (level == 0 && axis >= directions) continue;
+                        const auto own = word < half ? axis : directions + axis;
+                        const auto found =
+                            level == 0 ? leaves[(tile * 2 * directions + own) * 32 + lane]
+                                       : uppers[((tile - tiles.first_upper()) * k + word) * 32 + lane];
+                        ASSERT_EQ(found, below[box][word])
+                            << "body " << body << " level " << level << " box " << box;
+                    }
+                    if (lane == 0) merged.push_back(below[box]);
+                    for (std::size_t word = 0; word < k; ++word)
+                        merged.back()[word] = word < half ? std::min(merged.back()[word], below[box][word])
+                                                          : std::max(merged.back()[word], below[box][word]);
+                }
+                for (std::uint32_t tile = 0; tile < merged.size(); ++tile)
+                    for (std::size_t word = 0; word < k; ++word)
+                        ASSERT_EQ(roots[(tiles.first_tile(body, level) + tile) * k + word],
+                                  merged[tile][word]);
+                below = std::move(merged);
+            }
+            EXPECT_EQ(below.size(), 1u);
+        }
+    }
+
+    static std::vector<float> chunk_leaf(const PreparedTrees& trees, const std::vector<float>& nodes,
+                                         std::uint32_t body, std::uint32_t item, std::size_t k) {
+        const auto& level = trees.trees.levels(body)[0];
+        const auto first = item / trees.trees.leaves() * trees.trees.leaves();
+        const auto items = std::min(trees.trees.leaves(), level.items - first);
+        const auto slot =
+            trees.trees.first_slot(body) + level.slot + 2 * first + heap::leaf_node(item - first, items);
+        const auto* values = &nodes[slot * k];
+        return {values, values + k};
+    }
+};
+
+TEST_P(Tiles, HaveTheBoundsOfChunkTrees) {
+    const auto scene = boxes_scene(7, 4); // 2058 tetrahedra: three levels of tiles
+    auto frame = scene.frame(1);
+    for (const int k : sanitized() ? std::vector<int>{8, 18} : std::vector<int>{6, 8, 18})
+        for (const auto slabs : {Slabs::three, Slabs::all}) {
+            SCOPED_TRACE(fmt::format("k={}", k));
+            expect_the_same_bounds(scene, frame, {.k = k}, slabs);
+        }
+    frame.skipped.resize(scene.bodies.size());
+    for (std::uint32_t t = 0; t < 600; ++t) frame.skipped[1].push_back(3 * t);
+    expect_the_same_bounds(scene, frame, {.k = 18}, Slabs::three);
+}
+
+/// One tetrahedron, 32, 33, 1024 and 1025: tiles that are full, and ones with a single box.
+TEST_P(Tiles, OfEverySize) {
+    for (const std::uint32_t items : {1u, 31u, 32u, 33u, 1023u, 1024u, 1025u}) {
+        SCOPED_TRACE(items);
+        Random random(items);
+        Scene scene;
+        scene.name = scene.key = "sizes";
+        auto mesh = shaken_box(6, random); // 1296
+        mesh.tetrahedra.resize(items);
+        mesh.boundary.clear();
+        complete_mesh(mesh, "part");
+        scene.meshes = {mesh};
+        scene.bodies = {{.mesh = 0}, {.mesh = 0, .fixed = true}};
+        scene.frame_count = 1;
+        Frame frame;
+        frame.poses.resize(2);
+        frame.deformed.resize(2);
+        frame.poses[1].translation = {0.1, 0.05, 0};
+        scene.frame = [frame](std::size_t) { return frame; };
+        expect_the_same_bounds(scene, frame, {.k = 18}, Slabs::three);
+        const auto right = reference(scene, frame, {}, false, Method::brute_force);
+        const auto& traversal = algorithm("tiled");
+        const std::array devices{&on};
+        const auto session = traversal.prepare(
+            devices, scene,
+            resolve(traversal.parameters(), preset(traversal, "resident").values, {}, "tiled"));
+        EXPECT_EQ(session->run(frame).download(), right.pairs);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, Tiles, testing::ValuesIn(device_names()),
+                         [](const auto& name) { return device_label(name.param); });
+
+} // namespace
+} // namespace tandem

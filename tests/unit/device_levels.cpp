@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// The host device at every level of instructions and any number of threads: equal bits.
+#include "algorithms/parameters/table.h"
+#include "algorithms/traversal.h"
+#include "backends/host/host_device.h"
+#include "tests/support/flawed.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+struct Answer {
+    Digest pairs, contacts;
+
+    bool operator==(const Answer&) const = default;
+};
+
+Answer answer_of(Device& on, const std::string& algorithm_name, const SettingTexts& given) {
+    const auto scene = testing_support::boxes_scene(5, 4);
+    const auto& traversal = algorithm(algorithm_name);
+    const std::array devices{&on};
+    const auto settings =
+        resolve(traversal.parameters(), traversal.presets().front().values, given, traversal.name());
+    const auto session = traversal.prepare(devices, scene, settings);
+    const auto result = session->run(scene.frame(2));
+    EXPECT_GT(result.count, 1000u);
+    return {result.digest(), result.contact_digest()};
+}
+
+TEST(DeviceLevels, HaveEqualBits) {
+    const auto highest = host::make_device();
+    for (const std::string k : {"8", "18"})
+        for (const std::string precision : {"float", "double"})
+            for (const std::string rounding : {"safe", "published"}) {
+                const SettingTexts given{{"k", k}, {"precision", precision}, {"rounding", rounding}};
+                const auto expected = answer_of(*highest, "tiled", given);
+                for (const int level : {2, 3, 4}) {
+                    const auto device = host::make_device(level);
+                    EXPECT_EQ(answer_of(*device, "tiled", given), expected) << level << k << precision;
+                }
+            }
+}
+
+TEST(DeviceLevels, AreSaid) {
+#if defined(__x86_64__)
+    EXPECT_THAT(host::make_device(2)->info().compiler, testing::HasSubstr("x86-64-v2"));
+#endif
+    EXPECT_THAT(host::make_device()->info().compiler, testing::StartsWith("g++ "));
+}
+
+TEST(DeviceLevels, AnyNumberOfThreadsGivesTheSame) {
+    const auto device = host::make_device();
+    for (const std::string name : {"tiled", "chunked", "gproximity"}) {
+        const auto expected = answer_of(*device, name, {{"threads", "1"}});
+        for (const std::string threads : {"2", "3", "7", "0"})
+            EXPECT_EQ(answer_of(*device, name, {{"threads", threads}}), expected) << name << threads;
+    }
+}
+
+} // namespace
+} // namespace tandem
