@@ -36,8 +36,8 @@ KERNEL void do_nothing(GLOBAL uint* out) {
     if (GLOBAL_ID == 0xffffffffu) out[0] = 1u;
 }
 
-// rounds * DIRECTIONS closed overlap tests of K comparisons each, a work-item. The slabs of b rotate so that no
-// comparison repeats, and grow a little after each turn so that no turn repeats.
+// rounds * DIRECTIONS closed overlap tests of K comparisons each, a work-item. The slabs of b rotate so that
+// no comparison repeats, and grow a little after each turn so that no turn repeats.
 KERNEL void test_overlaps(GLOBAL const real* nodes, GLOBAL uint* counts, uint rounds, uint turns) {
     real a[K];
     real b[K];

@@ -62,7 +62,8 @@ DEVICE uint overlapping_columns(GLOBAL const RealPair* roots, uint position, LOC
                                 uint first, uint count) {
     RealPair own[DIRECTIONS];
     uint hits = 0;
-    UNROLL for (int axis = 0; axis < DIRECTIONS; ++axis) own[axis] = roots[(ulong)position * DIRECTIONS + axis];
+    UNROLL for (int axis = 0; axis < DIRECTIONS; ++axis) own[axis] =
+        roots[(ulong)position * DIRECTIONS + axis];
     NO_UNROLL for (uint column = 0; column < count; ++column) {
         if (volumes_overlap(own, columns + column * DIRECTIONS)) hits |= 1u << column;
     }
