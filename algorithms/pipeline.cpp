@@ -12,7 +12,9 @@ namespace {
 
 LaunchShape shape_of(const Settings& settings, const DeviceInfo& info) {
     const auto group_size = static_cast<std::uint32_t>(settings[parameters::group_size]);
-    const auto items = static_cast<std::uint64_t>(settings[parameters::work_items]) * info.compute_units;
+    // Where a group is one work-item there are enough of them for any number of cores.
+    const auto units = info.max_group_size == 1 ? 1 : info.compute_units;
+    const auto items = static_cast<std::uint64_t>(settings[parameters::work_items]) * units;
     return {group_size, static_cast<std::uint32_t>(std::max<std::uint64_t>(1, items / group_size))};
 }
 

@@ -25,13 +25,21 @@ DEVICE real merged(uint word, real a, real b) {
     return word < (uint)DIRECTIONS ? MINIMUM(b, a) : MAXIMUM(b, a);
 }
 
-// A tile's root from the bounds of its lanes, a word a work-item: a team's work. It is kept for the tile
-// above.
+// Slabs of a lane for the root of its tile: upper ends negated, so that roots are least values.
+DEVICE void keep_slabs(const real* slabs, uint lane, LOCAL real* bounds) {
+    UNROLL for (uint word = 0; word < (uint)K; ++word) {
+        bounds[word * ROW + lane] = word < (uint)DIRECTIONS ? slabs[word] : -slabs[word];
+    }
+}
+
+// A tile's root from what its lanes kept, a word a work-item: a team's work. It is kept for the tile above.
+// Negative zero becomes positive, here as in leaves: equal slabs then have equal bits.
 DEVICE void make_root(LOCAL const real* bounds, LOCAL real* kept, GLOBAL real* root) {
     for (uint word = LANE_ID; word < (uint)K; word += (uint)LANE_STEP) {
         LOCAL const real* row = bounds + word * ROW;
-        real all = no_end(word);
-        UNROLL for (uint lane = 0; lane < (uint)LANES; ++lane) all = merged(word, all, row[lane]);
+        real least = REAL_INFINITY;
+        UNROLL for (uint lane = 0; lane < (uint)LANES; ++lane) least = MINIMUM(row[lane], least);
+        const real all = (word < (uint)DIRECTIONS ? least : -least) + (real)0;
         kept[word] = all;
         root[word] = all;
     }
@@ -60,11 +68,47 @@ DEVICE void finish_unit(GLOBAL const uint* unit, LOCAL const real* kept, GLOBAL 
     }
 }
 
-// A lane's slabs, kept for the root of its tile. Negative zero becomes positive: equal slabs then have equal
-// bits.
-DEVICE void keep_slabs(const real* slabs, int empty, uint lane, LOCAL real* bounds) {
-    UNROLL for (uint word = 0; word < (uint)K; ++word) {
-        bounds[word * ROW + lane] = empty ? no_end(word) : slabs[word] + (real)0;
+DEVICE void begin_slabs(real* slabs) {
+    UNROLL for (uint word = 0; word < (uint)K; ++word) slabs[word] = no_end(word);
+}
+
+// Slabs of all vertices of the tile, each once, a lane those that are its: their union is that of the
+// tetrahedra, as long as every one of these takes part.
+DEVICE void keep_vertices(const Shapes* shapes, const Tile* tile, LOCAL const real* points, Point drift,
+                          LOCAL real* bounds) {
+    const uint count = vertices_of(shapes, tile);
+    FOR_LANES {
+        real slabs[K];
+        begin_slabs(slabs);
+        for (uint i = lane; i < count; i += (uint)LANES)
+            widen_by_point(point_at(points, i), drift, slabs, slabs + DIRECTIONS);
+        keep_slabs(slabs, lane, bounds);
+    }
+}
+
+// The same from the tetrahedra that take part, a bit each.
+DEVICE void keep_tetrahedra(const Shapes* shapes, const Tile* tile, LOCAL const real* points, Point drift,
+                            uint there, LOCAL real* bounds) {
+    FOR_LANES {
+        real slabs[K];
+        begin_slabs(slabs);
+        if ((there >> lane & 1u) != 0u) bound_corners(shapes, tile, points, lane, drift, slabs);
+        keep_slabs(slabs, lane, bounds);
+    }
+}
+
+DEVICE void write_leaves(const Shapes* shapes, const Tile* tile, LOCAL const real* points, Point drift,
+                         uint there, GLOBAL real* leaves) {
+    FOR_LANES {
+        real slabs[K];
+        bound_corners(shapes, tile, points, lane, drift, slabs);
+        const int empty = (there >> lane & 1u) == 0u;
+        UNROLL for (uint axis = 0; axis < (uint)LEAF_DIRECTIONS; ++axis) {
+            const real lower = slabs[axis] + (real)0;
+            const real upper = slabs[DIRECTIONS + axis] + (real)0;
+            leaves[axis * LANES + lane] = empty ? REAL_INFINITY : lower;
+            leaves[(LEAF_DIRECTIONS + axis) * LANES + lane] = empty ? -REAL_INFINITY : upper;
+        }
     }
 }
 
@@ -94,17 +138,12 @@ KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint firs
         LANE_BARRIER;
         const uint there = taking_part[number];
         const Point drift = drift_at(poses, tile.body);
-        FOR_LANES {
-            real slabs[K];
-            bound_corners(&shapes, &tile, points, lane, drift, slabs);
-            keep_slabs(slabs, (there >> lane & 1u) == 0u, lane, bounds);
-            if (!has_tile) continue;
-            GLOBAL real* leaf = leaves + (ulong)number * (LEAF_WORDS * LANES) + lane;
-            UNROLL for (uint axis = 0; axis < (uint)LEAF_DIRECTIONS; ++axis) {
-                leaf[axis * LANES] = bounds[axis * ROW + lane];
-                leaf[(LEAF_DIRECTIONS + axis) * LANES] = bounds[(DIRECTIONS + axis) * ROW + lane];
-            }
-        }
+        if (there == 0xffffffffu >> (LANES - tile.count))
+            keep_vertices(&shapes, &tile, points, drift, bounds);
+        else
+            keep_tetrahedra(&shapes, &tile, points, drift, there, bounds);
+        if (has_tile)
+            write_leaves(&shapes, &tile, points, drift, there, leaves + (ulong)number * (LEAF_WORDS * LANES));
         LANE_BARRIER;
         if (has_tile) make_root(bounds, kept + at * ROOT_STRIDE, roots + (ulong)number * K);
         i += LANE_TEAMS;
@@ -130,11 +169,12 @@ KERNEL void refit_upper_tiles(GLOBAL real* uppers, uint first_upper, GLOBAL real
         FOR_LANES {
             GLOBAL const real* below = root_of(roots, tile.boxes + lane);
             GLOBAL real* box = uppers + (ulong)(number - first_upper) * (K * LANES) + lane;
+            real slabs[K];
             UNROLL for (uint word = 0; word < (uint)K; ++word) {
-                const real end = lane < tile.count ? below[word] : no_end(word);
-                bounds[word * ROW + lane] = end;
-                if (has_tile) box[word * LANES] = end;
+                slabs[word] = lane < tile.count ? below[word] : no_end(word);
+                if (has_tile) box[word * LANES] = slabs[word];
             }
+            keep_slabs(slabs, lane, bounds);
         }
         LANE_BARRIER;
         if (has_tile) make_root(bounds, kept + at * ROOT_STRIDE, roots + (ulong)number * K);

@@ -106,14 +106,13 @@ private:
             throw DeviceError(fmt::format("host: kernel '{}' takes {} arguments, got {}", impl.row->entry,
                                           impl.row->argument_count, arguments.size()));
         return timed([&] {
-            if (grid.groups == 1 || threads() == 1)
-                run_groups(impl, grid.groups, {0, grid.groups}, arguments, false);
-            else
-                arena_.execute([&] {
-                    tbb::parallel_for(Groups(0, grid.groups), [&](const Groups& groups) {
-                        run_groups(impl, grid.groups, groups, arguments, true);
-                    });
+            const auto begun = run_alone(impl, grid.groups, arguments);
+            if (begun == grid.groups) return;
+            arena_.execute([&] {
+                tbb::parallel_for(Groups(begun, grid.groups), [&](const Groups& groups) {
+                    run_groups(impl, grid.groups, groups, arguments, true);
                 });
+            });
         });
     }
 
@@ -129,6 +128,22 @@ private:
             group_id = static_cast<uint>(group);
             kernel.row->run(arguments);
         }
+    }
+
+    /// The first groups of a launch on the calling thread, all of them if it has to do everything, or if they
+    /// take no longer than waking others would. Returns how many have run.
+    std::uint64_t run_alone(const HostKernelImpl& kernel, std::uint64_t count,
+                            std::span<const Argument> arguments) const {
+        constexpr auto most = std::chrono::microseconds(50);
+        const auto step = threads() == 1 ? count : std::max<std::uint64_t>(1, count / 256);
+        const auto begin = Clock::now();
+        std::uint64_t done = 0;
+        while (done < count && (done == 0 || Clock::now() - begin < most)) {
+            const auto next = std::min(done + step, count);
+            run_groups(kernel, count, {done, next}, arguments, false);
+            done = next;
+        }
+        return done;
     }
 
     int threads() const { return arena_.max_concurrency(); }

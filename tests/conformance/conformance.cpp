@@ -34,7 +34,7 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
                             {{"rounding", "published"}},
                             {{"rounding", "safe"}, {"placement", "exact"}}},
                            of("group_size", traversal.name() == "tiled"
-                                                ? std::vector<std::string>{"1", "8", "32", "64", "128", "256"}
+                                                ? std::vector<std::string>{"1", "8", "32", "64", "256"}
                                                 : std::vector<std::string>{"1", "8", "32", "64"}),
                            of("residency", {"resident", "published"}),
                            of("work_items", {"64", "2048"}),
