@@ -17,7 +17,7 @@ constexpr std::array<const Parameter*, 2> own{&parameters::slabs, &tiled_paramet
 const std::vector<Preset> all_presets{
     {"resident",
      "everything resident, body pairs included, one wait per frame",
-     {parameters::broad(Broad::device), parameters::builder(Builder::sah), parameters::group_size(64)}}};
+     {parameters::broad(Broad::device), parameters::builder(Builder::sah)}}};
 
 constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds};
 
@@ -37,12 +37,29 @@ std::uint64_t local_bytes(const Settings& settings, std::uint64_t teams, bool is
     return std::max(teams * std::max(leaves, uppers), teams * refit + lanes * (k | 1) * real);
 }
 
-/// Throws InputError when the teams of a work-group exceed the device's local memory.
+/// What the tiles' kernels take in groups of that size. Whether lanes are a warp is the compiler's to say
+/// (portable.h); elsewhere the group is one team.
+std::uint64_t local_bytes_of_group(const Settings& settings, std::uint32_t group_size) {
+    const auto one = local_bytes(settings, 1, false);
+    return group_size % 32 == 0 ? std::max(one, local_bytes(settings, group_size / 32, true)) : one;
+}
+
+/// Groups of the tiles' own kernels: as large as the setting says and local memory has room for. Doubles with
+/// many directions take more than 48 KiB in groups of 128.
+LaunchShape fitting_shape(const Settings& settings, const DeviceInfo& info, LaunchShape shape) {
+    while (shape.group_size % 64 == 0
+           && local_bytes_of_group(settings, shape.group_size) > info.local_bytes) {
+        shape.group_size /= 2;
+        shape.groups *= 2;
+    }
+    return shape;
+}
+
+/// Throws InputError when even the smallest of these groups exceeds the device's local memory.
 void check_local_memory(const Settings& settings, const DeviceInfo& info) {
-    const auto group_size = static_cast<std::uint64_t>(settings[parameters::group_size]);
-    // Whether lanes are a warp is the compiler's to say (portable.h); elsewhere the group is one team.
-    const auto needed = std::max(local_bytes(settings, 1, false),
-                                 group_size % 32 == 0 ? local_bytes(settings, group_size / 32, true) : 0);
+    const auto group_size = static_cast<std::uint32_t>(settings[parameters::group_size]);
+    const auto needed =
+        local_bytes_of_group(settings, fitting_shape(settings, info, {group_size, 1}).group_size);
     if (needed > info.local_bytes)
         throw InputError(
             fmt::format("setting group_size={} needs {} bytes of local memory with algorithm tiled and {} "
@@ -71,9 +88,10 @@ private:
     }
 
     Steps do_build(const Ground& ground) const override {
+        const auto shape = fitting_shape(ground.settings, ground.device.info(), ground.shape);
         auto trees = std::make_unique<TileTrees>(ground.bodies, ground.settings[tandem::parameters::slabs],
-                                                 ground.shape.group_size);
-        auto walker = std::make_unique<TiledWalker>(*trees, ground);
+                                                 shape.group_size);
+        auto walker = std::make_unique<TiledWalker>(*trees, ground, shape);
         return {std::move(trees), std::move(walker)};
     }
 };

@@ -12,7 +12,8 @@ constexpr std::size_t row_bytes = 4 * TILE_PAIR_WORDS;
 
 } // namespace
 
-TiledWalker::TiledWalker(const TileTrees& trees, const Ground& ground) : trees_(trees), shape_(ground.shape) {
+TiledWalker::TiledWalker(const TileTrees& trees, const Ground& ground, LaunchShape shape)
+    : trees_(trees), shape_(shape) {
     const auto rows =
         first_rows(ground.device, ground.settings[tiled_parameters::tile_pair_capacity], row_bytes, 1.0 / 16);
     const auto lists = std::max<std::size_t>(1, trees.levels() - 1); // nothing is found for the highest level

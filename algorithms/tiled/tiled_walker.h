@@ -16,8 +16,8 @@ inline constexpr Setting<std::int64_t> tile_pair_capacity{"tile_pair_capacity", 
 /// Pairs of tiles, a launch a level from the highest of any body down to candidate pairs.
 class TiledWalker final : public Walker {
 public:
-    /// Both must outlive this.
-    TiledWalker(const TileTrees& trees, const Ground& ground);
+    /// Launches groups of `shape`. Both others must outlive this.
+    TiledWalker(const TileTrees& trees, const Ground& ground, LaunchShape shape);
 
 private:
     void do_compile(const WalkBuild& build) override;

@@ -23,12 +23,12 @@ std::int64_t resident_bytes() {
 /// a simulator would. The first tenth may fill caches; what comes then may not hold more than a page for
 /// every thousand frames.
 void expect_flat_memory(const std::string& on, std::size_t frames) {
-    const auto scene = crowd(3, 4, 0.6);
+    const auto scene = crowd(3, 5, 2.2); // a few pairs
     for (const auto* traversal : algorithms()) {
         const std::array devices{&device(on)};
-        const auto settings =
-            resolve(traversal->parameters(), {}, {{"pair_capacity", "4096"}, {"contact_capacity", "4096"}},
-                    traversal->name());
+        SettingTexts given{{"pair_capacity", "4096"}, {"contact_capacity", "4096"}, {"work_items", "64"}};
+        if (declares(*traversal, "queue_bytes")) given["queue_bytes"] = "65536";
+        const auto settings = resolve(traversal->parameters(), {}, given, traversal->name());
         const auto session = traversal->prepare(devices, scene, settings);
         const std::vector<Frame> poses{scene.frame(0), scene.frame(1)};
         FrameResult kept;
@@ -40,14 +40,14 @@ void expect_flat_memory(const std::string& on, std::size_t frames) {
             pairs += result.count;
             if (i % 100 == 0) kept = std::move(result);
         }
-        EXPECT_GT(pairs, frames) << traversal->name();
+        EXPECT_GT(pairs, frames / 2) << traversal->name();
         EXPECT_EQ(kept.digest().count, kept.count) << traversal->name();
         EXPECT_LT(resident_bytes() - before, static_cast<std::int64_t>(frames) / 1000 * 4096 + (1 << 18))
             << traversal->name() << " on " << on;
     }
 }
 
-TEST(Endurance, TenThousandFramesLeaveMemoryFlat) { expect_flat_memory("host", 10000); }
+TEST(Endurance, ThousandsOfFramesLeaveMemoryFlat) { expect_flat_memory("host", 2500); }
 
 /// On every device; those with kernels to launch take long for a frame.
 TEST(EnduranceLong, AHundredThousandFramesLeaveMemoryFlat) {
