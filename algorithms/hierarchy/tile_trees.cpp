@@ -86,6 +86,8 @@ void TileTrees::lay_out() {
         if (count > first) level_first_.push_back(static_cast<std::uint32_t>(first));
     }
     tile_count_ = static_cast<std::uint32_t>(count);
+    is_top_.resize(levels());
+    for (const auto& first : first_tiles_) is_top_[first.size() - 1] = true;
 }
 
 std::vector<TileTrees::Tile> TileTrees::tile_rows() const {

@@ -5,8 +5,6 @@
 #include "algorithms/hierarchy/hierarchy.h"
 #include "algorithms/hierarchy/tile_shapes.h"
 
-#include <algorithm>
-
 namespace tandem {
 
 /// Trees of tiles over every body's tetrahedra (tiles.clh): 32 boxes a tile, from which a level is made and
@@ -27,10 +25,7 @@ public:
         return first_tiles_[body][level];
     }
     /// Whether the tree of some body ends at that level.
-    bool is_top(std::uint32_t level) const {
-        return std::any_of(first_tiles_.begin(), first_tiles_.end(),
-                           [level](const auto& first) { return first.size() == level + 1; });
-    }
+    bool is_top(std::uint32_t level) const { return is_top_[level]; }
     /// The first tile of level 1: how many there are of level 0.
     std::uint32_t first_upper() const { return level_first_.size() > 1 ? level_first_[1] : tile_count_; }
     /// What kernels that include tiles.clh are compiled with.
@@ -41,7 +36,7 @@ public:
     } ///< bounds of tetrahedra, a tile of level 0 after the other
     const Buffer& uppers() const { return uppers_; } ///< of the boxes of all other tiles, K words of 32 each
     const Buffer& roots() const { return roots_; }   ///< K reals a tile
-    const Buffer& tile_table() const { return tile_table_; } ///< TILE_WORDS words each
+    const Buffer& tile_table() const { return tile_table_; } ///< rows of tiles.clh
     const Buffer& tops() const { return tops_; }             ///< a word a body: its top tile
     const TileShapes& shapes() const { return shapes_; }
 
@@ -80,6 +75,7 @@ private:
     TileShapes shapes_;
     std::vector<std::uint32_t> order_;                    ///< bodies: those that move, then the fixed ones
     std::vector<std::uint32_t> level_first_;              ///< the first tile of each level
+    std::vector<bool> is_top_;                            ///< by level
     std::vector<std::vector<std::uint32_t>> first_tiles_; ///< by body: its first tile of each of its levels
     std::uint32_t tile_count_ = 0;
     std::vector<Step> steps_;

@@ -5,32 +5,13 @@
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
 #include "algorithms/broad/body_pairs.clh"
-#include "algorithms/hierarchy/tiles.clh"
-#include "algorithms/tiled/tile_pairs.clh"
+#include "algorithms/tiled/team.clh"
 
 // How many pairs of tiles a level's list has.
 DEVICE uint tile_pair_count(GLOBAL const uint* status, uint level, uint capacity) {
     GLOBAL const uint* counter = status + STATUS_TILE_PAIRS + 2u * level;
     return counter[1] != 0u || counter[0] > capacity ? capacity : counter[0];
 }
-
-// Boxes in local memory are read by all lanes at once, four reals at a time.
-#define ROW_UNITS(directions) ((2 * (directions) + 3) / 4)
-
-// A team's words in local memory.
-#define BOXES 0 // boxes of b in its rows
-#define FOUND 1 // pairs that wait, and those not decided
-#define KEPT 2  // pairs that wait
-#define PLACE 3 // where they go
-#define TEAM_WORDS 4
-
-typedef struct {
-    LOCAL RealRow* rows; // boxes of b that overlap the root of a
-    LOCAL uint* numbers; // whose they are
-    LOCAL uint* pairs;   // two words each
-    LOCAL uint* place;
-    LaneCounter boxes, found, kept;
-} Team;
 
 // The pairs of tiles of a launch, and where a team is in them: it takes a few that lie side by side, and so
 // have a's tile in common, then some far on.
@@ -86,113 +67,6 @@ DEVICE TilePair tile_pair_at(const Turns* turns, GLOBAL const uint* pairs, GLOBA
     return pair;
 }
 
-// Closed overlap of slabs, without a branch for each: touching overlaps.
-#define APART(lower_a, upper_a, lower_b, upper_b)                                                            \
-    (ROUNDING == ROUNDING_PUBLISHED                                                                          \
-         ? ((lower_a) - (upper_b) > PUBLISHED_TOLERANCE) | ((lower_b) - (upper_a) > PUBLISHED_TOLERANCE)     \
-         : ((lower_a) > (upper_b)) | ((lower_b) > (upper_a)))
-
-// Boxes in registers: lower ends, then upper ones, a row a word.
-#define LANE_BOX(name, directions) real name[2 * (directions)][LANE_PARTS]
-
-// Lanes' boxes of b that overlap the root of a, which is K reals, to the team's rows.
-#define COLLECT_ROWS(team, box, directions, root)                                                            \
-    {                                                                                                        \
-        uint meets[LANE_PARTS];                                                                              \
-        FOR_LANES {                                                                                          \
-            uint apart = 0;                                                                                  \
-            UNROLL for (uint d = 0; d < (uint)(directions); ++d) apart |=                                    \
-                (uint)APART(root[d], root[DIRECTIONS + d], box[d][part], box[(directions) + d][part]);       \
-            meets[part] = apart == 0u;                                                                       \
-        }                                                                                                    \
-        FOR_LANES {                                                                                          \
-            const uint place = take_place(&(team)->boxes, (int)meets[part]);                                 \
-            if (!meets[part]) continue;                                                                      \
-            (team)->numbers[place] = lane;                                                                   \
-            LOCAL RealRow* row = (team)->rows + place * ROW_UNITS(directions);                               \
-            UNROLL for (uint unit = 0; unit < (uint)ROW_UNITS(directions); ++unit) {                         \
-                RealRow four;                                                                                \
-                four.x = box[4 * unit][part];                                                                \
-                four.y = box[4 * unit + 1][part];                                                            \
-                four.z =                                                                                     \
-                    4 * unit + 2 < 2 * (directions) ? box[(4 * unit + 2) % (2 * (directions))][part] : 0;    \
-                four.w =                                                                                     \
-                    4 * unit + 3 < 2 * (directions) ? box[(4 * unit + 3) % (2 * (directions))][part] : 0;    \
-                row[unit] = four;                                                                            \
-            }                                                                                                \
-        }                                                                                                    \
-    }
-
-#define LOAD_ROW(team, r, directions, row)                                                                   \
-    UNROLL for (uint unit = 0; unit < (uint)ROW_UNITS(directions); ++unit) {                                 \
-        const RealRow four = (team)->rows[(r)*ROW_UNITS(directions) + unit];                                 \
-        row[4 * unit] = four.x;                                                                              \
-        row[4 * unit + 1] = four.y;                                                                          \
-        row[4 * unit + 2] = four.z;                                                                          \
-        row[4 * unit + 3] = four.w;                                                                          \
-    }
-
-// Whether a lane's box of a is apart from a row.
-#define APART_FROM_ROW(row, box, directions, apart)                                                          \
-    UNROLL for (uint d = 0; d < (uint)(directions); ++d) apart |=                                            \
-        (uint)APART(row[d], row[(directions) + d], box[d][part], box[(directions) + d][part]);
-
-DEVICE uint lowest_bit(uint bits) { return 31u - COUNT_LEADING_ZEROS(bits & (~bits + 1u)); }
-
-DEVICE void put_pair(const Team* team, uint place, uint a, uint b) {
-    team->pairs[2u * place] = a;
-    team->pairs[2u * place + 1u] = b;
-}
-
-// The pairs of boxes of a, which are lanes, and rows from `r` on that overlap, behind those that wait: of all
-// rows, or of as many as there is room for. A lane's box has number first_a + lane * step_a, and that of row
-// i first_b + numbers[i] * step_b. `r` moves on. With the rows of a warp the lanes that overlap are known at
-// once; elsewhere each lane keeps a bit for each row, which is vector code on the host, and then writes its
-// own.
-#if LANES_ARE_WARP
-#define FIND_PAIRS(team, rows, r, box, directions, keeps, first_a, step_a, first_b, step_b)                  \
-    NO_UNROLL for (; r < (rows) && places_taken(&(team)->found) <= PAIR_ROOM(LANES_ARE_WARP) - LANES; ++r) { \
-        real row[4 * ROW_UNITS(directions)];                                                                 \
-        LOAD_ROW(team, r, directions, row)                                                                   \
-        FOR_LANES {                                                                                          \
-            uint apart = keeps[part] ^ 1u;                                                                   \
-            APART_FROM_ROW(row, box, directions, apart)                                                      \
-            const uint place = take_place(&(team)->found, apart == 0u);                                      \
-            if (apart == 0u)                                                                                 \
-                put_pair(team, place, (first_a) + lane * (step_a),                                           \
-                         (first_b) + (team)->numbers[r] * (step_b));                                         \
-        }                                                                                                    \
-    }
-#else
-#define FIND_PAIRS(team, rows, r, box, directions, keeps, first_a, step_a, first_b, step_b)                  \
-    {                                                                                                        \
-        uint mask[LANE_PARTS];                                                                               \
-        FOR_LANES mask[part] = 0u;                                                                           \
-        for (; r < (rows); ++r) {                                                                            \
-            real row[4 * ROW_UNITS(directions)];                                                             \
-            LOAD_ROW(team, r, directions, row)                                                               \
-            FOR_LANES {                                                                                      \
-                uint apart = 0;                                                                              \
-                APART_FROM_ROW(row, box, directions, apart)                                                  \
-                mask[part] |= (apart ^ 1u) << r;                                                             \
-            }                                                                                                \
-        }                                                                                                    \
-        FOR_LANES {                                                                                          \
-            uint bits = keeps[part] != 0u ? mask[part] : 0u;                                                 \
-            if (bits == 0u) continue;                                                                        \
-            uint place = LOCAL_ATOMIC_ADD((team)->found.word, COUNT_ONES(bits));                             \
-            for (; bits != 0u; bits &= bits - 1u, ++place)                                                   \
-                put_pair(team, place, (first_a) + lane * (step_a),                                           \
-                         (first_b) + (team)->numbers[lowest_bit(bits)] * (step_b));                          \
-        }                                                                                                    \
-    }
-#endif
-
-// Where the team's pairs go, if they go now; a LANE_BARRIER follows.
-DEVICE void reserve(const Team* team, uint waiting, int now, GLOBAL uint* counter) {
-    if (now && LANE_ID == 0u) *team->place = waiting != 0u ? counter_add(counter, waiting) : 0u;
-}
-
 // Which item a slot is: slots number the boxes of level 0.
 DEVICE WordRow pair_of_slots(GLOBAL const uint* tiles, uint a, uint b) {
     const Tile tile_a = tile_at(tiles, a / LANES);
@@ -244,26 +118,6 @@ DEVICE void lanes_in_window(GLOBAL const uint* status, const Tile* tile, uint le
         keeps[part] = (uint)in_window(status, first, first + ((ulong)1 << shift));
     }
 }
-
-#define TEAM_ARRAYS(row_units)                                                                               \
-    LOCAL_ARRAY(RealRow, all_rows, LANE_TEAMS*(row_units));                                                  \
-    LOCAL_ARRAY(uint, all_numbers, LANE_TEAMS* LANES);                                                       \
-    LOCAL_ARRAY(uint, all_pairs, LANE_TEAMS* PAIR_ROOM(LANES_ARE_WARP) * 2);                                 \
-    LOCAL_ARRAY(uint, all_words, LANE_TEAMS* TEAM_WORDS);                                                    \
-    Team team;                                                                                               \
-    {                                                                                                        \
-        LOCAL uint* words = all_words + LANE_TEAM * TEAM_WORDS;                                              \
-        team.rows = all_rows + LANE_TEAM * (row_units);                                                      \
-        team.numbers = all_numbers + LANE_TEAM * LANES;                                                      \
-        team.pairs = all_pairs + LANE_TEAM * (PAIR_ROOM(LANES_ARE_WARP) * 2);                                \
-        team.place = words + PLACE;                                                                          \
-        team.boxes.word = words + BOXES;                                                                     \
-        team.found.word = words + FOUND;                                                                     \
-        team.kept.word = words + KEPT;                                                                       \
-        begin_count(&team.boxes, 0u);                                                                        \
-        begin_count(&team.found, 0u);                                                                        \
-        begin_count(&team.kept, 0u);                                                                         \
-    }
 
 DEVICE void count_tests(Tally* tally, uint rows, int is_seed) {
     if (!COUNT_WORK || LANE_ID != 0u) return;
