@@ -22,7 +22,7 @@ struct Digest {
 };
 
 /// Candidate pairs in a device's memory: rows of 4 words, body a, body b, and the positions of the two
-/// tetrahedra along their bodies' Z-curves (answer/pairs.clh).
+/// tetrahedra in their bodies' orders (answer/pairs.clh).
 struct PairBuffer {
     Buffer rows; ///< empty when the pairs are not on a device
     std::uint64_t count = 0;

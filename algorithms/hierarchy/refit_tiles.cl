@@ -128,8 +128,8 @@ KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint firs
     GLOBAL const uint* unit = units + (ulong)GROUP_ID * UNIT_WORDS;
     const uint count = unit[UNIT_COUNT];
     uint i = LANE_TEAM;
-    do { // once at least, as loops with barriers have to: a team without a tile goes through the first one
-         // idly
+    // Once at least, as loops with barriers have to: a team without a tile goes through the first one idly.
+    do {
         const int has_tile = i < count;
         const uint at = has_tile ? i : 0u;
         const uint number = unit[UNIT_FIRST] + at;
