@@ -2,6 +2,7 @@
 #include "algorithms/pipeline.h"
 
 #include "algorithms/parameters/table.h"
+#include "scenes/error.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -78,6 +79,14 @@ std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* con
 
 bool is_published(const Settings& settings) {
     return settings.has(parameters::residency) && settings[parameters::residency] == Residency::published;
+}
+
+void check_local_memory(const Settings& settings, const DeviceInfo& info, std::uint64_t needed,
+                        std::string_view what, std::string_view remedy) {
+    if (needed > info.local_bytes)
+        throw InputError(
+            fmt::format("setting group_size={} needs {} bytes of local memory with {} and {} has {}; {}",
+                        settings[parameters::group_size], needed, what, info.id, info.local_bytes, remedy));
 }
 
 Pipeline::Pipeline(const Traversal& traversal, Device& on, const Scene& scene, Settings fitted)

@@ -16,6 +16,11 @@ std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* con
 /// Whether these settings ask for the paper's data path.
 bool is_published(const Settings& settings);
 
+/// Throws InputError when the work-groups that `settings` ask for need more local memory than the device has.
+/// `what`: whose they are, "schedule=group"; `remedy`: what to do.
+void check_local_memory(const Settings& settings, const DeviceInfo& info, std::uint64_t needed,
+                        std::string_view what, std::string_view remedy);
+
 /// A frame on one device as a row of steps, each with one job: bodies, hierarchy, body pairs, walk, contacts,
 /// answer. Sessions run them; README.md here has the picture.
 struct Pipeline {

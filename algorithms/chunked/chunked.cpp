@@ -48,17 +48,6 @@ std::uint64_t local_bytes(Schedule who, std::uint64_t group_size, std::uint64_t 
                                   : MOST_WAITING(leaf_bits) * group_size * 4;
 }
 
-/// Throws InputError when the stacks of a work-group exceed the device's local memory.
-void check_local_memory(const Settings& settings, const DeviceInfo& info) {
-    const auto group_size = static_cast<std::uint64_t>(settings[parameters::group_size]);
-    const auto needed = local_bytes(settings[schedule], group_size, ceil_log2(leaves_of(settings)));
-    if (needed > info.local_bytes)
-        throw InputError(fmt::format(
-            "setting group_size={} needs {} bytes of local memory with schedule={} and {} has {}; "
-            "lower it, or leaves",
-            group_size, needed, settings.text(schedule.name), info.id, info.local_bytes));
-}
-
 class Chunked : public Traversal {
 public:
     std::string_view name() const override { return "chunked"; }
@@ -75,7 +64,10 @@ public:
 
 private:
     void do_check(const Settings& settings, const DeviceInfo& info) const override {
-        check_local_memory(settings, info);
+        const auto group_size = static_cast<std::uint64_t>(settings[tandem::parameters::group_size]);
+        check_local_memory(settings, info,
+                           local_bytes(settings[schedule], group_size, ceil_log2(leaves_of(settings))),
+                           fmt::format("schedule={}", settings.text(schedule.name)), "lower it, or leaves");
     }
 
     Steps do_build(const Ground& ground) const override {

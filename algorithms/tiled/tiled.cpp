@@ -4,9 +4,6 @@
 #include "algorithms/pipeline.h"
 #include "algorithms/tiled/tile_pairs.clh"
 #include "algorithms/tiled/tiled_walker.h"
-#include "scenes/error.h"
-
-#include <fmt/format.h>
 
 namespace tandem {
 
@@ -55,18 +52,6 @@ LaunchShape fitting_shape(const Settings& settings, const DeviceInfo& info, Laun
     return shape;
 }
 
-/// Throws InputError when even the smallest of these groups exceeds the device's local memory.
-void check_local_memory(const Settings& settings, const DeviceInfo& info) {
-    const auto group_size = static_cast<std::uint32_t>(settings[parameters::group_size]);
-    const auto needed =
-        local_bytes_of_group(settings, fitting_shape(settings, info, {group_size, 1}).group_size);
-    if (needed > info.local_bytes)
-        throw InputError(
-            fmt::format("setting group_size={} needs {} bytes of local memory with algorithm tiled and {} "
-                        "has {}; lower it",
-                        group_size, needed, info.id, info.local_bytes));
-}
-
 class Tiled : public Traversal {
 public:
     std::string_view name() const override { return "tiled"; }
@@ -84,7 +69,10 @@ public:
 
 private:
     void do_check(const Settings& settings, const DeviceInfo& info) const override {
-        check_local_memory(settings, info);
+        const auto group_size = static_cast<std::uint32_t>(settings[tandem::parameters::group_size]);
+        const auto smallest = fitting_shape(settings, info, {group_size, 1}).group_size;
+        check_local_memory(settings, info, local_bytes_of_group(settings, smallest), "algorithm tiled",
+                           "lower it");
     }
 
     Steps do_build(const Ground& ground) const override {

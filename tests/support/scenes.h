@@ -18,6 +18,20 @@ inline std::string failure(const std::string& specification) {
     return "no error";
 }
 
+/// A tetrahedron of its own at each place.
+inline Mesh tetrahedra_at(const std::vector<Eigen::Vector3d>& places, double size = 1) {
+    Mesh mesh;
+    for (const auto& p : places) {
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(),
+                             {p, p + Eigen::Vector3d(size, 0, 0), p + Eigen::Vector3d(0, size, 0),
+                              p + Eigen::Vector3d(0, 0, size)});
+        mesh.tetrahedra.push_back({first, first + 1, first + 2, first + 3});
+    }
+    complete_mesh(mesh, "test");
+    return mesh;
+}
+
 /// A box of cells x cells x cells cubes of six tetrahedra each, its inner vertices shaken.
 inline Mesh shaken_box(std::uint32_t cells, Random& random) {
     Mesh mesh;

@@ -3,6 +3,7 @@
 #include "algorithms/hierarchy/order.h"
 #include "scenes/builtin.h"
 #include "scenes/scene.h"
+#include "tests/support/scenes.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -11,18 +12,7 @@
 namespace tandem {
 namespace {
 
-Mesh tetrahedra_at(const std::vector<Eigen::Vector3d>& places, double size = 1) {
-    Mesh mesh;
-    for (const auto& p : places) {
-        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-        mesh.vertices.insert(mesh.vertices.end(),
-                             {p, p + Eigen::Vector3d(size, 0, 0), p + Eigen::Vector3d(0, size, 0),
-                              p + Eigen::Vector3d(0, 0, size)});
-        mesh.tetrahedra.push_back({first, first + 1, first + 2, first + 3});
-    }
-    complete_mesh(mesh, "test");
-    return mesh;
-}
+using testing_support::tetrahedra_at;
 
 TEST(Morton, InterleavesXFirst) {
     EXPECT_EQ(morton_code(0, 0, 0), 0u);

@@ -11,18 +11,7 @@
 namespace tandem {
 namespace {
 
-Mesh small_tetrahedra(const std::vector<Eigen::Vector3d>& places, double size = 1) {
-    Mesh mesh;
-    for (const auto& p : places) {
-        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-        for (const Eigen::Vector3d& corner : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(size, 0, 0),
-                                              Eigen::Vector3d(0, size, 0), Eigen::Vector3d(0, 0, size)})
-            mesh.vertices.push_back(p + corner);
-        mesh.tetrahedra.push_back({first, first + 1, first + 2, first + 3});
-    }
-    complete_mesh(mesh, "test");
-    return mesh;
-}
+using testing_support::tetrahedra_at;
 
 /// Areas of the boxes of all runs, as they stand.
 double area_of_runs(const Mesh& mesh, const std::vector<std::uint32_t>& order, std::size_t run) {
@@ -48,23 +37,23 @@ TEST(SahOrder, IsAPermutationOfAnyMesh) {
     };
     Random random(3);
     for (const std::uint32_t cells : {1u, 2u, 3u, 7u}) check(testing_support::shaken_box(cells, random));
-    check(small_tetrahedra({{0, 0, 0}}));
-    check(small_tetrahedra(std::vector<Eigen::Vector3d>(100, {1, 1, 1}))); // all in one place
-    check(small_tetrahedra({{0, 0, 0}, {1e-310, 0, 0}}, 1e-310));
-    check(small_tetrahedra({{0, 0, 0}, {1e300, 0, 0}, {0, 1e300, 0}})); // areas overflow
+    check(tetrahedra_at({{0, 0, 0}}));
+    check(tetrahedra_at(std::vector<Eigen::Vector3d>(100, {1, 1, 1}))); // all in one place
+    check(tetrahedra_at({{0, 0, 0}, {1e-310, 0, 0}}, 1e-310));
+    check(tetrahedra_at({{0, 0, 0}, {1e300, 0, 0}, {0, 1e300, 0}})); // areas overflow
     std::vector<Eigen::Vector3d> line;
     for (int i = 0; i < 2000; ++i)
         line.emplace_back(std::pow(1.4, i % 500), 0, 0); // cuts off one run each time
-    check(small_tetrahedra(line));
+    check(tetrahedra_at(line));
 }
 
 TEST(SahOrder, CutsAtRuns) {
     std::vector<Eigen::Vector3d> places; // three heaps of 32, mixed
     for (int i = 0; i < 96; ++i) places.emplace_back(1000 * (i % 3), i / 3 % 8, i / 24);
-    const auto order = sah_order(small_tetrahedra(places));
+    const auto order = sah_order(tetrahedra_at(places));
     for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i] % 3, order[i / 32 * 32] % 3) << i;
     places.resize(70); // 24, 23 and 23: of these runs of 32 one has to have two
-    EXPECT_EQ(sah_order(small_tetrahedra(places)).size(), 70u);
+    EXPECT_EQ(sah_order(tetrahedra_at(places)).size(), 70u);
 }
 
 TEST(SahOrder, MakesSmallerRunsThanTheCurve) {
