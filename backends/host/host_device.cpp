@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -152,6 +154,11 @@ private:
         const auto wanted = threads == 0 ? tbb::info::default_concurrency() : static_cast<int>(threads);
         if (wanted == this->threads()) return;
         arena_.terminate();
+        // More threads than cores are the asker's to have: without this oneTBB has none for them, and says
+        // so.
+        more_.reset();
+        if (wanted > tbb::info::default_concurrency())
+            more_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(wanted));
         arena_.initialize(wanted);
     }
 
@@ -186,6 +193,7 @@ private:
 
     int level_; ///< of the instructions that kernels may have
     DeviceInfo info_ = describe(level_);
+    std::optional<tbb::global_control> more_;
     tbb::task_arena arena_{tbb::info::default_concurrency()};
     std::vector<std::pair<std::int64_t, std::int64_t>> intervals_;
 };

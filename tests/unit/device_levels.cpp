@@ -60,5 +60,13 @@ TEST(DeviceLevels, AnyNumberOfThreadsGivesTheSame) {
     }
 }
 
+/// More threads than cores are had without a word.
+TEST(DeviceLevels, NothingIsSaidOfThreads) {
+    testing::internal::CaptureStderr();
+    const auto device = host::make_device();
+    answer_of(*device, "tiled", {{"threads", "64"}});
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 } // namespace
 } // namespace tandem
