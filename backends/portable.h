@@ -13,6 +13,9 @@
 #define PRECISION 32
 #endif
 
+// FUSED(a, b, c) is a * b + c with one rounding where that is fast and two elsewhere: only for what has the
+// same outcome either way.
+
 // A team is a part of a work-group that needs to wait for its own work-items only: a warp. Where the compiler
 // has no barrier for one the whole group waits, so that every dialect runs the same teams.
 #if GROUP_SIZE % 32 == 0
@@ -100,6 +103,12 @@
 #define MINIMUM(a, b) ((a) < (b) ? (a) : (b))
 #define MAXIMUM(a, b) ((a) > (b) ? (a) : (b))
 #endif
+#if defined(__NV_CL_C_VERSION) || (PRECISION == 32 && defined(FP_FAST_FMAF))                                 \
+    || (PRECISION == 64 && defined(FP_FAST_FMA))
+#define FUSED(a, b, c) fma((a), (b), (c))
+#else
+#define FUSED(a, b, c) ((a) * (b) + (c))
+#endif
 #define UNROLL _Pragma("unroll")
 #define NO_UNROLL _Pragma("unroll 1")
 #define REAL_INFINITY ((real)INFINITY)
@@ -124,6 +133,7 @@
 #define ABSOLUTE(value) fabs(value)
 #define MINIMUM(a, b) fmin((a), (b))
 #define MAXIMUM(a, b) fmax((a), (b))
+#define FUSED(a, b, c) fma((a), (b), (c))
 #if PRECISION == 64 // sums rounded down and up; OpenCL C has none
 #define ADD_DOWN(a, b) __dadd_rd((a), (b))
 #define ADD_UP(a, b) __dadd_ru((a), (b))
@@ -165,6 +175,7 @@ typedef unsigned long ulong; // 64 bits where CUDA runs on Linux, as glibc has i
 #define ABSOLUTE(value) std::fabs(value)
 #define MINIMUM(a, b) ((a) < (b) ? (a) : (b))
 #define MAXIMUM(a, b) ((a) > (b) ? (a) : (b))
+#define FUSED(a, b, c) ((a) * (b) + (c))
 #define ADD_DOWN(a, b) tandem::host::add_down((a), (b))
 #define ADD_UP(a, b) tandem::host::add_up((a), (b))
 #define UNROLL
@@ -178,6 +189,33 @@ typedef unsigned long ulong; // 64 bits where CUDA runs on Linux, as glibc has i
 typedef double real;
 #else
 typedef float real;
+#endif
+
+// A real's bits and back: sign, exponent, mantissa.
+#if PRECISION == 64
+typedef ulong RealBits;
+#define EXPONENT_AT 52
+#define LARGEST_EXPONENT 2046
+#else
+typedef uint RealBits;
+#define EXPONENT_AT 23
+#define LARGEST_EXPONENT 254
+#endif
+#if defined(__OPENCL_C_VERSION__) && PRECISION == 64
+#define BITS_OF(value) as_ulong(value)
+#define REAL_OF(bits) as_double(bits)
+#elif defined(__OPENCL_C_VERSION__)
+#define BITS_OF(value) as_uint(value)
+#define REAL_OF(bits) as_float(bits)
+#elif defined(__CUDACC__) && PRECISION == 64
+#define BITS_OF(value) ((ulong)__double_as_longlong(value))
+#define REAL_OF(bits) __longlong_as_double((long long)(bits))
+#elif defined(__CUDACC__)
+#define BITS_OF(value) __float_as_uint(value)
+#define REAL_OF(bits) __uint_as_float(bits)
+#else
+#define BITS_OF(value) std::bit_cast<RealBits>(value)
+#define REAL_OF(bits) std::bit_cast<real>(bits)
 #endif
 
 #define GLOBAL_ID (GROUP_ID * (uint)(GROUP_SIZE) + LOCAL_ID)
