@@ -8,6 +8,7 @@
 
 #include <CL/cl.h>
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -367,7 +368,11 @@ std::shared_ptr<Kernel::Impl> OpenclDevice::do_compile(const KernelSource& sourc
         kernel->facts.spill_bytes = use.spill_bytes;
     }
     kernel->facts.local_bytes = static_cast<std::int64_t>(local);
-    kernel->facts.max_group_size = static_cast<std::int64_t>(group);
+    // What it was compiled for it runs in: NVIDIA's driver says 256 of kernels that run in groups of 992.
+    std::array<std::size_t, 3> compiled{};
+    clGetKernelWorkGroupInfo(kernel->kernel, device_, CL_KERNEL_COMPILE_WORK_GROUP_SIZE, sizeof(compiled),
+                             compiled.data(), nullptr);
+    kernel->facts.max_group_size = static_cast<std::int64_t>(std::max(group, compiled[0]));
     return kernel;
 }
 

@@ -45,6 +45,20 @@ TEST(OpenclFaults, WhichCodesAreOfMemory) {
     EXPECT_EQ(test::downloaded<std::uint32_t>(*device, words, 16), std::vector<std::uint32_t>(16, 0));
 }
 
+// One vendor advises 256 for kernels that it has compiled for groups of 992 and runs in them.
+TEST(OpenclFaults, AGroupSizeThatWasCompiledForIsTakenAgainstAdvice) {
+    const auto device = open_device();
+    const StageScope scope(*device, Stage::write);
+    const auto words = device->allocate(64, "words");
+    const std::array<Argument, 1> arguments{words};
+    opencl_shim_advise(16);
+    const auto kernel = test::compile(*device, "do_nothing", {{"GROUP_SIZE", "64"}});
+    opencl_shim_advise(0);
+    device->launch(kernel, {4, 64}, arguments);
+    EXPECT_THROW(device->launch(kernel, {4, 65}, arguments), DeviceError);
+    device->finish();
+}
+
 /// Every kind of command, uploads that are waited for and others; the words that are left.
 std::vector<std::uint32_t> every_command(Device& device) {
     constexpr std::size_t count = std::size_t{1} << 18;

@@ -38,7 +38,8 @@ struct State {
     int code =
         std::getenv("SHIM_CODE") != nullptr ? std::atoi(std::getenv("SHIM_CODE")) : CL_OUT_OF_RESOURCES;
     unsigned long calls = 0;
-    bool begun = false; ///< something has been enqueued
+    std::size_t advice = 0; ///< what is said to be the largest work-group of every kernel, when not 0
+    bool begun = false;     ///< something has been enqueued
     std::map<cl_command_queue, Queue> queues;
     Queue released; ///< what was in flight on queues that are gone
 };
@@ -121,6 +122,7 @@ void opencl_shim_fail(unsigned long call, int code) {
     state().calls = 0;
     state().begun = true;
 }
+void opencl_shim_advise(unsigned long group_size) { state().advice = group_size; }
 unsigned long opencl_shim_calls() { return state().calls; }
 
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void* host, cl_int* code) {
@@ -140,6 +142,13 @@ cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* dev
 cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* code) {
     if (fails()) return failed<_cl_kernel>(code);
     return REAL(clCreateKernel)(program, name, code);
+}
+cl_int clGetKernelWorkGroupInfo(cl_kernel kernel, cl_device_id device, cl_kernel_work_group_info what,
+                                size_t bytes, void* to, size_t* needed) {
+    const auto code = REAL(clGetKernelWorkGroupInfo)(kernel, device, what, bytes, to, needed);
+    if (what == CL_KERNEL_WORK_GROUP_SIZE && state().advice != 0 && to != nullptr)
+        *static_cast<size_t*>(to) = state().advice;
+    return code;
 }
 cl_int clSetKernelArg(cl_kernel kernel, cl_uint index, size_t bytes, const void* value) {
     if (index == 0 && fails()) return state().code; // one for all of a launch
