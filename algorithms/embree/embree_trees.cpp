@@ -51,7 +51,8 @@ EmbreeTrees::EmbreeTrees(const Ground& ground)
       embree_(rtcNewDevice(nullptr)),
       trees_(ground.bodies.count()),
       arena_(static_cast<int>(concurrency_of(ground.settings))),
-      kernel_(compile_native(ground.device, refit_entry)) {
+      kernel_(compile_native(ground.device, refit_entry)),
+      self_(ground.device.adopt(this, sizeof(*this), "Embree's trees")) {
     if (!embree_)
         throw DeviceError(fmt::format("host: Embree does not start (code {})",
                                       static_cast<int>(rtcGetDeviceError(nullptr))));
@@ -134,16 +135,16 @@ void EmbreeTrees::refit_body(std::uint32_t body, const float* leaves) {
     rtcCommitScene(tree.scene.get());
 }
 
-void EmbreeTrees::run(const float* leaves, std::uintptr_t trees) {
-    auto& self = *reinterpret_cast<EmbreeTrees*>(trees);
-    self.arena_.execute([&] {
-        tbb::parallel_for(std::size_t{0}, self.chosen_.size(),
-                          [&](std::size_t i) { self.refit_body(self.chosen_[i], leaves); });
+void EmbreeTrees::run(const float* leaves, EmbreeTrees* trees) {
+    const auto& chosen = trees->chosen_;
+    trees->arena_.execute([&] {
+        tbb::parallel_for(std::size_t{0}, chosen.size(),
+                          [&](std::size_t i) { trees->refit_body(chosen[i], leaves); });
     });
     try {
-        self.check();
+        trees->check();
     } catch (const DeviceError&) { // trees that may be half made are none
-        for (const auto body : self.chosen_) self.trees_[body].scene.reset();
+        for (const auto body : chosen) trees->trees_[body].scene.reset();
         throw;
     }
 }
@@ -170,7 +171,7 @@ void EmbreeTrees::do_refit(const Frame& frame, bool all) {
     choose(frame, all);
     if (chosen_.empty()) return;
     const StageScope scope(device_, Stage::refit);
-    const std::array<Argument, 2> arguments{tiles_.leaves(), reinterpret_cast<std::uintptr_t>(this)};
+    const std::array<Argument, 2> arguments{tiles_.leaves(), self_};
     device_.launch(kernel_, {1, 1}, arguments);
 }
 

@@ -40,8 +40,8 @@ public:
     /// Throws what Embree has complained of since the last call: OutOfMemory or DeviceError.
     void check();
 
-    /// Kernel refit_embree. `leaves`: those of the tiles; `trees`: the address of these.
-    static void run(const float* leaves, std::uintptr_t trees);
+    /// Kernel refit_embree. `leaves`: those of the tiles.
+    static void run(const float* leaves, EmbreeTrees* trees);
 
 private:
     template<auto Release>
@@ -87,6 +87,7 @@ private:
     std::vector<std::uint32_t> chosen_; ///< bodies that the refit at hand is of
     tbb::task_arena arena_;
     Kernel kernel_;
+    Buffer self_; ///< these, as an argument of the kernel
 };
 
 } // namespace tandem

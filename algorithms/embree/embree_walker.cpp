@@ -109,11 +109,12 @@ EmbreeWalker::EmbreeWalker(EmbreeTrees& trees, const Ground& ground)
     : trees_(trees),
       leaf_test_(ground.settings[parameters::rounding] == Rounding::published ? hand_over<true>
                                                                               : hand_over<false>),
-      kernel_(compile_native(ground.device, collide_entry)) {}
+      kernel_(compile_native(ground.device, collide_entry)),
+      self_(ground.device.adopt(this, sizeof(*this), "Embree's walk")) {}
 
 void EmbreeWalker::run(const std::uint32_t* body_pairs, std::uint32_t pair_room, std::uint32_t* found,
-                       std::uint32_t capacity, std::uint32_t* status, std::uintptr_t walker) {
-    const auto& self = *reinterpret_cast<const EmbreeWalker*>(walker);
+                       std::uint32_t capacity, std::uint32_t* status, const EmbreeWalker* walker) {
+    const auto& self = *walker;
     auto& trees = self.trees_;
     const auto count = std::min<std::uint64_t>(counter(status, STATUS_BODY_PAIRS), pair_room);
     const auto first = self.build_.windowed ? status[STATUS_WINDOW_FIRST] : 0;
@@ -134,12 +135,9 @@ void EmbreeWalker::run(const std::uint32_t* body_pairs, std::uint32_t pair_room,
 void EmbreeWalker::do_launch(const WalkTask& task) {
     auto& device = trees_.bodies().device();
     const StageScope scope(device, Stage::traverse);
-    const std::array<Argument, 6> arguments{task.body_pairs,
-                                            task.pair_room,
-                                            task.answer.pairs.buffer(),
-                                            task.answer.pairs.capacity(),
-                                            task.status.buffer(),
-                                            reinterpret_cast<std::uintptr_t>(this)};
+    const std::array<Argument, 6> arguments{
+        task.body_pairs,      task.pair_room, task.answer.pairs.buffer(), task.answer.pairs.capacity(),
+        task.status.buffer(), self_};
     device.launch(kernel_, {1, 1}, arguments);
 }
 

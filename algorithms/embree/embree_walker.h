@@ -11,10 +11,9 @@ public:
     /// `trees` must outlive this.
     EmbreeWalker(EmbreeTrees& trees, const Ground& ground);
 
-    /// Kernel collide_embree, of the body pairs in a buffer with `pair_room` rows; `walker`: the address of
-    /// this.
+    /// Kernel collide_embree, of the body pairs in a buffer with `pair_room` rows.
     static void run(const std::uint32_t* body_pairs, std::uint32_t pair_room, std::uint32_t* found,
-                    std::uint32_t capacity, std::uint32_t* status, std::uintptr_t walker);
+                    std::uint32_t capacity, std::uint32_t* status, const EmbreeWalker* walker);
 
 private:
     /// A body pair, and where its candidate pairs go.
@@ -32,6 +31,7 @@ private:
     RTCCollideFunc leaf_test_;
     WalkBuild build_;
     Kernel kernel_;
+    Buffer self_; ///< this, as an argument of the kernel
 };
 
 } // namespace tandem

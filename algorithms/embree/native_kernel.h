@@ -8,9 +8,9 @@ namespace tandem {
 inline constexpr const char* native_source = "algorithms/embree/native_kernel.h";
 
 /// Makes a compiled function a kernel of device host: what another library does for a stage is then a launch,
-/// under the clock that all launches have. Its parameters are pointers, for which launches give buffers, and
-/// scalars. It is launched as one group and may have threads of its own, since then there are no others. To
-/// be called before main begins; returns true.
+/// under the clock that all launches have. Its parameters are pointers, for which launches give buffers
+/// (adopted ones: any object), and scalars. It is launched as one group and may have threads of its own,
+/// since then there are no others. To be called before main begins; returns true.
 template<auto Function>
 bool list_native(const char* entry) {
     using Call = host::Invoke<Function>;
