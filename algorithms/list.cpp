@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/chunked/chunked.h"
+#include "algorithms/embree/embree.h"
 #include "algorithms/gproximity/gproximity.h"
 #include "algorithms/sources.h"
 #include "algorithms/tiled/tiled.h"
@@ -7,6 +8,7 @@
 #include "scenes/error.h"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 
 namespace tandem {
@@ -27,19 +29,26 @@ std::vector<std::span<const KernelSource>>& known_sources() {
 
 std::span<const Traversal* const> algorithms() { return listed(); }
 
+std::span<const Traversal* const> peers() {
+    static const std::array<const Traversal*, 1> all{&embree()};
+    return all;
+}
+
 void add_algorithm(const Traversal& traversal) {
-    for (const auto* other : listed())
-        if (other->name() == traversal.name())
-            throw InputError(fmt::format("there is an algorithm {} already", traversal.name()));
+    for (const auto& list : {algorithms(), peers()})
+        for (const auto* other : list)
+            if (other->name() == traversal.name())
+                throw InputError(fmt::format("there is an algorithm {} already", traversal.name()));
     listed().push_back(&traversal);
 }
 
 const Traversal& algorithm(std::string_view name) {
     std::vector<std::string> names;
-    for (const auto* candidate : algorithms()) {
-        if (candidate->name() == name) return *candidate;
-        names.emplace_back(candidate->name());
-    }
+    for (const auto& list : {algorithms(), peers()})
+        for (const auto* candidate : list) {
+            if (candidate->name() == name) return *candidate;
+            names.emplace_back(candidate->name());
+        }
     throw InputError(unknown("algorithm", name, names));
 }
 

@@ -103,14 +103,18 @@ private:
     virtual Steps do_build(const Ground& ground) const = 0;
 };
 
-/// Every algorithm of the project, then those added by add_algorithm.
+/// Every algorithm of the project but its peers, then those added by add_algorithm.
 std::span<const Traversal* const> algorithms();
+
+/// Other projects' walks, for comparison in the same record. They are had by name: each does a part only of
+/// what settings and devices there are, and refuses the rest, so that no list of all algorithms has them.
+std::span<const Traversal* const> peers();
 
 /// Adds one to the list, for programs that bring their own; `traversal` must live as long as the program.
 /// Not thread-safe. Throws InputError when there is one of that name.
 void add_algorithm(const Traversal& traversal);
 
-/// The one of that name; throws InputError that names the nearest.
+/// The one of that name, peers included; throws InputError that names the nearest.
 const Traversal& algorithm(std::string_view name);
 
 /// Its preset of that name; throws InputError.

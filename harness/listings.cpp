@@ -67,8 +67,21 @@ Json device_json(const DeviceInfo& info, const std::string& same) {
             {"same_as", same.empty() ? Json(nullptr) : Json(same)}};
 }
 
-void print_algorithm(const Traversal& traversal) {
-    fmt::print("{}: {}\n  presets\n", traversal.name(), traversal.summary());
+Json algorithm_json(const Traversal& traversal, bool peer) {
+    Json presets = Json::array();
+    for (const auto& p : traversal.presets())
+        presets.push_back({{"name", p.name}, {"help", p.help}, {"values", p.texts()}});
+    return {{"name", traversal.name()},
+            {"peer", peer},
+            {"summary", traversal.summary()},
+            {"parameters", parameters_json(traversal.parameters())},
+            {"counters", counters_json(traversal.counters())},
+            {"presets", presets}};
+}
+
+void print_algorithm(const Traversal& traversal, bool peer) {
+    fmt::print("{}{}: {}\n  presets\n", traversal.name(),
+               peer ? ", a peer, which runs where it is named only" : "", traversal.summary());
     for (const auto& p : traversal.presets()) fmt::print("    {:<18} {}\n", p.name, p.help);
     fmt::print("  settings\n");
     for (const auto* p : traversal.parameters())
@@ -219,17 +232,11 @@ int scenes_command(bool json) {
 
 int algorithms_command(bool json) {
     Json all = Json::array();
-    for (const auto* traversal : algorithms()) {
-        Json presets = Json::array();
-        for (const auto& p : traversal->presets())
-            presets.push_back({{"name", p.name}, {"help", p.help}, {"values", p.texts()}});
-        all.push_back({{"name", traversal->name()},
-                       {"summary", traversal->summary()},
-                       {"parameters", parameters_json(traversal->parameters())},
-                       {"counters", counters_json(traversal->counters())},
-                       {"presets", presets}});
-        if (!json) print_algorithm(*traversal);
-    }
+    for (const bool peer : {false, true})
+        for (const auto* traversal : peer ? peers() : algorithms()) {
+            all.push_back(algorithm_json(*traversal, peer));
+            if (!json) print_algorithm(*traversal, peer);
+        }
     if (json) fmt::print("{}\n", all.dump(2));
     return 0;
 }

@@ -21,12 +21,17 @@ def overlapping(a, b):
             if all(p[0] <= q[1] and q[0] <= p[1] for p, q in zip(x, y))]
 
 
+def own_algorithms():
+    """Those that are run where none is named."""
+    return [entry for entry in json.loads(tandem("algorithms", "--json")[1]) if not entry["peer"]]
+
+
 class CommandLine(Case):
     def test_listings(self):
         keys = {"devices": {"backend", "reason", "devices"}, "scenes": {"name", "models", "parameters", "bodies", "vertices", "tetrahedra"},
-                "algorithms": {"name", "summary", "parameters", "presets"}}
+                "algorithms": {"name", "peer", "summary", "parameters", "presets"}}
         for name, words in (("devices", ["host", "opencl:0"]), ("scenes", ["plates", "pile", "density", "glasses", "1729", "14793", "16140"]),
-                            ("algorithms", ["chunked", "gproximity", "tiled", "unc2010", "seed_threshold"])):
+                            ("algorithms", ["chunked", "gproximity", "tiled", "embree", "unc2010", "seed_threshold"])):
             status, out, errors = tandem(name)
             self.assertEqual((status, errors), (0, []))
             for word in words:
@@ -40,7 +45,7 @@ class CommandLine(Case):
             self.assertTrue(all(word in out for word in words))
 
     def test_check_prints_the_matrix(self):
-        presets = sum(len(entry["presets"]) for entry in json.loads(tandem("algorithms", "--json")[1]))
+        presets = sum(len(entry["presets"]) for entry in own_algorithms())
         devices = [d["id"] for entry in json.loads(tandem("devices", "--json")[1]) for d in entry["devices"]]
         for arguments in (("plates", "--frames", "20:21"), ("pile:bodies=8,frames=2",)):
             status, out, errors = tandem("check", *arguments)
@@ -131,7 +136,7 @@ class CommandLine(Case):
         self.assertEqual((status, errors), (0, []), out)
         missed = [int(line.split()[-2]) for line in out.splitlines() if line.startswith("host ")]
         nearest, safe = missed[::2], missed[1::2]
-        algorithms = json.loads(tandem("algorithms", "--json")[1])
+        algorithms = own_algorithms()
         self.assertEqual((len(missed), set(safe)), (2 * len(algorithms), {0}), out)
         self.assertGreater(min(nearest), 0, out)
         status, out, errors = tandem("check", "hard:all:pairs=2,together=2", *fast)
@@ -187,6 +192,29 @@ class CommandLine(Case):
         for repeat in ("0", "-1", "x"):
             self.bad("--repeat", "run", "plates", "--repeat", repeat)
         self.bad("--help", "fly")
+
+    def test_a_peer_beside_the_own(self):
+        """Same pairs in the same record, where the program has it; what it does not do it refuses, and its absence too."""
+        summary = next(e["summary"] for e in json.loads(tandem("algorithms", "--json")[1]) if e["name"] == "embree")
+        arguments = ("run", "pile:bodies=4,frames=1", "--device", "host", "--repeat", 1, "--set", "k=6")
+        if "built without Embree" in summary:
+            self.bad("libembree-dev", *arguments, "--algorithm", "embree")
+            return
+        out = self.work / "peer.jsonl"
+        status, text, errors = tandem(*arguments, "--algorithm", "chunked,embree", "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual(text.count(": right: "), 2, text)
+        chunked, embree = self.records(out)
+        self.assertGreater(embree["work"]["candidate_pairs"][0], 0)
+        for name in ("digest", "contact_digest"):
+            self.assertEqual(embree["agreement"][name], chunked["agreement"][name])
+        for stage in ("refit", "traverse"):
+            self.assertGreater(embree["stages"][stage]["device_ns"]["median"], 0)
+        self.assertNotIn("embree", tandem(*arguments)[1])
+        self.bad("choose k=6", *arguments[:-1], "k=18", "--algorithm", "embree")
+        self.bad("choose float", *arguments, "--set", "precision=double", "--algorithm", "embree")
+        for device in ("opencl:0", "host+opencl:0"):
+            self.bad("device host only, not on opencl:0", "run", "plates", "--device", device, "--algorithm", "embree")
 
     def test_required_devices(self):
         present = {e["backend"] for e in json.loads(tandem("devices", "--json")[1]) if e["devices"]}

@@ -16,23 +16,21 @@ std::uint64_t split_mix(std::uint64_t x) {
 
 } // namespace
 
+Digest digest_of(const Pair& p) {
+    const auto first = std::uint64_t{p.body_a} << 32 | p.tet_a;
+    const auto second = std::uint64_t{p.body_b} << 32 | p.tet_b;
+    const auto term = split_mix(split_mix(first) + second);
+    return {1, term, split_mix(term + 0x9e3779b97f4a7c15u)};
+}
+
 Digest digest_of(std::span<const Pair> pairs) {
     const auto parts = in_parts(pairs);
     std::vector<Digest> found(parts.size());
     parallel_for(parts.size(), [&](std::size_t i) {
-        for (const auto& p : parts[i]) {
-            const auto first = std::uint64_t{p.body_a} << 32 | p.tet_a;
-            const auto second = std::uint64_t{p.body_b} << 32 | p.tet_b;
-            const auto term = split_mix(split_mix(first) + second);
-            found[i].a += term;
-            found[i].b += split_mix(term + 0x9e3779b97f4a7c15u);
-        }
+        for (const auto& p : parts[i]) found[i] += digest_of(p);
     });
-    Digest digest{pairs.size(), 0, 0};
-    for (const auto& part : found) {
-        digest.a += part.a;
-        digest.b += part.b;
-    }
+    Digest digest;
+    for (const auto& part : found) digest += part;
     return digest;
 }
 

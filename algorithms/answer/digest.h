@@ -9,5 +9,6 @@ namespace tandem {
 
 /// Order-free digest of pairs, by the definition that pairs.clh implements on devices.
 Digest digest_of(std::span<const Pair> pairs);
+Digest digest_of(const Pair& pair);
 
 } // namespace tandem

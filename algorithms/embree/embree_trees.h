@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/hierarchy/tile_trees.h"
+#include "algorithms/steps.h"
+
+#include <embree3/rtcore.h>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <tbb/task_arena.h>
+#include <type_traits>
+
+namespace tandem {
+
+/// What slabs may be apart and overlap with rounding=published (PUBLISHED_TOLERANCE).
+inline constexpr float published_tolerance = 10 * std::numeric_limits<float>::epsilon();
+
+/// Embree's trees, one a body, over the leaf slabs that the project's own kernels make (k = 6: boxes). Embree
+/// is driven by a kernel of device host that is compiled C++: its work is booked as any kernel's is.
+class EmbreeTrees final : public Hierarchy {
+public:
+    /// Slabs of a tetrahedron: two cells that agree in it agree in their pairs. Ends before it starts where
+    /// the tetrahedron takes no part.
+    struct Box {
+        std::array<float, 3> lower, upper;
+    };
+
+    /// Throws DeviceError when Embree does not start.
+    explicit EmbreeTrees(const Ground& ground);
+
+    const Bodies& bodies() const { return tiles_.bodies(); }
+    /// The body's tree; null when no tetrahedron of it takes part.
+    RTCScene scene(std::uint32_t body) const;
+    /// By position in the order of the builder.
+    std::span<const Box> boxes(std::uint32_t body) const { return trees_[body].boxes; }
+    /// As many threads as setting threads says; Embree's own tasks stay on them.
+    tbb::task_arena& arena() { return arena_; }
+    /// Throws what Embree has complained of since the last call: OutOfMemory or DeviceError.
+    void check();
+
+    /// Kernel refit_embree. `leaves`: those of the tiles.
+    static void run(const float* leaves, EmbreeTrees* trees);
+
+private:
+    template<auto Release>
+    struct Releaser {
+        template<class Handle>
+        void operator()(Handle* handle) const {
+            Release(handle);
+        }
+    };
+    template<class Handle, auto Release>
+    using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Releaser<Release>>;
+    using OwnedDevice = Owned<RTCDevice, rtcReleaseDevice>;
+    using OwnedScene = Owned<RTCScene, rtcReleaseScene>;
+    using OwnedGeometry = Owned<RTCGeometry, rtcReleaseGeometry>;
+
+    struct Tree {
+        float tolerance = 0; ///< by which boxes may be apart and overlap
+        std::vector<Box> boxes;
+        OwnedScene scene; ///< none before the first refit
+        OwnedGeometry geometry;
+        std::vector<std::uint32_t> skipped; ///< tetrahedra that it was built without
+    };
+
+    void do_refit(const Frame& frame, bool all) override;
+    const Buffer& do_volumes() const override { return tiles_.volumes(); }
+    const Buffer& do_nodes() const override { return tiles_.nodes(); }
+    std::size_t do_bytes() const override { return tiles_.bytes(); }
+
+    static void give_bounds(const RTCBoundsFunctionArguments* arguments);
+    static void complain(void* trees, RTCError code, const char* text);
+    void choose(const Frame& frame, bool all);
+    void refit_body(std::uint32_t body, const float* leaves);
+    void copy_boxes(std::uint32_t body, const float* leaves);
+    void begin_tree(Tree& tree) const;
+
+    Device& device_;
+    TileTrees tiles_;
+    std::mutex complaint_lock_;
+    RTCError complaint_ = RTC_ERROR_NONE; ///< the first one
+    std::string complaint_text_;
+    OwnedDevice embree_;
+    std::vector<Tree> trees_;
+    std::vector<std::uint32_t> chosen_; ///< bodies that the refit at hand is of
+    tbb::task_arena arena_;
+    Kernel kernel_;
+    Buffer self_; ///< these, as an argument of the kernel
+};
+
+} // namespace tandem
