@@ -94,7 +94,8 @@ std::optional<Choice> ChoiceCache::find(const Json& question, std::string& warni
     if (!file) return std::nullopt;
     try {
         const auto json = Json::parse(file);
-        if (json.at("program") != program_ || json.at("question") != question) return std::nullopt;
+        if (json.at("program").get<std::string>() != program_ || json.at("question") != question)
+            return std::nullopt;
         return choice_of(json.at("choice"));
     } catch (const Json::exception&) {
         warning =
