@@ -81,7 +81,7 @@ TEST(ChoosingSearch, FindsTheBestUnderNoise) {
 TEST(ChoosingSearch, GivesTheTimeToThoseInQuestion) {
     Random random(3);
     Bench bench{{10 * ms, 11 * ms, 12 * ms, 13 * ms, 14 * ms, 15 * ms, 16 * ms, 17 * ms}};
-    bench.noise = [&] { return random.next() % 4 == 0 ? 3.0 : 1.0; };
+    bench.noise = [&] { return random.next() % 3 == 0 ? 2.0 : 1.0; };
     const auto found = bench.run();
     EXPECT_EQ(found.ranking.front(), 0u);
     EXPECT_GT(found.replays[found.ranking.front()].size(), 2 * found.replays[found.ranking.back()].size());
