@@ -10,8 +10,11 @@ from program import Case, tandem
 
 
 # Rooms for a million pairs, and queues to match, are what takes the host longest with so few.
-SMALL = [word for name in ("pair_capacity", "contact_capacity", "queue_bytes", "seed_capacity", "tile_pair_capacity")
-         for word in ("--set", f"{name}=65536")]
+SMALL = {name: 65536 for name in ("pair_capacity", "contact_capacity", "queue_bytes", "seed_capacity", "tile_pair_capacity")}
+
+
+def sets(settings):
+    return [word for name, value in settings.items() for word in ("--set", f"{name}={value}")]
 
 
 class Choosing(Case):
@@ -25,12 +28,12 @@ class Choosing(Case):
     def files(self):
         return sorted(self.work.joinpath(self.kept.name).glob("choice-*.json"))
 
-    def choose(self, *arguments, environment=None):
+    def choose(self, *arguments, environment=None, given=None):
         """(record of the first cell, lines of standard error) of a run that has to succeed."""
         out = self.work / f"{self.id()}{len(list(self.work.iterdir()))}.jsonl"
         status, text, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "auto",
                                       "--threads", 1, "--repeat", 1, "--truth", "none", "--choose-seconds", 0.3, "--out", out,
-                                      *SMALL, *arguments, environment=environment or self.environment)
+                                      *sets({**SMALL, **(given or {})}), *arguments, environment=environment or self.environment)
         self.assertEqual(status, 0, (text, errors))
         return self.records(out)[0], errors
 
@@ -72,7 +75,7 @@ class Choosing(Case):
         self.assertEqual(len(errors), 1)
         self.assertIn(f"as {self.files()[0]} says: best of", errors[0])
         self.assertFalse(self.choose("--choose-afresh")[0]["chosen"]["from_cache"])
-        self.assertFalse(self.choose("--set", "k=6")[0]["chosen"]["from_cache"])
+        self.assertFalse(self.choose(given={"k": 6})[0]["chosen"]["from_cache"])
         self.assertEqual(len(self.files()), 2)
 
     def test_a_choice_of_another_program_is_made_again(self):
@@ -105,7 +108,7 @@ class Choosing(Case):
 
     def test_what_is_given_is_kept(self):
         given = {"k": "6", "builder": "morton", "leaves": "32", "slabs": "all", "contact_rule": "none"}
-        record = self.choose(*(word for name, value in given.items() for word in ("--set", f"{name}={value}")))[0]
+        record = self.choose(given=given)[0]
         for candidate in [*record["chosen"]["candidates"], record]:
             for name, value in given.items():
                 if name in candidate["settings"]:
@@ -113,9 +116,20 @@ class Choosing(Case):
         self.assertEqual(len(record["chosen"]["candidates"]), 3)
         self.assertEqual((record["settings"]["k"], record["settings"]["contact_rule"]), ("6", "none"))
 
+    def test_what_fails_is_not_chosen(self):
+        """A TiB of queues is more than there is; frames in batches, with one session at a time, are no failure."""
+        record, errors = self.choose(given={"queue_bytes": 2**40})
+        self.assertEqual(len(errors), 1, errors)
+        failures = {c["algorithm"]: c["failure"] for c in record["chosen"]["candidates"]}
+        self.assertEqual([name for name, failure in failures.items() if failure], ["gproximity"])
+        self.assertIn("'queues' needs", failures["gproximity"])
+        self.assertLess(len([c for c in record["chosen"]["candidates"] if c["median_ns"]]), record["chosen"]["of"])
+        record = self.choose("--memory", "4MB")[0]
+        self.assertEqual({c["failure"] for c in record["chosen"]["candidates"]}, {None})
+
     def test_auto_beside_others_and_not_among_all(self):
         out = self.work / "beside.jsonl"
-        arguments = ("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--repeat", 1, "--out", out, *SMALL)
+        arguments = ("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--repeat", 1, "--out", out, *sets(SMALL))
         self.assertEqual(tandem(*arguments, "--algorithm", "auto,chunked", "--choose-seconds", 0.1, environment=self.environment)[0], 0)
         self.assertEqual([r["chosen"] is None for r in self.records(out)], [False, True])
         self.assertEqual(tandem(*arguments)[2], [])

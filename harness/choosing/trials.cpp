@@ -31,10 +31,7 @@ Trials::Trials(std::span<const Cell> candidates, const Scene& scene, std::span<c
     for (auto* device : candidates.front().devices) device->set_clocks(Clocks::off);
 }
 
-void Trials::free_memory() {
-    const auto& devices = candidates_.front().devices;
-    if (!std::any_of(devices.begin(), devices.end(), [](const auto* device) { return is_crowded(*device); }))
-        return;
+void Trials::free_sessions() {
     for (auto& session : sessions_) session.reset();
 }
 
@@ -42,6 +39,19 @@ void Trials::make_session(std::size_t candidate) {
     const auto& cell = candidates_[candidate];
     sessions_[candidate] = cell.algorithm->prepare(cell.devices, scene_, cell.settings);
     run(candidate);
+}
+
+/// Alone on its devices when memory does not suffice for it and what is there.
+void Trials::make_room_and_session(std::size_t candidate) {
+    const auto& devices = candidates_.front().devices;
+    if (std::any_of(devices.begin(), devices.end(), [](const auto* device) { return is_crowded(*device); }))
+        free_sessions();
+    try {
+        make_session(candidate);
+    } catch (const OutOfMemory&) {
+        free_sessions();
+        make_session(candidate);
+    }
 }
 
 std::int64_t Trials::run(std::size_t candidate) {
@@ -66,9 +76,8 @@ bool Trials::prepare(std::size_t candidate) {
     if (!failures_[candidate].empty()) return false;
     if (sessions_[candidate]) return true;
     const auto begin = Clock::now();
-    free_memory();
     try {
-        make_session(candidate);
+        make_room_and_session(candidate);
     } catch (const DeviceError& error) {
         failures_[candidate] = error.what();
     } catch (const InputError& error) {

@@ -34,7 +34,8 @@ public:
 
 private:
     void make_session(std::size_t candidate);
-    void free_memory();
+    void make_room_and_session(std::size_t candidate);
+    void free_sessions();
     /// Nanoseconds of the frames and nothing else. Throws DeviceError.
     std::int64_t run(std::size_t candidate);
 
