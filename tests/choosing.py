@@ -124,7 +124,7 @@ class Choosing(Case):
         self.assertEqual([name for name, failure in failures.items() if failure], ["gproximity"])
         self.assertIn("'queues' needs", failures["gproximity"])
         self.assertLess(len([c for c in record["chosen"]["candidates"] if c["median_ns"]]), record["chosen"]["of"])
-        record = self.choose("--memory", "4MB")[0]
+        record = self.choose("--memory", "1MB")[0]
         self.assertEqual({c["failure"] for c in record["chosen"]["candidates"]}, {None})
 
     def test_auto_beside_others_and_not_among_all(self):
