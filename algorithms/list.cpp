@@ -5,6 +5,7 @@
 #include "algorithms/sources.h"
 #include "algorithms/tiled/tiled.h"
 #include "algorithms/traversal.h"
+#include "scenes/digest.h"
 #include "scenes/error.h"
 
 #include <algorithm>
@@ -68,6 +69,13 @@ const KernelSource& kernel_source(std::string_view name) {
         for (const auto& source : sources)
             if (source.name == name) return source;
     throw DeviceError(fmt::format("no kernel file '{}' in this program", name));
+}
+
+std::uint64_t kernel_sources_digest() {
+    std::string digests;
+    for (const auto& sources : known_sources())
+        for (const auto& source : sources) digests += fmt::format("{:016x}", digest_of(source.text));
+    return digest_of(digests);
 }
 
 } // namespace tandem

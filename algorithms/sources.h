@@ -17,4 +17,7 @@ void add_kernel_sources(std::span<const KernelSource> sources);
 /// The kernel file of that name, as in "algorithms/chunked/chunked.cl".
 const KernelSource& kernel_source(std::string_view name);
 
+/// Of the texts of all of them: what was measured with kernels of another digest says nothing of these.
+std::uint64_t kernel_sources_digest();
+
 } // namespace tandem

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands.h"
 
+#include "harness/choosing/choose.h"
 #include "harness/dumps.h"
 #include "harness/inputs.h"
 #include "harness/job.h"
@@ -43,6 +44,19 @@ int profile(const Job& job, std::size_t times) {
     return 0;
 }
 
+/// Decides the cells of auto.
+void choose_cells(Job& job, const RunOptions& options, const Progress& progress) {
+    ChoosingOptions choosing;
+    choosing.seconds = options.choose_seconds;
+    choosing.afresh = options.choose_afresh;
+    for (std::size_t i = 0; i < job.cells.size(); ++i) {
+        choosing.progress = [&](std::string_view text) {
+            progress.show(text.empty() ? "" : fmt::format("[{}/{}] {}", i + 1, job.cells.size(), text));
+        };
+        choose(job.cells[i], job.scene, job.range, choosing);
+    }
+}
+
 std::string truth_of(const AnswerErrors& e) {
     return fmt::format("truth: {} of {} meeting pairs missed, {} candidates do not meet", e.missed(),
                        e.meeting(), e.pairs.disjoint);
@@ -64,16 +78,18 @@ std::string verdict(const Measurement& m) {
 int run_command(const RunOptions& options) {
     auto request = options.request;
     if (request.devices.empty()) request.devices.emplace_back("opencl:0");
+    request.may_choose = true;
     const auto backends = discover();
     check_required(backends, options.require);
-    const auto job = open_job(options, plan(request, open_devices(options, backends, request.devices)));
+    auto job = open_job(options, plan(request, open_devices(options, backends, request.devices)));
     RecordFile file(options.out);
     DumpFile pairs(options.dump_pairs, pairs_header);
     DumpFile contacts(options.dump_contacts, contacts_header);
     print_scene(job.scene, job.range);
+    const Progress progress(options.quiet);
+    choose_cells(job, options, progress);
     if (options.profile > 0) return profile(job, options.profile);
     References references(job.scene, job.range);
-    const Progress progress(options.quiet);
     SampleOptions sampling;
     sampling.repeat = options.repeat;
     sampling.check = options.check;

@@ -18,6 +18,8 @@ struct RunOptions {
     std::vector<std::string> poses;  ///< --pose "tx ty tz qw qx qy qz", in the order of the meshes
     Request request;
     std::string frames;                       ///< "FIRST:LAST" or "N"; empty: all frames of the scene
+    double choose_seconds = 10;               ///< of replays that auto may take to choose for a cell
+    bool choose_afresh = false;               ///< auto: look for no choice that was kept
     std::size_t repeat = 3;                   ///< samples of each cell
     std::size_t profile = 0;                  ///< replay so often, with nothing else, for a profiler
     std::string out;                          ///< append records to this file; empty: none are written

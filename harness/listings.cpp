@@ -22,6 +22,21 @@ std::vector<std::string> words_of(const Parameter& parameter) {
     return words;
 }
 
+/// What auto tries of it.
+std::vector<std::string> alternatives_of(const Parameter& parameter) {
+    std::vector<std::string> texts;
+    for (const auto value : parameter.alternatives()) texts.push_back(parameter.text(value));
+    return texts;
+}
+
+/// "1..1024", or its words; then what auto tries.
+std::string values_of(const Parameter& parameter) {
+    const auto values = parameter.choices().empty() ? fmt::format("{}..{}", parameter.least, parameter.most)
+                                                    : fmt::format("{}", fmt::join(words_of(parameter), ", "));
+    if (parameter.alternatives().empty()) return values;
+    return fmt::format("{}; auto tries {}", values, fmt::join(alternatives_of(parameter), ", "));
+}
+
 /// Numbers have a range, words their choices.
 Json parameters_json(std::span<const Parameter* const> parameters) {
     Json json = Json::array();
@@ -31,6 +46,7 @@ Json parameters_json(std::span<const Parameter* const> parameters) {
             row["range"] = {p->least, p->most};
         else
             row["choices"] = words_of(*p);
+        row["alternatives"] = alternatives_of(*p);
         json.push_back(row);
     }
     return json;
@@ -85,9 +101,7 @@ void print_algorithm(const Traversal& traversal, bool peer) {
     for (const auto& p : traversal.presets()) fmt::print("    {:<18} {}\n", p.name, p.help);
     fmt::print("  settings\n");
     for (const auto* p : traversal.parameters())
-        fmt::print("    {:<18} {:<10} {} [{}]\n", p->name, p->text(p->initial), p->help,
-                   p->choices().empty() ? fmt::format("{}..{}", p->least, p->most)
-                                        : fmt::format("{}", fmt::join(words_of(*p), ", ")));
+        fmt::print("    {:<18} {:<10} {} [{}]\n", p->name, p->text(p->initial), p->help, values_of(*p));
     fmt::print("  counters\n");
     for (const auto& c : traversal.counters()) fmt::print("    {:<22} {} [{}]\n", c.name, c.meaning, c.unit);
 }

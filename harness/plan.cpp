@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/plan.h"
 
+#include "harness/choosing/candidates.h"
 #include "scenes/error.h"
 
 #include <algorithm>
@@ -12,14 +13,6 @@ namespace tandem {
 
 namespace {
 
-/// Why backends have no devices, in brackets; empty when all have some.
-std::string reasons(const std::vector<BackendReport>& backends) {
-    std::string text;
-    for (const auto& backend : backends)
-        if (!backend.reason.empty()) text += (text.empty() ? "" : "; ") + backend.reason;
-    return text.empty() ? "" : fmt::format(" ({})", text);
-}
-
 template<class Value>
 void add_once(std::vector<Value>& values, Value value) {
     if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
@@ -30,11 +23,12 @@ bool declares(const Traversal& traversal, const std::string& name) {
     return std::any_of(parameters.begin(), parameters.end(), [&](const auto* p) { return p->name == name; });
 }
 
-/// Every combination of the values of the settings that the algorithm declares.
-std::vector<SettingTexts> combinations(const Request& request, const Traversal& traversal) {
+/// Every combination of the values of the settings that the algorithm declares; of all for auto, whose
+/// candidates take each what they have.
+std::vector<SettingTexts> combinations(const Request& request, const Traversal* traversal) {
     std::vector<SettingTexts> all{{}};
     for (const auto& [name, values] : request.sets) {
-        if (!declares(traversal, name)) continue;
+        if (traversal != nullptr && !declares(*traversal, name)) continue;
         std::vector<SettingTexts> longer;
         for (const auto& settings : all) {
             for (const auto& value : values) {
@@ -47,11 +41,24 @@ std::vector<SettingTexts> combinations(const Request& request, const Traversal& 
     return all;
 }
 
+/// Null stands for auto.
 std::vector<const Traversal*> choose_algorithms(const Request& request) {
     std::vector<const Traversal*> chosen;
-    for (const auto& name : request.algorithms) add_once(chosen, &algorithm(name));
+    for (const auto& name : request.algorithms) {
+        if (name == automatic && !request.may_choose)
+            throw InputError("--algorithm auto chooses for 'tandem run' only; name one of those that 'tandem "
+                             "algorithms' lists");
+        add_once(chosen, name == automatic ? nullptr : &algorithm(name));
+    }
     if (chosen.empty()) chosen.assign(algorithms().begin(), algorithms().end());
     return chosen;
+}
+
+/// Those whose settings and presets may be named: auto has those of all.
+std::vector<const Traversal*> named_by(std::span<const Traversal* const> chosen) {
+    if (std::find(chosen.begin(), chosen.end(), nullptr) == chosen.end())
+        return {chosen.begin(), chosen.end()};
+    return {algorithms().begin(), algorithms().end()};
 }
 
 /// A setting that only some of the algorithms have is no mistake: the others go without it.
@@ -68,7 +75,38 @@ void check_sets(const Request& request, std::span<const Traversal* const> chosen
                 fmt::format("--set {}=... is given twice; write --set {}=V1,V2", set->first, set->first));
 }
 
-/// The presets of `traversal` that the request names; its first when it names none at all.
+void check_presets(const Request& request, std::span<const Traversal* const> chosen) {
+    std::vector<std::string> names{"all"};
+    for (const auto* traversal : chosen)
+        for (const auto& candidate : traversal->presets())
+            if (std::find(names.begin(), names.end(), candidate.name) == names.end())
+                names.emplace_back(candidate.name);
+    for (const auto& name : request.presets)
+        if (std::find(names.begin(), names.end(), name) == names.end())
+            throw InputError(unknown("preset", name, names));
+}
+
+/// The cells of one algorithm, or of auto, on one group of devices.
+void add_cells(std::vector<Cell>& cells, const Request& request, const Traversal* traversal,
+               const DeviceGroup& devices, Unfit unfit) {
+    const auto add = [&](const auto& make) {
+        try {
+            cells.push_back(make());
+        } catch (const InputError&) {
+            if (unfit == Unfit::refuse) throw;
+        }
+    };
+    const auto all = combinations(request, traversal);
+    if (traversal == nullptr) {
+        for (const auto& given : all) add([&] { return undecided_cell(request, given, devices); });
+        return;
+    }
+    for (const auto* preset : choose_presets(request, *traversal))
+        for (const auto& given : all) add([&] { return make_cell(*traversal, *preset, given, devices); });
+}
+
+} // namespace
+
 std::vector<const Preset*> choose_presets(const Request& request, const Traversal& traversal) {
     if (request.presets.empty()) return {&traversal.presets().front()};
     std::vector<const Preset*> chosen;
@@ -82,18 +120,6 @@ std::vector<const Preset*> choose_presets(const Request& request, const Traversa
     return chosen;
 }
 
-void check_presets(const Request& request, std::span<const Traversal* const> chosen) {
-    std::vector<std::string> names{"all"};
-    for (const auto* traversal : chosen)
-        for (const auto& candidate : traversal->presets())
-            if (std::find(names.begin(), names.end(), candidate.name) == names.end())
-                names.emplace_back(candidate.name);
-    for (const auto& name : request.presets)
-        if (std::find(names.begin(), names.end(), name) == names.end())
-            throw InputError(unknown("preset", name, names));
-}
-
-/// A cell whose settings fit its device.
 Cell make_cell(const Traversal& traversal, const Preset& preset, const SettingTexts& given,
                const DeviceGroup& devices) {
     Cell cell{&traversal, std::string(preset.name),
@@ -102,80 +128,29 @@ Cell make_cell(const Traversal& traversal, const Preset& preset, const SettingTe
     return cell;
 }
 
-/// The device of that id; throws InputError that names the reason of absence and what there is.
-Device* named_device(const std::vector<BackendReport>& backends, const std::string& name) {
-    std::vector<std::string> ids;
-    for (const auto& backend : backends)
-        for (const auto& device : backend.devices) {
-            if (device->info().id == name) return device.get();
-            ids.push_back(device->info().id);
-        }
-    throw InputError(unknown("device", name, ids) + reasons(backends));
-}
-
-/// "D" or "D+E+..." as a group.
-DeviceGroup named_group(const std::vector<BackendReport>& backends, const std::string& name) {
-    DeviceGroup group;
-    std::size_t begin = 0;
-    for (auto end = name.find('+'); begin <= name.size(); begin = end + 1, end = name.find('+', begin)) {
-        end = std::min(end, name.size());
-        auto* device = named_device(backends, name.substr(begin, end - begin));
-        if (std::find(group.begin(), group.end(), device) != group.end())
-            throw InputError(fmt::format("device {}: {} is named twice; a device works for a cell once", name,
-                                         device->info().id));
-        group.push_back(device);
-    }
-    return group;
-}
-
-} // namespace
-
-std::string name_of(const DeviceGroup& devices) {
-    std::string name;
-    for (const auto* device : devices) name += (name.empty() ? "" : "+") + device->info().id;
-    return name;
-}
-
-std::vector<DeviceGroup> choose_devices(const std::vector<BackendReport>& backends,
-                                        std::span<const std::string> names) {
-    std::vector<DeviceGroup> chosen;
-    for (const auto& name : names) {
-        if (name != "all") {
-            add_once(chosen, named_group(backends, name));
-            continue;
-        }
-        for (const auto& backend : backends)
-            for (const auto& device : backend.devices) add_once(chosen, DeviceGroup{device.get()});
-    }
-    return chosen;
-}
-
 std::vector<Cell> plan(const Request& request, std::span<const DeviceGroup> devices, Unfit unfit) {
     const auto chosen = choose_algorithms(request);
-    check_sets(request, chosen);
-    check_presets(request, chosen);
+    const auto named = named_by(chosen);
+    check_sets(request, named);
+    check_presets(request, named);
     std::vector<Cell> cells;
     for (const auto& group : devices)
-        for (const auto* traversal : chosen)
-            for (const auto* preset : choose_presets(request, *traversal))
-                for (const auto& given : combinations(request, *traversal)) {
-                    try {
-                        cells.push_back(make_cell(*traversal, *preset, given, group));
-                    } catch (const InputError&) {
-                        if (unfit == Unfit::refuse) throw;
-                    }
-                }
+        for (const auto* traversal : chosen) add_cells(cells, request, traversal, group, unfit);
     return cells;
 }
 
-/// Settings that are as the preset has them are not named, so that equal cells read the same however they
-/// were asked for.
-std::string describe(const Cell& cell) {
+SettingTexts changes(const Cell& cell) {
     const auto base = resolve(cell.algorithm->parameters(), preset(*cell.algorithm, cell.preset).values, {},
                               cell.algorithm->name());
-    std::vector<std::string> changed;
+    SettingTexts changed;
     for (const auto& [name, value] : cell.settings.texts())
-        if (base.text(name) != value) changed.push_back(fmt::format("{}={}", name, value));
+        if (base.text(name) != value) changed.emplace(name, value);
+    return changed;
+}
+
+std::string describe(const Cell& cell) {
+    std::vector<std::string> changed;
+    for (const auto& [name, value] : changes(cell)) changed.push_back(fmt::format("{}={}", name, value));
     return fmt::format("{} {}{}{} on {}", cell.algorithm->name(), cell.preset, changed.empty() ? "" : " ",
                        fmt::join(changed, ","), name_of(cell.devices));
 }

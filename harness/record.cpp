@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record.h"
 
+#include "harness/choosing/choice.h"
 #include "harness/environment.h"
 #include "harness/statistics.h"
 #include "scenes/error.h"
@@ -286,6 +287,7 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["algorithm"] = cell.algorithm->name();
     json["preset"] = cell.preset;
     json["settings"] = settings;
+    json["chosen"] = cell.chosen ? choice_json(*cell.chosen) : Json();
     json["scene"] = record_scene(scene);
     json["frames"] = {{"first", range.first}, {"last", range.last}};
     json["devices"] = record_devices(cell.devices);

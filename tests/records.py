@@ -88,13 +88,13 @@ class Records(Case):
         tandem("run", "--mesh", flat, "--mesh", self.good, "--device", "opencl:0", "--algorithm", "gproximity", "--truth", "contacts",
                "--out", out)
         record = self.records(out)[0]
-        maps, nullable = {"settings", "defines", "counters"}, {"failure", "agreement", "commit", "processor", "clocks_mhz", "hardware", "device_span_ns",
+        maps, nullable = {"settings", "defines", "counters"}, {"chosen", "failure", "agreement", "commit", "processor", "clocks_mhz", "hardware", "device_span_ns",
                                                    "registers", "local_bytes", "spill_bytes", "missed_upper95", "candidate_ratio", "decisions",
                                                    "depth_relative", "depth_ulps", "normal_degrees", "point", "hausdorff", "volume_relative"}
         nullable_paths = {("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift"),
                           *(("work", name) for name in ("undecided_by_filter", "undecided_by_double", "batches")),
                           *(("work", "counters", name) for name in record["work"]["counters"])}
-        since = {"truth", "inputs", "volume_relative", "no_volume"}  # records from before each lack it
+        since = {"chosen", "truth", "inputs", "volume_relative", "no_volume"}  # records from before each lack it
         seen = set()
         for path in places(record):
             shape = tuple(0 if isinstance(name, int) else name for name in path)

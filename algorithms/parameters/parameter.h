@@ -29,8 +29,16 @@ struct Parameter {
     std::int64_t least = 0, most = 0; ///< of an integer; both included
     std::array<Word, 12> words{};
     std::size_t word_count = 0; ///< 0: any integer from least to most
+    std::array<std::int64_t, 4> alternative_values{};
+    std::size_t alternative_count = 0;
+    std::string_view said_by; ///< the setting that says the same in another way; empty: none
 
     constexpr std::span<const Word> choices() const { return std::span(words).first(word_count); }
+    /// Values worth trying for speed, where neither this nor said_by is given; none of them changes an
+    /// answer. Empty: it is the user's alone.
+    constexpr std::span<const std::int64_t> alternatives() const {
+        return std::span(alternative_values).first(alternative_count);
+    }
     /// The value as --set takes it.
     std::string text(std::int64_t value) const;
     /// Throws InputError that names the allowed values. Integers may be written 10000000 or 1e7.
@@ -74,6 +82,21 @@ struct Setting : Parameter {
         least = range.least;
         most = range.most;
         if (initial < least || initial > most) throw "a setting's default is out of its range";
+    }
+
+    /// The same row with alternatives(), every one of them a value that it takes.
+    consteval Setting with_alternatives(std::initializer_list<T> values,
+                                        std::string_view other_way = {}) const {
+        auto row = *this;
+        row.said_by = other_way;
+        for (const auto value : values) {
+            const auto number = static_cast<std::int64_t>(value);
+            bool allowed = word_count == 0 && number >= least && number <= most;
+            for (const auto& word : choices()) allowed = allowed || word.value == number;
+            if (!allowed) throw "an alternative of a setting is no value of it";
+            row.alternative_values[row.alternative_count++] = number;
+        }
+        return row;
     }
 
     Assignment operator()(T value) const { return {this, static_cast<std::int64_t>(value)}; }

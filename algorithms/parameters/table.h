@@ -47,20 +47,22 @@ inline constexpr Setting<Placement> placement{
     "whose contacts no slab may miss: those of the world vertices as rounded, or those of the scene's own "
     "vertices where its poses put them exactly (safe and directed, wider slabs)"};
 
-inline constexpr Setting<Builder> builder{"builder",
-                                          Builder::morton,
-                                          {{"morton", Builder::morton}, {"sah", Builder::sah}},
-                                          "",
-                                          "order of a body's tetrahedra, from which trees are made: morton: "
-                                          "along the Z-curve, as the paper; sah: cut by "
-                                          "the surface area heuristic into runs of 32, 32^2, ..."};
-inline constexpr Setting<Slabs> slabs{"slabs",
-                                      Slabs::three,
-                                      {{"three", Slabs::three}, {"all", Slabs::all}},
-                                      "SLABS",
-                                      "directions that leaves have bounds along: three of the k/2, with the "
-                                      "others decided from the vertices of "
-                                      "pairs that pass, or all"};
+inline constexpr auto builder =
+    Setting<Builder>{"builder",
+                     Builder::morton,
+                     {{"morton", Builder::morton}, {"sah", Builder::sah}},
+                     "",
+                     "order of a body's tetrahedra, from which trees are made: morton: along the Z-curve, as "
+                     "the paper; sah: cut by the surface area heuristic into runs of 32, 32^2, ..."}
+        .with_alternatives({Builder::morton, Builder::sah});
+inline constexpr auto slabs =
+    Setting<Slabs>{"slabs",
+                   Slabs::three,
+                   {{"three", Slabs::three}, {"all", Slabs::all}},
+                   "SLABS",
+                   "directions that leaves have bounds along: three of the k/2, with the others decided from "
+                   "the vertices of pairs that pass, or all"}
+        .with_alternatives({Slabs::three, Slabs::all});
 
 inline constexpr Setting<ContactRule> contact_rule{
     "contact_rule",
@@ -111,8 +113,9 @@ inline constexpr Setting<Output> output{
     {{"pairs", Output::pairs}, {"count", Output::count}, {"digest", Output::digest}},
     "OUTPUT",
     "what a walk hands out; contacts need pairs"};
-inline constexpr Setting<std::int64_t> group_size{"group_size", 128, Range{1, 1024}, "GROUP_SIZE",
-                                                  "work-items per work-group (1 on host)"};
+inline constexpr auto group_size = Setting<std::int64_t>{"group_size", 128, Range{1, 1024}, "GROUP_SIZE",
+                                                         "work-items per work-group (1 on host)"}
+                                       .with_alternatives({64, 128, 256});
 inline constexpr Setting<std::int64_t> work_items{"work_items", 2048, Range{1, 1 << 20}, "",
                                                   "work-items per compute unit of the kernels that stride"};
 inline constexpr Setting<std::int64_t> threads{

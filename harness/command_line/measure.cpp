@@ -84,6 +84,23 @@ void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string
     app.add_flag("--quiet", options.quiet, "no progress line");
 }
 
+/// What `run` alone has: --algorithm auto and how it chooses.
+void add_choosing(CLI::App& app, RunOptions& options) {
+    app.get_option("--algorithm")
+        ->description(
+            "A,B (see 'tandem algorithms'); auto: the one that is fastest on the first frames, with "
+            "the settings that are; all, without auto, when left out");
+    app.add_option(
+           "--choose-seconds", options.choose_seconds,
+           "auto: seconds of replays, at most, to choose for a cell, and six times as many to prepare "
+           "candidates; 10 when left out")
+        ->check(CLI::Range(0.001, 86400.0))
+        ->option_text("S");
+    app.add_flag("--choose-afresh", options.choose_afresh,
+                 "auto: measure again where a choice was kept ($TANDEM_KERNEL_CACHE, or "
+                 "$XDG_CACHE_HOME/tandem)");
+}
+
 /// add_run_options with the other defaults of `accuracy`, which is about the truth and cannot leave it out.
 void add_accuracy_run_options(CLI::App& app, RunOptions& options, std::vector<std::string>& sets) {
     options.truth_contacts = 1000;
@@ -105,6 +122,7 @@ Action add_run(CLI::App& app) {
     auto& options = given->options;
     app.add_option("scene", options.scene, scene_help);
     add_run_options(app, options, given->sets);
+    add_choosing(app, options);
     app.add_option("--repeat", options.repeat, "samples per cell")->check(CLI::Range(1, 1000));
     app.add_option("--profile", options.profile, "only replay the frames N times, for a profiler")
         ->check(CLI::Range(1, 1000000));

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "harness/choosing/candidates.h"
+
+#include "scenes/error.h"
+#include "tests/support/cells.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+DeviceGroup on_host() { return {&testing_support::device("host")}; }
+
+std::vector<Cell> of(const SettingTexts& given, std::vector<std::string> presets = {}) {
+    Request request;
+    request.presets = std::move(presets);
+    return candidates(request, given, on_host());
+}
+
+std::set<std::string> values_of(const std::vector<Cell>& cells, std::string_view algorithm,
+                                std::string_view setting) {
+    std::set<std::string> values;
+    for (const auto& cell : cells)
+        if (cell.algorithm->name() == algorithm) values.insert(cell.settings.text(setting));
+    return values;
+}
+
+TEST(ChoosingCandidates, EveryAlgorithmWithEveryAlternative) {
+    const auto cells = of({});
+    for (std::size_t i = 0; i < algorithms().size(); ++i) { // unchanged ones first
+        EXPECT_EQ(cells[i].algorithm, algorithms()[i]);
+        EXPECT_EQ(cells[i].preset, algorithms()[i]->presets().front().name);
+    }
+    EXPECT_EQ(values_of(cells, "chunked", "leaves"), (std::set<std::string>{"0", "8", "64", "512"}));
+    EXPECT_EQ(values_of(cells, "tiled", "slabs"), (std::set<std::string>{"three", "all"}));
+    for (const auto* traversal : algorithms())
+        EXPECT_EQ(values_of(cells, traversal->name(), "builder"), (std::set<std::string>{"morton", "sah"}));
+}
+
+/// Where groups are of one work-item anyhow their sizes are one candidate.
+TEST(ChoosingCandidates, NoneTwice) {
+    const auto cells = of({});
+    std::set<std::string> different;
+    for (const auto& cell : cells) {
+        EXPECT_EQ(cell.settings.text("group_size"), "128");
+        different.insert(describe(cell));
+    }
+    EXPECT_EQ(different.size(), cells.size());
+}
+
+TEST(ChoosingCandidates, WhatIsGivenIsKept) {
+    const auto cells = of({{"k", "8"}, {"builder", "morton"}, {"leaves", "32"}, {"contact_rule", "none"}});
+    ASSERT_FALSE(cells.empty());
+    for (const auto& cell : cells) {
+        EXPECT_EQ(cell.settings.text("k"), "8");
+        EXPECT_EQ(cell.settings.text("builder"), "morton");
+        EXPECT_EQ(cell.settings.text("contact_rule"), "none");
+    }
+    EXPECT_EQ(values_of(cells, "chunked", "leaves"), std::set<std::string>{"32"});
+    // Leaves over it would say something else than the chunk's bytes.
+    EXPECT_EQ(values_of(of({{"chunk_bytes", "20000"}}), "chunked", "leaves"), std::set<std::string>{"0"});
+}
+
+/// The paper's presets are of k = 8, the others of 18: the first that is named says which.
+TEST(ChoosingCandidates, OnlyWithOneAnswer) {
+    for (const auto& presets : {std::vector<std::string>{"all"}, {"published"}}) {
+        const auto cells = of({}, presets);
+        for (const auto& cell : cells) EXPECT_EQ(cell.settings.text("k"), cells.front().settings.text("k"));
+    }
+    EXPECT_EQ(of({}, {"published"}).front().settings.text("k"), "8");
+}
+
+TEST(ChoosingCandidates, WhatFitsNoneIsRefused) {
+    EXPECT_EQ(testing_support::declares(*algorithms().front(), "axes"), true);
+    EXPECT_THROW(of({{"axes", "coordinate"}}), InputError);
+    EXPECT_THROW(of({{"k", "10"}}), InputError);
+}
+
+TEST(ChoosingCandidates, AutoIsNamedAndNotAmongAll) {
+    Request request;
+    const std::vector<DeviceGroup> devices{on_host()};
+    for (const auto& cell : plan(request, devices)) EXPECT_TRUE(cell.candidates.empty());
+    request.algorithms = {"auto", "chunked"};
+    request.sets = {{"k", {"6", "18"}}};
+    EXPECT_THROW(plan(request, devices), InputError); // nothing is chosen there
+    request.may_choose = true;
+    const auto cells = plan(request, devices);
+    ASSERT_EQ(cells.size(), 4u);
+    EXPECT_EQ(cells[0].settings.text("k"), "6");
+    EXPECT_EQ(cells[1].settings.text("k"), "18");
+    EXPECT_GT(cells[1].candidates.size(), 10u);
+    EXPECT_TRUE(cells[2].candidates.empty());
+}
+
+} // namespace
+} // namespace tandem
