@@ -13,9 +13,6 @@
 #define PRECISION 32
 #endif
 
-// FUSED(a, b, c) is a * b + c with one rounding where that is fast and two elsewhere: only for what has the
-// same outcome either way.
-
 // A team is a part of a work-group that needs to wait for its own work-items only: a warp. Where the compiler
 // has no barrier for one the whole group waits, so that every dialect runs the same teams.
 #if GROUP_SIZE % 32 == 0
@@ -103,12 +100,6 @@
 #define MINIMUM(a, b) ((a) < (b) ? (a) : (b))
 #define MAXIMUM(a, b) ((a) > (b) ? (a) : (b))
 #endif
-#if defined(__NV_CL_C_VERSION) || (PRECISION == 32 && defined(FP_FAST_FMAF))                                 \
-    || (PRECISION == 64 && defined(FP_FAST_FMA))
-#define FUSED(a, b, c) fma((a), (b), (c))
-#else
-#define FUSED(a, b, c) ((a) * (b) + (c))
-#endif
 #define UNROLL _Pragma("unroll")
 #define NO_UNROLL _Pragma("unroll 1")
 #define REAL_INFINITY ((real)INFINITY)
@@ -133,7 +124,6 @@
 #define ABSOLUTE(value) fabs(value)
 #define MINIMUM(a, b) fmin((a), (b))
 #define MAXIMUM(a, b) fmax((a), (b))
-#define FUSED(a, b, c) fma((a), (b), (c))
 #if PRECISION == 64 // sums rounded down and up; OpenCL C has none
 #define ADD_DOWN(a, b) __dadd_rd((a), (b))
 #define ADD_UP(a, b) __dadd_ru((a), (b))
@@ -175,7 +165,6 @@ typedef unsigned long ulong; // 64 bits where CUDA runs on Linux, as glibc has i
 #define ABSOLUTE(value) std::fabs(value)
 #define MINIMUM(a, b) ((a) < (b) ? (a) : (b))
 #define MAXIMUM(a, b) ((a) > (b) ? (a) : (b))
-#define FUSED(a, b, c) ((a) * (b) + (c))
 #define ADD_DOWN(a, b) tandem::host::add_down((a), (b))
 #define ADD_UP(a, b) tandem::host::add_up((a), (b))
 #define UNROLL

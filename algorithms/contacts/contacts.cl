@@ -38,22 +38,39 @@ DEVICE void keep_open(LOCAL uint* counts, LOCAL uint* pairs, LOCAL int* edges, u
     edges[slot] = edge;
 }
 
+// PoCL 3.1 loses what work-items have kept when they meet inside a branch, uniform as it is: there, and where
+// a group is one work-item, each pair adds to the counter by itself.
+#if defined(__CUDACC__) || defined(__NV_CL_C_VERSION)
+#define GROUP_COUNTS 1
+#else
+#define GROUP_COUNTS 0
+#endif
+
+// Where the contacts of a work-item's pair go, those of a group in one piece; the whole group comes here.
+DEVICE ulong place_contacts(uint count, LOCAL uint* counts, GLOBAL uint* status) {
+#if GROUP_COUNTS
+    const uint before = count != 0u ? LOCAL_ATOMIC_ADD(counts + COUNT_CONTACTS, count) : 0u;
+    BARRIER;
+    if (LOCAL_ID == 0u) {
+        counts[FIRST_CONTACT] = counter_add(status + STATUS_CONTACTS, counts[COUNT_CONTACTS]);
+        counts[COUNT_CONTACTS] = 0u;
+    }
+    BARRIER;
+    return (ulong)counts[FIRST_CONTACT] + before;
+#else
+    (void)counts;
+    return count != 0u ? counter_add(status + STATUS_CONTACTS, count) : 0u;
+#endif
+}
+
 // Contacts of a pair of each `active` work-item; the whole group comes here.
 DEVICE void make_contacts(const Candidates* all, int active, uint index, LOCAL uint* counts,
                           const Sink* sink) {
     Draft draft;
-    uint before = 0;
-    if (active) {
-        draft_contacts(all, index, &draft);
-        before = LOCAL_ATOMIC_ADD(counts + COUNT_CONTACTS, draft.count);
-    }
-    BARRIER;
-    if (LOCAL_ID == 0u) {
-        counts[FIRST_CONTACT] = counter_add(sink->status + STATUS_CONTACTS, counts[COUNT_CONTACTS]);
-        counts[COUNT_CONTACTS] = 0u;
-    }
-    BARRIER;
-    if (active) write_contacts(&draft, index, (ulong)counts[FIRST_CONTACT] + before, sink);
+    draft.count = 0u;
+    if (active) draft_contacts(all, index, &draft);
+    const ulong slot = place_contacts(draft.count, counts, sink->status);
+    if (draft.count != 0u) write_contacts(&draft, index, slot, sink);
 }
 
 // Three steps, each for the pairs that the one before could not settle. `verdicts` are read when DECIDED

@@ -296,6 +296,28 @@ TYPED_TEST(ContactsKernel, EqualsTheReferenceBitForBit) {
         }
 }
 
+// Where certificates begin and end, and where products of their distances would over- or underflow.
+TYPED_TEST(ContactsKernel, EqualsTheReferenceAtEveryScale) {
+    auto pairs = random_pairs<TypeParam>(16200);
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        for (auto* corners : {&pairs[i].a, &pairs[i].b})
+            for (auto& corner : *corners)
+                for (auto& x : corner) x = std::ldexp(x, static_cast<int>(i % 81) - 40);
+    const Expected<TypeParam> expected(pairs);
+    ASSERT_GT(expected.counts.rejected, 1000u);
+    const auto count = static_cast<std::uint32_t>(pairs.size());
+    for (auto& device : this->devices) {
+        SCOPED_TRACE(device->info().id);
+        Stage<TypeParam> stage(*device, pairs, this->group_sizes(*device).back());
+        const auto outcome = stage.run(0, count, 0, count, static_cast<std::uint32_t>(expected.total));
+        EXPECT_EQ(outcome.counter(STATUS_DEGENERATE), expected.counts.degenerate);
+        EXPECT_EQ(outcome.counter(STATUS_REJECTED), expected.counts.rejected);
+        ASSERT_EQ(outcome.counter(STATUS_CONTACTS), expected.total);
+        EXPECT_EQ(outcome.digest_a(), expected.digest_a);
+        EXPECT_EQ(by_pair(outcome, expected.total, pairs.size()), expected.contacts);
+    }
+}
+
 TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReference) {
     using enum ContactRule;
     using enum DecisionPrecision;
