@@ -102,7 +102,10 @@ Pipeline::Pipeline(const Traversal& traversal, Device& on, const Scene& scene, S
                                              writes_of(settings));
     const bool contacting =
         output == Output::pairs && settings[parameters::contact_rule] != ContactRule::none;
-    if (contacting) contacts = std::make_unique<ContactStage>(*bodies, contact_settings_of(settings), shape);
+    const auto launches =
+        is_published(settings) ? ContactStage::Launches::at_once : ContactStage::Launches::apart;
+    if (contacting)
+        contacts = std::make_unique<ContactStage>(*bodies, contact_settings_of(settings), shape, launches);
     tools = std::make_shared<AnswerTools>(bodies, shape, contacting);
     answers = std::make_unique<AnswerPool>(on, real_bytes(bodies->geometry()),
                                            output == Output::pairs ? settings[parameters::pair_capacity] : 1,

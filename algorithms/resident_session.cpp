@@ -68,6 +68,7 @@ FrameResult ResidentSession::run_whole() {
     for (std::uint64_t retries = 0;; ++retries) {
         launch(*answer);
         steps_.status.read();
+        if (steps_.contacts) steps_.contacts->expect(steps_.status.counter(STATUS_PAIRS));
         if (grow(*answer)) continue;
         auto result = steps_.counts();
         result.retries = retries;

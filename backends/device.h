@@ -104,6 +104,8 @@ public:
     Kernel() = default;
     explicit Kernel(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
+    explicit operator bool() const { return impl_ != nullptr; }
+
     const KernelFacts& facts() const { return impl_->facts; }
     Impl& impl() const { return *impl_; }
 

@@ -174,6 +174,8 @@ Json work_json(const Measurement& m, const Traversal& algorithm) {
     return {{"body_pairs", m.body_pairs},
             {"candidate_pairs", m.candidate_pairs},
             {"contacts", m.contacts},
+            {"digest", digest_json(m.agreement.digest)},
+            {"contact_digest", digest_json(m.agreement.contact_digest)},
             {"counters", counters_json(m, algorithm)},
             {"rejected", m.rejected},
             {"undecided_by_filter", m.undecided_by_filter},

@@ -120,8 +120,8 @@ AnswerTools::AnswerTools(std::shared_ptr<const Bodies> bodies, LaunchShape shape
     sums_ = device().allocate(16, "sums of a digest");
     pairs_kernel_ = device().compile(kernel_source("algorithms/answer/digest.cl"), "digest_pairs", defines);
     if (contacts)
-        contacts_kernel_ =
-            device().compile(kernel_source("algorithms/contacts/contacts.cl"), "digest_contacts", defines);
+        contacts_kernel_ = device().compile(kernel_source("algorithms/contacts/digest_contacts.cl"),
+                                            "digest_contacts", defines);
 }
 
 Digest AnswerTools::sums(std::uint64_t count) const {

@@ -9,47 +9,138 @@ namespace tandem {
 
 namespace {
 
-/// As many groups as run at once with the registers of generate_contacts, 512 work-items on a GPU's unit:
-/// each has then more pairs to make full steps of (recorded funnel: 104 to 54 us on an H200).
-LaunchShape contact_shape(LaunchShape shape) {
-    shape.groups = std::max(1u, shape.groups / 4);
-    return shape;
+/// What a launch of all three kernels takes at most: OPEN_PAIRS of waiting.clh.
+constexpr std::uint64_t most_waiting = std::uint64_t{1} << 26;
+/// Lists for fewer pairs are not tried when memory is short.
+constexpr std::uint64_t least_waiting = 1024;
+
+/// No larger groups than kernels of this stage have local memory for; of a GPU's unit, 2048 / `divisor` of
+/// its work-items.
+LaunchShape shape_for(LaunchShape shape, std::uint32_t divisor) {
+    constexpr std::uint32_t largest = 128;
+    const auto items = std::uint64_t{shape.groups} * shape.group_size / divisor;
+    const auto size = std::min(shape.group_size, largest);
+    return {size, static_cast<std::uint32_t>(std::max<std::uint64_t>(1, items / size))};
 }
 
 } // namespace
 
-ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings, LaunchShape shape)
-    : bodies_(bodies), shape_(contact_shape(shape)) {
+ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings, LaunchShape shape,
+                           Launches launches)
+    : bodies_(bodies), shape_(shape_for(shape, 1)), few_shape_(shape_for(shape, 2)) {
     auto& device = bodies.device();
-    auto defines = row_defines(bodies.geometry(), shape.group_size);
+    auto defines = row_defines(bodies.geometry(), shape_.group_size);
     define(defines, parameters::contact_rule, settings.rule);
     defines["DECIDED"] = settings.decision == DecisionPrecision::fp32 ? "0" : "1";
-    generate_ =
-        device.compile(kernel_source("algorithms/contacts/contacts.cl"), "generate_contacts", defines);
+    const auto& last = kernel_source("algorithms/contacts/contacts.cl");
+    if (launches == Launches::apart) {
+        certify_ = device.compile(kernel_source("algorithms/contacts/certify.cl"), "certify_pairs", defines);
+        separate_ =
+            device.compile(kernel_source("algorithms/contacts/separate.cl"), "separate_pairs", defines);
+        defines["AT_ONCE"] = "0";
+        generate_ = device.compile(last, "generate_contacts", defines);
+    }
+    if (launches == Launches::at_once || device.info().is_gpu) {
+        defines["AT_ONCE"] = "1";
+        at_once_ = device.compile(last, "generate_contacts", defines);
+    }
+    nothing_ = device.allocate(4, "nothing");
     if (settings.decision != DecisionPrecision::fp32)
         decision_ = std::make_unique<DecisionStage>(bodies, settings.decision, shape);
-    else
-        no_verdicts_ = device.allocate(1, "no verdicts");
 }
 
-void ContactStage::launch(const AnswerBuffers& answer, std::uint64_t first, std::uint64_t end,
-                          const Status& status) {
-    if (decision_) decision_->launch(answer.pairs.buffer(), first, end, status);
-    const StageScope scope(bodies_.device(), Stage::contact);
-    const std::array<Argument, 13> arguments{answer.pairs.buffer(),
-                                             static_cast<std::uint32_t>(first),
-                                             static_cast<std::uint32_t>(end),
+/// Room in the lists for so many pairs, or for fewer where memory is short: there are more launches then.
+void ContactStage::reserve(std::uint64_t pairs) {
+    pairs = std::min(pairs, most_waiting);
+    if (pairs <= room_) return;
+    room_ = 0;
+    open_ = meeting_ = {};
+    auto& device = bodies_.device();
+    for (auto rows = pairs; room_ == 0; rows /= 2) {
+        try {
+            open_ = device.allocate(rows * 4, "pairs to be tested");
+            meeting_ = device.allocate(rows * 4, "pairs that meet");
+            room_ = rows;
+        } catch (const OutOfMemory&) {
+            open_ = {};
+            if (rows <= least_waiting) throw;
+        }
+    }
+}
+
+/// The lists of those that meet among pairs first..end - 1; both lists are empty before.
+void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first, std::uint32_t end,
+                                const Status& status) {
+    auto& device = bodies_.device();
+    const Grid grid{shape_.groups, shape_.group_size};
+    const std::array<Argument, 12> certify{answer.pairs.buffer(),
+                                           first,
+                                           end,
+                                           bodies_.row_table(),
+                                           bodies_.poses(),
+                                           bodies_.tetrahedra(),
+                                           bodies_.vertices(),
+                                           bodies_.boundary(),
+                                           verdicts(),
+                                           open_,
+                                           meeting_,
+                                           status.buffer()};
+    device.launch(certify_, grid, certify);
+    const std::array<Argument, 10> separate{answer.pairs.buffer(),
+                                            first,
+                                            bodies_.row_table(),
+                                            bodies_.poses(),
+                                            bodies_.tetrahedra(),
+                                            bodies_.vertices(),
+                                            bodies_.boundary(),
+                                            open_,
+                                            meeting_,
+                                            status.buffer()};
+    device.launch(separate_, grid, separate);
+}
+
+/// Contacts of the list of those that meet, or of pairs first..end - 1.
+void ContactStage::generate(const Kernel& kernel, LaunchShape shape, const AnswerBuffers& answer,
+                            std::uint32_t first, std::uint32_t end, const Status& status) {
+    const std::array<Argument, 14> arguments{answer.pairs.buffer(),
+                                             first,
+                                             end,
                                              bodies_.row_table(),
                                              bodies_.poses(),
                                              bodies_.tetrahedra(),
                                              bodies_.vertices(),
                                              bodies_.boundary(),
+                                             verdicts(),
+                                             meeting_ ? meeting_ : nothing_,
                                              answer.contact_ids.buffer(),
                                              answer.contact_values.buffer(),
                                              answer.contact_ids.capacity(),
-                                             decision_ ? decision_->verdicts() : no_verdicts_,
                                              status.buffer()};
-    bodies_.device().launch(generate_, {shape_.groups, shape_.group_size}, arguments);
+    bodies_.device().launch(kernel, {shape.groups, shape.group_size}, arguments);
+}
+
+void ContactStage::launch(const AnswerBuffers& answer, std::uint64_t first, std::uint64_t end,
+                          const Status& status) {
+    if (decision_) decision_->launch(answer.pairs.buffer(), first, end, status);
+    auto& device = bodies_.device();
+    const StageScope scope(device, Stage::contact);
+    // No more than a pair for each work-item that runs: what counts then is the way of one, and launches.
+    const bool few = expected_ && *expected_ <= std::uint64_t{few_shape_.groups} * few_shape_.group_size / 2;
+    if (at_once_ && (few || !generate_)) {
+        generate(at_once_, few_shape_, answer, static_cast<std::uint32_t>(first),
+                 static_cast<std::uint32_t>(end), status);
+        return;
+    }
+    reserve(end - first);
+    bool waiting = status.counter(STATUS_WAITING) != 0; // those of a launch before
+    for (auto from = first; from < end; from += room_) {
+        if (waiting) device.clear(status.buffer(), STATUS_WAITING_WORDS * 4, STATUS_WAITING * 4);
+        const auto begin = static_cast<std::uint32_t>(from);
+        const auto to = static_cast<std::uint32_t>(std::min(end, from + room_));
+        find_meeting(answer, begin, to, status);
+        generate(generate_, shape_, answer, begin, to, status);
+        waiting = true;
+    }
 }
 
 } // namespace tandem

@@ -190,6 +190,8 @@ TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
             if (defines.contains("PRECISION") && defines.at("PRECISION") == "64") continue;
             if (defines.contains("COUNT_WORK") && defines.at("COUNT_WORK") == "1") continue;
             const int budget = name == "generate_contacts"    ? 128
+                               : name == "separate_pairs"     ? 96
+                               : name == "certify_pairs"      ? 80
                                : name == "traverse_in_groups" ? 96
                                : name == "walk_leaf_tiles"    ? 72
                                                               : 64;
@@ -205,8 +207,11 @@ TEST(Nvrtc, ContactRulesAndDecisionsKeepTheirBudget) {
     CompilingDevice device;
     prepare_contacts(device);
     if (!can_compile(device.asked())) return;
-    const std::map<std::string, int> budgets{
-        {"generate_contacts", 128}, {"filter_pairs", 72}, {"recheck_pairs", 168}};
+    const std::map<std::string, int> budgets{{"certify_pairs", 80},
+                                             {"separate_pairs", 96},
+                                             {"generate_contacts", 128},
+                                             {"filter_pairs", 72},
+                                             {"recheck_pairs", 168}};
     std::set<std::string> seen;
     for_each(device.asked(),
              [&](const KernelSource& source, const Defines& defines, const std::set<std::string>& names) {

@@ -3,6 +3,7 @@
 #include "contacts_pairs.h"
 
 #include "algorithms/answer/status.clh"
+#include "algorithms/contacts/contact_stage.h"
 #include "algorithms/sources.h"
 #include "backends/registry.h"
 #include "scenes/hard/hard.h"
@@ -69,7 +70,11 @@ public:
         verdicts_ = uploaded(std::vector<unsigned char>(count, 9));
         undecided_by_filter_ = uploaded(std::vector<std::uint32_t>(count, ~0u));
         undecided_by_double_ = uploaded(std::vector<std::uint32_t>(count, ~0u));
+        open_ = uploaded(std::vector<std::uint32_t>(count, ~0u));
+        meeting_ = uploaded(std::vector<std::uint32_t>(count, ~0u));
     }
+
+    void set_launches(ContactStage::Launches launches) { launches_ = launches; }
 
     static std::uint32_t input_id(std::uint32_t item) { return item ^ 1u; }
 
@@ -77,7 +82,6 @@ public:
                       std::uint32_t pair_capacity, std::uint32_t capacity, ContactSettings settings = {}) {
         Defines defines{{"PRECISION", sizeof(Real) == 8 ? "64" : "32"},
                         {"GROUP_SIZE", std::to_string(group_size_)}};
-        const auto& source = kernel_source("algorithms/contacts/contacts.cl");
         Outcome<Real> outcome{std::vector<std::uint32_t>(STATUS_WORDS),
                               std::vector<Row>(capacity + 8, {~0u, ~0u}),
                               std::vector<Real>(8 * (capacity + 8), Real(-7))};
@@ -85,21 +89,24 @@ public:
         outcome.status[STATUS_PAIRS + 1] = high;
         const Buffer status = uploaded(outcome.status), rows = uploaded(outcome.rows),
                      values = uploaded(outcome.values);
-        const Grid grid{16, group_size_};
         const bool decided = settings.decision != DecisionPrecision::fp32;
+        const Defines digesting = defines;
         if (decided) decide(defines, settings.decision, first, pair_capacity, status);
         defines["DECIDED"] = decided ? "1" : "0";
         defines["CONTACT_RULE"] = std::to_string(static_cast<int>(settings.rule));
-        const std::array<Argument, 13> generate{found_,      first,     pair_capacity, bodies_, poses_,
-                                                tetrahedra_, vertices_, boundary_,     rows,    values,
-                                                capacity,    verdicts_, status};
-        device_.launch(device_.compile(source, "generate_contacts", defines), grid, generate);
+        const bool at_once = launches_ == ContactStage::Launches::at_once;
+        if (!at_once) find_meeting(defines, first, pair_capacity, status);
+        defines["AT_ONCE"] = at_once ? "1" : "0";
+        const std::array<Argument, 14> generate{found_,      first,     pair_capacity, bodies_,   poses_,
+                                                tetrahedra_, vertices_, boundary_,     verdicts_, meeting_,
+                                                rows,        values,    capacity,      status};
+        launch("contacts.cl", "generate_contacts", defines, generate);
         device_.download(status, std::as_writable_bytes(std::span(outcome.status)));
         const auto made =
             static_cast<std::uint32_t>(std::min<std::uint64_t>(outcome.counter(STATUS_CONTACTS), capacity));
         const Buffer sums = uploaded(outcome.sums);
         const std::array<Argument, 7> digest{found_, bodies_, ids_, rows, values, made, sums};
-        device_.launch(device_.compile(source, "digest_contacts", defines), grid, digest);
+        launch("digest_contacts.cl", "digest_contacts", digesting, digest);
         device_.download(sums, std::as_writable_bytes(std::span(outcome.sums)));
         device_.download(rows, std::as_writable_bytes(std::span(outcome.rows)));
         device_.download(values, std::as_writable_bytes(std::span(outcome.values)));
@@ -107,16 +114,29 @@ public:
     }
 
 private:
+    void launch(const std::string& file, std::string_view entry, const Defines& defines,
+                std::span<const Argument> arguments) {
+        const auto kernel = device_.compile(kernel_source("algorithms/contacts/" + file), entry, defines);
+        device_.launch(kernel, {16, group_size_}, arguments);
+    }
+
+    void find_meeting(const Defines& defines, std::uint32_t first, std::uint32_t pair_capacity,
+                      const Buffer& status) {
+        const std::array<Argument, 12> certify{found_,    first,       pair_capacity, bodies_,
+                                               poses_,    tetrahedra_, vertices_,     boundary_,
+                                               verdicts_, open_,       meeting_,      status};
+        launch("certify.cl", "certify_pairs", defines, certify);
+        const std::array<Argument, 10> separate{found_,    first,     bodies_, poses_,   tetrahedra_,
+                                                vertices_, boundary_, open_,   meeting_, status};
+        launch("separate.cl", "separate_pairs", defines, separate);
+    }
+
     void decide(Defines defines, DecisionPrecision decision, std::uint32_t first, std::uint32_t pair_capacity,
                 const Buffer& status) {
-        const Grid grid{16, group_size_};
         const std::array<Argument, 10> filter{
             found_,    first,     pair_capacity,        bodies_, poses_, tetrahedra_,
             vertices_, verdicts_, undecided_by_filter_, status};
-        if (decision != DecisionPrecision::fp64)
-            device_.launch(
-                device_.compile(kernel_source("algorithms/contacts/filter.cl"), "filter_pairs", defines),
-                grid, filter);
+        if (decision != DecisionPrecision::fp64) launch("filter.cl", "filter_pairs", defines, filter);
         defines["RECHECK_ALL"] = decision == DecisionPrecision::fp64 ? "1" : "0";
         const std::array<Argument, 11> recheck{found_,
                                                first,
@@ -129,9 +149,7 @@ private:
                                                undecided_by_filter_,
                                                undecided_by_double_,
                                                status};
-        device_.launch(
-            device_.compile(kernel_source("algorithms/contacts/recheck.cl"), "recheck_pairs", defines), grid,
-            recheck);
+        launch("recheck.cl", "recheck_pairs", defines, recheck);
     }
 
     template<class T>
@@ -144,8 +162,9 @@ private:
     Device& device_;
     StageScope scope_{device_, tandem::Stage::contact};
     std::uint32_t group_size_;
+    ContactStage::Launches launches_ = ContactStage::Launches::apart;
     Buffer bodies_, poses_, tetrahedra_, vertices_, boundary_, ids_, found_, verdicts_, undecided_by_filter_,
-        undecided_by_double_;
+        undecided_by_double_, open_, meeting_;
 };
 
 /// What the reference says, per pair and in all.
@@ -383,10 +402,16 @@ TYPED_TEST(ContactsKernel, TakesOnlyThePairsThatAreThere) {
     for (auto& device : this->devices) {
         SCOPED_TRACE(device->info().id);
         Stage<TypeParam> stage(*device, pairs, this->group_sizes(*device).back());
-        EXPECT_EQ(stage.run(100, 400, 0, 700, capacity).counter(STATUS_CONTACTS), expected.total);
-        EXPECT_EQ(stage.run(100, 700, 0, 400, capacity).counter(STATUS_CONTACTS), expected.total);
-        EXPECT_EQ(stage.run(100, 3, 1, 400, capacity).counter(STATUS_CONTACTS), expected.total);
-        EXPECT_EQ(stage.run(0, 0, 0, 700, capacity).counter(STATUS_CONTACTS), 0u);
+        for (const auto launches : {ContactStage::Launches::apart, ContactStage::Launches::at_once}) {
+            stage.set_launches(launches);
+            const auto outcome = stage.run(100, 400, 0, 700, capacity);
+            EXPECT_EQ(outcome.counter(STATUS_CONTACTS), expected.total);
+            EXPECT_EQ(outcome.counter(STATUS_REJECTED), expected.counts.rejected);
+            EXPECT_EQ(outcome.counter(STATUS_DEGENERATE), expected.counts.degenerate);
+            EXPECT_EQ(stage.run(100, 700, 0, 400, capacity).counter(STATUS_CONTACTS), expected.total);
+            EXPECT_EQ(stage.run(100, 3, 1, 400, capacity).counter(STATUS_CONTACTS), expected.total);
+            EXPECT_EQ(stage.run(0, 0, 0, 700, capacity).counter(STATUS_CONTACTS), 0u);
+        }
     }
 }
 

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The second of three kernels from candidate pairs to contacts: the tests of pairs of which no certificate
+// tells whether they meet.
+#include "backends/portable.h"
+
+#include "algorithms/contacts/trial.clh"
+#include "algorithms/contacts/waiting.clh"
+
+// `first`: that of certify_pairs, which the words of `open` are counted from.
+KERNEL void separate_pairs(GLOBAL const uint* found, uint first, GLOBAL const uint* bodies,
+                           GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
+                           GLOBAL const real* vertices, GLOBAL const uchar* boundary, GLOBAL const uint* open,
+                           GLOBAL uint* meeting, GLOBAL uint* status) {
+    LOCAL_ARRAY(uint, group, GROUP_WORDS);
+    const Candidates all = {found, bodies, poses, tetrahedra, vertices, boundary};
+    const uint count = status[STATUS_WAITING + LIST_OPEN];
+    uint start = GROUP_ID * (uint)GROUP_SIZE;
+    begin_group(group);
+    do {
+        int state = STEPPED;
+        uint index = 0;
+        if (start + LOCAL_ID < count) {
+            const uint word = open[start + LOCAL_ID];
+            index = first + pair_of_open(word);
+            state = try_all(&all, index, edge_of_open(word));
+        }
+        count_state(state, group);
+        const int meets = state == MEETING && !has_no_normal(&all, index);
+        const uint place = place_in(meets ? LIST_MEETING : NO_LIST, group, status);
+        if (meets) meeting[place] = index;
+        start += GLOBAL_COUNT;
+    } while (start < count);
+    end_group(group, status);
+}
