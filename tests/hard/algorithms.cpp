@@ -22,7 +22,7 @@ std::string specification(const HardFamily& family) {
     return fmt::format("hard:{}:pairs=36,together=18", family.name);
 }
 
-#ifdef TANDEM_FEW_PAIRS // host kernels of two geometries only
+#ifdef TANDEM_SANITIZED // host kernels of two geometries only
 constexpr std::array tested{"8", "18"};
 #else
 constexpr std::array tested{"8", "18", "26"};
