@@ -10,6 +10,7 @@
 #include "scenes/builtin.h"
 #include "tests/nvrtc/compiling_device.h"
 #include "tests/support/folder.h"
+#include "tests/support/long_form.h"
 
 #include <algorithm>
 #include <atomic>
@@ -70,14 +71,15 @@ void prepare_list(Device& device, Precision precision) {
     const PairList list(on_device.trees, std::vector<Pair>{{0, 0, 1, 0}, {0, 1, 1, 1}});
 }
 
-/// Every contact rule with and without verdicts, and every decision.
+/// Every contact rule without verdicts and, in long form, with them; every decision.
 void prepare_contacts(Device& device) {
     const auto& traversal = algorithm("chunked");
     for (const std::string precision : {"float", "double"})
         for (const std::string rule :
              {"opposing", "published", "sat", "clip", "restricted", "vertex", "consistent", "growth"})
             for (const std::string decision : {"fp32", "recheck", "fp64", "exact"})
-                if (rule == "sat" || decision == "fp32" || decision == "recheck")
+                if (rule == "sat" || decision == "fp32"
+                    || (testing_support::long_form() && decision == "recheck"))
                     prepare(device, traversal, traversal.presets().front().values,
                             {{"precision", precision}, {"contact_rule", rule}, {"decision", decision}});
 }
