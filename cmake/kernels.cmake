@@ -34,8 +34,7 @@ function(tandem_kernels target)
   # Kernels with lanes are compiled for several levels of x86-64, of which the host device takes the highest that the
   # processor has; elsewhere, and where sanitizers are what matters, for what everything is compiled for.
   set(levels)
-  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT given_FOLDER AND NOT TANDEM_SANITIZE
-     AND NOT target STREQUAL tandem-checked)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT given_FOLDER AND NOT TANDEM_SANITIZE)
     set(levels 2 3 4)
   endif()
   foreach(part RANGE ${last})
@@ -52,7 +51,7 @@ function(tandem_kernels target)
     COMMENT "Flattening kernels" VERBATIM)
   target_sources(${target} PRIVATE ${generated})
   set(options -Wno-unused-function -Wno-unused-variable -Wno-unused-parameter -Wno-unknown-pragmas -Wno-type-limits)
-  if(TANDEM_SANITIZE OR target STREQUAL tandem-checked)
+  if(TANDEM_SANITIZE)
     # g++ 12 with -fsanitize=bounds reads temporaries in certainty.clh that it has not written: it warns of them, and
     # verdicts then differ from those of every other build. Addresses are still checked.
     list(APPEND options -fno-sanitize=bounds)

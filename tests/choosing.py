@@ -6,15 +6,7 @@ import sys
 import tempfile
 import unittest
 
-from program import Case, tandem
-
-
-# Rooms for a million pairs, and queues to match, are what takes the host longest with so few.
-SMALL = {name: 65536 for name in ("pair_capacity", "contact_capacity", "queue_bytes", "seed_capacity", "tile_pair_capacity")}
-
-
-def sets(settings):
-    return [word for name, value in settings.items() for word in ("--set", f"{name}={value}")]
+from program import SMALL, Case, sets, tandem
 
 
 class Choosing(Case):

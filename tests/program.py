@@ -17,6 +17,14 @@ if len(sys.argv) != 3:
     sys.exit(sys.modules["__main__"].__doc__)
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
+# Tests of label full ask for every scene, preset and device; otherwise some of each, which compile or walk less.
+LONG = "TANDEM_LONG_FORM" in os.environ
+# Rooms for a million pairs, and queues to match, are what takes the host longest with so few.
+SMALL = {name: 65536 for name in ("pair_capacity", "contact_capacity", "queue_bytes", "seed_capacity", "tile_pair_capacity")}
+
+
+def sets(settings):
+    return [word for name, value in settings.items() for word in ("--set", f"{name}={value}")]
 
 
 def tandem(*arguments, environment=None, timeout=300, address_space=None):

@@ -14,7 +14,7 @@ namespace {
 
 using namespace testing_support;
 
-#ifdef TANDEM_FEW_PAIRS // host kernels of two geometries only
+#ifdef TANDEM_SANITIZED // host kernels of two geometries only
 constexpr std::array tested{8, 18};
 #else
 constexpr std::array tested{8, 18, 26};

@@ -16,7 +16,7 @@ namespace {
 
 using namespace hard_test;
 
-#ifdef TANDEM_FEW_PAIRS
+#ifdef TANDEM_SANITIZED
 constexpr std::uint64_t few = 52;
 constexpr std::uint64_t many = 416;
 #else

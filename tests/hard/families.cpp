@@ -18,7 +18,7 @@ using namespace hard_test;
 using testing::HasSubstr;
 using testing_support::failure;
 
-#ifdef TANDEM_FEW_PAIRS
+#ifdef TANDEM_SANITIZED
 constexpr std::uint64_t tried = 48;
 #else
 constexpr std::uint64_t tried = 288;

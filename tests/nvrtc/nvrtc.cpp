@@ -10,6 +10,7 @@
 #include "scenes/builtin.h"
 #include "tests/nvrtc/compiling_device.h"
 #include "tests/support/folder.h"
+#include "tests/support/long_form.h"
 
 #include <algorithm>
 #include <atomic>
@@ -70,14 +71,15 @@ void prepare_list(Device& device, Precision precision) {
     const PairList list(on_device.trees, std::vector<Pair>{{0, 0, 1, 0}, {0, 1, 1, 1}});
 }
 
-/// Every contact rule with and without verdicts, and every decision.
+/// Every contact rule without verdicts and, in long form, with them; every decision.
 void prepare_contacts(Device& device) {
     const auto& traversal = algorithm("chunked");
     for (const std::string precision : {"float", "double"})
         for (const std::string rule :
              {"opposing", "published", "sat", "clip", "restricted", "vertex", "consistent", "growth"})
             for (const std::string decision : {"fp32", "recheck", "fp64", "exact"})
-                if (rule == "sat" || decision == "fp32" || decision == "recheck")
+                if (rule == "sat" || decision == "fp32"
+                    || (testing_support::long_form() && decision == "recheck"))
                     prepare(device, traversal, traversal.presets().front().values,
                             {{"precision", precision}, {"contact_rule", rule}, {"decision", decision}});
 }
@@ -181,14 +183,17 @@ TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
     if (!can_compile(programs)) return;
     for (const auto& [key, names] : programs) {
         const auto& [file, defines] = key;
+        const auto is = [&](const std::string& name, const std::string& value) {
+            return defines.contains(name) && defines.at(name) == value;
+        };
+        const bool budgeted = !is("PRECISION", "64") && !is("COUNT_WORK", "1");
+        if (!budgeted && !testing_support::long_form()) continue; // only printed
         const auto& image = for_hopper(kernel_source(file), defines);
         for (const auto& name : names) {
             const auto use = use_of(image.log, name);
             fmt::print("{:<40} {:<20} {:>3} registers {:>4} bytes spilled{}\n", file, name, use.registers,
-                       use.spill_bytes,
-                       defines.contains("PRECISION") && defines.at("PRECISION") == "64" ? " (double)" : "");
-            if (defines.contains("PRECISION") && defines.at("PRECISION") == "64") continue;
-            if (defines.contains("COUNT_WORK") && defines.at("COUNT_WORK") == "1") continue;
+                       use.spill_bytes, is("PRECISION", "64") ? " (double)" : "");
+            if (!budgeted) continue;
             const int budget = name == "generate_contacts"    ? 128
                                : name == "separate_pairs"     ? 96
                                : name == "certify_pairs"      ? 80
