@@ -1,9 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""validate_records.py [--some] [FILE.jsonl|FILE.jsonl.xz ...]: checks records against results/record.schema.json, those of
-files named ceilings*.jsonl against results/ceilings.schema.json and simulation*.jsonl against
-results/simulation.schema.json; without files, all committed ones. --some: every line has to be JSON, but of the schema
-only a file's first, every eighth and the last. Exit 1 names file:line and the place of the first problems."""
+"""validate_records.py [FILE.jsonl|FILE.jsonl.xz ...]: checks records against results/record.schema.json, those of files named
+ceilings*.jsonl against results/ceilings.schema.json and simulation*.jsonl against results/simulation.schema.json;
+without files, all committed ones. Exit 1 names file:line and the place of the first problems."""
 import json
 import lzma
 import pathlib
@@ -20,17 +19,15 @@ def no_constant(name):
 
 
 def problems_of(line, validator):
-    """What is wrong with one line, each with its place in the record; without a validator, whether it is JSON."""
+    """What is wrong with one line, each with its place in the record."""
     try:
         record = json.loads(line, parse_constant=no_constant)
     except ValueError as error:
         return [f"not JSON: {error}"]
-    if validator is None:
-        return []
     return [f"/{'/'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in validator.iter_errors(record)]
 
 
-def problems_in(path, validator, each=1):
+def problems_in(path, validator):
     """(line number, text) of everything wrong in a file, and how many lines it has."""
     try:
         data = lzma.open(path).read() if path.suffix == ".xz" else path.read_bytes()
@@ -38,8 +35,7 @@ def problems_in(path, validator, each=1):
     except (OSError, EOFError, lzma.LZMAError, UnicodeDecodeError) as error:
         return [(1, str(error))], 0
     lines = [] if lines == [""] else lines
-    checked = {*range(1, len(lines) + 1, each), len(lines)}
-    return [(n, text) for n, line in enumerate(lines, 1) for text in problems_of(line, validator if n in checked else None)], len(lines)
+    return [(n, text) for n, line in enumerate(lines, 1) for text in problems_of(line, validator)], len(lines)
 
 
 def resolved(schema, records):
@@ -65,8 +61,6 @@ def validator_of(name):
 
 
 def main(names):
-    each = 8 if names[:1] == ["--some"] else 1
-    names = names[each > 1:]
     validators = {kind: validator_of(kind + ".schema.json") for kind in ("record", "ceilings", "simulation")}
     files = [pathlib.Path(name) for name in names] or sorted([*(ROOT / "results").glob("**/*.jsonl"), *(ROOT / "results").glob("**/*.jsonl.xz")])
     if not files:
@@ -75,7 +69,7 @@ def main(names):
     total, found = 0, []
     for path in files:
         kind = next((kind for kind in validators if path.name.startswith(kind)), "record")
-        problems, count = problems_in(path, validators[kind], each)
+        problems, count = problems_in(path, validators[kind])
         total += count
         found += [f"{path}:{number}: {text}" for number, text in problems]
     if not found and total == 0:
