@@ -178,10 +178,19 @@ void HostPart::add_contacts(const AnswerBuffers& buffers, std::uint64_t count) {
     device.download(buffers.contact_values.buffer(), std::span(values_).subspan(first));
 }
 
+/// A part may take most of the host's memory: it is numbered anew a block at a time.
 Digest HostPart::digest() const {
+    constexpr std::size_t at_a_time = std::size_t{1} << 20;
+    Digest sum;
     std::vector<Pair> pairs;
-    append_pairs(pairs);
-    return digest_of(pairs);
+    pairs.reserve(std::min(at_a_time, rows_.size()));
+    for (std::size_t first = 0; first < rows_.size(); first += at_a_time) {
+        const auto count = std::min(at_a_time, rows_.size() - first);
+        pairs.clear();
+        for (const auto& row : std::span(rows_).subspan(first, count)) pairs.push_back(tools_->pair_of(row));
+        sum += digest_of(pairs);
+    }
+    return sum;
 }
 
 Digest HostPart::contact_digest() const {
