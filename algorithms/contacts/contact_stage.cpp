@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/contacts/contact_stage.h"
 
+#include "algorithms/contacts/open_pairs.clh"
 #include "algorithms/sources.h"
 
 #include <algorithm>
@@ -9,8 +10,8 @@ namespace tandem {
 
 namespace {
 
-/// What a launch of all three kernels takes at most: OPEN_PAIRS of waiting.clh.
-constexpr std::uint64_t most_waiting = std::uint64_t{1} << 26;
+/// What a round of all three kernels takes at most.
+constexpr std::uint64_t most_waiting = std::uint64_t{1} << OPEN_PAIR_BITS;
 /// Lists for fewer pairs are not tried when memory is short.
 constexpr std::uint64_t least_waiting = 1024;
 
