@@ -141,6 +141,37 @@ TEST_P(Batches, ALimitBelowBodiesAndHierarchySaysWhatTheyTake) {
     }
 }
 
+/// Too little memory for the lists between the contact stage's kernels: it goes round more than once, in one
+/// batch, and each round begins with empty lists.
+TEST_P(Batches, ContactsGoRoundWhereTheirListsAreShort) {
+    auto scene = boxes_scene(7, 2);
+    const auto frame = scene.frame(0);
+    const auto& traversal = algorithm("tiled");
+    for (const std::string rule : {"opposing", "sat"}) {
+        const auto settings = resolve(traversal.parameters(), {}, {{"contact_rule", rule}}, traversal.name());
+        const auto right = reference(scene, frame, {}, true, Method::sweep, contact_settings_of(settings));
+        const auto pairs = right.digest.count;
+        ASSERT_GT(pairs, 4000u); // rounds of 1,024 and fewer are not tried
+        ASSERT_GT(right.contacts, 0u);
+        const auto session = prepare(traversal, scene,
+                                     {{"contact_rule", rule},
+                                      {"pair_capacity", std::to_string(pairs)},
+                                      {"contact_capacity", std::to_string(right.contacts)}});
+        constexpr std::uint64_t word = 4, lists = 2;
+        const Limited limit(on, pairs * word * lists / 3); // room for a quarter of the pairs
+        for (int run = 0; run < 2; ++run) {
+            on.set_clocks(Clocks::on);
+            const auto result = session->run(frame);
+            const auto trace = on.finish();
+            on.set_clocks(Clocks::off);
+            EXPECT_EQ(result.batches, 1u);
+            EXPECT_EQ(result.retries, 0u);
+            EXPECT_GE(std::ranges::count(trace.events, "separate_pairs", &Event::label), 4);
+            expect_equal(result, right);
+        }
+    }
+}
+
 /// No memory at all for more than there is: the run fails, and the next one, with memory again, is right.
 TEST_P(Batches, ASessionWithoutMemoryCanBeUsedAgain) {
     const auto scene = crowd(73, 2, 0.4);
