@@ -71,8 +71,9 @@ std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* con
     all.insert(all.end(), {&parameters::builder, &parameters::contact_rule, &parameters::decision,
                            &parameters::broad, &parameters::body_pair_capacity});
     if (published) all.push_back(&parameters::residency);
-    all.insert(all.end(), {&parameters::output, &parameters::group_size, &parameters::work_items,
-                           &parameters::threads, &parameters::pair_capacity, &parameters::contact_capacity});
+    all.insert(all.end(), {&parameters::submission, &parameters::output, &parameters::group_size,
+                           &parameters::work_items, &parameters::threads, &parameters::pair_capacity,
+                           &parameters::contact_capacity});
     all.insert(all.end(), own.begin(), own.end());
     return all;
 }

@@ -3,6 +3,8 @@
 
 #include "algorithms/batches.h"
 
+#include <utility>
+
 namespace tandem {
 
 namespace {
@@ -19,18 +21,30 @@ private:
     std::span<Device* const> do_devices() const override { return devices_; }
     const Settings& do_settings() const override { return steps_.settings; }
 
+    void refresh(const Frame& frame);
     void launch(const AnswerBuffers& answer);
+    void begin(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs,
+               const AnswerBuffers& answer);
     bool grow(AnswerBuffers& answer);
-    FrameResult run_whole();
+    FrameResult run_whole(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs);
 
     Pipeline steps_;
     std::array<Device*, 1> devices_;
     std::uint64_t batches_ = 1; ///< to begin a frame with
+    bool stale_ = true;         ///< whether all commands so far have run is not known
 };
 
 void ResidentSession::do_reset() {
     steps_.body_pairs->reset();
     batches_ = 1;
+}
+
+/// Bodies and hierarchy as the frame has them; also those that do not move, unless a frame with them is known
+/// to have run.
+void ResidentSession::refresh(const Frame& frame) {
+    const bool all = std::exchange(stale_, true);
+    steps_.bodies->update(frame, all);
+    steps_.steps.hierarchy->refit(frame, all);
 }
 
 /// The frame's commands from body pairs to contacts.
@@ -63,31 +77,54 @@ bool ResidentSession::grow(AnswerBuffers& answer) {
     return again;
 }
 
-FrameResult ResidentSession::run_whole() {
+/// Everything of a frame up to its one wait, as one submission unless the device would be idle meanwhile.
+void ResidentSession::begin(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs,
+                            const AnswerBuffers& answer) {
+    const auto all = [&] {
+        refresh(frame);
+        steps_.body_pairs->begin(frame, body_pairs);
+        launch(answer);
+        steps_.status.read();
+    };
+    if (steps_.settings[parameters::submission] == Submission::one
+        && !steps_.body_pairs->works_on_host(body_pairs.has_value()))
+        steps_.device.as_one(all);
+    else
+        all();
+    stale_ = false;
+}
+
+FrameResult ResidentSession::run_whole(const Frame& frame,
+                                       std::optional<std::span<const BodyPair>> body_pairs) {
     auto answer = steps_.answers->take();
-    for (std::uint64_t retries = 0;; ++retries) {
+    begin(frame, body_pairs, *answer);
+    std::uint64_t retries = 0;
+    for (;; ++retries) {
+        if (steps_.contacts) steps_.contacts->expect(steps_.status.counter(STATUS_PAIRS));
+        if (!grow(*answer)) break;
         launch(*answer);
         steps_.status.read();
-        if (steps_.contacts) steps_.contacts->expect(steps_.status.counter(STATUS_PAIRS));
-        if (grow(*answer)) continue;
-        auto result = steps_.counts();
-        result.retries = retries;
-        if (steps_.counting) steps_.steps.walker->report(steps_.status, result.work);
-        steps_.add_part(result, std::move(answer));
-        return result;
     }
+    auto result = steps_.counts();
+    result.retries = retries;
+    if (steps_.counting) steps_.steps.walker->report(steps_.status, result.work);
+    steps_.add_part(result, std::move(answer));
+    return result;
 }
 
 FrameResult ResidentSession::do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
-    steps_.bodies->update(frame);
-    steps_.steps.hierarchy->refit(frame);
     try {
-        steps_.body_pairs->begin(frame, body_pairs);
-        if (batches_ == 1) return run_whole();
+        if (batches_ == 1) return run_whole(frame, body_pairs);
     } catch (const OutOfMemory&) {
         batches_ = 2;
     }
-    return run_in_batches(steps_, frame, body_pairs, batches_);
+    refresh(frame); // how far the frame came is not known
+    try {
+        steps_.body_pairs->begin(frame, body_pairs);
+    } catch (const OutOfMemory&) {} // its parts need less
+    auto result = run_in_batches(steps_, frame, body_pairs, batches_);
+    stale_ = false;
+    return result;
 }
 
 } // namespace

@@ -65,6 +65,7 @@ void Device::record(Event event, Clock::time_point begin) {
 template<class Work>
 void Device::submit(Event event, std::string_view label, const Work& work) {
     if (!stage_) refuse_without_stage(info(), event.command, label);
+    if (!collecting_) ++submissions_;
     if (clocks_ == Clocks::off) {
         work();
         return;

@@ -65,7 +65,7 @@ struct KernelSource {
 class Buffer {
 public:
     /// What an adaptor adds its handle to.
-    struct Impl {
+    struct Impl : std::enable_shared_from_this<Impl> {
         virtual ~Impl() = default;
         std::size_t bytes = 0; ///< at least what was asked for
         std::string label;     ///< names it in traces and errors
@@ -184,6 +184,31 @@ public:
     /// are larger than the kernel can take.
     void launch(const Kernel& kernel, Grid grid, std::span<const Argument> arguments);
 
+    /// Runs `work`, whose commands go to the device as one submission where it knows how and the same
+    /// commands have come before: a frame after another. A command that waits ends it, and begins the next.
+    /// Where the device does not know how, and with clocks on, commands go one by one. `work` may throw; what
+    /// it enqueued before is submitted. An error of a command may come with a later one, or at the end.
+    template<class Work>
+    void as_one(const Work& work) {
+        if (clocks_ == Clocks::on || collecting_ || !do_begin_collecting()) {
+            work();
+            return;
+        }
+        collecting_ = true;
+        try {
+            work();
+        } catch (...) {
+            collecting_ = false;
+            do_end_collecting();
+            throw;
+        }
+        collecting_ = false;
+        do_end_collecting();
+    }
+
+    /// How often work was handed to the device so far: commands, and those of as_one that went together once.
+    std::uint64_t submissions() const { return submissions_; }
+
     /// Waits for everything submitted so far and returns its trace, with device times filled in; an empty one
     /// where clocks are off.
     Trace finish();
@@ -213,6 +238,8 @@ public:
 protected:
     Device() = default;
 
+    /// For an adaptor that collects: it has handed commands over in so many calls.
+    void count_submissions(std::uint64_t calls) { submissions_ += calls; }
     /// For an adaptor whose command had to wait although it need not have: the trace says so.
     void host_waited() { waited_ = true; }
 
@@ -239,6 +266,10 @@ private:
                                                      const Defines& defines) = 0;
     virtual std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) = 0;
     virtual void do_finish() = 0;
+    /// From here on commands may be kept back until the end, or until one that waits; false: they are not.
+    virtual bool do_begin_collecting() { return false; }
+    /// Submits what was kept back. Counts with count_submissions what was handed over since the begin.
+    virtual void do_end_collecting() {}
     virtual void do_set_clocks(Clocks clocks) = 0;
     virtual void do_set_threads(std::uint32_t) {}
     /// Begin and duration in device nanoseconds of a finished command; releases the ticket.
@@ -259,6 +290,8 @@ private:
     std::optional<Stage> stage_; ///< none outside every StageScope
     Clocks clocks_ = Clocks::off;
     bool waited_ = false;
+    bool collecting_ = false; ///< within as_one, by a device that does
+    std::uint64_t submissions_ = 0;
 };
 
 /// Books commands of its lifetime under a stage; an inner scope's stage stands until it ends. Dies before its

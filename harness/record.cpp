@@ -181,7 +181,8 @@ Json work_json(const Measurement& m, const Traversal& algorithm) {
             {"undecided_by_filter", m.undecided_by_filter},
             {"undecided_by_double", m.undecided_by_double},
             {"retries", m.retries},
-            {"batches", m.batches}};
+            {"batches", m.batches},
+            {"submissions", m.submissions}};
 }
 
 Json spread_json(const std::vector<double>& samples) {

@@ -43,6 +43,8 @@ public:
     }
 
     void check(References& references, const SampleOptions& options, const std::string& name);
+    /// By all devices so far.
+    std::uint64_t submissions() const;
     void time();
     void break_down();
     void count();
@@ -152,15 +154,24 @@ void Sampler::add_counts(const FrameResult& result) {
     out_.batches += result.batches;
 }
 
+std::uint64_t Sampler::submissions() const {
+    std::uint64_t sum = 0;
+    for (const auto* device : cell_.devices) sum += device->submissions();
+    return sum;
+}
+
 /// One sample. The answer is looked at between the frames, outside the span that is timed.
 void Sampler::time() {
     session_->reset();
+    out_.submissions = 0;
     std::vector<std::int64_t> frames;
     for (std::size_t i = 0; i < range_.frames.size(); ++i) {
         wait();
+        const auto before = submissions();
         const auto begin = Clock::now();
         const auto result = run(i);
         frames.push_back(since(begin));
+        out_.submissions += submissions() - before;
         // A sample that gives another answer than the checked replay counts against the cell.
         if (out_.settings[parameters::output] != Output::count && result.digest() != digests_[i])
             ++out_.agreement.extra;

@@ -81,6 +81,7 @@ struct Measurement {
     std::vector<std::uint64_t> body_pairs, candidate_pairs, contacts; ///< [frame]
     std::uint64_t degenerate = 0, rejected = 0, undecided_by_filter = 0, undecided_by_double = 0;
     std::uint64_t retries = 0, batches = 0;         ///< of the checking replay
+    std::uint64_t submissions = 0;                  ///< calls that handed devices work, in the last sample
     std::map<std::string_view, std::uint64_t> work; ///< by counter, over the frames; empty when not counted
     Agreement agreement;
     std::optional<AnswerErrors> errors; ///< against the exact truth; none when not asked for

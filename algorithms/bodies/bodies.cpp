@@ -56,6 +56,7 @@ void Bodies::lay_out() {
                          static_cast<std::uint32_t>(mesh.ids.size()), own ? in_world_flag : 0u});
         if (!shared) tetrahedron_total_ += mesh.ids.size();
         if (own) vertex_total_ += mesh.vertices.size();
+        if (scene_.bodies[body].deformable) deformed_vertices_ += mesh.vertices.size();
     }
     constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
     if (vertex_total_ > most || tetrahedron_total_ > most)
@@ -115,13 +116,13 @@ std::vector<std::byte> Bodies::packed_poses(const Frame& frame) const {
     return bytes;
 }
 
-/// A scene in which nothing rigid moves uploads its poses once. With placement=exact deformable bodies have a
-/// drift that changes with their vertices and travels with the pose.
-void Bodies::upload_poses(const Frame& frame) {
+/// A scene in which nothing rigid moves uploads its poses with `all` only. With placement=exact deformable
+/// bodies have a drift that changes with their vertices and travels with the pose.
+void Bodies::upload_poses(const Frame& frame, bool all) {
     const auto moves = [this](const Body& body) {
         return !body.fixed && (!body.deformable || geometry_.placement == Placement::exact);
     };
-    if (!fresh_ && std::none_of(scene_.bodies.begin(), scene_.bodies.end(), moves)) return;
+    if (!all && std::none_of(scene_.bodies.begin(), scene_.bodies.end(), moves)) return;
     std::vector<std::byte> bytes;
     {
         const HostWork work(device_, Stage::preprocess, "pack poses");
@@ -129,7 +130,6 @@ void Bodies::upload_poses(const Frame& frame) {
     }
     const StageScope scope(device_, Stage::write);
     device_.upload(poses_, bytes);
-    fresh_ = false;
 }
 
 /// Vertices of deformable bodies lie behind one another, so that one upload takes them all.
@@ -138,6 +138,7 @@ void Bodies::upload_deformed(const Frame& frame) {
     std::uint64_t first = vertex_total_;
     {
         const HostWork work(device_, Stage::preprocess, "pack vertices");
+        bytes.reserve(deformed_vertices_ * 4 * real_bytes(geometry_));
         for (std::size_t body = 0; body < scene_.bodies.size(); ++body) {
             if (!scene_.bodies[body].deformable) continue;
             first = std::min<std::uint64_t>(first, rows_[body].vertices);
@@ -149,8 +150,8 @@ void Bodies::upload_deformed(const Frame& frame) {
     device_.upload(vertices_, bytes, first * 4 * real_bytes(geometry_));
 }
 
-void Bodies::update(const Frame& frame) {
-    upload_poses(frame);
+void Bodies::update(const Frame& frame, bool all) {
+    upload_poses(frame, all);
     upload_deformed(frame);
 }
 

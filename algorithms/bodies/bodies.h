@@ -27,9 +27,10 @@ public:
     Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sharing sharing,
            Builder builder = Builder::morton);
 
-    /// Enqueues the upload of what `frame` moves: poses, and vertices of deformable bodies. For
-    /// Sharing::by_mesh; the published data path uploads everything itself.
-    void update(const Frame& frame);
+    /// Enqueues the upload of what `frame` moves: poses, and vertices of deformable bodies. `all`: also of
+    /// what does not move, as the first frame needs it. For Sharing::by_mesh; the published data path uploads
+    /// everything itself.
+    void update(const Frame& frame, bool all = true);
 
     Device& device() const { return device_; }
     const Scene& scene() const { return scene_; }
@@ -60,7 +61,7 @@ private:
     void upload_static();
     std::vector<std::byte> shared_vertices() const;
     std::array<double, 3> drift_of(const Frame& frame, std::size_t body) const;
-    void upload_poses(const Frame& frame);
+    void upload_poses(const Frame& frame, bool all);
     void upload_deformed(const Frame& frame);
     bool has_own_vertices(std::size_t body) const;
 
@@ -72,8 +73,8 @@ private:
     std::vector<double> reaches_; ///< by mesh: reach_of; placement = exact only
     std::vector<Row> rows_;
     std::uint64_t vertex_total_ = 0;
+    std::uint64_t deformed_vertices_ = 0; ///< of all bodies whose vertices change
     std::uint64_t tetrahedron_total_ = 0;
-    bool fresh_ = true; ///< no poses are on the device yet
     Buffer row_table_, tetrahedra_, ids_, boundary_, vertices_, poses_;
 };
 

@@ -24,13 +24,15 @@ void append_vertices(std::vector<std::byte>& out, const OrderedMesh& mesh,
                      const std::vector<Eigen::Vector3d>& vertices) {
     const auto at = out.size();
     out.resize(at + mesh.vertices.size() * 4 * sizeof(Real));
-    auto* target = out.data() + at;
-    for (const auto vertex : mesh.vertices) {
-        const auto& p = vertices[vertex];
+    auto* const target = out.data() + at;
+    // In the order in which they lie in memory, where a new frame's vertices may not be in a cache yet; what
+    // is written fits into one.
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        if (mesh.numbers[i] == OrderedMesh::unused) continue;
+        const auto& p = vertices[i];
         const std::array<Real, 4> row{static_cast<Real>(p.x()), static_cast<Real>(p.y()),
                                       static_cast<Real>(p.z()), 0};
-        std::memcpy(target, row.data(), sizeof(row));
-        target += sizeof(row);
+        std::memcpy(target + mesh.numbers[i] * sizeof(row), row.data(), sizeof(row));
     }
 }
 

@@ -21,6 +21,9 @@ public:
     /// The next launches are of `frame`: uploads the pairs that are given or that the host finds. Throws
     /// InputError for more than kernels number.
     void begin(const Frame& frame, std::optional<std::span<const BodyPair>> given);
+    /// Whether begin() makes the host work for so long that a device had better have something to do
+    /// meanwhile.
+    bool works_on_host(bool given) const { return !given && (!stage_ || !sorted_); }
     /// The same with a part of the frame's pairs.
     void begin_part(std::span<const BodyPair> part);
     /// Enqueues the device's search, if it is the device that finds the frame's pairs.

@@ -70,16 +70,16 @@ std::vector<std::uint32_t> morton_order(const Mesh& mesh) {
 OrderedMesh ordered(const Mesh& mesh, Builder builder) {
     OrderedMesh result;
     result.ids = builder == Builder::sah ? sah_order(mesh) : morton_order(mesh);
-    constexpr auto unseen = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> renumbered(mesh.vertices.size(), unseen);
+    result.numbers.assign(mesh.vertices.size(), OrderedMesh::unused);
     for (const auto id : result.ids) {
         result.boundary.push_back(mesh.boundary[id]);
         for (const auto vertex : mesh.tetrahedra[id]) {
-            if (renumbered[vertex] == unseen) {
-                renumbered[vertex] = static_cast<std::uint32_t>(result.vertices.size());
+            auto& number = result.numbers[vertex];
+            if (number == OrderedMesh::unused) {
+                number = static_cast<std::uint32_t>(result.vertices.size());
                 result.vertices.push_back(vertex);
             }
-            result.tetrahedra.push_back(renumbered[vertex]);
+            result.tetrahedra.push_back(number);
         }
     }
     return result;

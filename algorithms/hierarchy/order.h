@@ -26,7 +26,10 @@ struct OrderedMesh {
     std::vector<std::uint32_t> tetrahedra; ///< 4 vertex numbers each, new numbering
     std::vector<std::uint32_t> ids;        ///< position -> tetrahedron in input order
     std::vector<std::uint32_t> vertices;   ///< new vertex number -> vertex in input order
+    std::vector<std::uint32_t> numbers;    ///< vertex in input order -> new number, or `unused`
     std::vector<std::uint8_t> boundary;    ///< as Mesh::boundary, by position
+
+    static constexpr std::uint32_t unused = 0xffffffff; ///< the number of a vertex of no tetrahedron
 };
 
 /// Of a complete mesh.

@@ -108,24 +108,38 @@ std::vector<TileTrees::Tile> TileTrees::tile_rows() const {
     return rows;
 }
 
-/// The units of one body that make `level` and the level above.
-void TileTrees::add_units(std::uint32_t body, std::uint32_t level, std::vector<Unit>& units) const {
+/// The units of one body that make `level`, of so many tiles each; those of 32 tiles make the level above,
+/// too.
+void TileTrees::add_units(std::uint32_t body, std::uint32_t level, std::uint32_t unit_tiles,
+                          std::vector<Unit>& units) const {
     const auto& first = first_tiles_[body];
     if (level >= first.size()) return;
     const auto tiles = in_tiles(boxes_of(body, level));
-    const bool has_parents = level + 1 < first.size();
-    const bool is_whole = level + 2 >= first.size();
-    for (std::uint32_t unit = 0; unit * lanes < tiles; ++unit)
-        units.push_back({first[level] + unit * lanes, std::min(lanes, tiles - unit * lanes),
+    const std::uint32_t made = unit_tiles == lanes ? 2 : 1; // levels
+    const bool has_parents = made == 2 && level + 1 < first.size();
+    const bool is_whole = level + made >= first.size();
+    for (std::uint32_t unit = 0; unit * unit_tiles < tiles; ++unit)
+        units.push_back({first[level] + unit * unit_tiles, std::min(unit_tiles, tiles - unit * unit_tiles),
                          has_parents ? first[level + 1] + unit : nothing, is_whole ? body : nothing});
 }
 
+std::uint32_t TileTrees::units_of_leaves() const {
+    std::uint64_t units = 0;
+    for (std::uint32_t body = 0; body < bodies_.count(); ++body) units += in_tiles(boxes_of(body, 1));
+    return static_cast<std::uint32_t>(units);
+}
+
+/// Two levels a step. Where the lowest two would leave most of the device idle, leaves are a step of their
+/// own, in units of a tile for each team of a group: no team then makes one tile after the other.
 void TileTrees::plan_refit() {
-    for (std::uint32_t level = 0; level < levels(); level += 2) {
+    const bool few = units_of_leaves() < device_.info().compute_units;
+    std::uint32_t unit_tiles = few ? std::max(1u, group_size_ / lanes) : lanes;
+    for (std::uint32_t level = 0; level < levels(); level += unit_tiles == lanes ? 2 : 1) {
+        if (level > 0) unit_tiles = lanes;
         std::vector<Unit> units;
         Step step;
         for (const auto body : order_) {
-            add_units(body, level, units);
+            add_units(body, level, unit_tiles, units);
             if (!bodies_.scene().bodies[body].fixed)
                 step.moving_units = static_cast<std::uint32_t>(units.size());
         }

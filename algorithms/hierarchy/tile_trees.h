@@ -63,7 +63,10 @@ private:
     void lay_out();
     std::vector<Tile> tile_rows() const;
     void plan_refit();
-    void add_units(std::uint32_t body, std::uint32_t level, std::vector<Unit>& units) const;
+    void add_units(std::uint32_t body, std::uint32_t level, std::uint32_t unit_tiles,
+                   std::vector<Unit>& units) const;
+    /// Of 32 leaf tiles each.
+    std::uint32_t units_of_leaves() const;
     void upload_taking_part(const Frame& frame);
     void leave_out(const Frame& frame);
     std::uint32_t boxes_of(std::uint32_t body, std::uint32_t level) const;

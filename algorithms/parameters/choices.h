@@ -41,6 +41,12 @@ enum class Residency {
     published ///< as the paper's code: everything converted, uploaded and read back in every frame
 };
 
+/// How a frame's commands get to the device.
+enum class Submission {
+    one, ///< together, where the device knows how and the frame before had the same commands
+    each ///< one by one
+};
+
 /// In which order a body's tetrahedra stand, and so which of them share a node.
 enum class Builder {
     morton, ///< along the Z-curve, as the paper

@@ -107,6 +107,14 @@ inline constexpr Setting<Residency> residency{
     {{"resident", Residency::resident}, {"published", Residency::published}},
     "",
     "published: convert, upload and read back everything in every frame, as the paper's code"};
+inline constexpr Setting<Submission> submission{
+    "submission",
+    Submission::one,
+    {{"one", Submission::one}, {"each", Submission::each}},
+    "",
+    "a resident frame's commands: one: together, as a CUDA graph, when the same have come before and the "
+    "host "
+    "has no body pairs to find meanwhile; each: one by one, as on other devices"};
 inline constexpr Setting<Output> output{
     "output",
     Output::pairs,

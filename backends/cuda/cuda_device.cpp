@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "backends/cuda/cuda_device.h"
 
+#include "backends/cuda/command.h"
 #include "backends/cuda/current_context.h"
 #include "backends/cuda/driver.h"
+#include "backends/cuda/graphs.h"
 #include "backends/cuda/nvrtc.h"
 #include "backends/hardware.h"
 #include "backends/ptxas_log.h"
@@ -111,29 +113,6 @@ Staging::Source page_locked(const Driver& driver) {
     return {allocate, [&driver](std::byte* memory) { driver.cuMemFreeHost(memory); }};
 }
 
-/// More than any kernel has, so that a launch needs no memory from the heap.
-constexpr std::size_t most_arguments = 32;
-
-/// Arguments as cuLaunchKernel takes them: places of values, which the driver copies before it returns.
-struct Parameters {
-    explicit Parameters(std::span<const Argument> arguments) {
-        for (std::size_t i = 0; i < arguments.size(); ++i) {
-            const auto& value = arguments[i].value();
-            if (const auto* const* buffer = std::get_if<Buffer::Impl*>(&value)) {
-                pointers[i] = static_cast<const CudaBuffer*>(*buffer)->pointer;
-                places[i] = &pointers[i];
-            } else {
-                places[i] = const_cast<std::byte*>(std::get<Argument::Scalar>(value).bytes.data());
-            }
-        }
-    }
-    Parameters(const Parameters&) = delete;
-    Parameters& operator=(const Parameters&) = delete;
-
-    std::array<DevicePointer, most_arguments> pointers;
-    std::array<void*, most_arguments> places;
-};
-
 class CudaDevice : public Device {
 public:
     CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index);
@@ -153,6 +132,8 @@ private:
                                              const Defines& defines) override;
     std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) override;
     void do_finish() override;
+    bool do_begin_collecting() override;
+    void do_end_collecting() override;
     void do_set_clocks(Clocks clocks) override { timed_ = clocks == Clocks::on; }
     std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) override;
 
@@ -178,6 +159,12 @@ private:
     template<class What>
     void wait(const What& what);
     void check_launch(std::string_view entry, Grid grid, std::size_t arguments) const;
+    /// Enqueues a command on `buffers`, or keeps both back; the ticket.
+    std::uint64_t enqueue(const Command& command, std::span<Buffer::Impl* const> buffers);
+    /// Enqueues a command after those kept back, and waits for it.
+    std::uint64_t enqueue_and_wait(const Command& command, bool staged);
+    std::uint64_t enqueue_now(const Command& command);
+    void submit_collected();
     const LoadedModule& module(const KernelSource& source, const Defines& defines);
     const Driver& driver() const { return libraries_->driver; }
     /// Runs `submit` between two events when timestamps are on; the ticket.
@@ -200,6 +187,10 @@ private:
         events_; ///< begin and end of each command since the last reading, then spare ones
     std::size_t events_used_ = 0;
     std::size_t events_read_ = 0;
+    bool collects_ = false;                              ///< within as_one
+    std::vector<Command> collected_;                     ///< kept back
+    std::vector<std::shared_ptr<Buffer::Impl>> buffers_; ///< that these work on, whoever drops them meanwhile
+    Graphs graphs_{libraries_->driver};
 };
 
 CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index)
@@ -222,6 +213,7 @@ CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle
 CudaDevice::~CudaDevice() {
     const CurrentContext current(driver(), context_);
     driver().cuStreamSynchronize(stream_);
+    graphs_.drop();
     staging_.drop();
     for (auto* event : events_) driver().cuEventDestroy_v2(event);
     for (const auto& [key, loaded] : modules_) driver().cuModuleUnload(loaded.module);
@@ -299,6 +291,7 @@ std::uint64_t CudaDevice::timed(const Submit& submit) {
 
 template<class What>
 void CudaDevice::wait(const What& what) {
+    submit_collected();
     check(driver().cuStreamSynchronize(stream_), "cuStreamSynchronize", what);
     staging_.release();
 }
@@ -323,47 +316,99 @@ std::shared_ptr<Buffer::Impl> CudaDevice::do_adopt(void* native) {
     return buffer;
 }
 
+std::uint64_t CudaDevice::enqueue_now(const Command& command) {
+    return timed([&] {
+        check(command.submit(driver(), stream_), command.call(), [&] { return command.describe(); });
+    });
+}
+
+std::uint64_t CudaDevice::enqueue(const Command& command, std::span<Buffer::Impl* const> buffers) {
+    if (!collects_) return enqueue_now(command);
+    collected_.push_back(command);
+    for (auto* buffer : buffers) buffers_.push_back(buffer->shared_from_this());
+    return 0;
+}
+
+/// `staged`: the host's memory is page-locked, and so has the same address in the next frame.
+std::uint64_t CudaDevice::enqueue_and_wait(const Command& command, bool staged) {
+    std::uint64_t ticket = 0;
+    if (collects_ && !staged) {
+        submit_collected();
+        ticket = enqueue_now(command);
+        count_submissions(1);
+    } else {
+        ticket = enqueue(command, {});
+    }
+    wait([&] { return command.describe(); });
+    return ticket;
+}
+
+/// The default stream cannot be captured.
+bool CudaDevice::do_begin_collecting() {
+    collects_ = stream_ != nullptr;
+    return collects_;
+}
+
+void CudaDevice::do_end_collecting() {
+    collects_ = false;
+    submit_collected();
+}
+
+void CudaDevice::submit_collected() {
+    if (collected_.empty()) return;
+    const Scope scope(*this);
+    std::uint64_t submissions = 0;
+    const auto failure = graphs_.submit(collected_, stream_, submissions);
+    count_submissions(submissions);
+    collected_.clear();
+    if (failure.code != 0) {
+        const auto buffers = std::exchange(buffers_, {}); // until check() has waited
+        check(failure.code, failure.call, failure.what);
+    }
+    buffers_.clear();
+}
+
 std::uint64_t CudaDevice::do_upload(Buffer::Impl& to, std::span<const std::byte> from, std::size_t offset,
                                     bool blocking) {
     const Scope scope(*this);
-    const auto target = static_cast<CudaBuffer&>(to).pointer + offset;
-    const auto what = [&] { return fmt::format("uploading '{}'", to.label); };
     // A blocking upload reads the caller's pageable memory, as the paper's code did.
     auto* staged = blocking ? nullptr : staging_.take(from.size());
     if (staged != nullptr) std::memcpy(staged, from.data(), from.size());
-    const void* source = staged != nullptr ? staged : from.data();
-    const auto ticket = timed([&] {
-        check(driver().cuMemcpyHtoDAsync_v2(target, source, from.size(), stream_), "cuMemcpyHtoDAsync", what);
-    });
+    const Command command{.kind = Command::Kind::upload,
+                          .device = static_cast<CudaBuffer&>(to).pointer + offset,
+                          .host = staged != nullptr ? staged : const_cast<std::byte*>(from.data()),
+                          .bytes = from.size(),
+                          .label = to.label};
     if (staged == nullptr) {
-        wait(what);
         host_waited();
+        return enqueue_and_wait(command, false);
     }
-    return ticket;
+    const std::array<Buffer::Impl*, 1> buffers{&to};
+    return enqueue(command, buffers);
 }
 
 std::uint64_t CudaDevice::do_download(const Buffer::Impl& from, std::span<std::byte> to, std::size_t offset) {
     const Scope scope(*this);
     constexpr std::size_t small = 65536;
-    const auto source = static_cast<const CudaBuffer&>(from).pointer + offset;
-    const auto what = [&] { return fmt::format("downloading '{}'", from.label); };
     auto* staged = to.size() <= small ? staging_.take(to.size()) : nullptr;
-    void* target = staged != nullptr ? staged : to.data();
-    const auto ticket = timed([&] {
-        check(driver().cuMemcpyDtoHAsync_v2(target, source, to.size(), stream_), "cuMemcpyDtoHAsync", what);
-    });
-    wait(what);
+    const Command command{.kind = Command::Kind::download,
+                          .device = static_cast<const CudaBuffer&>(from).pointer + offset,
+                          .host = staged != nullptr ? staged : to.data(),
+                          .bytes = to.size(),
+                          .label = from.label};
+    const auto ticket = enqueue_and_wait(command, staged != nullptr);
     if (staged != nullptr) std::memcpy(to.data(), staged, to.size());
     return ticket;
 }
 
 std::uint64_t CudaDevice::do_clear(Buffer::Impl& buffer, std::size_t bytes, std::size_t offset) {
     const Scope scope(*this);
-    const auto target = static_cast<CudaBuffer&>(buffer).pointer + offset;
-    return timed([&] {
-        check(driver().cuMemsetD8Async(target, 0, bytes, stream_), "cuMemsetD8Async",
-              [&] { return fmt::format("clearing '{}'", buffer.label); });
-    });
+    const std::array<Buffer::Impl*, 1> buffers{&buffer};
+    return enqueue({.kind = Command::Kind::clear,
+                    .device = static_cast<CudaBuffer&>(buffer).pointer + offset,
+                    .bytes = bytes,
+                    .label = buffer.label},
+                   buffers);
 }
 
 const LoadedModule& CudaDevice::module(const KernelSource& source, const Defines& defines) {
@@ -404,23 +449,31 @@ std::shared_ptr<Kernel::Impl> CudaDevice::do_compile(const KernelSource& source,
 std::uint64_t CudaDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) {
     const Scope scope(*this);
     check_launch(kernel.facts.entry, grid, arguments.size());
-    Parameters parameters(arguments);
-    const auto function = static_cast<CudaKernel&>(kernel).function;
-    const auto groups = static_cast<unsigned>(grid.groups);
-    return timed([&] {
-        check(driver().cuLaunchKernel(function, groups, 1, 1, grid.group_size, 1, 1, 0, stream_,
-                                      parameters.places.data(), nullptr),
-              "cuLaunchKernel", [&] {
-                  return fmt::format("launching '{}' with {} groups of {}", kernel.facts.entry, groups,
-                                     grid.group_size);
-              });
-    });
+    Command command{.function = static_cast<CudaKernel&>(kernel).function,
+                    .groups = static_cast<unsigned>(grid.groups),
+                    .group_size = grid.group_size,
+                    .arguments = arguments.size(),
+                    .label = kernel.facts.entry};
+    std::array<Buffer::Impl*, Command::most_arguments> buffers;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+        const auto& value = arguments[i].value();
+        if (auto* const* buffer = std::get_if<Buffer::Impl*>(&value)) {
+            buffers[count++] = *buffer;
+            command.values[i] = static_cast<CudaBuffer*>(*buffer)->pointer;
+        } else {
+            command.values[i] = 0;
+            const auto& scalar = std::get<Argument::Scalar>(value);
+            std::memcpy(&command.values[i], scalar.bytes.data(), scalar.size);
+        }
+    }
+    return enqueue(command, std::span(buffers).first(count));
 }
 
 void CudaDevice::check_launch(std::string_view entry, Grid grid, std::size_t arguments) const {
-    if (arguments > most_arguments)
+    if (arguments > Command::most_arguments)
         throw DeviceError(fmt::format("{}: '{}' with {} arguments; a launch takes at most {}", info_.id,
-                                      entry, arguments, most_arguments));
+                                      entry, arguments, Command::most_arguments));
     if (grid.groups > 0x7fffffffu)
         throw DeviceError(fmt::format("{}: '{}' with {} groups; a launch takes at most 2147483647", info_.id,
                                       entry, grid.groups));

@@ -14,6 +14,8 @@ struct CUmod_st;
 struct CUfunc_st;
 struct CUstream_st;
 struct CUevent_st;
+struct CUgraph_st;
+struct CUgraphExec_st;
 
 namespace tandem::cuda {
 
@@ -26,6 +28,8 @@ using Module = CUmod_st*;
 using Function = CUfunc_st*;
 using Stream = CUstream_st*;
 using EventHandle = CUevent_st*;
+using Graph = CUgraph_st*;
+using GraphExec = CUgraphExec_st*;
 
 /// CUdevice_attribute and CUfunction_attribute, as far as they are asked for.
 enum DeviceAttribute : int {
@@ -73,6 +77,12 @@ enum FunctionAttribute : int { function_max_threads = 0, function_shared_bytes =
     ENTRY(cuModuleUnload, (Module))                                                                          \
     ENTRY(cuModuleGetFunction, (Function*, Module, const char*))                                             \
     ENTRY(cuFuncGetAttribute, (int*, int, Function))                                                         \
+    ENTRY(cuStreamBeginCapture_v2, (Stream, int))                                                            \
+    ENTRY(cuStreamEndCapture, (Stream, Graph*))                                                              \
+    ENTRY(cuGraphInstantiateWithFlags, (GraphExec*, Graph, unsigned long long))                              \
+    ENTRY(cuGraphLaunch, (GraphExec, Stream))                                                                \
+    ENTRY(cuGraphExecDestroy, (GraphExec))                                                                   \
+    ENTRY(cuGraphDestroy, (Graph))                                                                           \
     ENTRY(cuLaunchKernel, (Function, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned,   \
                            Stream, void**, void**))
 

@@ -2,13 +2,16 @@
 // A libcuda.so.1 without a GPU: memory is the host's, kernels do nothing. As with a driver, the current
 // context is the thread's, what needs one fails without, and a stream goes with its own only. What goes wrong
 // is chosen by variables: STUB_INIT (code of cuInit), STUB_VERSION, STUB_MEMORY (bytes there are), STUB_FAULT
-// (launches fault), STUB_LAUNCH (code of cuLaunchKernel).
+// (launches fault), STUB_LAUNCH, STUB_INSTANTIATE and STUB_GRAPH (codes of cuLaunchKernel, of making a
+// graph and of launching one).
 #include "backends/cuda/driver.h"
 #include "tests/cuda/stub_driver.h"
 
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <map>
+#include <utility>
 #include <vector>
 
 using namespace tandem::cuda;
@@ -35,6 +38,21 @@ std::map<Stream, Context> streams; ///< of each that was made, its context
 std::map<std::pair<Stream, Context>, unsigned long> calls;
 unsigned long waits = 0;
 
+using Work = std::vector<std::function<void()>>;
+bool capturing = false;
+Work captured;            ///< since a capture began
+unsigned long graphs = 0; ///< that live
+unsigned long graph_launches = 0, commands_in_graphs = 0;
+
+/// At once, or whenever the graph is launched that is being captured.
+template<class Command>
+void run(const Command& command) {
+    if (capturing)
+        captured.push_back(command);
+    else
+        command();
+}
+
 /// Of a call that needs a context.
 Result in_context() { return current() != nullptr ? 0 : invalid_context; }
 
@@ -44,6 +62,14 @@ Result on(Stream stream) {
     if (current() == nullptr) return invalid_context;
     const auto found = streams.find(stream);
     return stream == nullptr || (found != streams.end() && found->second == current()) ? 0 : invalid_handle;
+}
+
+/// Of a command on device memory: whether all of it is allocated.
+Result in_memory(DevicePointer first, std::size_t bytes) {
+    auto next = sizes.upper_bound(first);
+    if (next == sizes.begin()) return 1;
+    --next;
+    return first + bytes <= next->first + next->second ? 0 : 1;
 }
 
 std::size_t memory() { return static_cast<std::size_t>(number("STUB_MEMORY", 1L << 32)); }
@@ -169,15 +195,18 @@ Result cuMemFreeHost(void* memory) {
     return in_context();
 }
 Result cuMemcpyHtoDAsync_v2(DevicePointer to, const void* from, std::size_t bytes, Stream stream) {
-    std::memcpy(reinterpret_cast<void*>(to), from, bytes);
+    if (const auto code = in_memory(to, bytes); code != 0) return code;
+    run([=] { std::memcpy(reinterpret_cast<void*>(to), from, bytes); });
     return on(stream);
 }
 Result cuMemcpyDtoHAsync_v2(void* to, DevicePointer from, std::size_t bytes, Stream stream) {
-    std::memcpy(to, reinterpret_cast<const void*>(from), bytes);
+    if (const auto code = in_memory(from, bytes); code != 0) return code;
+    run([=] { std::memcpy(to, reinterpret_cast<const void*>(from), bytes); });
     return on(stream);
 }
 Result cuMemsetD8Async(DevicePointer to, unsigned char value, std::size_t bytes, Stream stream) {
-    std::memset(reinterpret_cast<void*>(to), value, bytes);
+    if (const auto code = in_memory(to, bytes); code != 0) return code;
+    run([=] { std::memset(reinterpret_cast<void*>(to), value, bytes); });
     return on(stream);
 }
 Result cuStreamCreate(Stream* stream, unsigned) {
@@ -203,6 +232,38 @@ Result cuEventElapsedTime(float* ms, EventHandle, EventHandle) {
     *ms = 0.001f;
     return in_context();
 }
+Result cuStreamBeginCapture_v2(Stream stream, int) {
+    capturing = true;
+    return on(stream);
+}
+Result cuStreamEndCapture(Stream stream, Graph* graph) {
+    capturing = false;
+    *graph = reinterpret_cast<Graph>(new Work(std::exchange(captured, {})));
+    return on(stream);
+}
+Result cuGraphInstantiateWithFlags(GraphExec* executable, Graph graph, unsigned long long) {
+    if (const auto code = number("STUB_INSTANTIATE", 0); code != 0) return static_cast<Result>(code);
+    ++graphs;
+    *executable = reinterpret_cast<GraphExec>(new Work(*reinterpret_cast<Work*>(graph)));
+    return in_context();
+}
+Result cuGraphLaunch(GraphExec executable, Stream stream) {
+    const auto& work = *reinterpret_cast<Work*>(executable);
+    ++graph_launches;
+    commands_in_graphs += work.size();
+    for (const auto& command : work) command();
+    const auto code = on(stream);
+    return code != 0 ? code : static_cast<Result>(number("STUB_GRAPH", 0));
+}
+Result cuGraphExecDestroy(GraphExec executable) {
+    --graphs;
+    delete reinterpret_cast<Work*>(executable);
+    return in_context();
+}
+Result cuGraphDestroy(Graph graph) {
+    delete reinterpret_cast<Work*>(graph);
+    return in_context();
+}
 Result cuModuleLoadData(Module* module, const void*) {
     return current() != nullptr ? make(module) : invalid_context;
 }
@@ -215,7 +276,7 @@ Result cuFuncGetAttribute(int* value, int what, Function) {
 #ifndef STUB_OLD
 Result cuLaunchKernel(Function, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned,
                       Stream stream, void**, void**) {
-    launched = true;
+    run([] { launched = true; });
     const auto code = on(stream);
     return code != 0 ? code : static_cast<Result>(number("STUB_LAUNCH", 0));
 }
@@ -226,6 +287,9 @@ unsigned long stub_calls(Stream stream, Context context) {
     return found == calls.end() ? 0 : found->second;
 }
 unsigned long stub_waits() { return waits; }
+unsigned long stub_graphs() { return graphs; }
+unsigned long stub_graph_launches() { return graph_launches; }
+unsigned long stub_commands_in_graphs() { return commands_in_graphs; }
 unsigned long stub_all_calls() {
     unsigned long sum = 0;
     for (const auto& [where, count] : calls) sum += count;

@@ -13,4 +13,8 @@ unsigned long stub_calls(CUstream_st* stream, CUctx_st* context);
 unsigned long stub_all_calls();
 /// Those of them that wait for one.
 unsigned long stub_waits();
+/// Graphs that live; how often one was launched; and of how many commands these were.
+unsigned long stub_graphs();
+unsigned long stub_graph_launches();
+unsigned long stub_commands_in_graphs();
 }
