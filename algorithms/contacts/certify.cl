@@ -48,7 +48,7 @@ KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
             count_state(state, group);
             if (state == OPEN)
                 waiting[LIST_OPEN * FOUND_ROOM + LOCAL_ATOMIC_ADD(group + LIST_OPEN, 1u)] =
-                    open_pair(index - first, edge);
+                    OPEN_PAIR(index - first, edge);
             if (state == MEETING && !has_no_normal(&all, index))
                 waiting[LIST_MEETING * FOUND_ROOM + LOCAL_ATOMIC_ADD(group + LIST_MEETING, 1u)] = index;
         }

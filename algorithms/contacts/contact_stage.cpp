@@ -32,22 +32,24 @@ ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings
     auto& device = bodies.device();
     auto defines = row_defines(bodies.geometry(), shape_.group_size);
     define(defines, parameters::contact_rule, settings.rule);
-    defines["DECIDED"] = settings.decision == DecisionPrecision::fp32 ? "0" : "1";
+    if (settings.decision != DecisionPrecision::fp32)
+        decision_ = std::make_unique<DecisionStage>(bodies, settings.decision, shape);
     const auto& last = kernel_source("algorithms/contacts/contacts.cl");
     if (launches == Launches::apart) {
+        defines["DECIDED"] = decision_ && !decides_open() ? "1" : "0";
         certify_ = device.compile(kernel_source("algorithms/contacts/certify.cl"), "certify_pairs", defines);
+        defines["DECIDED"] = decision_ ? "1" : "0";
         separate_ =
             device.compile(kernel_source("algorithms/contacts/separate.cl"), "separate_pairs", defines);
         defines["AT_ONCE"] = "0";
         generate_ = device.compile(last, "generate_contacts", defines);
     }
     if (launches == Launches::at_once || device.info().is_gpu) {
+        defines["DECIDED"] = decision_ ? "1" : "0";
         defines["AT_ONCE"] = "1";
         at_once_ = device.compile(last, "generate_contacts", defines);
     }
     nothing_ = device.allocate(4, "nothing");
-    if (settings.decision != DecisionPrecision::fp32)
-        decision_ = std::make_unique<DecisionStage>(bodies, settings.decision, shape);
 }
 
 /// Room in the lists for so many pairs, or for fewer where memory is short: there are more launches then.
@@ -87,13 +89,15 @@ void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first
                                            meeting_,
                                            status.buffer()};
     device.launch(certify_, grid, certify);
-    const std::array<Argument, 10> separate{answer.pairs.buffer(),
+    if (decides_open()) decision_->launch_open(answer.pairs.buffer(), first, end, open_, status);
+    const std::array<Argument, 11> separate{answer.pairs.buffer(),
                                             first,
                                             bodies_.row_table(),
                                             bodies_.poses(),
                                             bodies_.tetrahedra(),
                                             bodies_.vertices(),
                                             bodies_.boundary(),
+                                            verdicts(),
                                             open_,
                                             meeting_,
                                             status.buffer()};
@@ -122,12 +126,15 @@ void ContactStage::generate(const Kernel& kernel, LaunchShape shape, const Answe
 
 void ContactStage::launch(const AnswerBuffers& answer, std::uint64_t first, std::uint64_t end,
                           const Status& status) {
-    if (decision_) decision_->launch(answer.pairs.buffer(), first, end, status);
     auto& device = bodies_.device();
     const StageScope scope(device, Stage::contact);
     // No more than a pair for each work-item that runs: what counts then is the way of one, and launches.
     const bool few = expected_ && *expected_ <= std::uint64_t{few_shape_.groups} * few_shape_.group_size / 2;
-    if (at_once_ && (few || !generate_)) {
+    const bool at_once = at_once_ && (few || !generate_);
+    if (decision_) decision_->reserve(end);
+    if (decision_ && (at_once || !decides_open()))
+        decision_->launch(answer.pairs.buffer(), first, end, status);
+    if (at_once) {
         generate(at_once_, few_shape_, answer, static_cast<std::uint32_t>(first),
                  static_cast<std::uint32_t>(end), status);
         return;

@@ -35,6 +35,8 @@ private:
                       const Status& status);
     void generate(const Kernel& kernel, LaunchShape shape, const AnswerBuffers& answer, std::uint32_t first,
                   std::uint32_t end, const Status& status);
+    /// Whether verdicts are wanted of those pairs only that certificates leave open.
+    bool decides_open() const { return decision_ && decision_->takes_certificates(); }
     const Buffer& verdicts() const { return decision_ ? decision_->verdicts() : nothing_; }
 
     const Bodies& bodies_;

@@ -36,8 +36,13 @@ DecisionStage::DecisionStage(const Bodies& bodies, DecisionPrecision decision, L
     : bodies_(bodies), decision_(decision), shape_(shape) {
     auto defines = row_defines(bodies.geometry(), shape.group_size);
     auto& device = bodies.device();
-    if (decision != DecisionPrecision::fp64)
-        filter_ = device.compile(kernel_source("algorithms/contacts/filter.cl"), "filter_pairs", defines);
+    if (takes_certificates()) {
+        const auto& filter = kernel_source("algorithms/contacts/filter.cl");
+        filter_ = device.compile(filter, "filter_pairs", defines);
+        defines["OVER_OPEN"] = "1";
+        filter_open_ = device.compile(filter, "filter_pairs", defines);
+        defines.erase("OVER_OPEN");
+    }
     defines["RECHECK_ALL"] = decision == DecisionPrecision::fp64 ? "1" : "0";
     const auto& source = kernel_source("algorithms/contacts/recheck.cl");
     recheck_ = device.compile(source, "recheck_pairs", defines);
@@ -61,35 +66,48 @@ void DecisionStage::reserve(std::uint64_t pairs) {
 void DecisionStage::launch(const Buffer& found, std::uint64_t first, std::uint64_t end,
                            const Status& status) {
     const StageScope scope(bodies_.device(), Stage::contact);
-    reserve(end);
-    const Grid grid{shape_.groups, shape_.group_size};
-    const auto from = static_cast<std::uint32_t>(first);
-    const auto room = static_cast<std::uint32_t>(end);
-    if (decision_ != DecisionPrecision::fp64) {
-        const std::array<Argument, 10> filter{found,
-                                              from,
-                                              room,
-                                              bodies_.row_table(),
-                                              bodies_.poses(),
-                                              bodies_.tetrahedra(),
-                                              bodies_.vertices(),
-                                              verdicts_,
-                                              undecided_by_filter_,
-                                              status.buffer()};
-        bodies_.device().launch(filter_, grid, filter);
-    }
-    const std::array<Argument, 11> recheck{found,
-                                           from,
-                                           room,
-                                           bodies_.row_table(),
-                                           bodies_.poses(),
-                                           bodies_.tetrahedra(),
-                                           bodies_.vertices(),
-                                           verdicts_,
-                                           undecided_by_filter_,
-                                           undecided_by_double_,
-                                           status.buffer()};
-    bodies_.device().launch(recheck_, grid, recheck);
+    // Where the kernel reads no list any buffer will do.
+    if (takes_certificates()) filter(filter_, found, first, end, undecided_by_double_, status);
+    recheck(found, first, end, status);
+}
+
+void DecisionStage::launch_open(const Buffer& found, std::uint64_t first, std::uint64_t end,
+                                const Buffer& open, const Status& status) {
+    const StageScope scope(bodies_.device(), Stage::contact);
+    filter(filter_open_, found, first, end, open, status);
+    recheck(found, first, end, status);
+}
+
+void DecisionStage::filter(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
+                           const Buffer& open, const Status& status) {
+    const std::array<Argument, 11> arguments{found,
+                                             static_cast<std::uint32_t>(first),
+                                             static_cast<std::uint32_t>(end),
+                                             bodies_.row_table(),
+                                             bodies_.poses(),
+                                             bodies_.tetrahedra(),
+                                             bodies_.vertices(),
+                                             open,
+                                             verdicts_,
+                                             undecided_by_filter_,
+                                             status.buffer()};
+    bodies_.device().launch(kernel, {shape_.groups, shape_.group_size}, arguments);
+}
+
+void DecisionStage::recheck(const Buffer& found, std::uint64_t first, std::uint64_t end,
+                            const Status& status) {
+    const std::array<Argument, 11> arguments{found,
+                                             static_cast<std::uint32_t>(first),
+                                             static_cast<std::uint32_t>(end),
+                                             bodies_.row_table(),
+                                             bodies_.poses(),
+                                             bodies_.tetrahedra(),
+                                             bodies_.vertices(),
+                                             verdicts_,
+                                             undecided_by_filter_,
+                                             undecided_by_double_,
+                                             status.buffer()};
+    bodies_.device().launch(recheck_, {shape_.groups, shape_.group_size}, arguments);
     if (decision_ == DecisionPrecision::exact) settle(found, status);
 }
 

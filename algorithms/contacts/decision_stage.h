@@ -15,15 +15,24 @@ class DecisionStage {
 public:
     DecisionStage(const Bodies& bodies, DecisionPrecision decision, LaunchShape shape);
 
+    /// Whether pairs that have a certificate need no verdict: double by itself has none.
+    bool takes_certificates() const { return decision_ != DecisionPrecision::fp64; }
+    /// Room for verdicts of so many pairs, as what follows needs it. Throws OutOfMemory.
+    void reserve(std::uint64_t pairs);
     /// Enqueues verdicts for pairs `first`..`end` - 1 of `found`, as far as `status` has counted so many.
     /// With decision=exact it waits for the counts and, where there are any, for the pairs that double cannot
-    /// decide.
+    /// decide; throws OutOfMemory then.
     void launch(const Buffer& found, std::uint64_t first, std::uint64_t end, const Status& status);
+    /// The same for those of them that certify_pairs has left in list `open`.
+    void launch_open(const Buffer& found, std::uint64_t first, std::uint64_t end, const Buffer& open,
+                     const Status& status);
 
     const Buffer& verdicts() const { return verdicts_; } ///< a byte a pair, VERDICT_* of candidates.clh
 
 private:
-    void reserve(std::uint64_t pairs);
+    void filter(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
+                const Buffer& open, const Status& status);
+    void recheck(const Buffer& found, std::uint64_t first, std::uint64_t end, const Status& status);
     void settle(const Buffer& found, const Status& status);
 
     const Bodies& bodies_;
@@ -32,7 +41,7 @@ private:
     std::uint64_t room_ = 0;
     Buffer verdicts_, undecided_by_filter_, undecided_by_double_;
     Buffer corners_, answers_; ///< of the pairs the host decides; they live until their commands are done
-    Kernel filter_, recheck_, gather_, settle_;
+    Kernel filter_, filter_open_, recheck_, gather_, settle_;
 };
 
 } // namespace tandem

@@ -70,7 +70,8 @@ bool decided_apart(const Corners<Real>& a, const Corners<Real>& b, DecisionPreci
                    ContactCounts& counts) {
     if (decision == DecisionPrecision::fp32) return false;
     unsigned verdict = 0;
-    if (decision != DecisionPrecision::fp64) verdict = certain_verdict(a, b);
+    if (decision != DecisionPrecision::fp64) verdict = certificate(a, b);
+    if (verdict == 0 && decision != DecisionPrecision::fp64) verdict = certain_verdict(a, b);
     if (verdict == 0 && decision != DecisionPrecision::fp64) ++counts.undecided_by_filter;
     if (verdict == 0) {
         verdict = certain_verdict(widened(a), widened(b));

@@ -157,6 +157,11 @@ std::vector<Contact<Real>> vertex_contacts(const ReferencePair<Real>& pair, cons
 template<class Real>
 std::vector<Contact<Real>> consistent_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
 
+/// What distances of corners behind faces are certain of: 1 apart, 2 they meet, 0 neither. That it is certain
+/// may depend on the order of corners and of the two; what it is does not.
+template<class Real>
+unsigned certificate(const Corners<Real>& a, const Corners<Real>& b);
+
 /// What arithmetic in Real is certain of: 1 apart, 2 they meet, 0 neither. Order of corners and of the two
 /// makes no difference.
 template<class Real>

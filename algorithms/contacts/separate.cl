@@ -6,11 +6,13 @@
 #include "algorithms/contacts/trial.clh"
 #include "algorithms/contacts/waiting.clh"
 
-// `first`: that of certify_pairs, which the words of `open` are counted from.
+// `first`: that of certify_pairs, which the words of `open` are counted from. `verdicts` are read when
+// DECIDED only; a pair that is not known to be apart then counts as one that meets.
 KERNEL void separate_pairs(GLOBAL const uint* found, uint first, GLOBAL const uint* bodies,
                            GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
-                           GLOBAL const real* vertices, GLOBAL const uchar* boundary, GLOBAL const uint* open,
-                           GLOBAL uint* meeting, GLOBAL uint* status) {
+                           GLOBAL const real* vertices, GLOBAL const uchar* boundary,
+                           GLOBAL const uchar* verdicts, GLOBAL const uint* open, GLOBAL uint* meeting,
+                           GLOBAL uint* status) {
     LOCAL_ARRAY(uint, group, GROUP_WORDS);
     const Candidates all = {found, bodies, poses, tetrahedra, vertices, boundary};
     const uint count = status[STATUS_WAITING + LIST_OPEN];
@@ -21,8 +23,9 @@ KERNEL void separate_pairs(GLOBAL const uint* found, uint first, GLOBAL const ui
         uint index = 0;
         if (start + LOCAL_ID < count) {
             const uint word = open[start + LOCAL_ID];
-            index = first + pair_of_open(word);
-            state = try_all(&all, index, edge_of_open(word));
+            index = first + PAIR_OF_OPEN(word);
+            const int apart = DECIDED && verdicts[index] == VERDICT_APART;
+            state = apart ? REJECTED : try_all(&all, index, EDGE_OF_OPEN(word));
         }
         count_state(state, group);
         const int meets = state == MEETING && !has_no_normal(&all, index);

@@ -155,6 +155,35 @@ TEST(ContactsDecision, NamesOfCornersAndOfTheTwoMakeNoDifference) {
     for (const auto count : seen) EXPECT_GT(count, 100u);
 }
 
+TEST(ContactsDecision, CertificatesAreNeverWrongUnderAnyNames) {
+    std::uint64_t certain[2][3]{};
+    for (const auto& [name, pairs] : families())
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            auto [a, b] = pairs[i];
+            const auto truth = relation(a, b);
+            const auto check = [&] {
+                const unsigned verdicts[] = {contact_reference::certificate(narrowed(a), narrowed(b)),
+                                             contact_reference::certificate(a, b)};
+                for (unsigned wide = 0; wide < 2; ++wide) {
+                    ++certain[wide][verdicts[wide]];
+                    ASSERT_TRUE(verdicts[wide] != 1 || truth == Relation::disjoint) << name;
+                    ASSERT_TRUE(verdicts[wide] != 2 || truth == Relation::overlapping) << name;
+                }
+            };
+            check();
+            std::swap(a, b);
+            check();
+            if (i % 10 != 0) continue;
+            std::sort(a.begin(), a.end());
+            do {
+                std::rotate(b.begin(), b.begin() + 1, b.end());
+                check();
+            } while (std::next_permutation(a.begin(), a.end()));
+        }
+    for (const auto& counts : certain)
+        for (const auto count : counts) EXPECT_GT(count, 1000u);
+}
+
 TEST(ContactsDecision, FlatAndUnusableTetrahedraAreDecidedExactly) {
     const Corners<float> block{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}}};
     const Corners<float> flat_inside{{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}, {2, 2, 0}}};
