@@ -135,8 +135,11 @@ void ContactStage::launch(const AnswerBuffers& answer, std::uint64_t first, std:
     if (decision_ && (at_once || !decides_open()))
         decision_->launch(answer.pairs.buffer(), first, end, status);
     if (at_once) {
-        generate(at_once_, few_shape_, answer, static_cast<std::uint32_t>(first),
-                 static_cast<std::uint32_t>(end), status);
+        auto shape = few_shape_;
+        const auto size = shape.group_size;
+        if (few) shape.groups = groups_.enough_for((*expected_ + size - 1) / size, shape.groups);
+        generate(at_once_, shape, answer, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end),
+                 status);
         return;
     }
     reserve(end - first);

@@ -4,6 +4,7 @@
 #include "algorithms/answer/answers.h"
 #include "algorithms/answer/status.h"
 #include "algorithms/contacts/decision_stage.h"
+#include "algorithms/expected_groups.h"
 
 #include <memory>
 #include <optional>
@@ -41,6 +42,7 @@ private:
 
     const Bodies& bodies_;
     LaunchShape shape_, few_shape_;        ///< of three launches, of one
+    ExpectedGroups groups_;                ///< of one launch
     Kernel certify_, separate_, generate_; ///< none for Launches::at_once
     Kernel at_once_;                       ///< none where it is never the better one
     std::optional<std::uint64_t> expected_;

@@ -28,10 +28,10 @@ std::uint32_t levels_over(std::uint32_t items) {
 
 } // namespace
 
-TileTrees::TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size)
+TileTrees::TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size, std::uint32_t units_at_once)
     : bodies_(bodies), device_(bodies.device()), slabs_(slabs), group_size_(group_size), shapes_(bodies) {
     lay_out();
-    plan_refit();
+    plan_refit(units_at_once);
     tile_table_ = uploaded(device_, bytes_of(tile_rows()), "tiles");
     std::vector<std::uint32_t> tops;
     for (const auto& first : first_tiles_) tops.push_back(first.back());
@@ -131,8 +131,8 @@ std::uint32_t TileTrees::units_of_leaves() const {
 
 /// Two levels a step. Where the lowest two would leave most of the device idle, leaves are a step of their
 /// own, in units of a tile for each team of a group: no team then makes one tile after the other.
-void TileTrees::plan_refit() {
-    const bool few = units_of_leaves() < device_.info().compute_units;
+void TileTrees::plan_refit(std::uint32_t units_at_once) {
+    const bool few = units_of_leaves() < units_at_once;
     std::uint32_t unit_tiles = few ? std::max(1u, group_size_ / lanes) : lanes;
     for (std::uint32_t level = 0; level < levels(); level += unit_tiles == lanes ? 2 : 1) {
         if (level > 0) unit_tiles = lanes;

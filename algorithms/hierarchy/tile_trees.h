@@ -13,7 +13,11 @@ class TileTrees final : public Hierarchy {
 public:
     /// `slabs`: what leaves have bounds along. `bodies`, of Sharing::by_mesh, must outlive this. Throws
     /// OutOfMemory when the tiles do not fit, DeviceError when there are too many to number.
-    TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size);
+    /// `units_at_once`: so many groups of a refit the device runs side by side, at least; no bound depends on
+    /// it.
+    TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size, std::uint32_t units_at_once);
+    TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size)
+        : TileTrees(bodies, slabs, group_size, bodies.device().info().compute_units) {}
 
     const Bodies& bodies() const { return bodies_; }
     /// Of the highest body's tree.
@@ -62,7 +66,7 @@ private:
 
     void lay_out();
     std::vector<Tile> tile_rows() const;
-    void plan_refit();
+    void plan_refit(std::uint32_t units_at_once);
     void add_units(std::uint32_t body, std::uint32_t level, std::uint32_t unit_tiles,
                    std::vector<Unit>& units) const;
     /// Of 32 leaf tiles each.

@@ -19,6 +19,7 @@ TiledWalker::TiledWalker(const TileTrees& trees, const Ground& ground, LaunchSha
     const auto lists = std::max<std::size_t>(1, trees.levels() - 1); // nothing is found for the highest level
     for (std::size_t level = 0; level < lists; ++level)
         lists_.emplace_back(ground.device, "pairs of tiles", row_bytes, trees.levels() > 1 ? rows : 1);
+    expected_.resize(trees.levels());
 }
 
 void TiledWalker::do_compile(const WalkBuild& build) {
@@ -30,8 +31,20 @@ void TiledWalker::do_compile(const WalkBuild& build) {
     leaf_kernel_ = device.compile(source, "walk_leaf_tiles", defines);
 }
 
+Grid TiledWalker::grid(std::uint32_t level) {
+    auto& [pairs, groups] = expected_[level];
+    const auto teams = std::max(1u, shape_.group_size / TileShapes::lanes);
+    return {pairs ? groups.enough_for((*pairs + teams - 1) / teams, shape_.groups) : shape_.groups,
+            shape_.group_size};
+}
+
 bool TiledWalker::do_grow(const Status& status) {
     bool again = false;
+    for (std::uint32_t level = 0; level < trees_.levels(); ++level) {
+        const bool begins = trees_.is_top(level), is_found = level + 1 < trees_.levels();
+        expected_[level].pairs = (begins ? status.counter(STATUS_BODY_PAIRS) : 0)
+                                 + (is_found ? status.counter(STATUS_TILE_PAIRS + 2 * level) : 0);
+    }
     for (std::uint32_t level = 0; level + 1 < trees_.levels(); ++level) {
         const auto found = status.counter(STATUS_TILE_PAIRS + 2 * level);
         if (found <= lists_[level].rows()) continue;
@@ -61,7 +74,7 @@ void TiledWalker::launch_upper(const WalkTask& task, std::uint32_t level) {
                                              list(level - 1).buffer(),
                                              list(level - 1).capacity(),
                                              task.status.buffer()};
-    trees_.bodies().device().launch(upper_kernel_, {shape_.groups, shape_.group_size}, arguments);
+    trees_.bodies().device().launch(upper_kernel_, grid(level), arguments);
 }
 
 void TiledWalker::launch_leaves(const WalkTask& task) {
@@ -86,7 +99,7 @@ void TiledWalker::launch_leaves(const WalkTask& task) {
                                              task.answer.pairs.buffer(),
                                              task.answer.pairs.capacity(),
                                              task.status.buffer()};
-    bodies.device().launch(leaf_kernel_, {shape_.groups, shape_.group_size}, arguments);
+    bodies.device().launch(leaf_kernel_, grid(0), arguments);
 }
 
 void TiledWalker::do_launch(const WalkTask& task) {

@@ -2,8 +2,11 @@
 #pragma once
 
 #include "algorithms/answer/room.h"
+#include "algorithms/expected_groups.h"
 #include "algorithms/hierarchy/tile_trees.h"
 #include "algorithms/steps.h"
+
+#include <optional>
 
 namespace tandem {
 
@@ -29,12 +32,20 @@ private:
     const Room& list(std::uint32_t level) const {
         return lists_[std::min<std::size_t>(level, lists_.size() - 1)];
     }
+    /// The groups of a level's launch: few where the last frame had few pairs.
+    Grid grid(std::uint32_t level);
     void launch_upper(const WalkTask& task, std::uint32_t level);
     void launch_leaves(const WalkTask& task);
 
     const TileTrees& trees_;
     LaunchShape shape_;
     std::vector<Room> lists_; ///< by level
+    /// Of a level: pairs in the last frame, nothing before the first, and the groups for them.
+    struct Expected {
+        std::optional<std::uint64_t> pairs;
+        ExpectedGroups groups;
+    };
+    std::vector<Expected> expected_;
     Kernel upper_kernel_, leaf_kernel_;
 };
 

@@ -30,13 +30,20 @@ protected:
         return words;
     }
 
-    /// Leaves, every root and every box above, against the leaves of chunk trees over the same bodies.
+    /// Leaves, every root and every box above, against the leaves of chunk trees over the same bodies. In
+    /// units of 32 leaf tiles, and in those of a device that could run more of them at once than there are.
     void expect_the_same_bounds(const Scene& scene, const Frame& frame, const Geometry& geometry,
                                 Slabs slabs) {
+        for (const std::uint32_t units_at_once : {0u, 100000u})
+            expect_the_same_bounds(scene, frame, geometry, slabs, units_at_once);
+    }
+    void expect_the_same_bounds(const Scene& scene, const Frame& frame, const Geometry& geometry, Slabs slabs,
+                                std::uint32_t units_at_once) {
+        SCOPED_TRACE(units_at_once);
         PreparedTrees chunks(on, scene, geometry, 4096, group_size, Bodies::Sharing::by_mesh);
         chunks.update(frame);
         Bodies bodies(on, scene, geometry, Bodies::Sharing::by_mesh);
-        TileTrees tiles(bodies, slabs, group_size);
+        TileTrees tiles(bodies, slabs, group_size, units_at_once);
         bodies.update(frame);
         tiles.refit(frame);
         const auto k = static_cast<std::size_t>(geometry.k), half = k / 2;
@@ -131,6 +138,27 @@ TEST_P(Tiles, OfEverySize) {
         const auto session = traversal.prepare(
             devices, scene,
             resolve(traversal.parameters(), preset(traversal, "resident").values, {}, "tiled"));
+        EXPECT_EQ(session->run(frame).download(), right.pairs);
+    }
+}
+
+/// A frame has as many groups as the last one had work for: of bodies far apart next to none.
+TEST_P(Tiles, AFrameWithMuchMoreThanTheLast) {
+    const auto scene = boxes_scene(5, 3);
+    const auto frame = scene.frame(0);
+    auto apart = frame;
+    for (std::size_t i = 0; i < apart.poses.size(); ++i)
+        apart.poses[i].translation += Eigen::Vector3d(100.0 * static_cast<double>(i), 0, 0);
+    for (std::size_t i = 0; i < apart.deformed.size(); ++i)
+        for (auto& p : apart.deformed[i]) p += Eigen::Vector3d(100.0 * static_cast<double>(i), 0, 0);
+    const auto right = reference(scene, frame, {}, false, Method::sweep);
+    ASSERT_GT(right.pairs.size(), 1000u);
+    const auto& traversal = algorithm("tiled");
+    const std::array devices{&on};
+    const auto session = traversal.prepare(
+        devices, scene, resolve(traversal.parameters(), {}, {{"broad", "device"}}, "tiled"));
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(session->run(apart).count, 0u);
         EXPECT_EQ(session->run(frame).download(), right.pairs);
     }
 }
