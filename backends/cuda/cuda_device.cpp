@@ -81,10 +81,12 @@ struct CudaBuffer : Buffer::Impl {
     Context context = nullptr;
     DevicePointer pointer = 0;
     bool owned = true;
+    std::shared_ptr<std::uint64_t> frees; ///< the device's count
     CudaBuffer() = default;
     CudaBuffer(const CudaBuffer&) = delete;
     CudaBuffer& operator=(const CudaBuffer&) = delete;
     ~CudaBuffer() override {
+        if (frees) ++*frees;
         if (!owned || pointer == 0) return;
         const CurrentContext current(*driver, context);
         driver->cuMemFree_v2(pointer);
@@ -191,6 +193,8 @@ private:
     std::vector<Command> collected_;                     ///< kept back
     std::vector<std::shared_ptr<Buffer::Impl>> buffers_; ///< that these work on, whoever drops them meanwhile
     Graphs graphs_{libraries_->driver};
+    std::shared_ptr<std::uint64_t> frees_ = std::make_shared<std::uint64_t>(0); ///< of buffers, so far
+    std::uint64_t frees_seen_ = 0;                                              ///< by the graphs
 };
 
 CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index)
@@ -301,6 +305,7 @@ std::shared_ptr<Buffer::Impl> CudaDevice::do_allocate(std::size_t bytes) {
     auto buffer = std::make_shared<CudaBuffer>();
     buffer->driver = &driver();
     buffer->context = context_;
+    buffer->frees = frees_;
     std::size_t free = 0;
     std::size_t total = 0;
     driver().cuMemGetInfo_v2(&free, &total);
@@ -313,6 +318,7 @@ std::shared_ptr<Buffer::Impl> CudaDevice::do_adopt(void* native) {
     auto buffer = std::make_shared<CudaBuffer>();
     buffer->pointer = reinterpret_cast<DevicePointer>(native);
     buffer->owned = false;
+    buffer->frees = frees_;
     return buffer;
 }
 
@@ -357,6 +363,12 @@ void CudaDevice::do_end_collecting() {
 void CudaDevice::submit_collected() {
     if (collected_.empty()) return;
     const Scope scope(*this);
+    // An address may have come back with other memory behind it, which a graph knows nothing of.
+    if (std::exchange(frees_seen_, *frees_) != *frees_) {
+        check(driver().cuStreamSynchronize(stream_), "cuStreamSynchronize",
+              "waiting for graphs that are to go");
+        graphs_.drop();
+    }
     std::uint64_t submissions = 0;
     const auto failure = graphs_.submit(collected_, stream_, submissions);
     count_submissions(submissions);

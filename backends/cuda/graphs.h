@@ -28,7 +28,8 @@ public:
     /// Enqueues commands on a stream that can be captured, which the default stream cannot. `submissions`
     /// becomes larger by the number of calls that hand work over.
     Failure submit(std::span<const Command> commands, Stream stream, std::uint64_t& submissions);
-    /// Destroys all graphs, none of which is running.
+    /// Forgets everything and destroys all graphs, none of which is running. Memory that commands name must
+    /// not be freed, or stop being what it was, without this.
     void drop();
 
 private:

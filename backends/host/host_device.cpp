@@ -2,6 +2,7 @@
 #include "backends/host/host_device.h"
 
 #include "backends/host/dialect.h"
+#include "backends/host/fork_join.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -110,8 +111,10 @@ private:
         return timed([&] {
             const auto begun = run_alone(impl, grid.groups, arguments);
             if (begun == grid.groups) return;
+            ForkJoin edges;
             arena_.execute([&] {
                 tbb::parallel_for(Groups(begun, grid.groups), [&](const Groups& groups) {
+                    const ForkJoin::Part part(edges);
                     run_groups(impl, grid.groups, groups, arguments, true);
                 });
             });

@@ -254,6 +254,26 @@ TEST_P(Conformance, TenRunsGiveTheSameSet) {
     }
 }
 
+/// A session gets the memory of the one before, at the same addresses: what a device remembers of the last
+/// one's commands is of no use.
+TEST_P(Conformance, TheSameSessionAgain) {
+    const auto scene = crowd(48, 6, 0.8);
+    const auto right = reference(scene, scene.frame(0), {}, true, Method::brute_force);
+    const std::array devices{&device(GetParam())};
+    for (const auto* traversal : algorithms())
+        for (int i = 0; i < 3; ++i) {
+            SCOPED_TRACE(traversal->name());
+            const auto session = traversal->prepare(
+                devices, scene,
+                resolve(traversal->parameters(), {}, {{"broad", "device"}}, traversal->name()));
+            for (int run = 0; run < 4; ++run) {
+                const auto result = session->run(scene.frame(0));
+                EXPECT_EQ(result.digest(), right.digest);
+                EXPECT_EQ(result.contact_digest(), right.contact_digest);
+            }
+        }
+}
+
 INSTANTIATE_TEST_SUITE_P(Devices, Conformance, testing::ValuesIn(device_names()),
                          [](const auto& test) { return device_label(test.param); });
 

@@ -225,6 +225,22 @@ TEST_F(CudaGraphs, OtherArgumentsBuffersAndGridsAreOtherCommands) {
     EXPECT_LE(graphs(), 16u);
 }
 
+/// Its commands look the same when other memory gets its address.
+TEST_F(CudaGraphs, NoGraphOutlivesABufferOfItsCommands) {
+    const StageScope stage(*device, Stage::traverse);
+    for (int i = 0; i < 3; ++i) frame(1);
+    ASSERT_EQ(graphs(), 1u);
+    const auto launched = launches();
+    { const auto gone = device->allocate(64, "gone"); }
+    EXPECT_EQ(frame(2), answer(2));
+    EXPECT_EQ(graphs(), 0u);
+    EXPECT_EQ(launches(), launched);
+    EXPECT_EQ(frame(3), answer(3));
+    EXPECT_EQ(frame(4), answer(4));
+    EXPECT_EQ(graphs(), 1u);
+    EXPECT_EQ(launches(), launched + 2);
+}
+
 TEST_F(CudaGraphs, ClocksAndTheDefaultStreamTakeCommandsOneByOne) {
     const StageScope stage(*device, Stage::traverse);
     device->set_clocks(Clocks::on);

@@ -38,12 +38,12 @@ class Faults(unittest.TestCase):
         for call in range(1, calls, EACH):
             with self.subTest(call=call):
                 status, errors = run(self.folder, SHIM_CALL=call)
-                if (status, errors) == (0, []): # a buffer that grows: it asked again, for just what is needed
-                    survived += 1
+                if (status, errors) == (0, []): # a buffer that grows asked again for just what is needed, or one of
+                    survived += 1 # the contact stage's two lists for half
                     continue
                 self.assertEqual((status, len(errors)), (3, 1), errors)
                 self.assertRegex(errors[0], "^tandem: opencl:0.*(failed with code -5, out of resources|does not compile)")
-        self.assertLessEqual(survived, 2)
+        self.assertLessEqual(survived, 3)
         # The last is the wait of the device's end: the work is done, and what may be read still is not freed.
         self.assertEqual(run(self.folder, SHIM_CALL=calls), (0, []))
 

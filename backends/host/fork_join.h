@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#if defined(__SANITIZE_THREAD__)
+extern "C" void __tsan_acquire(void*);
+extern "C" void __tsan_release(void*);
+#endif
+
+namespace tandem::host {
+
+/// What comes before a parallel loop happens before its parts, and these before what comes after it. oneTBB
+/// sees to that, but is not compiled with ThreadSanitizer, which has to be told; elsewhere this is nothing.
+class ForkJoin {
+public:
+    ForkJoin() { release(&fork_); }
+    ForkJoin(const ForkJoin&) = delete;
+    ForkJoin& operator=(const ForkJoin&) = delete;
+    ~ForkJoin() { acquire(&join_); }
+
+    /// Around a part, on whatever thread.
+    class Part {
+    public:
+        explicit Part(ForkJoin& all) : all_(all) { acquire(&all_.fork_); }
+        Part(const Part&) = delete;
+        Part& operator=(const Part&) = delete;
+        ~Part() { release(&all_.join_); }
+
+    private:
+        ForkJoin& all_;
+    };
+
+private:
+#if defined(__SANITIZE_THREAD__)
+    static void acquire(char* edge) { __tsan_acquire(edge); }
+    static void release(char* edge) { __tsan_release(edge); }
+#else
+    static void acquire(char*) {}
+    static void release(char*) {}
+#endif
+
+    char fork_ = 0, join_ = 0;
+};
+
+} // namespace tandem::host
