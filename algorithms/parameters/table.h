@@ -112,9 +112,8 @@ inline constexpr Setting<Submission> submission{
     Submission::one,
     {{"one", Submission::one}, {"each", Submission::each}},
     "",
-    "a resident frame's commands: one: together, as a CUDA graph, when the same have come before and the "
-    "host "
-    "has no body pairs to find meanwhile; each: one by one, as on other devices"};
+    "a resident frame's commands: one: together, as a CUDA graph, when the same have come before, little is "
+    "uploaded and the host has no body pairs to find; each: one by one, as on other devices"};
 inline constexpr Setting<Output> output{
     "output",
     Output::pairs,

@@ -103,6 +103,10 @@ struct LoadedModule {
     Image image; ///< without its bytes
 };
 
+/// Bytes of an upload that is kept back for a graph. A larger one, and what comes after it, goes at once: it
+/// takes about as long as the host takes for the rest of a frame's commands.
+constexpr std::size_t most_kept_back = std::size_t{64} << 10;
+
 /// Page-locked memory for uploads in flight; more than that waits.
 constexpr std::size_t most_staged = std::size_t{256} << 20;
 
@@ -189,7 +193,8 @@ private:
         events_; ///< begin and end of each command since the last reading, then spare ones
     std::size_t events_used_ = 0;
     std::size_t events_read_ = 0;
-    bool collects_ = false;                              ///< within as_one
+    bool in_one_ = false;                                ///< within as_one
+    bool collects_ = false;                              ///< the same, and commands are kept back
     std::vector<Command> collected_;                     ///< kept back
     std::vector<std::shared_ptr<Buffer::Impl>> buffers_; ///< that these work on, whoever drops them meanwhile
     Graphs graphs_{libraries_->driver};
@@ -329,7 +334,10 @@ std::uint64_t CudaDevice::enqueue_now(const Command& command) {
 }
 
 std::uint64_t CudaDevice::enqueue(const Command& command, std::span<Buffer::Impl* const> buffers) {
-    if (!collects_) return enqueue_now(command);
+    if (!collects_) {
+        if (in_one_) count_submissions(1);
+        return enqueue_now(command);
+    }
     collected_.push_back(command);
     for (auto* buffer : buffers) buffers_.push_back(buffer->shared_from_this());
     return 0;
@@ -351,12 +359,12 @@ std::uint64_t CudaDevice::enqueue_and_wait(const Command& command, bool staged) 
 
 /// The default stream cannot be captured.
 bool CudaDevice::do_begin_collecting() {
-    collects_ = stream_ != nullptr;
-    return collects_;
+    in_one_ = collects_ = stream_ != nullptr;
+    return in_one_;
 }
 
 void CudaDevice::do_end_collecting() {
-    collects_ = false;
+    in_one_ = collects_ = false;
     submit_collected();
 }
 
@@ -383,6 +391,10 @@ void CudaDevice::submit_collected() {
 std::uint64_t CudaDevice::do_upload(Buffer::Impl& to, std::span<const std::byte> from, std::size_t offset,
                                     bool blocking) {
     const Scope scope(*this);
+    if (collects_ && from.size() > most_kept_back) {
+        submit_collected();
+        collects_ = false;
+    }
     // A blocking upload reads the caller's pageable memory, as the paper's code did.
     auto* staged = blocking ? nullptr : staging_.take(from.size());
     if (staged != nullptr) std::memcpy(staged, from.data(), from.size());

@@ -61,6 +61,10 @@ Graphs::Failure Graphs::capture(Known& known, Stream stream) {
 }
 
 Graphs::Failure Graphs::submit(std::span<const Command> commands, Stream stream, std::uint64_t& submissions) {
+    if (commands.size() == 1) { // nothing to gain
+        ++submissions;
+        return enqueue(driver_, commands, stream);
+    }
     ++now_;
     auto* known = find(commands);
     if (known == nullptr) {

@@ -225,6 +225,26 @@ TEST_F(CudaGraphs, OtherArgumentsBuffersAndGridsAreOtherCommands) {
     EXPECT_LE(graphs(), 16u);
 }
 
+/// A graph with a large upload would let the device wait for the host.
+TEST_F(CudaGraphs, ALargeUploadAndWhatFollowsGoAtOnce) {
+    const StageScope stage(*device, Stage::traverse);
+    const auto large = device->allocate(100000, "large");
+    for (std::size_t bytes : {100000u, 65537u, 65536u})
+        for (int i = 0; i < 3; ++i) {
+            const auto before = device->submissions(), launched = launches();
+            std::vector<std::byte> zeros(bytes), back(1);
+            device->as_one([&] {
+                device->clear(large, 16);
+                device->upload(large, zeros);
+                device->clear(large, 16);
+                device->download(large, back);
+            });
+            const bool one = bytes == 65536 && i > 0;
+            EXPECT_EQ(device->submissions() - before, one ? 1u : 4u);
+            EXPECT_EQ(launches() - launched, one ? 1u : 0u);
+        }
+}
+
 /// Its commands look the same when other memory gets its address.
 TEST_F(CudaGraphs, NoGraphOutlivesABufferOfItsCommands) {
     const StageScope stage(*device, Stage::traverse);
