@@ -80,22 +80,18 @@ void DecisionStage::launch_open(const Buffer& found, std::uint64_t first, std::u
 
 void DecisionStage::filter(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
                            const Buffer& open, const Status& status) {
-    const std::array<Argument, 11> arguments{found,
-                                             static_cast<std::uint32_t>(first),
-                                             static_cast<std::uint32_t>(end),
-                                             bodies_.row_table(),
-                                             bodies_.poses(),
-                                             bodies_.tetrahedra(),
-                                             bodies_.vertices(),
-                                             open,
-                                             verdicts_,
-                                             undecided_by_filter_,
-                                             status.buffer()};
-    bodies_.device().launch(kernel, {shape_.groups, shape_.group_size}, arguments);
+    decide(kernel, found, first, end, {open, verdicts_, undecided_by_filter_}, status);
 }
 
 void DecisionStage::recheck(const Buffer& found, std::uint64_t first, std::uint64_t end,
                             const Status& status) {
+    decide(recheck_, found, first, end, {verdicts_, undecided_by_filter_, undecided_by_double_}, status);
+    if (decision_ == DecisionPrecision::exact) settle(found, status);
+}
+
+/// Either kernel; they differ in what they read and write.
+void DecisionStage::decide(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
+                           const std::array<Argument, 3>& own, const Status& status) {
     const std::array<Argument, 11> arguments{found,
                                              static_cast<std::uint32_t>(first),
                                              static_cast<std::uint32_t>(end),
@@ -103,12 +99,11 @@ void DecisionStage::recheck(const Buffer& found, std::uint64_t first, std::uint6
                                              bodies_.poses(),
                                              bodies_.tetrahedra(),
                                              bodies_.vertices(),
-                                             verdicts_,
-                                             undecided_by_filter_,
-                                             undecided_by_double_,
+                                             own[0],
+                                             own[1],
+                                             own[2],
                                              status.buffer()};
-    bodies_.device().launch(recheck_, {shape_.groups, shape_.group_size}, arguments);
-    if (decision_ == DecisionPrecision::exact) settle(found, status);
+    bodies_.device().launch(kernel, {shape_.groups, shape_.group_size}, arguments);
 }
 
 /// Those that are new since the status was last read or written: the others have been settled.

@@ -33,6 +33,8 @@ private:
     void filter(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
                 const Buffer& open, const Status& status);
     void recheck(const Buffer& found, std::uint64_t first, std::uint64_t end, const Status& status);
+    void decide(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
+                const std::array<Argument, 3>& own, const Status& status);
     void settle(const Buffer& found, const Status& status);
 
     const Bodies& bodies_;
