@@ -5,76 +5,19 @@
 #include "backends/cuda/current_context.h"
 #include "backends/cuda/driver.h"
 #include "backends/cuda/graphs.h"
-#include "backends/cuda/nvrtc.h"
+#include "backends/cuda/libraries.h"
+#include "backends/cuda/primary_context.h"
 #include "backends/hardware.h"
 #include "backends/ptxas_log.h"
 #include "backends/staging.h"
 
 #include <array>
-#include <cstdio>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <fstream>
 #include <type_traits>
 
 namespace tandem::cuda {
 
 namespace {
-
-std::string names_of_devices(const Driver& driver) {
-    int count = 0;
-    driver.cuDeviceGetCount(&count);
-    std::vector<std::string> names;
-    for (int i = 0; i < count; ++i) {
-        std::array<char, 256> text{};
-        driver.cuDeviceGetName(text.data(), static_cast<int>(text.size()), i);
-        names.emplace_back(text.data());
-    }
-    return fmt::format("{} device(s): {}", count, fmt::join(names, ", "));
-}
-
-Nvrtc open_nvrtc(const Driver& driver) {
-    try {
-        return Nvrtc(driver.version);
-    } catch (const DeviceError& error) {
-        throw DeviceError(fmt::format("cuda: {}, but {}", names_of_devices(driver), error.what()));
-    }
-}
-
-/// What every device of the process shares.
-struct Libraries {
-    Driver driver;
-    Nvrtc nvrtc = open_nvrtc(driver);
-};
-
-/// Keeps a device's primary context alive.
-class PrimaryContext {
-public:
-    PrimaryContext() = default;
-    PrimaryContext(const PrimaryContext&) = delete;
-    PrimaryContext& operator=(const PrimaryContext&) = delete;
-    ~PrimaryContext() {
-        if (driver_ != nullptr) driver_->cuDevicePrimaryCtxRelease_v2(handle_);
-    }
-    Result retain(const Driver& driver, DeviceHandle handle, Context& context) {
-        const auto code = driver.cuDevicePrimaryCtxRetain(&context, handle);
-        if (code == 0) driver_ = &driver;
-        handle_ = handle;
-        return code;
-    }
-
-private:
-    const Driver* driver_ = nullptr;
-    DeviceHandle handle_ = 0;
-};
-
-/// The version of the kernel driver, where Linux tells.
-std::string kernel_driver() {
-    std::ifstream file("/sys/module/nvidia/version");
-    std::string version;
-    file >> version;
-    return version.empty() ? "" : ", " + version;
-}
 
 struct CudaBuffer : Buffer::Impl {
     const Driver* driver = nullptr;
@@ -522,12 +465,6 @@ std::pair<std::int64_t, std::int64_t> CudaDevice::do_interval(std::uint64_t tick
         return static_cast<std::int64_t>(static_cast<double>(ms) * 1e6);
     };
     return {nanoseconds(begin), nanoseconds(length)};
-}
-
-/// The driver and its compiler, loaded once.
-std::shared_ptr<Libraries> libraries() {
-    static const auto loaded = std::make_shared<Libraries>();
-    return loaded;
 }
 
 } // namespace

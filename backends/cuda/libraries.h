@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "backends/cuda/driver.h"
+#include "backends/cuda/nvrtc.h"
+
+#include <memory>
+#include <string>
+
+namespace tandem::cuda {
+
+/// What every device of the process shares. Throws DeviceError, one sentence on what is missing and, without
+/// a compiler, which devices there would be.
+struct Libraries {
+    Libraries();
+
+    Driver driver;
+    Nvrtc nvrtc;
+};
+
+/// The driver and its compiler, loaded once.
+std::shared_ptr<Libraries> libraries();
+
+/// ", " and the version of the kernel driver, where Linux tells; nothing elsewhere.
+std::string kernel_driver();
+
+} // namespace tandem::cuda
