@@ -16,7 +16,7 @@ bool read_version(GmshFile& file) {
     const auto version = in.token("the MSH version");
     const bool two = version == "2.2" || version == "2.1" || version == "2" || version == "2.0";
     if (!two && version != "4.1")
-        in.fail(fmt::format("MSH version {} is not read", quoted(version)), "save as MSH 2.2 or 4.1");
+        in.fail(fmt::format("MSH version {} is not read", in_quotes(version)), "save as MSH 2.2 or 4.1");
     const int encoding = in.get<int>("the file type");
     if (encoding != 0 && encoding != 1)
         in.fail("the file type is neither 0 (ASCII) nor 1 (binary)", "export the file again");
@@ -37,7 +37,7 @@ bool read_version(GmshFile& file) {
 void skip_section(Scanner& in, std::string_view name) {
     const auto end = in.text().find(fmt::format("$End{}", name.substr(1)), in.at());
     if (end == std::string_view::npos)
-        in.fail(fmt::format("section {} has no end", quoted(name)),
+        in.fail(fmt::format("section {} has no end", in_quotes(name)),
                 "the file is truncated: copy or export it again");
     in.seek(end);
 }
@@ -47,7 +47,7 @@ void end_section(Scanner& in, std::string_view name) {
     const auto wanted = fmt::format("$End{}", name.substr(1));
     const auto word = in.token(wanted);
     if (word != wanted)
-        in.fail(fmt::format("expected {}, found {}", quoted(wanted), quoted(word)),
+        in.fail(fmt::format("expected {}, found {}", in_quotes(wanted), in_quotes(word)),
                 "correct the count of the section");
 }
 
@@ -57,7 +57,7 @@ std::string_view section_name(Scanner& in) {
     if (name == "$ParametricNodes")
         in.fail("section $ParametricNodes is not read", "save without Mesh.SaveParametric, or as MSH 4.1");
     if (name[0] != '$' || name.size() < 2)
-        in.fail(fmt::format("expected a section such as $Nodes, found {}", quoted(name)),
+        in.fail(fmt::format("expected a section such as $Nodes, found {}", in_quotes(name)),
                 "correct the file or export it again");
     return name;
 }

@@ -57,7 +57,7 @@ void read_tetrahedra(Scanner& in, Mesh& mesh) {
 
 void read_header(Scanner& in) {
     if (const auto word = in.token("MeshVersionFormatted"); word != "MeshVersionFormatted")
-        in.fail(fmt::format("expected MeshVersionFormatted, found {}", quoted(word)),
+        in.fail(fmt::format("expected MeshVersionFormatted, found {}", in_quotes(word)),
                 "give an ASCII Medit file");
     in.get<int>("the version");
 }
@@ -71,7 +71,7 @@ Mesh parse_medit(std::string_view bytes, const std::string& source) {
     while (!in.done()) {
         const auto keyword = in.token("a keyword");
         if (!is_keyword(keyword))
-            in.fail(fmt::format("expected a keyword, found {}", quoted(keyword)),
+            in.fail(fmt::format("expected a keyword, found {}", in_quotes(keyword)),
                     "correct the count of the section above");
         if (keyword == "End") break;
         if (keyword == "Dimension") {
@@ -82,7 +82,7 @@ Mesh parse_medit(std::string_view bytes, const std::string& source) {
             read_tetrahedra(in, mesh);
         } else {
             if (is_foreign(keyword) && in.get<std::uint64_t>("a count") > 0)
-                in.fail(fmt::format("cells of type {} are not tetrahedra", quoted(keyword)),
+                in.fail(fmt::format("cells of type {} are not tetrahedra", in_quotes(keyword)),
                         "split them into linear tetrahedra");
             skip_numbers(in);
         }

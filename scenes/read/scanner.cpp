@@ -21,7 +21,7 @@ std::size_t line_of(std::string_view text, std::size_t at) {
 }
 
 /// For messages, which are one line of printable text whatever the file holds.
-std::string quoted(std::string_view token) {
+std::string in_quotes(std::string_view token) {
     constexpr std::size_t longest = 40;
     std::string shown(token.substr(0, longest));
     for (char& c : shown)
@@ -73,12 +73,12 @@ void Scanner::fail(std::string_view what, std::string_view remedy) const {
 
 void Scanner::fail_number(std::string_view token, std::string_view what, std::errc error) const {
     if (error == std::errc::result_out_of_range)
-        fail(fmt::format("{} {} is out of range", what, quoted(token)), "repair the mesh");
-    fail(fmt::format("expected {}, found {}", what, quoted(token)), "correct the file or export it again");
+        fail(fmt::format("{} {} is out of range", what, in_quotes(token)), "repair the mesh");
+    fail(fmt::format("expected {}, found {}", what, in_quotes(token)), "correct the file or export it again");
 }
 
 void Scanner::fail_finite(std::string_view token, std::string_view what) const {
-    fail(fmt::format("{} {} is not finite", what, quoted(token)), "repair the mesh");
+    fail(fmt::format("{} {} is not finite", what, in_quotes(token)), "repair the mesh");
 }
 
 } // namespace tandem::read

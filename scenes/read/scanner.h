@@ -15,7 +15,7 @@ namespace tandem::read {
 std::size_t line_of(std::string_view text, std::size_t at);
 
 /// `token` between quotes, shortened and printable.
-std::string quoted(std::string_view token);
+std::string in_quotes(std::string_view token);
 
 /// Walks over text token by token. Shares get, room and fail with Cursor, so that one template reads a layout
 /// in both encodings.

@@ -80,8 +80,9 @@ void read_elements(Scanner& in, std::uint64_t first, Mesh& mesh) {
 
 void check_end(Scanner& in) {
     if (!in.done())
-        in.fail(fmt::format("more rows than the first line says, found {}", read::quoted(in.token("a row"))),
-                "correct the count");
+        in.fail(
+            fmt::format("more rows than the first line says, found {}", read::in_quotes(in.token("a row"))),
+            "correct the count");
 }
 
 } // namespace

@@ -28,7 +28,7 @@ void read_elements(Scanner& in, std::int64_t first, Mesh& mesh) {
     if (mesh.vertices.empty()) in.fail("*ELEMENTS come before *VERTICES", "write *VERTICES first");
     const auto type = in.token("the type of the elements");
     if (type != "TET" && type != "TETS")
-        in.fail(fmt::format("cells of type {} are not tetrahedra", quoted(type)),
+        in.fail(fmt::format("cells of type {} are not tetrahedra", in_quotes(type)),
                 "split them into linear tetrahedra");
     const auto n = in.get<std::uint64_t>("the number of elements");
     in.line(); // vertices per element and a zero

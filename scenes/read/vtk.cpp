@@ -26,14 +26,15 @@ void in_encoding(File& file, Body body) {
 void expect(Scanner& in, std::string_view wanted) {
     const auto word = in.token(wanted);
     if (word != wanted)
-        in.fail(fmt::format("expected {}, found {}", wanted, quoted(word)), "give an unstructured grid");
+        in.fail(fmt::format("expected {}, found {}", wanted, in_quotes(word)), "give an unstructured grid");
 }
 
 Number get_type(Scanner& in) {
     const auto name = in.token("a number type");
     const auto type = number_type(name);
     if (!type)
-        in.fail(fmt::format("number type {} is not read", quoted(name)), "save as float or double, and int");
+        in.fail(fmt::format("number type {} is not read", in_quotes(name)),
+                "save as float or double, and int");
     return *type;
 }
 
@@ -44,7 +45,8 @@ void read_header(File& file) {
     in.line(); // title
     const auto encoding = in.token("ASCII or BINARY");
     if (encoding != "ASCII" && encoding != "BINARY")
-        in.fail(fmt::format("expected ASCII or BINARY, found {}", quoted(encoding)), "export the file again");
+        in.fail(fmt::format("expected ASCII or BINARY, found {}", in_quotes(encoding)),
+                "export the file again");
     file.binary = encoding == "BINARY";
     if (file.binary) in.count_bytes();
     expect(in, "DATASET");
@@ -165,7 +167,7 @@ Mesh parse_vtk(std::string_view bytes, const std::string& source) {
         } else if (keyword == "POINT_DATA" || keyword == "CELL_DATA") {
             break; // they follow the grid
         } else {
-            in.fail(fmt::format("unknown keyword {}", quoted(keyword)),
+            in.fail(fmt::format("unknown keyword {}", in_quotes(keyword)),
                     "correct the counts of the section above");
         }
     }

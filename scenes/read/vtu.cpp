@@ -23,7 +23,7 @@ Tag read_root(Xml& xml) {
     const auto root = xml.next();
     if (!root || root->name != "VTKFile") xml.fail(0, "expected the tag VTKFile", "give a .vtu file");
     if (root->get("type") != "UnstructuredGrid")
-        xml.fail(root->at, fmt::format("VTKFile of type {} is not read", quoted(root->get("type"))),
+        xml.fail(root->at, fmt::format("VTKFile of type {} is not read", in_quotes(root->get("type"))),
                  "give an UnstructuredGrid");
     return *root;
 }
@@ -69,7 +69,7 @@ std::uint64_t get_count(const Xml& xml, const Tag& piece, std::string_view attri
     std::uint64_t count = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
     if (text.empty() || error != std::errc() || end != text.data() + text.size())
-        xml.fail(piece.at, fmt::format("expected a count in {}, found {}", attribute, quoted(text)),
+        xml.fail(piece.at, fmt::format("expected a count in {}, found {}", attribute, in_quotes(text)),
                  "export the file again");
     return count;
 }

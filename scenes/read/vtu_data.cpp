@@ -12,16 +12,16 @@ namespace tandem::read {
 VtuData::VtuData(const Xml& xml, const Tag& file) : xml_(xml) {
     const auto order = file.get("byte_order", "LittleEndian");
     if (order != "LittleEndian" && order != "BigEndian")
-        xml.fail(file.at, fmt::format("unknown byte_order {}", quoted(order)), "export the file again");
+        xml.fail(file.at, fmt::format("unknown byte_order {}", in_quotes(order)), "export the file again");
     if (order == "BigEndian") order_ = std::endian::big;
     const auto header = file.get("header_type", "UInt32");
     if (header != "UInt32" && header != "UInt64")
-        xml.fail(file.at, fmt::format("unknown header_type {}", quoted(header)),
+        xml.fail(file.at, fmt::format("unknown header_type {}", in_quotes(header)),
                  "save with UInt32 or UInt64");
     header_size_ = header == "UInt32" ? 4 : 8;
     const auto compressor = file.get("compressor");
     if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
-        xml.fail(file.at, fmt::format("compressor {} is not read", quoted(compressor)),
+        xml.fail(file.at, fmt::format("compressor {} is not read", in_quotes(compressor)),
                  "save with vtkZLibDataCompressor or without compression");
     compressed_ = !compressor.empty();
 }
@@ -29,7 +29,7 @@ VtuData::VtuData(const Xml& xml, const Tag& file) : xml_(xml) {
 void VtuData::set_appended(const Tag& tag) {
     const auto encoding = tag.get("encoding");
     if (encoding != "raw" && encoding != "base64")
-        xml_.fail(tag.at, fmt::format("unknown encoding {} of AppendedData", quoted(encoding)),
+        xml_.fail(tag.at, fmt::format("unknown encoding {} of AppendedData", in_quotes(encoding)),
                   "save with base64 or raw");
     appended_base64_ = encoding == "base64";
     const auto start = xml_.text().find('_', tag.content);
@@ -41,7 +41,7 @@ void VtuData::set_appended(const Tag& tag) {
 Number VtuData::type_of(const Tag& array) const {
     const auto type = number_type(array.get("type"));
     if (!type)
-        xml_.fail(array.at, fmt::format("number type {} is not read", quoted(array.get("type"))),
+        xml_.fail(array.at, fmt::format("number type {} is not read", in_quotes(array.get("type"))),
                   "save as Float32 or Float64, and Int32 or Int64");
     return *type;
 }
@@ -58,7 +58,7 @@ VtuData::Block VtuData::block_of(const Tag& array) const {
     if (format == "binary")
         return {xml_.text().substr(array.content, end_of(array) - array.content), true, array.at};
     if (format != "appended")
-        xml_.fail(array.at, fmt::format("unknown format {} of DataArray", quoted(format)),
+        xml_.fail(array.at, fmt::format("unknown format {} of DataArray", in_quotes(format)),
                   "save as ascii, binary or appended");
     if (appended_ == 0) xml_.fail(array.at, "no AppendedData for this DataArray", "export the file again");
     const auto text = array.get("offset");
@@ -66,7 +66,7 @@ VtuData::Block VtuData::block_of(const Tag& array) const {
     std::uint64_t offset = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), offset);
     if (text.empty() || error != std::errc() || end != text.data() + text.size() || offset > bytes.size())
-        xml_.fail(array.at, fmt::format("offset {} is not inside AppendedData", quoted(text)),
+        xml_.fail(array.at, fmt::format("offset {} is not inside AppendedData", in_quotes(text)),
                   "it may be truncated: copy or export the file again");
     return {bytes.substr(offset), appended_base64_, array.at};
 }

@@ -58,7 +58,7 @@ void VtuData::with_array(const Tag& array, Body body) const {
     const auto data = decode(block_of(array));
     Cursor in(data,
               fmt::format("{}:{}: DataArray {}", xml_.source(), line_of(xml_.text(), array.at),
-                          quoted(array.get("Name"))),
+                          in_quotes(array.get("Name"))),
               0, order_);
     body(in, type);
     if (!in.done()) in.fail("more numbers than announced", "correct the counts of Piece");

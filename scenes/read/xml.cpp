@@ -61,7 +61,7 @@ void Xml::read_attributes(Tag& tag, std::string_view inside) const {
         const auto open = equals == std::string_view::npos ? equals : inside.find_first_of("\"'", equals);
         const auto close = open == std::string_view::npos ? open : inside.find(inside[open], open + 1);
         if (close == std::string_view::npos)
-            fail(tag.at, fmt::format("tag {} has a broken attribute", quoted(tag.name)),
+            fail(tag.at, fmt::format("tag {} has a broken attribute", in_quotes(tag.name)),
                  "export the file again");
         const auto name = inside.substr(at, equals - at);
         tag.attributes.emplace_back(name.substr(0, name.find_last_not_of(blanks) + 1),
