@@ -33,7 +33,8 @@ Foundation build(const Traversal& traversal, Device& device, const Scene& scene,
                  LaunchShape shape) {
     const auto sharing = is_published(settings) ? Bodies::Sharing::none : Bodies::Sharing::by_mesh;
     Foundation built{std::make_shared<Bodies>(device, scene, geometry_of(settings), sharing,
-                                              settings[parameters::builder]),
+                                              settings[parameters::builder],
+                                              settings[parameters::pair_layout]),
                      {}};
     built.steps = traversal.build({device, scene, settings, *built.bodies, shape});
     return built;
@@ -71,9 +72,9 @@ std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* con
     all.insert(all.end(), {&parameters::builder, &parameters::contact_rule, &parameters::decision,
                            &parameters::broad, &parameters::body_pair_capacity});
     if (published) all.push_back(&parameters::residency);
-    all.insert(all.end(), {&parameters::submission, &parameters::output, &parameters::group_size,
-                           &parameters::work_items, &parameters::threads, &parameters::pair_capacity,
-                           &parameters::contact_capacity});
+    all.insert(all.end(), {&parameters::submission, &parameters::output, &parameters::pair_layout,
+                           &parameters::group_size, &parameters::work_items, &parameters::threads,
+                           &parameters::pair_capacity, &parameters::contact_capacity});
     all.insert(all.end(), own.begin(), own.end());
     return all;
 }
@@ -99,6 +100,7 @@ Pipeline::Pipeline(const Traversal& traversal, Device& on, const Scene& scene, S
     auto foundation = build_within(traversal, on, scene, settings, shape);
     bodies = std::move(foundation.bodies);
     steps = std::move(foundation.steps);
+    settings.set(parameters::pair_layout(bodies->pair_layout()));
     body_pairs = std::make_unique<BodyPairs>(Ground{on, scene, settings, *bodies, shape}, *steps.hierarchy,
                                              writes_of(settings));
     const bool contacting =
@@ -108,7 +110,7 @@ Pipeline::Pipeline(const Traversal& traversal, Device& on, const Scene& scene, S
     if (contacting)
         contacts = std::make_unique<ContactStage>(*bodies, contact_settings_of(settings), shape, launches);
     tools = std::make_shared<AnswerTools>(bodies, shape, contacting);
-    answers = std::make_unique<AnswerPool>(on, real_bytes(bodies->geometry()),
+    answers = std::make_unique<AnswerPool>(on, bodies->pair_layout(), real_bytes(bodies->geometry()),
                                            output == Output::pairs ? settings[parameters::pair_capacity] : 1,
                                            contacting ? settings[parameters::contact_capacity] : 0);
     compile(false);
@@ -120,7 +122,7 @@ void Pipeline::count(bool on) {
 }
 
 void Pipeline::compile(bool windowed) {
-    const WalkBuild wanted{output, counting, windowed};
+    const WalkBuild wanted{output, bodies->pair_layout(), counting, windowed};
     if (built == wanted) return;
     steps.walker->compile(wanted);
     built = wanted;

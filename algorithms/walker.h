@@ -11,6 +11,7 @@ namespace tandem {
 /// How a walk's kernels are built.
 struct WalkBuild {
     Output output = Output::pairs;
+    PairLayout pair_layout = PairLayout::slots;
     bool counting = false; ///< count work; never timed
     bool windowed = false; ///< answer for the items of the status' window only (emit.clh)
 

@@ -7,7 +7,6 @@ namespace tandem {
 
 namespace {
 
-constexpr std::size_t pair_bytes = 16; ///< PAIR_WORDS words
 constexpr std::size_t id_bytes = 8;    ///< CONTACT_WORDS words
 constexpr std::size_t value_reals = 8; ///< CONTACT_REALS
 
@@ -16,15 +15,16 @@ constexpr double pair_share = 0.2, contact_share = 0.4;
 
 } // namespace
 
-AnswerPool::AnswerPool(Device& device, std::size_t real_bytes, std::int64_t pairs, std::int64_t contacts)
-    : device_(device), real_bytes_(real_bytes), contacts_(contacts > 0) {
-    sets_.push_back(make(first_rows(device, pairs, pair_bytes, pair_share),
+AnswerPool::AnswerPool(Device& device, PairLayout layout, std::size_t real_bytes, std::int64_t pairs,
+                       std::int64_t contacts)
+    : device_(device), pair_bytes_(words_of(layout) * 4), real_bytes_(real_bytes), contacts_(contacts > 0) {
+    sets_.push_back(make(first_rows(device, pairs, pair_bytes_, pair_share),
                          contacts_ ? first_rows(device, contacts, contact_bytes(), contact_share) : 0));
 }
 
 std::shared_ptr<AnswerBuffers> AnswerPool::make(std::uint64_t pairs, std::uint64_t contacts) const {
     auto buffers = std::make_shared<AnswerBuffers>();
-    buffers->pairs = Room(device_, "candidate pairs", pair_bytes, pairs);
+    buffers->pairs = Room(device_, "candidate pairs", pair_bytes_, pairs);
     if (!contacts_) return buffers;
     buffers->contact_ids = Room(device_, "contact ids", id_bytes, contacts);
     buffers->contact_values = Room(device_, "contact values", value_reals * real_bytes_, contacts);
@@ -44,7 +44,7 @@ std::shared_ptr<AnswerBuffers> AnswerPool::take() {
 std::shared_ptr<AnswerBuffers> AnswerPool::take_what_fits(std::uint64_t pairs, std::uint64_t contacts) {
     std::erase_if(sets_, [](const auto& set) { return set.use_count() == 1; });
     const auto contact_rows = std::min(contacts, rows_within(device_, contact_bytes(), contact_share));
-    sets_.push_back(make(std::min(pairs, rows_within(device_, pair_bytes, pair_share)), contact_rows));
+    sets_.push_back(make(std::min(pairs, rows_within(device_, pair_bytes_, pair_share)), contact_rows));
     return sets_.back();
 }
 

@@ -3,6 +3,7 @@
 
 #include "algorithms/answer/digest.h"
 #include "algorithms/contacts/reference.h"
+#include "algorithms/parameters/table.h"
 #include "algorithms/sources.h"
 #include "scenes/parallel.h"
 
@@ -13,8 +14,9 @@ namespace tandem {
 namespace {
 
 constexpr std::size_t block = 4096; ///< contacts a core takes at a time
+constexpr std::uint64_t most_expanded = std::uint64_t{1}
+                                        << 20; ///< pairs that are brought to the host at once
 
-using PairRow = std::array<std::uint32_t, 4>;
 using ContactIds = std::array<std::uint32_t, 2>;
 
 template<class Row>
@@ -43,12 +45,13 @@ void read_values(std::span<const std::byte> bytes, std::size_t index, ContactPoi
     contact.depth = static_cast<double>(row[6]);
 }
 
-template<class Real>
-Digest digest_of_contacts(const AnswerTools& tools, std::span<const PairRow> rows,
-                          std::span<const ContactIds> ids, std::span<const std::byte> values) {
+/// `pair_at`: the pair of a row.
+template<class Real, class PairAt>
+Digest digest_of_contacts(const PairAt& pair_at, std::span<const ContactIds> ids,
+                          std::span<const std::byte> values) {
     Digest sum{ids.size(), 0, 0};
     for (std::size_t i = 0; i < ids.size(); ++i) {
-        const auto pair = tools.pair_of(rows[ids[i][0]]);
+        const Pair pair = pair_at(ids[i][0]);
         const auto v = values_of<Real>(values, i);
         const Contact<Real> contact{ids[i][1], {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]};
         const auto [a, b] = contact_terms(pair.body_a, pair.tet_a, pair.body_b, pair.tet_b, contact);
@@ -59,14 +62,15 @@ Digest digest_of_contacts(const AnswerTools& tools, std::span<const PairRow> row
 }
 
 /// Appends contacts whose rows and values are here, on all cores.
-void convert(const AnswerTools& tools, std::span<const PairRow> rows, std::span<const ContactIds> ids,
+template<class PairAt>
+void convert(const AnswerTools& tools, const PairAt& pair_at, std::span<const ContactIds> ids,
              std::span<const std::byte> values, std::vector<ContactPoint>& contacts) {
     const auto first = contacts.size();
     contacts.resize(first + ids.size());
     parallel_for((ids.size() + block - 1) / block, [&](std::size_t part) {
         for (auto i = part * block; i < std::min(ids.size(), (part + 1) * block); ++i) {
             auto& contact = contacts[first + i];
-            contact.pair = tools.pair_of(rows[ids[i][0]]);
+            contact.pair = pair_at(ids[i][0]);
             contact.feature = ids[i][1];
             if (tools.in_double())
                 read_values<double>(values, i, contact);
@@ -82,12 +86,17 @@ public:
                std::uint64_t pairs, std::uint64_t contacts)
         : tools_(std::move(tools)), buffers_(std::move(buffers)), pairs_(pairs), contacts_(contacts) {}
 
-    PairBuffer pairs() const override { return {buffers_->pairs.buffer(), pairs_, buffers_->pairs.rows()}; }
+    PairBuffer pairs() const override {
+        return {buffers_->pairs.buffer(), tools_->layout(), pairs_, buffers_->pairs.rows()};
+    }
+    void expand(std::uint64_t first, std::uint64_t count, const Buffer& expanded) const override {
+        tools_->expand(buffers_->pairs.buffer(), first, count, expanded);
+    }
     Digest digest() const override { return tools_->digest(buffers_->pairs.buffer(), pairs_); }
     Digest contact_digest() const override { return tools_->contact_digest(*buffers_, contacts_); }
 
     void append_pairs(std::vector<Pair>& pairs) const override {
-        for (const auto& row : rows()) pairs.push_back(tools_->pair_of(row));
+        tools_->download(buffers_->pairs.buffer(), pairs_, pairs);
     }
 
     void append_contacts(std::vector<ContactPoint>& contacts) const override {
@@ -99,14 +108,13 @@ public:
             const StageScope scope(device, Stage::read);
             device.download(buffers_->contact_values.buffer(), values);
         }
-        convert(*tools_, rows(), ids, values, contacts);
+        std::vector<Pair> pairs;
+        append_pairs(pairs);
+        convert(
+            *tools_, [&](std::uint32_t row) { return pairs[row]; }, ids, values, contacts);
     }
 
 private:
-    std::vector<PairRow> rows() const {
-        return rows_of<PairRow>(tools_->device(), buffers_->pairs.buffer(), pairs_);
-    }
-
     std::shared_ptr<const AnswerTools> tools_;
     std::shared_ptr<const AnswerBuffers> buffers_;
     std::uint64_t pairs_, contacts_;
@@ -116,9 +124,12 @@ private:
 
 AnswerTools::AnswerTools(std::shared_ptr<const Bodies> bodies, LaunchShape shape, bool contacts)
     : bodies_(std::move(bodies)), shape_(shape) {
-    const auto defines = row_defines(bodies_->geometry(), shape.group_size);
+    auto defines = row_defines(bodies_->geometry(), shape.group_size);
+    define(defines, parameters::pair_layout, layout());
     sums_ = device().allocate(16, "sums of a digest");
-    pairs_kernel_ = device().compile(kernel_source("algorithms/answer/digest.cl"), "digest_pairs", defines);
+    const auto& source = kernel_source("algorithms/answer/digest.cl");
+    pairs_kernel_ = device().compile(source, "digest_pairs", defines);
+    expand_kernel_ = device().compile(source, "expand_pairs", defines);
     if (contacts)
         contacts_kernel_ = device().compile(kernel_source("algorithms/contacts/digest_contacts.cl"),
                                             "digest_contacts", defines);
@@ -133,7 +144,7 @@ Digest AnswerTools::sums(std::uint64_t count) const {
 Digest AnswerTools::digest(const Buffer& pairs, std::uint64_t count) const {
     const StageScope scope(device(), Stage::postprocess);
     device().clear(sums_, 16);
-    const std::array<Argument, 5> arguments{pairs, static_cast<std::uint32_t>(count), bodies_->row_table(),
+    const std::array<Argument, 5> arguments{pairs, static_cast<std::uint32_t>(count), bodies_->owners(),
                                             bodies_->ids(), sums_};
     device().launch(pairs_kernel_, {shape_.groups, shape_.group_size}, arguments);
     return sums(count);
@@ -144,7 +155,7 @@ Digest AnswerTools::contact_digest(const AnswerBuffers& buffers, std::uint64_t c
     const StageScope scope(device(), Stage::postprocess);
     device().clear(sums_, 16);
     const std::array<Argument, 7> arguments{buffers.pairs.buffer(),
-                                            bodies_->row_table(),
+                                            bodies_->owners(),
                                             bodies_->ids(),
                                             buffers.contact_ids.buffer(),
                                             buffers.contact_values.buffer(),
@@ -154,8 +165,45 @@ Digest AnswerTools::contact_digest(const AnswerBuffers& buffers, std::uint64_t c
     return sums(contacts);
 }
 
-Pair AnswerTools::pair_of(const std::array<std::uint32_t, 4>& row) const {
-    return {row[0], bodies_->mesh(row[0]).ids[row[2]], row[1], bodies_->mesh(row[1]).ids[row[3]]};
+void AnswerTools::expand(const Buffer& pairs, std::uint64_t first, std::uint64_t count,
+                         const Buffer& expanded) const {
+    const StageScope scope(device(), Stage::postprocess);
+    const std::array<Argument, 6> arguments{pairs,
+                                            static_cast<std::uint32_t>(first),
+                                            static_cast<std::uint32_t>(count),
+                                            bodies_->owners(),
+                                            bodies_->ids(),
+                                            expanded};
+    device().launch(expand_kernel_, {shape_.groups, shape_.group_size}, arguments);
+}
+
+/// Through a buffer for a part of them at a time: memory may be short where answers are large.
+void AnswerTools::download(const Buffer& pairs, std::uint64_t count, std::vector<Pair>& out) const {
+    if (count == 0) return;
+    Buffer expanded;
+    std::uint64_t rows = std::min(count, most_expanded);
+    for (; !expanded; rows = expanded ? rows : rows / 2) {
+        try {
+            expanded = device().allocate(rows * sizeof(Pair), "pairs on their way to the host");
+        } catch (const OutOfMemory&) {
+            if (rows == 1) throw;
+        }
+    }
+    const auto begin = out.size();
+    out.resize(begin + count);
+    for (std::uint64_t first = 0; first < count; first += rows) {
+        const auto part = std::min(rows, count - first);
+        expand(pairs, first, part, expanded);
+        const StageScope scope(device(), Stage::read);
+        device().download(expanded, std::as_writable_bytes(std::span(out).subspan(begin + first, part)));
+    }
+}
+
+Pair AnswerTools::pair_of(const std::uint32_t* row) const {
+    const bool slots = layout() == PairLayout::slots;
+    const auto a = slots ? bodies_->place_of(row[0]) : Bodies::Place{row[0], row[2]};
+    const auto b = slots ? bodies_->place_of(row[1]) : Bodies::Place{row[1], row[3]};
+    return {a.body, bodies_->mesh(a.body).ids[a.item], b.body, bodies_->mesh(b.body).ids[b.item]};
 }
 
 std::shared_ptr<const AnswerPart> device_part(std::shared_ptr<const AnswerTools> tools,
@@ -166,7 +214,13 @@ std::shared_ptr<const AnswerPart> device_part(std::shared_ptr<const AnswerTools>
 
 HostPart::HostPart(std::shared_ptr<const AnswerTools> tools, const AnswerBuffers& buffers,
                    std::uint64_t count)
-    : tools_(std::move(tools)), rows_(rows_of<PairRow>(tools_->device(), buffers.pairs.buffer(), count)) {}
+    : tools_(std::move(tools)),
+      count_(count),
+      rows_(rows_of<std::uint32_t>(tools_->device(), buffers.pairs.buffer(), count * tools_->row_words())) {}
+
+void HostPart::expand(std::uint64_t, std::uint64_t, const Buffer&) const {
+    throw DeviceError("pairs that were brought to the host are on no device; download them");
+}
 
 void HostPart::add_contacts(const AnswerBuffers& buffers, std::uint64_t count) {
     auto& device = tools_->device();
@@ -183,27 +237,29 @@ Digest HostPart::digest() const {
     constexpr std::size_t at_a_time = std::size_t{1} << 20;
     Digest sum;
     std::vector<Pair> pairs;
-    pairs.reserve(std::min(at_a_time, rows_.size()));
-    for (std::size_t first = 0; first < rows_.size(); first += at_a_time) {
-        const auto count = std::min(at_a_time, rows_.size() - first);
+    pairs.reserve(std::min<std::uint64_t>(at_a_time, count_));
+    for (std::uint64_t first = 0; first < count_; first += at_a_time) {
+        const auto end = std::min<std::uint64_t>(first + at_a_time, count_);
         pairs.clear();
-        for (const auto& row : std::span(rows_).subspan(first, count)) pairs.push_back(tools_->pair_of(row));
+        for (auto row = first; row < end; ++row) pairs.push_back(pair(row));
         sum += digest_of(pairs);
     }
     return sum;
 }
 
 Digest HostPart::contact_digest() const {
-    return tools_->in_double() ? digest_of_contacts<double>(*tools_, rows_, ids_, values_)
-                               : digest_of_contacts<float>(*tools_, rows_, ids_, values_);
+    const auto pair_at = [this](std::uint32_t row) { return pair(row); };
+    return tools_->in_double() ? digest_of_contacts<double>(pair_at, ids_, values_)
+                               : digest_of_contacts<float>(pair_at, ids_, values_);
 }
 
 void HostPart::append_pairs(std::vector<Pair>& pairs) const {
-    for (const auto& row : rows_) pairs.push_back(tools_->pair_of(row));
+    for (std::uint64_t row = 0; row < count_; ++row) pairs.push_back(pair(row));
 }
 
 void HostPart::append_contacts(std::vector<ContactPoint>& contacts) const {
-    convert(*tools_, rows_, ids_, values_, contacts);
+    convert(
+        *tools_, [this](std::uint32_t row) { return pair(row); }, ids_, values_, contacts);
 }
 
 } // namespace tandem

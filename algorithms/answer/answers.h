@@ -10,10 +10,13 @@ namespace tandem {
 
 /// The buffers that one answer lies in.
 struct AnswerBuffers {
-    Room pairs;          ///< rows of pairs.clh
+    Room pairs;          ///< rows of pairs.clh, in the bodies' pair_layout()
     Room contact_ids;    ///< 2 words: pair, feature
     Room contact_values; ///< 8 reals: point, normal, depth, padding
 };
+
+/// PAIR_WORDS of pairs.clh.
+constexpr std::size_t words_of(PairLayout layout) { return layout == PairLayout::slots ? 2 : 4; }
 
 /// What it takes to answer questions about pairs and contacts: kernels, and the bodies they are of. Shared by
 /// a session and its results.
@@ -25,8 +28,15 @@ public:
     /// Of the first rows of a buffer. They launch, and wait for the sums.
     Digest digest(const Buffer& pairs, std::uint64_t count) const;
     Digest contact_digest(const AnswerBuffers& buffers, std::uint64_t contacts) const;
-    /// A row of pairs.clh, which numbers tetrahedra by position, as a pair in input order.
-    Pair pair_of(const std::array<std::uint32_t, 4>& row) const;
+    /// As AnswerPart::expand, of any buffer of rows.
+    void expand(const Buffer& pairs, std::uint64_t first, std::uint64_t count, const Buffer& expanded) const;
+    /// The first rows of a buffer in input order's numbers, appended; waits for them.
+    void download(const Buffer& pairs, std::uint64_t count, std::vector<Pair>& out) const;
+    /// A row of pairs.clh, of row_words() words, which numbers tetrahedra by position, as a pair in input
+    /// order.
+    Pair pair_of(const std::uint32_t* row) const;
+    PairLayout layout() const { return bodies_->pair_layout(); }
+    std::size_t row_words() const { return words_of(layout()); }
     Device& device() const { return bodies_->device(); }
     /// Whether contact values are doubles.
     bool in_double() const { return bodies_->geometry().precision == Precision::fp64; }
@@ -38,7 +48,7 @@ private:
     std::shared_ptr<const Bodies> bodies_;
     LaunchShape shape_;
     Buffer sums_;
-    Kernel pairs_kernel_, contacts_kernel_;
+    Kernel pairs_kernel_, expand_kernel_, contacts_kernel_;
 };
 
 /// Pairs and contacts that lie in a device's buffers.
@@ -54,7 +64,9 @@ public:
     /// Appends the first `count` contacts of `buffers`, which are of these pairs.
     void add_contacts(const AnswerBuffers& buffers, std::uint64_t count);
 
-    PairBuffer pairs() const override { return {{}, rows_.size(), rows_.size()}; }
+    PairBuffer pairs() const override { return {{}, tools_->layout(), count_, count_}; }
+    /// Throws DeviceError: they are on no device.
+    void expand(std::uint64_t first, std::uint64_t count, const Buffer& expanded) const override;
     Digest digest() const override;
     Digest contact_digest() const override;
     void append_pairs(std::vector<Pair>& pairs) const override;
@@ -62,7 +74,10 @@ public:
 
 private:
     std::shared_ptr<const AnswerTools> tools_;
-    std::vector<std::array<std::uint32_t, 4>> rows_;
+    Pair pair(std::uint64_t row) const { return tools_->pair_of(rows_.data() + row * tools_->row_words()); }
+
+    std::uint64_t count_;
+    std::vector<std::uint32_t> rows_; ///< words of all pairs
     std::vector<std::array<std::uint32_t, 2>> ids_;
     std::vector<std::byte> values_;
 };
@@ -73,7 +88,8 @@ class AnswerPool {
 public:
     /// `pairs` and `contacts`: how many there is room for at first, fewer where a limit is near; contacts 0:
     /// no buffers for them.
-    AnswerPool(Device& device, std::size_t real_bytes, std::int64_t pairs, std::int64_t contacts);
+    AnswerPool(Device& device, PairLayout layout, std::size_t real_bytes, std::int64_t pairs,
+               std::int64_t contacts);
 
     /// Buffers that no answer lies in, with as much room as was ever needed. Throws OutOfMemory.
     std::shared_ptr<AnswerBuffers> take();
@@ -88,7 +104,7 @@ private:
     std::size_t contact_bytes() const;
 
     Device& device_;
-    std::size_t real_bytes_;
+    std::size_t pair_bytes_, real_bytes_;
     bool contacts_;
     std::vector<std::shared_ptr<AnswerBuffers>> sets_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/parameters/choices.h"
 #include "backends/device.h"
 #include "scenes/contact.h"
 
@@ -21,10 +22,12 @@ struct Digest {
     bool operator==(const Digest&) const = default;
 };
 
-/// Candidate pairs in a device's memory: rows of 4 words, body a, body b, and the positions of the two
-/// tetrahedra in their bodies' orders (answer/pairs.clh).
+/// Candidate pairs in a device's memory (answer/pairs.clh). With PairLayout::slots rows of 2 words, the slots
+/// of the two tetrahedra; with items of 4: body a, body b, and the positions of the tetrahedra in their
+/// bodies' orders.
 struct PairBuffer {
     Buffer rows; ///< empty when the pairs are not on a device
+    PairLayout layout = PairLayout::slots;
     std::uint64_t count = 0;
     std::uint64_t capacity = 0; ///< rows there is room for
 };
@@ -37,6 +40,9 @@ public:
     /// The pairs where they are. Digests are of these and of the contacts, in input order's numbers, so that
     /// they do not depend on the device.
     virtual PairBuffer pairs() const = 0;
+    /// Writes pairs first..first + count - 1 to a buffer of the device: rows of 4 words, body a, tetrahedron
+    /// a, body b, tetrahedron b, as the scene numbers them. Enqueued; for pairs on a device.
+    virtual void expand(std::uint64_t first, std::uint64_t count, const Buffer& expanded) const = 0;
     virtual Digest digest() const = 0;
     virtual Digest contact_digest() const = 0;
     /// Appends pairs and contacts, in no order.

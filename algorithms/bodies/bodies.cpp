@@ -7,12 +7,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace tandem {
 
 namespace {
 
 constexpr std::uint32_t in_world_flag = 1; ///< BODY_IN_WORLD
+constexpr std::uint32_t block_shift = 1;   ///< BODY_BLOCK_SHIFT
+constexpr std::uint64_t most_blocks = (std::uint64_t{1} << 32) / Bodies::block_slots;
 
 } // namespace
 
@@ -22,13 +25,19 @@ std::vector<std::uint32_t> inverse(std::span<const std::uint32_t> order) {
     return positions;
 }
 
-Bodies::Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sharing sharing, Builder builder)
-    : device_(device), scene_(scene), geometry_(geometry), sharing_(sharing) {
+Bodies::Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sharing sharing, Builder builder,
+               PairLayout pair_layout)
+    : device_(device),
+      scene_(scene),
+      geometry_(geometry),
+      sharing_(sharing),
+      pair_layout_(sharing == Sharing::by_mesh ? pair_layout : PairLayout::items) {
     for (const auto& mesh : scene.meshes) {
         meshes_.push_back(ordered(mesh, builder));
         if (geometry.placement == Placement::exact) reaches_.push_back(reach_of(mesh.vertices));
     }
     lay_out();
+    lay_out_slots();
     upload_static();
 }
 
@@ -63,6 +72,49 @@ void Bodies::lay_out() {
         throw DeviceError("scene: more than 2^32 vertices or tetrahedra; leave bodies out");
 }
 
+void Bodies::lay_out_slots() {
+    slot_order_.resize(rows_.size());
+    std::iota(slot_order_.begin(), slot_order_.end(), 0u);
+    std::stable_partition(slot_order_.begin(), slot_order_.end(),
+                          [&](std::uint32_t body) { return !scene_.bodies[body].fixed; });
+    std::uint64_t blocks = 0;
+    for (const auto body : slot_order_) {
+        first_blocks_.push_back(blocks);
+        blocks += (std::uint64_t{rows_[body].tetrahedron_count} + block_slots - 1) / block_slots;
+    }
+    if (blocks > most_blocks) pair_layout_ = PairLayout::items;
+    if (pair_layout_ == PairLayout::items) return;
+    for (std::size_t i = 0; i < slot_order_.size(); ++i)
+        rows_[slot_order_[i]].flags |= static_cast<std::uint32_t>(first_blocks_[i]) << block_shift;
+    first_blocks_.push_back(blocks);
+}
+
+/// In the form of rows of bodies, with the body where these have the number of tetrahedra.
+std::vector<Bodies::Row> Bodies::block_rows() const {
+    std::vector<Row> blocks;
+    blocks.reserve(first_blocks_.back());
+    for (std::size_t i = 0; i < slot_order_.size(); ++i) {
+        const auto body = slot_order_[i];
+        auto block = rows_[body];
+        block.tetrahedron_count = body;
+        for (auto left = first_blocks_[i + 1] - first_blocks_[i]; left > 0; --left) {
+            blocks.push_back(block);
+            block.tetrahedra += block_slots;
+        }
+    }
+    return blocks;
+}
+
+std::uint32_t Bodies::first_slot(std::size_t body) const {
+    return (rows_[body].flags >> block_shift) * block_slots;
+}
+
+Bodies::Place Bodies::place_of(std::uint32_t slot) const {
+    const auto next = std::upper_bound(first_blocks_.begin(), first_blocks_.end(), slot / block_slots);
+    const auto i = static_cast<std::size_t>(next - first_blocks_.begin()) - 1;
+    return {slot_order_[i], static_cast<std::uint32_t>(slot - first_blocks_[i] * block_slots)};
+}
+
 std::vector<std::byte> Bodies::shared_vertices() const {
     std::vector<std::byte> bytes;
     for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh)
@@ -87,6 +139,8 @@ void Bodies::upload_static() {
     ids_ = uploaded(device_, bytes_of(ids), "tetrahedron ids");
     boundary_ = uploaded(device_, bytes_of(boundary), "boundary faces");
     row_table_ = uploaded(device_, bytes_of(rows_), "bodies");
+    if (pair_layout_ == PairLayout::slots)
+        blocks_ = uploaded(device_, bytes_of(block_rows()), "blocks of slots");
     const auto real = real_bytes(geometry_);
     poses_ = device_.allocate(scene_.bodies.size() * pose_reals(geometry_) * real, "poses");
     vertices_ = device_.allocate(vertex_total_ * 4 * real, "vertices");
@@ -97,7 +151,7 @@ void Bodies::upload_static() {
 
 std::size_t Bodies::bytes() const {
     std::size_t sum = 0;
-    for (const auto* buffer : {&row_table_, &tetrahedra_, &ids_, &boundary_, &vertices_, &poses_})
+    for (const auto* buffer : {&row_table_, &blocks_, &tetrahedra_, &ids_, &boundary_, &vertices_, &poses_})
         sum += buffer->bytes();
     return sum;
 }

@@ -22,10 +22,19 @@ public:
         std::uint32_t tetrahedra = 0, vertices = 0, tetrahedron_count = 0, flags = 0;
     };
 
-    /// Uploads what is static; `scene` must outlive this. Throws DeviceError when there are more than 2^32
-    /// vertices or tetrahedra, OutOfMemory when they do not fit.
+    /// A tetrahedron: its body, and its position in that body's order.
+    struct Place {
+        std::uint32_t body = 0, item = 0;
+    };
+
+    /// Slots of a block: a body's tetrahedra begin with a block.
+    static constexpr std::uint32_t block_slots = 32;
+
+    /// Uploads what is static; `scene` must outlive this. `pair_layout`: what is wanted; see pair_layout().
+    /// Throws DeviceError when there are more than 2^32 vertices or tetrahedra, OutOfMemory when they do not
+    /// fit.
     Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sharing sharing,
-           Builder builder = Builder::morton);
+           Builder builder = Builder::morton, PairLayout pair_layout = PairLayout::slots);
 
     /// Enqueues the upload of what `frame` moves: poses, and vertices of deformable bodies. `all`: also of
     /// what does not move, as the first frame needs it. For Sharing::by_mesh; the published data path uploads
@@ -43,13 +52,24 @@ public:
     const OrderedMesh& ordered_mesh(std::size_t number) const { return meshes_[number]; }
     /// Rows of vertices(): of meshes where they are shared, of bodies where not.
     std::uint64_t vertex_total() const { return vertex_total_; }
+    /// How candidate pairs name tetrahedra: items where slots were not asked for, where there are more than
+    /// 2^32 of them, and for Sharing::none.
+    PairLayout pair_layout() const { return pair_layout_; }
+    /// All bodies in the order of their slots: those that move, then the fixed ones.
+    const std::vector<std::uint32_t>& slot_order() const { return slot_order_; }
+    /// Of its tetrahedra; 0 for PairLayout::items.
+    std::uint32_t first_slot(std::size_t body) const;
+    /// Whose a slot is; of PairLayout::slots.
+    Place place_of(std::uint32_t slot) const;
     /// Bytes of device memory in all buffers.
     std::size_t bytes() const;
     /// The rows of all bodies, and a frame's poses, as kernels read them.
     std::span<const std::byte> packed_rows() const { return bytes_of(rows_); }
     std::vector<std::byte> packed_poses(const Frame& frame) const;
 
-    const Buffer& row_table() const { return row_table_; }   ///< BODY_WORDS words a body
+    const Buffer& row_table() const { return row_table_; } ///< BODY_WORDS words a body
+    /// What members_of (pairs.clh) finds tetrahedra by: rows of blocks of slots, or row_table().
+    const Buffer& owners() const { return pair_layout_ == PairLayout::slots ? blocks_ : row_table_; }
     const Buffer& tetrahedra() const { return tetrahedra_; } ///< 4 vertex numbers each
     const Buffer& ids() const { return ids_; } ///< position -> tetrahedron in input order, a word each
     const Buffer& boundary() const { return boundary_; } ///< a byte each: bit i, the face opposite corner i
@@ -58,6 +78,8 @@ public:
 
 private:
     void lay_out();
+    void lay_out_slots();
+    std::vector<Row> block_rows() const;
     void upload_static();
     std::vector<std::byte> shared_vertices() const;
     std::array<double, 3> drift_of(const Frame& frame, std::size_t body) const;
@@ -72,10 +94,13 @@ private:
     std::vector<OrderedMesh> meshes_;
     std::vector<double> reaches_; ///< by mesh: reach_of; placement = exact only
     std::vector<Row> rows_;
+    PairLayout pair_layout_;
+    std::vector<std::uint32_t> slot_order_;
+    std::vector<std::uint64_t> first_blocks_; ///< in slot_order(), and the number of all behind them
     std::uint64_t vertex_total_ = 0;
     std::uint64_t deformed_vertices_ = 0; ///< of all bodies whose vertices change
     std::uint64_t tetrahedron_total_ = 0;
-    Buffer row_table_, tetrahedra_, ids_, boundary_, vertices_, poses_;
+    Buffer row_table_, blocks_, tetrahedra_, ids_, boundary_, vertices_, poses_;
 };
 
 /// positions[order[i]] = i.

@@ -9,6 +9,14 @@
 
 // A volume here is DIRECTIONS rows {lower, upper}.
 
+DEVICE RealPair slab_of(GLOBAL const real* volumes, GLOBAL const uint* order, uint position, uint axis) {
+    GLOBAL const real* root = volume_of(volumes, order[position]);
+    RealPair slab;
+    slab.x = root[axis];
+    slab.y = root[axis + DIRECTIONS];
+    return slab;
+}
+
 // Copies the root volumes of a tile into the order of bodies and makes their union. A work-group a tile.
 KERNEL void bound_tiles(GLOBAL const real* volumes, GLOBAL const uint* order, uint body_count,
                         GLOBAL RealPair* roots, GLOBAL RealPair* unions) {
@@ -16,10 +24,7 @@ KERNEL void bound_tiles(GLOBAL const real* volumes, GLOBAL const uint* order, ui
     const uint first = GROUP_ID * BROAD_TILE;
     const uint count = body_count - first < BROAD_TILE ? body_count - first : BROAD_TILE;
     for (uint i = LOCAL_ID; i < count * DIRECTIONS; i += GROUP_SIZE) {
-        GLOBAL const real* root = volume_of(volumes, order[first + i / DIRECTIONS]);
-        RealPair slab;
-        slab.x = root[i % DIRECTIONS];
-        slab.y = root[i % DIRECTIONS + DIRECTIONS];
+        const RealPair slab = slab_of(volumes, order, first + i / DIRECTIONS, i % DIRECTIONS);
         tile[i] = slab;
         roots[(ulong)first * DIRECTIONS + i] = slab;
     }
@@ -58,12 +63,12 @@ DEVICE int volumes_overlap(const RealPair* a, LOCAL const RealPair* b) {
 }
 
 // Bit c: the body at `position` overlaps column c, which follows it in the order.
-DEVICE uint overlapping_columns(GLOBAL const RealPair* roots, uint position, LOCAL const RealPair* columns,
-                                uint first, uint count) {
+DEVICE uint overlapping_columns(GLOBAL const RealPair* roots, int is_only_tile, uint position,
+                                LOCAL const RealPair* columns, uint first, uint count) {
     RealPair own[DIRECTIONS];
     uint hits = 0;
     UNROLL for (int axis = 0; axis < DIRECTIONS; ++axis) own[axis] =
-        roots[(ulong)position * DIRECTIONS + axis];
+        is_only_tile ? columns[position * DIRECTIONS + axis] : roots[(ulong)position * DIRECTIONS + axis];
     NO_UNROLL for (uint column = 0; column < count; ++column) {
         if (volumes_overlap(own, columns + column * DIRECTIONS)) hits |= 1u << column;
     }
@@ -96,21 +101,24 @@ DEVICE void write_pairs(GLOBAL uint* pairs, uint capacity, uint index, GLOBAL co
 
 // A work-group takes pairs of tiles a fixed stride apart, a work-item one, and keeps those whose unions
 // overlap; then it does these one after the other, a work-item a row. One addition to the counter a round.
+// Of bodies that are one tile the volumes are enough: no bound_tiles comes before.
 // Loops with barriers run once at least: PoCL 3.1 gets others wrong.
-KERNEL void find_body_pairs(GLOBAL const RealPair* roots, GLOBAL const RealPair* unions,
-                            GLOBAL const uint* order, uint body_count, uint moving_count, GLOBAL uint* pairs,
-                            uint capacity, GLOBAL uint* status) {
+KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* roots,
+                            GLOBAL const RealPair* unions, GLOBAL const uint* order, uint body_count,
+                            uint moving_count, GLOBAL uint* pairs, uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(RealPair, columns, BROAD_TILE * DIRECTIONS);
     LOCAL_ARRAY(uint, chosen, GROUP_SIZE);
     LOCAL_ARRAY(uint, shared, 3);
     const uint tiles = (body_count + BROAD_TILE - 1u) / BROAD_TILE;
     const uint total = (moving_count + BROAD_TILE - 1u) / BROAD_TILE * tiles;
+    const int is_only_tile = tiles == 1u;
     uint start = GROUP_ID;
     do {
         const uint tile_pair = start + LOCAL_ID * GROUP_COUNT;
         if (LOCAL_ID == 0u) shared[CHOSEN] = 0u;
         BARRIER;
-        if (tile_pair < total && tiles_overlap(unions, tile_pair / tiles, tile_pair % tiles))
+        if (tile_pair < total
+            && (is_only_tile || tiles_overlap(unions, tile_pair / tiles, tile_pair % tiles)))
             chosen[LOCAL_ATOMIC_ADD(shared + CHOSEN, 1u)] = tile_pair;
         BARRIER;
         const uint count = shared[CHOSEN];
@@ -126,14 +134,17 @@ KERNEL void find_body_pairs(GLOBAL const RealPair* roots, GLOBAL const RealPair*
             uint rows_done = rows_from;
             NO_UNROLL for (uint c = LOCAL_ID; c < column_count; c += GROUP_SIZE) {
                 UNROLL for (int axis = 0; axis < DIRECTIONS; ++axis) {
-                    columns[c * DIRECTIONS + axis] = roots[(ulong)(from + c) * DIRECTIONS + axis];
+                    columns[c * DIRECTIONS + axis] = is_only_tile
+                                                         ? slab_of(volumes, order, from + c, (uint)axis)
+                                                         : roots[(ulong)(from + c) * DIRECTIONS + axis];
                 }
             }
             do {
                 if (LOCAL_ID == 0u) shared[FOUND] = 0u;
                 BARRIER;
-                const uint hits =
-                    row < rows_end ? overlapping_columns(roots, row, columns, from, column_count) : 0u;
+                const uint hits = row < rows_end ? overlapping_columns(roots, is_only_tile, row, columns,
+                                                                       from, column_count)
+                                                 : 0u;
                 const uint place = hits != 0u ? LOCAL_ATOMIC_ADD(shared + FOUND, count_bits(hits)) : 0u;
                 BARRIER;
                 if (LOCAL_ID == 0u && shared[FOUND] != 0u)

@@ -85,10 +85,12 @@ void BroadStage::sort(const Frame& frame) {
 void BroadStage::launch(const Buffer& pairs, std::uint32_t capacity, const Buffer& status) {
     const StageScope scope(bodies_.device(), Stage::broad);
     const auto count = bodies_.count();
-    const std::array<Argument, 5> bound{hierarchy_.volumes(), order_, count, roots_, unions_};
-    bodies_.device().launch(bound_, {tiles_of(count), shape_.group_size}, bound);
-    const std::array<Argument, 8> find{roots_,        unions_, order_,   count,
-                                       moving_count_, pairs,   capacity, status};
+    if (tiles_of(count) > 1) {
+        const std::array<Argument, 5> bound{hierarchy_.volumes(), order_, count, roots_, unions_};
+        bodies_.device().launch(bound_, {tiles_of(count), shape_.group_size}, bound);
+    }
+    const std::array<Argument, 9> find{hierarchy_.volumes(), roots_, unions_,  order_, count,
+                                       moving_count_,        pairs,  capacity, status};
     const auto tile_pairs = tiles_of(moving_count_) * tiles_of(count);
     bodies_.device().launch(find_, {std::max(1u, std::min(shape_.groups, tile_pairs)), shape_.group_size},
                             find);

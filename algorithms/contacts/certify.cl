@@ -27,14 +27,14 @@ DEVICE void hand_out(LOCAL const uint* found, LOCAL uint* group, GLOBAL uint* op
 
 // Of pairs first..`pair_capacity` - 1, at most OPEN_PAIRS of them, as far as the status counts so many.
 // `verdicts` are read when DECIDED only; a pair that is not known to be apart then counts as one that meets.
-KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* bodies,
+KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* owners,
                           GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
                           GLOBAL const real* vertices, GLOBAL const uchar* boundary,
                           GLOBAL const uchar* verdicts, GLOBAL uint* open, GLOBAL uint* meeting,
                           GLOBAL uint* status) {
     LOCAL_ARRAY(uint, group, GROUP_WORDS);
     LOCAL_ARRAY(uint, waiting, LISTS * FOUND_ROOM);
-    const Candidates all = {found, bodies, poses, tetrahedra, vertices, boundary};
+    const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
     const ulong count = stored(status + STATUS_PAIRS, pair_capacity);
     ulong start = (ulong)first + GROUP_ID * (uint)GROUP_SIZE;
     begin_group(group);

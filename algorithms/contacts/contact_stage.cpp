@@ -31,6 +31,7 @@ ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings
     : bodies_(bodies), shape_(shape_for(shape, 1)), few_shape_(shape_for(shape, 2)) {
     auto& device = bodies.device();
     auto defines = row_defines(bodies.geometry(), shape_.group_size);
+    define(defines, parameters::pair_layout, bodies_.pair_layout());
     define(defines, parameters::contact_rule, settings.rule);
     if (settings.decision != DecisionPrecision::fp32)
         decision_ = std::make_unique<DecisionStage>(bodies, settings.decision, shape);
@@ -79,7 +80,7 @@ void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first
     const std::array<Argument, 12> certify{answer.pairs.buffer(),
                                            first,
                                            end,
-                                           bodies_.row_table(),
+                                           bodies_.owners(),
                                            bodies_.poses(),
                                            bodies_.tetrahedra(),
                                            bodies_.vertices(),
@@ -92,7 +93,7 @@ void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first
     if (decides_open()) decision_->launch_open(answer.pairs.buffer(), first, end, open_, status);
     const std::array<Argument, 11> separate{answer.pairs.buffer(),
                                             first,
-                                            bodies_.row_table(),
+                                            bodies_.owners(),
                                             bodies_.poses(),
                                             bodies_.tetrahedra(),
                                             bodies_.vertices(),
@@ -110,7 +111,7 @@ void ContactStage::generate(const Kernel& kernel, LaunchShape shape, const Answe
     const std::array<Argument, 14> arguments{answer.pairs.buffer(),
                                              first,
                                              end,
-                                             bodies_.row_table(),
+                                             bodies_.owners(),
                                              bodies_.poses(),
                                              bodies_.tetrahedra(),
                                              bodies_.vertices(),

@@ -52,7 +52,7 @@ DEVICE void write_together(const Draft* draft, uint index, const Tray* tray, LOC
 
 // `meeting`: read unless AT_ONCE. `first`, `pair_capacity` and `verdicts` as in certify_pairs, when AT_ONCE.
 KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_capacity,
-                              GLOBAL const uint* bodies, GLOBAL const real* poses,
+                              GLOBAL const uint* owners, GLOBAL const real* poses,
                               GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
                               GLOBAL const uchar* boundary, GLOBAL const uchar* verdicts,
                               GLOBAL const uint* meeting, GLOBAL uint* contact_ids,
@@ -65,7 +65,7 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
     LOCAL_ARRAY(unsigned short, in_order, STAGED* GROUP_SIZE);
     LOCAL_ARRAY(uchar, features, STAGED * GROUP_SIZE);
     const Tray tray = {touches, features, origins, normals, pairs, in_order};
-    const Candidates all = {found, bodies, poses, tetrahedra, vertices, boundary};
+    const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
     const Sink sink = {contact_ids, contact_values, status, contact_capacity};
     const ulong count =
         AT_ONCE ? stored(status + STATUS_PAIRS, pair_capacity) : status[STATUS_WAITING + LIST_MEETING];

@@ -35,6 +35,7 @@ std::vector<std::uint8_t> verdicts_of(const std::vector<std::byte>& bytes) {
 DecisionStage::DecisionStage(const Bodies& bodies, DecisionPrecision decision, LaunchShape shape)
     : bodies_(bodies), decision_(decision), shape_(shape) {
     auto defines = row_defines(bodies.geometry(), shape.group_size);
+    define(defines, parameters::pair_layout, bodies.pair_layout());
     auto& device = bodies.device();
     if (takes_certificates()) {
         const auto& filter = kernel_source("algorithms/contacts/filter.cl");
@@ -95,7 +96,7 @@ void DecisionStage::decide(const Kernel& kernel, const Buffer& found, std::uint6
     const std::array<Argument, 11> arguments{found,
                                              static_cast<std::uint32_t>(first),
                                              static_cast<std::uint32_t>(end),
-                                             bodies_.row_table(),
+                                             bodies_.owners(),
                                              bodies_.poses(),
                                              bodies_.tetrahedra(),
                                              bodies_.vertices(),
@@ -120,7 +121,7 @@ void DecisionStage::settle(const Buffer& found, const Status& status) {
     corners_ = device.allocate(count * corner_reals * real, "corners of undecided pairs");
     const Grid grid{shape_.groups, shape_.group_size};
     const std::array<Argument, 9> gather{found,
-                                         bodies_.row_table(),
+                                         bodies_.owners(),
                                          bodies_.poses(),
                                          bodies_.tetrahedra(),
                                          bodies_.vertices(),

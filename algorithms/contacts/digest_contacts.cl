@@ -16,18 +16,15 @@ DEVICE ulong contact_term(ulong pair_term, uint feature, GLOBAL const uint* bits
 
 // Adds the terms of the first `count` contacts to `sums`. `value_bits`: their values as words. `ids`:
 // tetrahedra in input order.
-KERNEL void digest_contacts(GLOBAL const uint* found, GLOBAL const uint* bodies, GLOBAL const uint* ids,
+KERNEL void digest_contacts(GLOBAL const uint* found, GLOBAL const uint* owners, GLOBAL const uint* ids,
                             GLOBAL const uint* contact_ids, GLOBAL const uint* value_bits, uint count,
                             GLOBAL uint* sums) {
     ulong a = 0;
     ulong b = 0;
     for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         GLOBAL const uint* contact = contact_ids + i * CONTACT_WORDS;
-        GLOBAL const uint* row = found + (ulong)contact[0] * PAIR_WORDS;
-        const uint tet_a = ids[bodies[(ulong)row[0] * BODY_WORDS + BODY_TETRAHEDRA] + row[2]];
-        const uint tet_b = ids[bodies[(ulong)row[1] * BODY_WORDS + BODY_TETRAHEDRA] + row[3]];
-        const ulong pair_term = digest_a(row[0], tet_a, row[1], tet_b);
-        const ulong term = contact_term(pair_term, contact[1], value_bits + i * CONTACT_BITS);
+        const Members pair = members_of(found, contact[0], owners);
+        const ulong term = contact_term(term_of(&pair, ids), contact[1], value_bits + i * CONTACT_BITS);
         a += term;
         b += digest_b(term);
     }

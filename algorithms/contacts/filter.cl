@@ -26,11 +26,11 @@ DEVICE int filtered(const Candidates* all, uint index) {
 }
 
 // `undecided_by_filter` has room for every pair.
-KERNEL void filter_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* bodies,
+KERNEL void filter_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* owners,
                          GLOBAL const real* poses, GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
                          GLOBAL const uint* open, GLOBAL uchar* verdicts, GLOBAL uint* undecided_by_filter,
                          GLOBAL uint* status) {
-    const Candidates all = {found, bodies, poses, tetrahedra, vertices, 0};
+    const Candidates all = {found, owners, poses, tetrahedra, vertices, 0};
     const ulong count =
         OVER_OPEN ? status[STATUS_WAITING + LIST_OPEN] : stored(status + STATUS_PAIRS, pair_capacity);
     for (ulong i = (OVER_OPEN ? 0u : (ulong)first) + GLOBAL_ID; i < count; i += GLOBAL_COUNT) {

@@ -13,12 +13,12 @@
 
 // `undecided_by_filter`: the list that filter_pairs made. `undecided_by_double`: pairs that double cannot
 // decide either; it has room for every pair.
-KERNEL void recheck_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* bodies,
+KERNEL void recheck_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* owners,
                           GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
                           GLOBAL const real* vertices, GLOBAL uchar* verdicts,
                           GLOBAL const uint* undecided_by_filter, GLOBAL uint* undecided_by_double,
                           GLOBAL uint* status) {
-    const Candidates all = {found, bodies, poses, tetrahedra, vertices, 0};
+    const Candidates all = {found, owners, poses, tetrahedra, vertices, 0};
     const uint pairs = stored(status + STATUS_PAIRS, pair_capacity);
     const ulong count = RECHECK_ALL ? pairs : status[STATUS_UNDECIDED_BY_FILTER];
     for (ulong i = (RECHECK_ALL ? (ulong)first : 0u) + GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
@@ -35,11 +35,11 @@ KERNEL void recheck_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
 }
 
 // World corners of the pairs first.. of the list, for the host to decide.
-KERNEL void gather_corners(GLOBAL const uint* found, GLOBAL const uint* bodies, GLOBAL const real* poses,
+KERNEL void gather_corners(GLOBAL const uint* found, GLOBAL const uint* owners, GLOBAL const real* poses,
                            GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
                            GLOBAL const uint* undecided_by_double, uint first, uint count,
                            GLOBAL real* corners) {
-    const Candidates all = {found, bodies, poses, tetrahedra, vertices, 0};
+    const Candidates all = {found, owners, poses, tetrahedra, vertices, 0};
     for (uint i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         Point corner[8];
         load_pair(&all, undecided_by_double[(ulong)first + i], corner, corner + 4);

@@ -17,7 +17,6 @@ constexpr const char* collide_entry = "collide_embree";
 [[maybe_unused]] const bool collide_listed = list_native<&EmbreeWalker::run>(collide_entry);
 
 constexpr std::size_t status_leaf_tests = STATUS_OWN;
-constexpr std::size_t pair_words = 4; ///< PAIR_WORDS
 
 /// A 64-bit counter of the status, which any thread of Embree's may add to. Returns the low word before.
 std::uint32_t add(std::uint32_t* status, std::size_t word, std::uint64_t value) {
@@ -59,6 +58,8 @@ struct EmbreeWalker::Meeting {
     std::uint32_t capacity;
     std::uint32_t* status;
     std::uint32_t window_first, window_end; ///< of items of body a
+    bool in_slots;                          ///< PairLayout::slots
+    std::uint32_t first_a, first_b;         ///< the bodies' first slots
 
     void emit(std::span<const RTCCollision> pairs) const;
     void write(std::span<const RTCCollision> pairs) const;
@@ -69,8 +70,14 @@ void EmbreeWalker::Meeting::write(std::span<const RTCCollision> pairs) const {
     std::uint64_t row = add(status, STATUS_PAIRS, pairs.size());
     for (const auto& pair : pairs) {
         if (row >= capacity) return;
-        const std::array<std::uint32_t, pair_words> words{a, b, pair.primID0, pair.primID1};
-        std::copy(words.begin(), words.end(), found + row++ * pair_words);
+        if (in_slots) {
+            found[2 * row] = first_a + pair.primID0;
+            found[2 * row + 1] = first_b + pair.primID1;
+        } else {
+            const std::array<std::uint32_t, 4> words{a, b, pair.primID0, pair.primID1};
+            std::copy(words.begin(), words.end(), found + row * words.size());
+        }
+        ++row;
     }
 }
 
@@ -120,11 +127,14 @@ void EmbreeWalker::run(const std::uint32_t* body_pairs, std::uint32_t pair_room,
     const auto first = self.build_.windowed ? status[STATUS_WINDOW_FIRST] : 0;
     const auto end =
         self.build_.windowed ? status[STATUS_WINDOW_END] : std::numeric_limits<std::uint32_t>::max();
+    const auto& bodies = trees.bodies();
+    const bool in_slots = bodies.pair_layout() == PairLayout::slots;
     trees.arena().execute([&] {
         tbb::parallel_for(std::uint64_t{0}, count, [&](std::uint64_t i) {
             const auto a = body_pairs[2 * i], b = body_pairs[2 * i + 1];
-            Meeting meeting{self,   a,     b,  trees.boxes(a).data(), trees.boxes(b).data(), found, capacity,
-                            status, first, end};
+            Meeting meeting{
+                self,  a,   b,        trees.boxes(a).data(), trees.boxes(b).data(), found, capacity, status,
+                first, end, in_slots, bodies.first_slot(a),  bodies.first_slot(b)};
             if (trees.scene(a) && trees.scene(b))
                 rtcCollide(trees.scene(a), trees.scene(b), self.leaf_test_, &meeting);
         });

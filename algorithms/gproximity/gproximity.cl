@@ -93,7 +93,10 @@ DEVICE Step walk_item(Step step, GLOBAL const real* nodes, GLOBAL const uint* tr
     if (!overlap(node_a, node_b)) return step;
     const int leaf_a = is_leaf(step.a, a[TREE_ITEMS]);
     const int leaf_b = is_leaf(step.b, b[TREE_ITEMS]);
-    if (leaf_a && leaf_b)
+    if (leaf_a && leaf_b && EMITS_SLOTS)
+        emit_slots(status, found, capacity, first_slot_of(a) + leaf_item(step.a, a[TREE_ITEMS]),
+                   first_slot_of(b) + leaf_item(step.b, b[TREE_ITEMS]));
+    else if (leaf_a && leaf_b)
         emit(tally, status, found, capacity, bodies, ids, body_a, body_b, leaf_item(step.a, a[TREE_ITEMS]),
              leaf_item(step.b, b[TREE_ITEMS]));
     else

@@ -14,6 +14,7 @@ namespace tandem {
 namespace {
 
 constexpr std::uint32_t level_words = 4;
+constexpr std::uint32_t level_bits = 5; ///< TREE_LEVEL_BITS
 constexpr std::uint32_t job_words = 8;
 constexpr std::uint32_t most_top_items = 1024; ///< of a level that one work-group refits
 
@@ -61,7 +62,8 @@ void ChunkTrees::lay_out() {
     }
     for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
         trees_.push_back({static_cast<std::uint32_t>(slots_), first_level[bodies_.scene().bodies[body].mesh],
-                          static_cast<std::uint32_t>(levels(body).size()),
+                          static_cast<std::uint32_t>(levels(body).size())
+                              | bodies_.first_slot(body) / Bodies::block_slots << level_bits,
                           bodies_.row(body).tetrahedron_count});
         slots_ += slot_count(levels(body));
     }

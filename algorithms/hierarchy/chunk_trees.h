@@ -38,7 +38,7 @@ public:
 private:
     /// A row of node.clh.
     struct Tree {
-        std::uint32_t nodes = 0, levels = 0, level_count = 0, items = 0;
+        std::uint32_t nodes = 0, levels = 0, level_count_and_block = 0, items = 0;
     };
     /// One launch of refit_strips: jobs of one level, those of bodies that move first.
     struct Strip {

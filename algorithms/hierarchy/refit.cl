@@ -286,7 +286,7 @@ KERNEL void refit_tops(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const ui
     const uint body = chosen[GROUP_ID];
     GLOBAL const uint* tree = tree_of(trees, body);
     const uint first = tree[TREE_NODES];
-    const uint level_count = tree[TREE_LEVEL_COUNT];
+    const uint level_count = level_count_of(tree);
     GLOBAL const uint* rows = level_of(levels, tree, 0u);
     uint level = first_level;
     do { // once at least, and every barrier in it: see refit_strips

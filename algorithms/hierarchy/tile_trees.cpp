@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <numeric>
 
 namespace tandem {
 
@@ -65,17 +64,14 @@ std::uint32_t TileTrees::boxes_of(std::uint32_t body, std::uint32_t level) const
     return boxes;
 }
 
-/// Numbers tiles level after level, those of bodies that move first.
+/// Numbers tiles level after level, bodies in the order of their slots: a tile of level 0 is a block of
+/// slots.
 void TileTrees::lay_out() {
-    order_.resize(bodies_.count());
-    std::iota(order_.begin(), order_.end(), 0u);
-    std::stable_partition(order_.begin(), order_.end(),
-                          [&](std::uint32_t body) { return !bodies_.scene().bodies[body].fixed; });
     first_tiles_.resize(bodies_.count());
     std::uint64_t count = 0;
     for (std::uint32_t level = 0; level == level_first_.size(); ++level) {
         const auto first = count;
-        for (const auto body : order_) {
+        for (const auto body : bodies_.slot_order()) {
             if (level >= levels_over(bodies_.row(body).tetrahedron_count)) continue;
             first_tiles_[body].push_back(static_cast<std::uint32_t>(count));
             count += in_tiles(boxes_of(body, level));
@@ -138,7 +134,7 @@ void TileTrees::plan_refit(std::uint32_t units_at_once) {
         if (level > 0) unit_tiles = lanes;
         std::vector<Unit> units;
         Step step;
-        for (const auto body : order_) {
+        for (const auto body : bodies_.slot_order()) {
             add_units(body, level, unit_tiles, units);
             if (!bodies_.scene().bodies[body].fixed)
                 step.moving_units = static_cast<std::uint32_t>(units.size());

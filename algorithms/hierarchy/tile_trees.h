@@ -80,7 +80,6 @@ private:
     Slabs slabs_;
     std::uint32_t group_size_;
     TileShapes shapes_;
-    std::vector<std::uint32_t> order_;                    ///< bodies: those that move, then the fixed ones
     std::vector<std::uint32_t> level_first_;              ///< the first tile of each level
     std::vector<bool> is_top_;                            ///< by level
     std::vector<std::vector<std::uint32_t>> first_tiles_; ///< by body: its first tile of each of its levels

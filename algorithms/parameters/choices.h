@@ -59,6 +59,12 @@ enum class Slabs {
     all
 };
 
+/// What a candidate pair is in a device's memory (answer/pairs.clh).
+enum class PairLayout {
+    items, ///< 16 bytes: body a, body b, and the positions of the two tetrahedra in their bodies' orders
+    slots  ///< 8 bytes: two numbers of tetrahedra over all bodies
+};
+
 /// What a walk hands out.
 enum class Output { pairs, count, digest };
 

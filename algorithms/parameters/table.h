@@ -120,6 +120,14 @@ inline constexpr Setting<Output> output{
     {{"pairs", Output::pairs}, {"count", Output::count}, {"digest", Output::digest}},
     "OUTPUT",
     "what a walk hands out; contacts need pairs"};
+inline constexpr Setting<PairLayout> pair_layout{
+    "pair_layout",
+    PairLayout::slots,
+    {{"slots", PairLayout::slots}, {"items", PairLayout::items}},
+    "PAIR_LAYOUT",
+    "a candidate pair on the device: slots: 8 bytes, two numbers of tetrahedra over all bodies; items: 16 "
+    "bytes, "
+    "as the published data path and scenes of more than 2^32 slots have it"};
 inline constexpr auto group_size = Setting<std::int64_t>{"group_size", 128, Range{1, 1024}, "GROUP_SIZE",
                                                          "work-items per work-group (1 on host)"}
                                        .with_alternatives({64, 128, 256});

@@ -67,8 +67,8 @@ DEVICE TilePair tile_pair_at(const Turns* turns, GLOBAL const uint* pairs, GLOBA
     return pair;
 }
 
-// Which item a slot is: slots number the boxes of level 0.
-DEVICE WordRow pair_of_slots(GLOBAL const uint* tiles, uint a, uint b) {
+// A pair with PAIR_ITEMS: tiles of level 0 are blocks of slots, in their order.
+DEVICE WordRow items_of_slots(GLOBAL const uint* tiles, uint a, uint b) {
     const Tile tile_a = tile_at(tiles, a / LANES);
     const Tile tile_b = tile_at(tiles, b / LANES);
     WordRow pair;
@@ -84,9 +84,16 @@ DEVICE void write_candidates(const Team* team, uint waiting, GLOBAL const uint* 
                              uint capacity) {
     const ulong place = *team->place;
     for (uint i = LANE_ID; i < waiting; i += (uint)LANE_STEP)
-        if (place + i < capacity)
-            ((GLOBAL WordRow*)found)[place + i] =
-                pair_of_slots(tiles, team->pairs[2u * i], team->pairs[2u * i + 1u]);
+        if (place + i < capacity) {
+            const uint a = team->pairs[2u * i];
+            const uint b = team->pairs[2u * i + 1u];
+            if (PAIR_LAYOUT == PAIR_SLOTS) {
+                const WordPair row = {a, b};
+                ((GLOBAL WordPair*)found)[place + i] = row;
+            } else {
+                ((GLOBAL WordRow*)found)[place + i] = items_of_slots(tiles, a, b);
+            }
+        }
 }
 
 DEVICE void write_tile_pairs(const Team* team, uint waiting, GLOBAL uint* list, uint capacity) {

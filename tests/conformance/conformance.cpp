@@ -60,6 +60,7 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
                            of("idle_limit", {"1", "1000"}),
                            of("batch", {"0", "5"}),
                            of("upload", {"seeds", "queues"}),
+                           of("pair_layout", {"slots", "items"}),
                            of("refill", {"yes", "no"}),
                            of("full_exit", {"yes", "no"}),
                            of("balance", {"parallel", "serial"}),
