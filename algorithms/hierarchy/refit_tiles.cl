@@ -11,7 +11,6 @@
 #define UNIT_COUNT 1
 #define UNIT_PARENT 2 // the tile over them, or NO_TILE
 #define UNIT_BODY 3   // whose volume the last root is, or NO_BODY
-#define NO_TILE 0xffffffffu
 #define NO_BODY 0xffffffffu
 
 // Lanes' values of one word lie side by side, words LANES + 1 reals apart: those of one lane hit different

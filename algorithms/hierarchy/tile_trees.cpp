@@ -5,6 +5,7 @@
 #include "backends/upload.h"
 
 #include <algorithm>
+#include <bit>
 #include <fmt/format.h>
 
 namespace tandem {
@@ -12,8 +13,9 @@ namespace tandem {
 namespace {
 
 constexpr std::uint32_t lanes = TileShapes::lanes;
-constexpr std::uint32_t count_shift = 8;         ///< TILE_COUNT_SHIFT
-constexpr std::uint32_t nothing = 0xffffffff;    ///< NO_TILE, NO_BODY
+constexpr std::uint32_t count_shift = 8;      ///< TILE_COUNT_SHIFT
+constexpr std::uint32_t nothing = 0xffffffff; ///< NO_TILE, NO_BODY
+constexpr std::uint32_t few_bodies = 32, most_begins = 4;
 constexpr std::uint64_t most_tiles = 1ull << 27; ///< so that a word numbers their boxes
 
 std::uint32_t in_tiles(std::uint32_t boxes) { return (boxes + lanes - 1) / lanes; }
@@ -30,11 +32,10 @@ std::uint32_t levels_over(std::uint32_t items) {
 TileTrees::TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size, std::uint32_t units_at_once)
     : bodies_(bodies), device_(bodies.device()), slabs_(slabs), group_size_(group_size), shapes_(bodies) {
     lay_out();
+    choose_begins();
     plan_refit(units_at_once);
     tile_table_ = uploaded(device_, bytes_of(tile_rows()), "tiles");
-    std::vector<std::uint32_t> tops;
-    for (const auto& first : first_tiles_) tops.push_back(first.back());
-    tops_ = uploaded(device_, bytes_of(tops), "top tiles");
+    tops_ = uploaded(device_, bytes_of(top_tiles()), "top tiles");
     const auto& geometry = bodies.geometry();
     const auto real = static_cast<std::uint64_t>(real_bytes(geometry));
     const auto k = static_cast<std::uint64_t>(geometry.k);
@@ -84,6 +85,34 @@ void TileTrees::lay_out() {
     tile_count_ = static_cast<std::uint32_t>(count);
     is_top_.resize(levels());
     for (const auto& first : first_tiles_) is_top_[first.size() - 1] = true;
+}
+
+/// All trees have to end at one level: a body that begins above another could not be tested with it.
+void TileTrees::choose_begins() {
+    if (bodies_.count() > few_bodies || levels() < 2) return;
+    std::uint32_t most = 1;
+    for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
+        if (levels_of(body) != levels()) return;
+        most = std::max(most, boxes_of(body, levels() - 1));
+    }
+    if (most <= most_begins) most_begins_ = std::bit_ceil(most);
+}
+
+std::uint32_t TileTrees::begins(std::uint32_t level) const {
+    if (most_begins_ > 1) return level + 2 == levels() ? most_begins_ : 0;
+    return is_top_[level] ? 1 : 0;
+}
+
+std::vector<std::uint32_t> TileTrees::top_tiles() const {
+    std::vector<std::uint32_t> tops;
+    for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
+        const auto& first = first_tiles_[body];
+        const auto level = first.size() - (most_begins_ > 1 ? 2 : 1);
+        const auto tiles = most_begins_ > 1 ? boxes_of(body, levels() - 1) : 1;
+        for (std::uint32_t tile = 0; tile < most_begins_; ++tile)
+            tops.push_back(tile < tiles ? first[level] + tile : nothing);
+    }
+    return tops;
 }
 
 std::vector<TileTrees::Tile> TileTrees::tile_rows() const {

@@ -28,8 +28,11 @@ public:
     std::uint32_t first_tile(std::uint32_t body, std::uint32_t level) const {
         return first_tiles_[body][level];
     }
-    /// Whether the tree of some body ends at that level.
-    bool is_top(std::uint32_t level) const { return is_top_[level]; }
+    /// Levels that are walked: where few bodies have few tiles below their tops, as many tiles are where they
+    /// begin, for a level tells less there than its launch takes.
+    std::uint32_t walked_levels() const { return levels() - (most_begins_ > 1 ? 1 : 0); }
+    /// With how many tiles a body begins at that level, a power of two; 0: no body does.
+    std::uint32_t begins(std::uint32_t level) const;
     /// The first tile of level 1: how many there are of level 0.
     std::uint32_t first_upper() const { return level_first_.size() > 1 ? level_first_[1] : tile_count_; }
     /// What kernels that include tiles.clh are compiled with.
@@ -41,7 +44,7 @@ public:
     const Buffer& uppers() const { return uppers_; } ///< of the boxes of all other tiles, K words of 32 each
     const Buffer& roots() const { return roots_; }   ///< K reals a tile
     const Buffer& tile_table() const { return tile_table_; } ///< rows of tiles.clh
-    const Buffer& tops() const { return tops_; }             ///< a word a body: its top tile
+    const Buffer& tops() const { return tops_; }             ///< the tiles that bodies begin with, or NO_TILE
     const TileShapes& shapes() const { return shapes_; }
 
 private:
@@ -65,6 +68,8 @@ private:
     std::size_t do_bytes() const override;
 
     void lay_out();
+    void choose_begins();
+    std::vector<std::uint32_t> top_tiles() const;
     std::vector<Tile> tile_rows() const;
     void plan_refit(std::uint32_t units_at_once);
     void add_units(std::uint32_t body, std::uint32_t level, std::uint32_t unit_tiles,
@@ -80,8 +85,9 @@ private:
     Slabs slabs_;
     std::uint32_t group_size_;
     TileShapes shapes_;
-    std::vector<std::uint32_t> level_first_;              ///< the first tile of each level
-    std::vector<bool> is_top_;                            ///< by level
+    std::vector<std::uint32_t> level_first_; ///< the first tile of each level
+    std::vector<bool> is_top_;               ///< by level: whether the tree of some body ends there
+    std::uint32_t most_begins_ = 1;          ///< a power of two
     std::vector<std::vector<std::uint32_t>> first_tiles_; ///< by body: its first tile of each of its levels
     std::uint32_t tile_count_ = 0;
     std::vector<Step> steps_;

@@ -17,15 +17,21 @@ DEVICE uint tile_pair_count(GLOBAL const uint* status, uint level, uint capacity
 // have a's tile in common, then some far on.
 typedef struct {
     ulong next;
-    uint own, listed; // body pairs that begin here, and pairs of tiles from above
+    ulong own;   // pairs of tiles that body pairs begin with here
+    uint listed; // and those from above
     uint batch, left;
 } Turns;
 
 #define MOST_IN_BATCH 8u
 
-DEVICE ulong turn_count(const Turns* turns) { return (ulong)turns->own + turns->listed; }
+DEVICE ulong turn_count(const Turns* turns) { return turns->own + turns->listed; }
 
-DEVICE Turns first_turn(uint own, uint listed) {
+// Body pairs begin with `begins` squared pairs of tiles each, a power of two; 0: not in this launch.
+DEVICE ulong own_pairs(uint begins, uint pair_room, GLOBAL const uint* status) {
+    return begins == 0u ? 0u : (ulong)begins * begins * body_pair_count(pair_room, status);
+}
+
+DEVICE Turns first_turn(ulong own, uint listed) {
     Turns turns;
     const uint teams = GROUP_COUNT * LANE_TEAMS;
     turns.own = own;
@@ -51,14 +57,21 @@ typedef struct {
     int is_any;
 } TilePair;
 
+// `tops`: `begins` tiles a body, NO_TILE where it has fewer.
 DEVICE TilePair tile_pair_at(const Turns* turns, GLOBAL const uint* pairs, GLOBAL const uint* tops,
-                             GLOBAL const uint* list) {
+                             uint begins, GLOBAL const uint* list) {
     TilePair pair = {0u, 0u, 0};
     if (turns->next >= turn_count(turns)) return pair;
     pair.is_any = 1;
     if (turns->next < turns->own) {
-        pair.a = tops[body_a_of(pairs, (uint)turns->next)];
-        pair.b = tops[body_b_of(pairs, (uint)turns->next)];
+        const uint bits = 31u - COUNT_LEADING_ZEROS(begins);
+        const uint body_pair = (uint)(turns->next >> (2u * bits));
+        const uint turn = (uint)turns->next;
+        const uint a = tops[((ulong)body_a_of(pairs, body_pair) << bits) + (turn >> bits & (begins - 1u))];
+        const uint b = tops[((ulong)body_b_of(pairs, body_pair) << bits) + (turn & (begins - 1u))];
+        pair.is_any = a != NO_TILE && b != NO_TILE;
+        pair.a = pair.is_any ? a : 0u;
+        pair.b = pair.is_any ? b : 0u;
     } else {
         GLOBAL const uint* row = list + (turns->next - turns->own) * TILE_PAIR_WORDS;
         pair.a = row[0];
@@ -132,8 +145,8 @@ DEVICE void count_tests(Tally* tally, uint rows, int is_seed) {
     tally->seeds += is_seed ? 1u : 0u;
 }
 
-// Tiles of `level` or lower ones; what overlaps goes to `below`, the list of level - 1. `begins`: whether
-// body pairs begin here.
+// Tiles of `level` or lower ones; what overlaps goes to `below`, the list of level - 1. `begins`: with how many
+// tiles a body begins here, or 0.
 KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL const real* roots,
                              GLOBAL const uint* tiles, GLOBAL const uint* tops, GLOBAL const uint* pairs,
                              uint pair_room, uint begins, uint level, GLOBAL const uint* list, uint capacity,
@@ -141,11 +154,10 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
     TEAM_ARRAYS(LANES * ROW_UNITS(DIRECTIONS))
     GLOBAL uint* counter = status + STATUS_TILE_PAIRS + 2u * (level - 1u);
     Tally tally = empty_tally();
-    Turns turns = first_turn(begins != 0u ? body_pair_count(pair_room, status) : 0u,
-                             tile_pair_count(status, level, capacity));
+    Turns turns = first_turn(own_pairs(begins, pair_room, status), tile_pair_count(status, level, capacity));
     LANE_BARRIER;
     do { // once at least, as loops with barriers have to
-        const TilePair pair = tile_pair_at(&turns, pairs, tops, list);
+        const TilePair pair = tile_pair_at(&turns, pairs, tops, begins, list);
         const Tile a = tile_at(tiles, pair.a);
         const Tile b = tile_at(tiles, pair.b);
         const int highest = a.level > b.level ? a.level == level : b.level == level;
@@ -253,13 +265,13 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
     uint rest_of = 0xffffffffu; // the tile that rest_a is of
 #endif
     Tally tally = empty_tally();
-    Turns turns = first_turn(begins != 0u ? body_pair_count(pair_room, status) : 0u,
-                             tile_pair_count(status, 0u, list_capacity));
+    Turns turns =
+        first_turn(own_pairs(begins, pair_room, status), tile_pair_count(status, 0u, list_capacity));
     LANE_BOX(box, LEAF_DIRECTIONS);
     uint box_of = 0xffffffffu; // the tile whose boxes these are
     LANE_BARRIER;
     do { // once at least, as loops with barriers have to
-        const TilePair pair = tile_pair_at(&turns, pairs, tops, list);
+        const TilePair pair = tile_pair_at(&turns, pairs, tops, begins, list);
         const Tile a = tile_at(tiles, pair.a);
         const Tile b = tile_at(tiles, pair.b);
         const int tested = pair.is_any && a.level == 0u && b.level == 0u; // others begin in another launch

@@ -16,10 +16,11 @@ TiledWalker::TiledWalker(const TileTrees& trees, const Ground& ground, LaunchSha
     : trees_(trees), shape_(shape) {
     const auto rows =
         first_rows(ground.device, ground.settings[tiled_parameters::tile_pair_capacity], row_bytes, 1.0 / 16);
-    const auto lists = std::max<std::size_t>(1, trees.levels() - 1); // nothing is found for the highest level
+    const auto lists =
+        std::max<std::size_t>(1, trees.walked_levels() - 1); // nothing is found for the highest level
     for (std::size_t level = 0; level < lists; ++level)
-        lists_.emplace_back(ground.device, "pairs of tiles", row_bytes, trees.levels() > 1 ? rows : 1);
-    expected_.resize(trees.levels());
+        lists_.emplace_back(ground.device, "pairs of tiles", row_bytes, trees.walked_levels() > 1 ? rows : 1);
+    expected_.resize(trees.walked_levels());
 }
 
 void TiledWalker::do_compile(const WalkBuild& build) {
@@ -40,12 +41,13 @@ Grid TiledWalker::grid(std::uint32_t level) {
 
 bool TiledWalker::do_grow(const Status& status) {
     bool again = false;
-    for (std::uint32_t level = 0; level < trees_.levels(); ++level) {
-        const bool begins = trees_.is_top(level), is_found = level + 1 < trees_.levels();
-        expected_[level].pairs = (begins ? status.counter(STATUS_BODY_PAIRS) : 0)
+    for (std::uint32_t level = 0; level < trees_.walked_levels(); ++level) {
+        const bool is_found = level + 1 < trees_.walked_levels();
+        const std::uint64_t begins = trees_.begins(level);
+        expected_[level].pairs = begins * begins * status.counter(STATUS_BODY_PAIRS)
                                  + (is_found ? status.counter(STATUS_TILE_PAIRS + 2 * level) : 0);
     }
-    for (std::uint32_t level = 0; level + 1 < trees_.levels(); ++level) {
+    for (std::uint32_t level = 0; level + 1 < trees_.walked_levels(); ++level) {
         const auto found = status.counter(STATUS_TILE_PAIRS + 2 * level);
         if (found <= lists_[level].rows()) continue;
         lists_[level].grow(found);
@@ -67,10 +69,10 @@ void TiledWalker::launch_upper(const WalkTask& task, std::uint32_t level) {
                                              trees_.tops(),
                                              task.body_pairs,
                                              task.pair_room,
-                                             std::uint32_t{trees_.is_top(level)},
+                                             trees_.begins(level),
                                              level,
                                              list(level).buffer(),
-                                             level + 1 < trees_.levels() ? list(level).capacity() : 0,
+                                             level + 1 < trees_.walked_levels() ? list(level).capacity() : 0,
                                              list(level - 1).buffer(),
                                              list(level - 1).capacity(),
                                              task.status.buffer()};
@@ -86,9 +88,9 @@ void TiledWalker::launch_leaves(const WalkTask& task) {
                                              trees_.tops(),
                                              task.body_pairs,
                                              task.pair_room,
-                                             std::uint32_t{trees_.is_top(0)},
+                                             trees_.begins(0),
                                              list(0).buffer(),
-                                             trees_.levels() > 1 ? list(0).capacity() : 0,
+                                             trees_.walked_levels() > 1 ? list(0).capacity() : 0,
                                              shapes.starts(),
                                              shapes.vertex_numbers(),
                                              shapes.corners(),
@@ -104,7 +106,7 @@ void TiledWalker::launch_leaves(const WalkTask& task) {
 
 void TiledWalker::do_launch(const WalkTask& task) {
     const StageScope scope(trees_.bodies().device(), Stage::traverse);
-    for (auto level = trees_.levels(); --level > 0;) launch_upper(task, level);
+    for (auto level = trees_.walked_levels(); --level > 0;) launch_upper(task, level);
     launch_leaves(task);
 }
 

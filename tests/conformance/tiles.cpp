@@ -163,6 +163,56 @@ TEST_P(Tiles, AFrameWithMuchMoreThanTheLast) {
     }
 }
 
+/// Few bodies of few tiles below their tops begin with these; many, or of unlike heights, with their tops.
+TEST_P(Tiles, FewBodiesBeginBelowTheirTops) {
+    const auto scene_of = [](const std::vector<std::size_t>& counts, std::size_t bodies) {
+        Random random(9);
+        Scene scene;
+        for (const auto count : counts) {
+            std::vector<Eigen::Vector3d> places;
+            for (std::size_t i = 0; i < count; ++i)
+                places.push_back({random.uniform(), random.uniform(), random.uniform()});
+            scene.meshes.push_back(tetrahedra_at(places, 0.05));
+        }
+        for (std::uint32_t body = 0; body < bodies; ++body)
+            scene.bodies.push_back({.mesh = body % static_cast<std::uint32_t>(counts.size())});
+        scene.frame = [bodies](std::size_t) {
+            Frame frame;
+            frame.poses.resize(bodies);
+            frame.deformed.resize(bodies);
+            for (std::size_t i = 0; i < bodies; ++i)
+                frame.poses[i].translation.x() = 0.03 * static_cast<double>(i);
+            return frame;
+        };
+        return scene;
+    };
+    struct Case {
+        std::vector<std::size_t> counts;
+        std::size_t bodies;
+        std::uint32_t levels, walked, begins;
+    };
+    const std::array devices{&on};
+    const auto& traversal = algorithm("tiled");
+    for (const auto& [counts, count, levels, walked, begins] :
+         {Case{{64}, 3, 2, 1, 2}, Case{{40, 96, 128}, 4, 2, 1, 4}, Case{{1100, 2100}, 2, 3, 2, 4},
+          Case{{129}, 3, 2, 2, 1}, Case{{64, 20}, 4, 2, 2, 1}, Case{{40}, 33, 2, 2, 1}}) {
+        SCOPED_TRACE(fmt::format("{} bodies of {} tetrahedra and more", count, counts.front()));
+        const auto scene = scene_of(counts, count);
+        const Bodies bodies(on, scene, {}, Bodies::Sharing::by_mesh);
+        const TileTrees trees(bodies, Slabs::three, group_size);
+        EXPECT_EQ(trees.levels(), levels);
+        EXPECT_EQ(trees.walked_levels(), walked);
+        EXPECT_EQ(trees.begins(walked - 1), begins);
+        const auto right = reference(scene, scene.frame(0), {}, true, Method::brute_force);
+        ASSERT_GT(right.digest.count, 0u);
+        for (const std::string broad : {"device", "sphere"}) {
+            const auto session = traversal.prepare(
+                devices, scene, resolve(traversal.parameters(), {}, {{"broad", broad}}, "tiled"));
+            for (int i = 0; i < 2; ++i) EXPECT_EQ(session->run(scene.frame(0)).download(), right.pairs);
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Devices, Tiles, testing::ValuesIn(device_names()),
                          [](const auto& name) { return device_label(name.param); });
 
