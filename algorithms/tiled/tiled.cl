@@ -145,8 +145,8 @@ DEVICE void count_tests(Tally* tally, uint rows, int is_seed) {
     tally->seeds += is_seed ? 1u : 0u;
 }
 
-// Tiles of `level` or lower ones; what overlaps goes to `below`, the list of level - 1. `begins`: with how many
-// tiles a body begins here, or 0.
+// Tiles of `level` or lower ones; what overlaps goes to `below`, the list of level - 1. `begins`: with how
+// many tiles a body begins here, or 0.
 KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL const real* roots,
                              GLOBAL const uint* tiles, GLOBAL const uint* tops, GLOBAL const uint* pairs,
                              uint pair_room, uint begins, uint level, GLOBAL const uint* list, uint capacity,
