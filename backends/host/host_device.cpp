@@ -32,7 +32,16 @@ std::uint64_t physical_memory() {
 
 /// The level of the processor's instructions: 2, 3 or 4 of x86-64; 0 elsewhere.
 int processor_level() {
-#if defined(__x86_64__)
+#if defined(__x86_64__) && defined(__clang__)
+    // Older clang knows no names of levels: what sets the processors of each apart.
+    if (!__builtin_cpu_supports("sse4.2") || !__builtin_cpu_supports("popcnt")) return 0;
+    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi2"))
+        return 2;
+    return __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd")
+                   && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")
+               ? 4
+               : 3;
+#elif defined(__x86_64__)
     return __builtin_cpu_supports("x86-64-v4")   ? 4
            : __builtin_cpu_supports("x86-64-v3") ? 3
            : __builtin_cpu_supports("x86-64-v2") ? 2
