@@ -14,8 +14,9 @@ namespace tandem {
 namespace {
 
 constexpr std::size_t block = 4096; ///< contacts a core takes at a time
-constexpr std::uint64_t most_expanded = std::uint64_t{1}
-                                        << 20; ///< pairs that are brought to the host at once
+/// Pairs that are brought to the host at once.
+constexpr std::uint64_t most_expanded = std::uint64_t{1} << 20;
+static_assert(sizeof(Pair) == 16, "a row of expand_pairs");
 
 using ContactIds = std::array<std::uint32_t, 2>;
 
@@ -180,13 +181,14 @@ void AnswerTools::expand(const Buffer& pairs, std::uint64_t first, std::uint64_t
 /// Through a buffer for a part of them at a time: memory may be short where answers are large.
 void AnswerTools::download(const Buffer& pairs, std::uint64_t count, std::vector<Pair>& out) const {
     if (count == 0) return;
-    Buffer expanded;
     std::uint64_t rows = std::min(count, most_expanded);
-    for (; !expanded; rows = expanded ? rows : rows / 2) {
+    Buffer expanded;
+    while (!expanded) {
         try {
             expanded = device().allocate(rows * sizeof(Pair), "pairs on their way to the host");
         } catch (const OutOfMemory&) {
             if (rows == 1) throw;
+            rows /= 2;
         }
     }
     const auto begin = out.size();

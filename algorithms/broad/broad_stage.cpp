@@ -43,7 +43,7 @@ BroadStage::BroadStage(const Bodies& bodies, const Hierarchy& hierarchy, LaunchS
     const auto& geometry = bodies.geometry();
     const auto defines = geometry_defines(geometry, shape_.group_size);
     const auto& source = kernel_source("algorithms/broad/broad.cl");
-    bound_ = device.compile(source, "bound_tiles", defines);
+    if (tiles_of(count) > 1) bound_ = device.compile(source, "bound_tiles", defines);
     find_ = device.compile(source, "find_body_pairs", defines);
     const auto volume = static_cast<std::uint64_t>(geometry.k) * real_bytes(geometry);
     order_ = device.allocate(std::uint64_t{count} * 4, "order of bodies");

@@ -55,7 +55,7 @@ TEST_P(Slots, NumberEveryTetrahedronOnce) {
             EXPECT_EQ(bodies.place_of(slot).body, body);
             EXPECT_EQ(bodies.place_of(slot).item, item);
             const auto& block = rows.at(slot / Bodies::block_slots);
-            EXPECT_EQ(block.tetrahedron_count, body); // BLOCK_BODY
+            EXPECT_EQ(block.tetrahedron_count, body); // in its place (rows.clh)
             EXPECT_EQ(block.tetrahedra + slot % Bodies::block_slots, own.tetrahedra + item);
             EXPECT_EQ(block.vertices, own.vertices);
         }
@@ -75,9 +75,6 @@ TEST_P(Slots, GiveWayToItemsWhereThereAreTooMany) {
     scene.meshes = {tetrahedra_at(places)};
     constexpr std::size_t blocks_of_body = 3125, most_blocks = std::size_t{1} << 27;
     scene.bodies.assign(most_blocks / blocks_of_body, {});
-    EXPECT_EQ(
-        Bodies(on, scene, {}, Bodies::Sharing::by_mesh, Builder::morton, PairLayout::items).pair_layout(),
-        PairLayout::items);
     scene.bodies.push_back({}); // one more than fit
     const Bodies bodies(on, scene, {}, Bodies::Sharing::by_mesh);
     EXPECT_EQ(bodies.pair_layout(), PairLayout::items);
