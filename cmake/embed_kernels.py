@@ -64,9 +64,9 @@ def has_lanes(text):
     return re.search(r"^(?!#define|//).*\bFOR_LANES\b", text, re.M) is not None
 
 
-def host_variant(kernels, geometry, geometries, identifier, level):
+def host_variant(kernels, geometry, geometries, identifier, level, levels):
     """Kernels of one geometry; one that does not name all of it is in the first variant of what it does name. `level`: of
-    the instructions that the file is compiled for, x86-64-v2, -v3 or -v4; 0: of any processor."""
+    the instructions that the file is compiled for, x86-64-v2, -v3 or -v4, one of `levels`; 0: of any processor."""
     out, rows = [], []
     variants = [(name, text, choice) for name, text in kernels.items() for choice in choices(text)]
     for index, (name, text, choice) in enumerate(variants):
@@ -75,7 +75,7 @@ def host_variant(kernels, geometry, geometries, identifier, level):
             continue
         own = own + choice
         # The higher levels have what is measured most: the lowest one serves the rest everywhere.
-        if level > 2 and ("PRECISION=64" in own or "SLABS=1" in own):
+        if level and level != min(levels) and ("PRECISION=64" in own or "SLABS=1" in own):
             continue
         fixed = dict(pair.split("=") for pair in own)
         defaults = {key: value for key, value in DEFAULT.findall(text) if key not in fixed and key != "GROUP_SIZE"}
@@ -136,7 +136,7 @@ def main():
         own = re.sub(r"\W", "_", arguments.own)
         names = ["_".join(filter(None, ["host", own, f"v{level}" if level else "", re.sub(r"\W", "_", geometry)]))
                  for geometry in arguments.geometries]
-        variants = [host_variant(these, geometry, arguments.geometries, name, level)
+        variants = [host_variant(these, geometry, arguments.geometries, name, level, arguments.levels)
                     for geometry, name in zip(arguments.geometries, names)]
         for part, first in enumerate(range(0, len(variants), arguments.each)):
             write(arguments.out / (f"host_v{level}_{part}.cpp" if level else f"host_{part}.cpp"),

@@ -1,4 +1,31 @@
 # SPDX-License-Identifier: MIT
+set(TANDEM_LEVELS 2 3 4 CACHE STRING "Levels of x86-64 that the host's kernels with lanes are compiled for; native: this processor's")
+
+# The levels of TANDEM_LEVELS, native as what this processor has, each once.
+function(tandem_levels result)
+  set(levels ${TANDEM_LEVELS})
+  if(native IN_LIST levels)
+    execute_process(COMMAND ${CMAKE_CXX_COMPILER} -march=native -dM -E -x c++ /dev/null
+                    OUTPUT_VARIABLE has COMMAND_ERROR_IS_FATAL ANY)
+    set(native 2)
+    if(has MATCHES "__AVX2__" AND has MATCHES "__FMA__" AND has MATCHES "__BMI2__")
+      set(native 3)
+    endif()
+    if(native EQUAL 3 AND has MATCHES "__AVX512BW__" AND has MATCHES "__AVX512CD__" AND has MATCHES "__AVX512DQ__"
+       AND has MATCHES "__AVX512VL__")
+      set(native 4)
+    endif()
+    list(TRANSFORM levels REPLACE native ${native})
+  endif()
+  list(REMOVE_DUPLICATES levels)
+  foreach(level ${levels})
+    if(NOT level MATCHES "^[234]$")
+      message(FATAL_ERROR "TANDEM_LEVELS=${TANDEM_LEVELS}: give some of 2, 3, 4 and native")
+    endif()
+  endforeach()
+  set(${result} ${levels} PARENT_SCOPE)
+endfunction()
+
 # tandem_kernels(TARGET K:AXES... [FOLDER F]): flattens each kernel file of algorithms/ with its headers, embeds the texts,
 # and compiles them for the host backend in every listed geometry, in both precisions. With a FOLDER of the project its
 # files instead, which add themselves to the library's in a program that TARGET is, or whose objects it is. Called where
@@ -35,7 +62,7 @@ function(tandem_kernels target)
   # processor has; elsewhere, and where sanitizers are what matters, for what everything is compiled for.
   set(levels)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT given_FOLDER AND NOT TANDEM_SANITIZE)
-    set(levels 2 3 4)
+    tandem_levels(levels)
   endif()
   foreach(part RANGE ${last})
     list(APPEND generated ${out}/host_${part}.cpp)

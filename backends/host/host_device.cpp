@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <new>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
@@ -273,8 +274,25 @@ void add_host_kernels(std::span<const std::span<const HostKernel>> variants) {
     known_variants().insert(known_variants().end(), variants.begin(), variants.end());
 }
 
+std::set<int> compiled_levels() {
+    std::set<int> levels;
+    for (const auto& variant : known_variants())
+        for (const auto& row : variant)
+            if (row.level != 0) levels.insert(row.level);
+    return levels;
+}
+
 std::unique_ptr<Device> make_device(int most_level) {
-    return std::make_unique<HostDevice>(std::min(most_level, processor_level()));
+    const auto levels = compiled_levels();
+    if (levels.empty()) return std::make_unique<HostDevice>(0);
+    const int most = std::min(most_level, processor_level());
+    const auto above = levels.upper_bound(most);
+    if (above == levels.begin())
+        throw DeviceError(
+            fmt::format("host: its kernels are compiled for x86-64-v{} and this is level {}; build with "
+                        "-DTANDEM_LEVELS=\"2;3;4\" for any processor",
+                        *above, most));
+    return std::make_unique<HostDevice>(*std::prev(above));
 }
 
 } // namespace tandem::host
