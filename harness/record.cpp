@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record.h"
 
+#include "backends/hardware.h"
 #include "harness/choosing/choice.h"
 #include "harness/environment.h"
 #include "harness/statistics.h"
@@ -102,7 +103,7 @@ Json record_device(const DeviceInfo& info) {
             {"name", info.name},
             {"driver", info.driver},
             {"compiler", info.compiler},
-            {"hardware", known(info.hardware)},
+            {"hardware", info.hardware.empty() ? Json() : Json(hardware_digest(info.hardware))},
             {"kind", info.is_gpu ? "gpu" : "cpu"},
             {"compute_units", info.compute_units},
             {"memory_bytes", info.global_bytes}};
