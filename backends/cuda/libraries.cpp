@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "backends/cuda/libraries.h"
 
+#include "backends/cuda/nvml.h"
 #include "backends/device.h"
 
 #include <array>
@@ -46,6 +47,7 @@ std::string kernel_driver() {
     std::ifstream file("/sys/module/nvidia/version");
     std::string version;
     file >> version;
+    if (version.empty()) version = nvml()->driver().value_or("");
     return version.empty() ? "" : ", " + version;
 }
 

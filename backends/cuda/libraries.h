@@ -21,7 +21,7 @@ struct Libraries {
 /// The driver and its compiler, loaded once.
 std::shared_ptr<Libraries> libraries();
 
-/// ", " and the version of the kernel driver, where Linux tells; nothing elsewhere.
+/// ", " and the version of the kernel driver, where Linux or NVML tells; nothing elsewhere.
 std::string kernel_driver();
 
 } // namespace tandem::cuda

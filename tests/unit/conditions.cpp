@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: MIT
+// What the machine was like, from trees of files in place of /proc and /sys.
+#include "harness/conditions.h"
+
+#include "backends/hardware.h"
+#include "backends/host/host_device.h"
+#include "harness/control_group.h"
+#include "harness/record.h"
+#include "tests/support/folder.h"
+
+#include <filesystem>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace tandem {
+namespace {
+
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::Optional;
+
+/// Of a processor of which no more is known.
+ProcessorCondition of_cores(unsigned cores) {
+    ProcessorCondition condition;
+    condition.cores = cores;
+    return condition;
+}
+
+/// Of a GPU whose clocks are as they are for these reasons, while others compute on it.
+GpuCondition shared_gpu(std::uint64_t throttle, unsigned processes) {
+    GpuCondition condition;
+    condition.throttle = throttle;
+    condition.processes = processes;
+    return condition;
+}
+
+/// A machine of four cores, of which this process may run on 0 and 2. Times in seconds.
+class Conditions : public testing_support::FolderTest {
+protected:
+    void write(const std::string& file, const std::string& text) const {
+        const auto place = path(file);
+        std::filesystem::create_directories(std::filesystem::path(place).parent_path());
+        testing_support::write_bytes(place, text);
+    }
+
+    /// `busy` seconds on each of the two cores, of `elapsed`; the other two are busy all the time.
+    void write_stat(double elapsed, double busy) const {
+        const auto ticks = static_cast<double>(sysconf(_SC_CLK_TCK));
+        std::string text = "cpu 1 2 3 4 5 6 7 8 9 10\n";
+        for (int core = 0; core < 4; ++core) {
+            const double part = (core % 2 == 0 ? busy : elapsed) * ticks / 4;
+            const double rest = elapsed * ticks - 4 * part;
+            // User, nice, system, idle, iowait, irq, softirq, steal, guest.
+            text += fmt::format("cpu{} {:.0f} {:.0f} 0 {:.0f} {:.0f} 0 {:.0f} {:.0f} 77777 0\n", core, part,
+                                part, rest / 2, rest / 2, part, part);
+        }
+        write("proc/stat", text + "intr 1 2 3\n");
+    }
+
+    ProcessorReader reader() {
+        return ProcessorReader(path(""), [this] { return OwnUse{cores, own}; });
+    }
+
+    std::vector<unsigned> cores{0, 2};
+    double own = 0;
+};
+
+TEST_F(Conditions, OwnWorkIsNotOthers) {
+    write_stat(1000, 100);
+    auto processor = reader();
+    own = 8;
+    write_stat(1010, 104);
+    const auto c = processor.read();
+    EXPECT_EQ(c.cores, 2u);
+    EXPECT_THAT(c.own, Optional(DoubleNear(0.8, 1e-9)));
+    EXPECT_THAT(c.others, Optional(DoubleNear(0, 1e-9)));
+    EXPECT_EQ(disturbance({c, {}}, {c, {}}), std::nullopt);
+}
+
+TEST_F(Conditions, OthersAreCountedOnTheCoresOfThisProcess) {
+    write_stat(1000, 100);
+    auto processor = reader();
+    const Condition before{processor.read(), {}};
+    own = 4;
+    write_stat(1010, 106);
+    const Condition after{processor.read(), {}};
+    EXPECT_EQ(before.processor.others, std::nullopt) << "no time has passed";
+    EXPECT_THAT(after.processor.others, Optional(DoubleNear(0.8, 1e-9)));
+    EXPECT_EQ(disturbance(before, after), "busy: others take 0.8 of 2 cores");
+    EXPECT_EQ(disturbance(before, after, {.others = 0.5}), std::nullopt);
+}
+
+TEST_F(Conditions, DifferencesStartAnew) {
+    write_stat(1000, 100);
+    auto processor = reader();
+    write_stat(1010, 110);
+    EXPECT_THAT(processor.read().others, Optional(DoubleNear(2, 1e-9)));
+    write_stat(1020, 110);
+    EXPECT_THAT(processor.read().others, Optional(DoubleNear(0, 1e-9)));
+}
+
+TEST_F(Conditions, ShortPeriodsAreAddedUp) {
+    write_stat(1000, 100);
+    auto processor = reader();
+    write_stat(1001, 101);
+    EXPECT_THAT(processor.read().others, Optional(DoubleNear(2, 1e-9)));
+    write_stat(1001.12, 101);
+    EXPECT_THAT(processor.read().others, Optional(DoubleNear(2, 1e-9))) << "the period has not ended";
+    write_stat(1001.24, 101.12);
+    EXPECT_THAT(processor.read().others, Optional(DoubleNear(2, 1e-9)));
+    write_stat(1001.36, 101.24);
+    EXPECT_THAT(processor.read().others, Optional(DoubleNear(2 * 0.24 / 0.36, 1e-6))) << "of all its parts";
+}
+
+TEST_F(Conditions, AnotherSetOfCoresStartsAnew) {
+    write_stat(1000, 100);
+    auto processor = reader();
+    cores = {0};
+    write_stat(1010, 101);
+    EXPECT_EQ(processor.read().others, std::nullopt);
+    write_stat(1020, 102);
+    EXPECT_THAT(processor.read().others, Optional(DoubleNear(0.1, 1e-9)));
+    write_stat(900, 0); // another machine, as after a move of a container
+    EXPECT_EQ(processor.read().others, std::nullopt);
+}
+
+TEST_F(Conditions, ClocksOfItsCores) {
+    for (const auto& [core, governor, khz] :
+         {std::tuple{0, "performance", 3000000}, {1, "powersave", 800000}, {2, "performance", 3500000}}) {
+        const auto folder = fmt::format("sys/devices/system/cpu/cpu{}/cpufreq/", core);
+        write(folder + "scaling_governor", fmt::format("{}\n", governor));
+        write(folder + "scaling_cur_freq", fmt::format("{}\n", khz));
+    }
+    auto processor = reader();
+    EXPECT_THAT(processor.read().governor, Optional(std::string("performance")));
+    EXPECT_THAT(processor.read().mhz, Optional(3250));
+    cores = {0, 1};
+    EXPECT_THAT(processor.read().governor, Optional(std::string("mixed")));
+    EXPECT_THAT(processor.read().mhz, Optional(1900));
+}
+
+TEST_F(Conditions, ClocksWithoutCpufreq) {
+    std::string text;
+    for (int core = 0; core < 4; ++core)
+        text +=
+            fmt::format("processor\t: {}\nmodel name\t: A 3 GHz\ncpu MHz\t\t: {}.5\n\n", core, 1000 + core);
+    write("proc/cpuinfo", text);
+    const auto c = reader().read();
+    EXPECT_THAT(c.mhz, Optional(1001.5));
+    EXPECT_EQ(c.governor, std::nullopt);
+}
+
+TEST_F(Conditions, PressureOfTheMachine) {
+    write("proc/pressure/cpu",
+          "some avg10=12.34 avg60=1.00 avg300=0.50 total=99\nfull avg10=0.00 avg60=0 avg300=0 total=0\n");
+    EXPECT_THAT(reader().read().pressure, Optional(12.34));
+}
+
+TEST_F(Conditions, QuotaOfVersion2) {
+    write("proc/self/cgroup", "0::/user.slice/unit.scope\n");
+    write("sys/fs/cgroup/cpu.stat", "usage_usec 5\n");
+    write("sys/fs/cgroup/user.slice/cpu.max", "150000 100000\n");
+    write("sys/fs/cgroup/user.slice/cpu.stat",
+          "usage_usec 5\nnr_periods 9\nnr_throttled 4\nthrottled_usec 8\n");
+    write("sys/fs/cgroup/user.slice/unit.scope/cpu.max", "max 100000\n");
+    write("sys/fs/cgroup/user.slice/unit.scope/cpu.stat", "nr_periods 0\nnr_throttled 1\n");
+    const auto group = read_control_group(path(""));
+    EXPECT_THAT(group.cores, Optional(1.5));
+    EXPECT_THAT(group.throttled, Optional(5));
+
+    auto processor = reader();
+    EXPECT_THAT(processor.read().throttled, Optional(0));
+    write("sys/fs/cgroup/user.slice/cpu.stat", "nr_throttled 7\n");
+    const auto c = processor.read();
+    EXPECT_THAT(c.throttled, Optional(3));
+    EXPECT_THAT(c.quota, Optional(1.5));
+    EXPECT_EQ(disturbance({}, {c, {}}), "quota: throttled 3 times");
+    EXPECT_EQ(disturbance({}, {c, {}}, {.throttled = 3}), std::nullopt);
+    EXPECT_THAT(processor.read().throttled, Optional(0)) << "since the reading before";
+    write("sys/fs/cgroup/user.slice/cpu.stat", "nr_throttled 2\n");
+    EXPECT_THAT(processor.read().throttled, Optional(0)) << "of another group";
+}
+
+TEST_F(Conditions, QuotaOfAContainerOfVersion1) {
+    write("proc/self/cgroup", "12:cpuset:/\n4:cpu,cpuacct:/docker/4fff\n3:cpuacct:/docker/wrong\n");
+    write("sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us", "200000\n");
+    write("sys/fs/cgroup/cpu,cpuacct/cpu.cfs_period_us", "100000\n");
+    write("sys/fs/cgroup/cpu,cpuacct/cpu.stat", "nr_periods 0\nnr_throttled 6\nthrottled_time 0\n");
+    EXPECT_THAT(read_control_group(path("")).cores, Optional(2));
+    EXPECT_THAT(read_control_group(path("")).throttled, Optional(6));
+    write("sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us", "-1\n");
+    EXPECT_EQ(read_control_group(path("")).cores, std::nullopt);
+}
+
+TEST_F(Conditions, NothingToReadIsUnknown) {
+    auto processor = reader();
+    const auto c = processor.read();
+    EXPECT_EQ(c, of_cores(2));
+    EXPECT_EQ(disturbance({c, {}}, {c, {}}), std::nullopt);
+    EXPECT_EQ(condition_json({}).dump(), R"({"processor":{"cores":null,"quota_cores":null,"own_cores":null,)"
+                                         R"("other_cores":null,"governor":null,"mhz":null,)"
+                                         R"("throttled_periods":null,"pressure_percent":null},"gpus":[]})");
+}
+
+TEST_F(Conditions, GarbageIsUnknown) {
+    for (const auto* garbage :
+         {"", "\n", ":", "cpu", "cpu0 x", "cpu0 1 2\ncpu2 1 2 3 4\n", "0:", "0::", "some nan",
+          "some avg10=", "processor : -1\ncpu MHz : 5\n", "processor : 0\ncpu MHz : nan\n", "nr_throttled -",
+          "max", "\xff\xfe 1 2 3", "1e999 1e999"}) {
+        for (const auto* file :
+             {"proc/stat", "proc/cpuinfo", "proc/pressure/cpu", "sys/fs/cgroup/cpu.max",
+              "sys/fs/cgroup/cpu.stat", "sys/devices/system/cpu/cpu0/cpufreq/scaling_cur_freq"})
+            write(file, garbage);
+        for (const auto* groups : {garbage, "0::/\n"}) {
+            write("proc/self/cgroup", groups);
+            auto processor = reader();
+            EXPECT_EQ(processor.read(), of_cores(2)) << garbage;
+        }
+    }
+}
+
+TEST_F(Conditions, OfThisMachine) {
+    const auto use = own_use();
+    EXPECT_FALSE(use.cores.empty());
+    EXPECT_GT(use.seconds, 0);
+    const auto host = host::make_device();
+    ConditionReader conditions({host.get()});
+    const auto c = conditions.read();
+    EXPECT_EQ(c.processor.cores, use.cores.size());
+    EXPECT_THAT(c.gpus, ElementsAre(GpuCondition{})) << "the host is no GPU";
+    EXPECT_TRUE(condition_json(c)["gpus"][0].is_null());
+}
+
+TEST(Disturbance, OfAGpu) {
+    const Condition quiet{{}, {shared_gpu(0x103, 0)}};
+    EXPECT_EQ(disturbance(quiet, quiet), std::nullopt) << "idle, and clocks that someone has set";
+    const Condition capped{{}, {shared_gpu(0x4, 0)}};
+    EXPECT_EQ(disturbance(quiet, capped), "throttled: power cap");
+    EXPECT_EQ(disturbance(capped, quiet), "throttled: power cap");
+    Condition shared{of_cores(4), {shared_gpu(0x4, 2)}};
+    shared.processor.others = 0.5;
+    shared.processor.throttled = 1;
+    EXPECT_EQ(disturbance(quiet, shared), "busy: others take 0.5 of 4 cores; quota: throttled once; "
+                                          "throttled: power cap; other processes on the GPU: 2");
+    EXPECT_EQ(disturbance(quiet, shared, {.others = 1, .throttled = 1, .processes = 2}),
+              "throttled: power cap");
+}
+
+TEST(Disturbance, NamesEveryReasonThatMatters) {
+    EXPECT_THAT(throttle_reasons(~std::uint64_t{0}),
+                ElementsAre("power cap", "hardware slowdown", "sync boost", "heat (software)",
+                            "heat (hardware)", "power brake"));
+    EXPECT_THAT(throttle_reasons(0x103), ElementsAre());
+    for (const auto bit : {0x4u, 0x8u, 0x10u, 0x20u, 0x40u, 0x80u})
+        EXPECT_EQ(throttle_reasons(bit).size(), 1u) << bit;
+}
+
+TEST(Disturbance, InJson) {
+    const ProcessorCondition processor{.cores = 2,
+                                       .quota = 1.5,
+                                       .own = 0.98765,
+                                       .others = 0.0,
+                                       .governor = "performance",
+                                       .mhz = 2596.126,
+                                       .throttled = 3,
+                                       .pressure = 0.5};
+    GpuCondition gpu;
+    gpu.sm_mhz = 1980;
+    gpu.power_w = 76.4321;
+    gpu.throttle = 0x14;
+    EXPECT_EQ(
+        condition_json({processor, {gpu, {}}}).dump(),
+        R"({"processor":{"cores":2,"quota_cores":1.5,"own_cores":0.988,"other_cores":0.0,)"
+        R"("governor":"performance","mhz":2596.126,"throttled_periods":3,"pressure_percent":0.5},"gpus":[)"
+        R"({"sm_mhz":1980,"sm_limit_mhz":null,"memory_mhz":null,"memory_limit_mhz":null,"temperature_c":null,)"
+        R"("power_w":76.432,"power_limit_w":null,"throttle_bits":20,"throttled":["power cap","sync boost"],)"
+        R"("busy_percent":null,"other_processes":null},null]})");
+    EXPECT_EQ(gpu_condition_text(gpu), "1980 MHz SM, 76 W, throttled: power cap, sync boost");
+    EXPECT_EQ(gpu_condition_text({}), "");
+}
+
+TEST(HardwareDigest, IsFnv1a) {
+    // Of the authors' list of values.
+    EXPECT_EQ(hardware_digest(""), "cbf29ce484222325");
+    EXPECT_EQ(hardware_digest("a"), "af63dc4c8601ec8c");
+    EXPECT_EQ(hardware_digest("foobar"), "85944171f73967e8");
+}
+
+TEST(HardwareDigest, StandsInRecordsForTheUuid) {
+    DeviceInfo info;
+    info.hardware = "GPU-5a5a5a5a-5a5a-5a5a-5a5a-5a5a5a5a5a5a";
+    EXPECT_EQ(record_device(info)["hardware"], hardware_digest(info.hardware));
+    EXPECT_EQ(record_device(info).dump().find("5a5a"), std::string::npos);
+    EXPECT_TRUE(record_device({})["hardware"].is_null());
+}
+
+} // namespace
+} // namespace tandem
