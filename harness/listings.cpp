@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/ceilings.h"
 #include "harness/commands.h"
+#include "harness/conditions.h"
 #include "harness/inputs.h"
 #include "harness/record.h"
 #include "scenes/dynamics_settings.h"
@@ -70,7 +71,7 @@ std::string same_as(const std::vector<BackendReport>& backends, const DeviceInfo
     return {};
 }
 
-Json device_json(const DeviceInfo& info, const std::string& same) {
+Json device_json(const DeviceInfo& info, const std::string& same, const GpuCondition& now) {
     return {{"id", info.id},
             {"name", info.name},
             {"driver", info.driver},
@@ -80,7 +81,15 @@ Json device_json(const DeviceInfo& info, const std::string& same) {
             {"local_bytes", info.local_bytes},
             {"double", info.has_double},
             {"hardware", info.hardware.empty() ? Json(nullptr) : Json(info.hardware)},
-            {"same_as", same.empty() ? Json(nullptr) : Json(same)}};
+            {"same_as", same.empty() ? Json(nullptr) : Json(same)},
+            {"now", gpu_condition_json(now)}};
+}
+
+void print_device(const DeviceInfo& info, const std::string& same, const GpuCondition& now) {
+    fmt::print("{:<10} {} ({}), {} compute units, {:.1f} GB, {}{}\n", info.id, info.name, info.driver,
+               info.compute_units, static_cast<double>(info.global_bytes) * 1e-9, info.compiler,
+               same.empty() ? "" : fmt::format("; the same GPU as {}", same));
+    if (const auto text = gpu_condition_text(now); !text.empty()) fmt::print("           now: {}\n", text);
 }
 
 Json algorithm_json(const Traversal& traversal, bool peer) {
@@ -209,11 +218,9 @@ int devices_command(const DevicesOptions& options) {
         for (const auto& device : backend.devices) {
             const auto& info = device->info();
             const auto same = same_as(backends, info);
-            entry["devices"].push_back(device_json(info, same));
-            if (!json)
-                fmt::print("{:<10} {} ({}), {} compute units, {:.1f} GB, {}{}\n", info.id, info.name,
-                           info.driver, info.compute_units, static_cast<double>(info.global_bytes) * 1e-9,
-                           info.compiler, same.empty() ? "" : fmt::format("; the same GPU as {}", same));
+            const auto now = GpuGauge(info).read();
+            entry["devices"].push_back(device_json(info, same, now));
+            if (!json) print_device(info, same, now);
         }
         if (!json && !backend.reason.empty()) fmt::print("{}\n", backend.reason);
         all.push_back(entry);

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""faults.py PROGRAM FOLDER: what the program says when CUDA is absent, old, broken or failing, with the stubs of FOLDER."""
+"""faults.py PROGRAM FOLDER NVML: what the program says when CUDA is absent, old, broken or failing, with the stubs of FOLDER
+and that of NVML, a file."""
 import json
 import os
 import pathlib
@@ -10,15 +11,16 @@ import sys
 import tempfile
 import unittest
 
-if len(sys.argv) != 3:
+if len(sys.argv) != 4:
     sys.exit(__doc__)
-PROGRAM, FOLDER = (pathlib.Path(a).resolve() for a in sys.argv[1:])
+PROGRAM, FOLDER, NVML = (pathlib.Path(a).resolve() for a in sys.argv[1:])
 RUN = ("run", "pile:bodies=4,frames=1", "--repeat", "1", "--algorithm", "chunked")
 
 
 def tandem(*arguments, driver="driver", nvrtc=FOLDER / "nvrtc/libnvrtc.so", **variables):
     environment = {**os.environ, "LD_LIBRARY_PATH": str(FOLDER / driver), **{k: str(v) for k, v in variables.items()}}
     environment.pop("TANDEM_NVRTC", None)
+    environment.setdefault("TANDEM_NVML", "/nonexistent")
     if nvrtc:
         environment["TANDEM_NVRTC"] = str(nvrtc)
     done = subprocess.run([str(PROGRAM), *arguments], capture_output=True, text=True, env=environment, timeout=300)
@@ -39,6 +41,23 @@ class Faults(unittest.TestCase):
         status, out, errors = tandem("devices", "--require", "cuda:0")
         self.assertEqual((status, errors), (0, []))
         self.assertRegex(out, r"cuda:0 +Stub GPU \(CUDA 13\.0")
+
+    def test_what_it_is_like_now(self):
+        def now(**options):
+            status, out, errors = tandem("devices", "--json", **options)
+            self.assertEqual((status, errors), (0, []))
+            return [d["now"] for entry in json.loads(out) for d in entry["devices"] if d["id"] in ("host", "cuda:0")]
+
+        line = "now: 345 MHz SM, 3201 MHz memory, 34 C, 76 of 700 W, throttled: power cap\n"
+        options = {"TANDEM_NVML": NVML, "STUB_SM": 345, "STUB_THROTTLE": 4, "STUB_PROCESSES": 3}
+        self.assertIn(line, tandem("devices", **options)[1])
+        host, cuda = now(**options)
+        self.assertIsNone(host)
+        self.assertEqual((cuda["sm_mhz"], cuda["throttled"], cuda["other_processes"]), (345, ["power cap"], 2))
+        self.assertIsNone(now(STUB_REFUSES="nvmlDeviceGetPowerUsage", **options)[1]["power_w"])
+        for without in ({"TANDEM_NVML": "/nonexistent"}, {**options, "STUB_NVML_INIT": 9}):
+            self.assertNotIn("now:", tandem("devices", **without)[1])
+            self.assertEqual(now(**without), [None, None])
 
     def test_no_driver(self):
         if subprocess.run("ldconfig -p | grep -q libcuda.so.1", shell=True).returncode == 0:
@@ -73,6 +92,8 @@ class Faults(unittest.TestCase):
         self.assertEqual(status, 3)
         self.assertEqual(len(errors), 1, errors)
         self.assertEqual([r["status"] for r in records], ["ok", "failed"])
+        # No UUID, which is 5a for each byte, but its digest.
+        self.assertEqual(records[1]["devices"][0]["hardware"], "debc1d4a800261d4")
         self.assertIn(records[1]["failure"], errors[0])
         self.assertIn("Stub GPU", errors[0])
         return errors[0]
