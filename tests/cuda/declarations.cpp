@@ -3,36 +3,14 @@
 // toolkit.
 #include "backends/cuda/driver.h"
 #include "backends/cuda/nvrtc.h"
+#include "tests/cuda/callable_as.h"
 
 #include <cuda.h>
 #include <nvrtc.h>
 
 #include <gtest/gtest.h>
-#include <type_traits>
 
 namespace {
-
-/// Whether one type can stand for the other in a call: our int for their enumerations, our pointer to bytes
-/// for theirs to a structure; everything else has to be the same.
-template<class Ours, class Theirs>
-constexpr bool stands_for() {
-    if constexpr (std::is_enum_v<Theirs>)
-        return std::is_same_v<Ours, int> && sizeof(Theirs) == sizeof(int);
-    else if constexpr (std::is_pointer_v<Theirs> && std::is_pointer_v<Ours>)
-        return std::is_same_v<
-                   std::remove_cv_t<std::remove_pointer_t<Ours>>,
-                   unsigned char> || stands_for<std::remove_pointer_t<Ours>, std::remove_pointer_t<Theirs>>();
-    else
-        return std::is_same_v<std::remove_cv_t<Ours>, std::remove_cv_t<Theirs>>;
-}
-
-template<class... Ours, class Return, class... Theirs>
-constexpr bool callable_as(int (*)(Ours...), Return (*)(Theirs...)) {
-    if constexpr (sizeof...(Ours) != sizeof...(Theirs))
-        return false;
-    else
-        return stands_for<int, Return>() && (stands_for<Ours, Theirs>() && ...);
-}
 
 TEST(Declarations, EntriesOfTheDriver) {
     using namespace tandem::cuda;

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 namespace tandem {
 namespace {
@@ -52,8 +53,8 @@ protected:
             const double part = (core % 2 == 0 ? busy : elapsed) * ticks / 4;
             const double rest = elapsed * ticks - 4 * part;
             // User, nice, system, idle, iowait, irq, softirq, steal, guest.
-            text += fmt::format("cpu{} {:.0f} {:.0f} 0 {:.0f} {:.0f} 0 {:.0f} {:.0f} 77777 0\n", core, part,
-                                part, rest / 2, rest / 2, part, part);
+            text += fmt::format("cpu{} {:.0f} {:.0f} 0 {:.0f} {:.0f} 0 {:.0f} {:.0f} {:.0f} 0\n", core, part,
+                                part, rest / 2, rest / 2, part, part, elapsed * ticks);
         }
         write("proc/stat", text + "intr 1 2 3\n");
     }
@@ -160,10 +161,11 @@ TEST_F(Conditions, PressureOfTheMachine) {
 TEST_F(Conditions, QuotaOfVersion2) {
     write("proc/self/cgroup", "0::/user.slice/unit.scope\n");
     write("sys/fs/cgroup/cpu.stat", "usage_usec 5\n");
-    write("sys/fs/cgroup/user.slice/cpu.max", "150000 100000\n");
+    write("sys/fs/cgroup/user.slice/cpu.max", "300000 100000\n");
     write("sys/fs/cgroup/user.slice/cpu.stat",
           "usage_usec 5\nnr_periods 9\nnr_throttled 4\nthrottled_usec 8\n");
-    write("sys/fs/cgroup/user.slice/unit.scope/cpu.max", "max 100000\n");
+    write("sys/fs/cgroup/user.slice/unit.scope/cpu.max", "150000 100000\n");
+    write("sys/fs/cgroup/cpu.max", "max 100000\n");
     write("sys/fs/cgroup/user.slice/unit.scope/cpu.stat", "nr_periods 0\nnr_throttled 1\n");
     const auto group = read_control_group(path(""));
     EXPECT_THAT(group.cores, Optional(1.5));
@@ -187,6 +189,7 @@ TEST_F(Conditions, QuotaOfAContainerOfVersion1) {
     write("sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us", "200000\n");
     write("sys/fs/cgroup/cpu,cpuacct/cpu.cfs_period_us", "100000\n");
     write("sys/fs/cgroup/cpu,cpuacct/cpu.stat", "nr_periods 0\nnr_throttled 6\nthrottled_time 0\n");
+    write("sys/fs/cgroup/cpuacct/cpu.stat", "nr_throttled 9\n"); // of another controller
     EXPECT_THAT(read_control_group(path("")).cores, Optional(2));
     EXPECT_THAT(read_control_group(path("")).throttled, Optional(6));
     write("sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us", "-1\n");

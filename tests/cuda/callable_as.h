@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Whether a declaration of the adaptor's own can be called for one of NVIDIA's headers.
+#pragma once
+
+#include <type_traits>
+
+/// A class that only pointers name is the same or none.
+template<class Ours, class Theirs>
+constexpr bool same_class() {
+    if constexpr (std::is_same_v<Ours, Theirs>)
+        return true;
+    else
+        return sizeof(Ours) == sizeof(Theirs) && alignof(Ours) == alignof(Theirs);
+}
+
+/// Whether one type can stand for the other in a call: our int for their enumerations, our pointer to bytes
+/// for theirs to a structure; an enumeration for another, a structure for another of its size; everything
+/// else has to be the same.
+template<class Ours, class Theirs>
+constexpr bool stands_for() {
+    if constexpr (std::is_enum_v<Theirs>)
+        return (std::is_same_v<Ours, int> || std::is_enum_v<Ours>)&&sizeof(Theirs) == sizeof(Ours);
+    else if constexpr (std::is_class_v<Theirs> && std::is_class_v<Ours>)
+        return same_class<Ours, Theirs>();
+    else if constexpr (std::is_pointer_v<Theirs> && std::is_pointer_v<Ours>)
+        return std::is_same_v<
+                   std::remove_cv_t<std::remove_pointer_t<Ours>>,
+                   unsigned char> || stands_for<std::remove_pointer_t<Ours>, std::remove_pointer_t<Theirs>>();
+    else
+        return std::is_same_v<std::remove_cv_t<Ours>, std::remove_cv_t<Theirs>>;
+}
+
+template<class... Ours, class Return, class... Theirs>
+constexpr bool callable_as(int (*)(Ours...), Return (*)(Theirs...)) {
+    if constexpr (sizeof...(Ours) != sizeof...(Theirs))
+        return false;
+    else
+        return stands_for<int, Return>() && (stands_for<Ours, Theirs>() && ...);
+}
