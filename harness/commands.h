@@ -42,6 +42,15 @@ struct AccuracyOptions {
     std::string figures; ///< the folder of the figures; empty: none are drawn
 };
 
+/// Options of `tandem compare`.
+struct CompareOptions {
+    std::string before, after;               ///< files of records, FILE or FILE@COMMIT
+    std::string commit_before, commit_after; ///< beginnings of commits; empty: of all
+    std::optional<double> threshold;         ///< percent; left out: by the kind of device
+    double level = 0.05;                     ///< probability of any false alarm
+    std::string format = "text";             ///< text, json or markdown
+};
+
 /// Options of `tandem devices`.
 struct DevicesOptions {
     bool json = false;                ///< one JSON document instead of lines
@@ -80,6 +89,7 @@ struct SimulateOptions {
 int run_command(const RunOptions& options);
 int check_command(const RunOptions& options);
 int accuracy_command(const AccuracyOptions& options);
+int compare_command(const CompareOptions& options); ///< 1: something changed
 int simulate_command(const SimulateOptions& options);
 int export_command(const ExportOptions& options);
 int devices_command(const DevicesOptions& options);

@@ -22,6 +22,7 @@ constexpr Command commands[] = {
     {"run", "measure; print a table, append records", tandem::add_run},
     {"check", "device x algorithm agreement matrix; exit 1 on any difference", tandem::add_check},
     {"accuracy", "error beside speed over settings, for several scenes", tandem::add_accuracy},
+    {"compare", "which cells changed, by how much, how sure; exit 1 beyond --threshold", tandem::add_compare},
     {"simulate", "move a scene with dynamics; record its frames", tandem::add_simulate},
     {"export", "frames as files for ParaView and other viewers", tandem::add_export},
     {"devices", "what there is, or why there is not", tandem::add_devices},

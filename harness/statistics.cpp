@@ -7,15 +7,14 @@
 
 namespace tandem {
 
-namespace {
-
-/// Linear between order statistics: definition 7 of Hyndman and Fan.
 double quantile(const std::vector<double>& sorted, double fraction) {
     const double at = fraction * static_cast<double>(sorted.size() - 1);
     const auto below = static_cast<std::size_t>(std::floor(at));
     const auto above = std::min(below + 1, sorted.size() - 1);
     return sorted[below] + (at - std::floor(at)) * (sorted[above] - sorted[below]);
 }
+
+namespace {
 
 /// Ascending medians of resamples of the same size, drawn with replacement. The seed is fixed and the
 /// generator specified to the bit, unlike distributions of the library, so that every machine gives the same

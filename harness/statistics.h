@@ -8,6 +8,9 @@
 
 namespace tandem {
 
+/// Linear between order statistics (Hyndman and Fan 1996, definition 7). `sorted` ascends and is not empty.
+double quantile(const std::vector<double>& sorted, double fraction);
+
 /// Order statistics of samples. Quartiles interpolate linearly between order statistics (Hyndman and Fan
 /// 1996, definition 7); low..high is the 95 % percentile-bootstrap interval of the median (Efron 1979; 1,000
 /// resamples from a fixed seed, so that a record can be recomputed).

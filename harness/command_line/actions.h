@@ -16,6 +16,7 @@ using Action = std::function<int()>;
 Action add_run(CLI::App& app);
 Action add_check(CLI::App& app);
 Action add_accuracy(CLI::App& app);
+Action add_compare(CLI::App& app);
 Action add_simulate(CLI::App& app);
 Action add_export(CLI::App& app);
 Action add_devices(CLI::App& app);
