@@ -31,6 +31,30 @@ void append(std::string& text, const char* between, const std::string& more) {
     if (!more.empty()) text += (text.empty() ? "" : between) + more;
 }
 
+/// Labels that grow, and what they do not tell apart yet.
+struct Growing {
+    std::span<const RecordedCell* const> cells;
+    std::vector<std::string> labels;
+    Groups groups;
+
+    /// Appends a text for each cell where that tells cells apart.
+    bool add(const std::vector<std::string>& texts) {
+        if (!tells_apart(groups, texts)) return false;
+        for (std::size_t i = 0; i < texts.size(); ++i) append(labels[i], " ", texts[i]);
+        groups = split(groups, texts);
+        return true;
+    }
+};
+
+/// A digest says least, so it comes after the settings.
+constexpr std::string_view last_name = "digest";
+
+std::vector<std::string> names_of(std::span<const RecordedCell* const> cells, std::size_t name) {
+    std::vector<std::string> texts;
+    for (const auto* cell : cells) texts.push_back(cell->names[name].second);
+    return texts;
+}
+
 /// "name=value" of a setting, one a cell; empty where the cell has no such setting.
 std::vector<std::string> texts_of(const std::string& setting, std::span<const RecordedCell* const> cells) {
     std::vector<std::string> texts;
@@ -41,21 +65,11 @@ std::vector<std::string> texts_of(const std::string& setting, std::span<const Re
     return texts;
 }
 
-/// Adds what names tell apart, or all share, and returns what they leave together.
-Groups label_by_names(std::span<const RecordedCell* const> cells, Labels& labels) {
-    Groups groups(cells.size(), 0);
-    for (std::size_t name = 0; name < cells.front()->names.size(); ++name) {
-        std::vector<std::string> values;
-        for (const auto* cell : cells) values.push_back(cell->names[name].second);
-        if (tells_apart(groups, values)) {
-            for (std::size_t i = 0; i < cells.size(); ++i) append(labels.of[i], " ", values[i]);
-            groups = split(groups, values);
-        } else if (!tells_apart(Groups(cells.size(), 0), values)
-                   && cells.front()->names[name].first != "digest") {
-            append(labels.common, ", ", values.front());
-        }
-    }
-    return groups;
+void add_settings(Growing& growing) {
+    std::set<std::string> settings;
+    for (const auto* cell : growing.cells)
+        for (const auto& [name, value] : cell->settings) settings.insert(name);
+    for (const auto& setting : settings) growing.add(texts_of(setting, growing.cells));
 }
 
 /// Cells whose keys differ in what no record names get numbers.
@@ -71,22 +85,23 @@ void number_equal(std::span<const RecordedCell* const> cells, std::vector<std::s
 } // namespace
 
 Labels label(std::span<const RecordedCell* const> cells) {
-    Labels labels{std::vector<std::string>(cells.size()), {}};
-    if (cells.empty()) return labels;
-    auto groups = label_by_names(cells, labels);
-    std::set<std::string> settings;
-    for (const auto* cell : cells)
-        for (const auto& [name, value] : cell->settings) settings.insert(name);
-    for (const auto& setting : settings) {
-        const auto texts = texts_of(setting, cells);
-        if (!tells_apart(groups, texts)) continue;
-        for (std::size_t i = 0; i < cells.size(); ++i) append(labels.of[i], " ", texts[i]);
-        groups = split(groups, texts);
+    if (cells.empty()) return {};
+    const auto& names = cells.front()->names;
+    const Groups one_group(cells.size(), 0);
+    Growing growing{cells, std::vector<std::string>(cells.size()), one_group};
+    std::string common;
+    for (std::size_t name = 0; name < names.size(); ++name) {
+        if (names[name].first == last_name) continue;
+        const auto texts = names_of(cells, name);
+        if (!growing.add(texts) && !tells_apart(one_group, texts)) append(common, ", ", texts.front());
     }
-    for (auto& text : labels.of)
-        if (text.empty()) text = cells.front()->names.front().second;
-    number_equal(cells, labels.of);
-    return labels;
+    add_settings(growing);
+    for (std::size_t name = 0; name < names.size(); ++name)
+        if (names[name].first == last_name) growing.add(names_of(cells, name));
+    for (auto& text : growing.labels)
+        if (text.empty()) text = names.front().second;
+    number_equal(cells, growing.labels);
+    return {std::move(growing.labels), std::move(common)};
 }
 
 } // namespace tandem::compare

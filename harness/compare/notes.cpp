@@ -127,7 +127,8 @@ std::vector<std::string> notes(const Report& report) {
         && report.before.commit == report.after.commit)
         notes.emplace_back("old and new are the same records; FILE@COMMIT names those of one commit");
     note_file(report.before, notes);
-    note_file(report.after, notes);
+    if (report.before.path != report.after.path || report.before.commit != report.after.commit)
+        note_file(report.after, notes);
     note_left_out(report.before, names, notes);
     note_left_out(report.after, names, notes);
     note_only("old", report.comparison.only_old, names, notes);
