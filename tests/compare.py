@@ -73,6 +73,7 @@ class Compare(Case):
             cell = self.json_of(old, new, code=1)["cells"][0]
             self.assertEqual((cell["paired"], cell["common_rounds"]), (paired, 9 if paired else None))
             self.assertAlmostEqual(cell["times"]["p"], 2 / 2**9 if paired else 2 / 48620)
+            self.assertEqual("1 of 1 cells were measured in separate runs" in self.compared(old, new, code=1), not paired)
             self.assertEqual((cell["old"]["session"], cell["new"]["session"], cell["old"]["seed"]), ("s", session, 1))
 
     def test_another_answer(self):

@@ -105,15 +105,14 @@ void note_machines(const Comparison& comparison, std::vector<std::string>& notes
     }
 }
 
-/// What p cannot know.
-void note_preparation(const Comparison& comparison, std::vector<std::string>& notes) {
-    const auto once = std::ranges::count_if(
-        comparison.cells, [](const auto& cell) { return cell.before->schema < 3 || cell.after->schema < 3; });
-    if (once > 0)
+/// What p cannot know: only within a session are changes of the machine shared by both.
+void note_separate_runs(const Comparison& comparison, std::vector<std::string>& notes) {
+    const auto apart = std::ranges::count(comparison.cells, false, &ComparedCell::paired);
+    if (apart > 0)
         notes.push_back(
-            fmt::format("{} of {} cells: samples of schema 2 share one preparation, so p knows nothing of "
-                        "how preparations differ",
-                        once, comparison.cells.size()));
+            fmt::format("{} of {} cells were measured in separate runs: load, clocks and preparation of "
+                        "each run count as changes",
+                        apart, comparison.cells.size()));
 }
 
 } // namespace
@@ -134,7 +133,7 @@ std::vector<std::string> notes(const Report& report) {
     note_only("old", report.comparison.only_old, names, notes);
     note_only("new", report.comparison.only_new, names, notes);
     note_machines(report.comparison, notes);
-    note_preparation(report.comparison, notes);
+    note_separate_runs(report.comparison, notes);
     return notes;
 }
 
