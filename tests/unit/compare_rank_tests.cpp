@@ -165,6 +165,11 @@ TEST(CompareRankTests, ApproximationsByHand) {
     std::vector<double> pairs;
     for (int rank = 1; rank <= 60; ++rank) pairs.push_back(rank > 20 ? rank : -rank);
     EXPECT_NEAR(signed_rank_test(pairs).p, std::erfc(704.5 / std::sqrt(18452.5) / std::sqrt(2.0)), 1e-15);
+    // 60 pairs that all tie, 40 of them positive: W = 40 * 30.5 = 1220, and the variance is less by (60^3 -
+    // 60) / 48.
+    std::fill(pairs.begin(), pairs.end(), 1);
+    std::fill(pairs.begin(), pairs.begin() + 20, -1);
+    EXPECT_NEAR(signed_rank_test(pairs).p, std::erfc(304.5 / std::sqrt(13953.75) / std::sqrt(2.0)), 1e-15);
     // 50 values of 1 and 50 of which 25 are 1: ties of 75 and 25. W = 50 * 38 = 1900, mean 2525,
     // variance 2500 / 12 * (101 - (75^3 - 75 + 25^3 - 25) / 9900).
     std::vector<double> after(50, 1);

@@ -105,6 +105,14 @@ TEST(CompareVerdicts, TooFewIsSaidOfWhatTheCorrectionLeaves) {
     EXPECT_EQ(other.cell().verdict, Verdict::slower);
 }
 
+TEST(CompareVerdicts, TheLeastEffectIsThatOfTheOnlyCellToChange) {
+    const Records records{record("8", around(1, 9)), record("18", around(1, 9)), record("26", around(1, 9))};
+    const Compared compared(records, records);
+    const double error = compared.cell().ratio.log_error;
+    EXPECT_GT(error, 0);
+    EXPECT_DOUBLE_EQ(*compared.cell().least_effect, least_effect(error, 0.05 / 3, 0.8));
+}
+
 TEST(CompareVerdicts, AnotherAnswerIsNotTimed) {
     for (const auto* digest : {"digest", "contact_digest"}) {
         auto after = record("8", around(2, 9));
