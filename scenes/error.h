@@ -13,6 +13,11 @@ struct InputError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// Output that cannot be written once work has begun, which is no fault of the input: what and why.
+struct OutputError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
 /// The candidate with the smallest edit distance to `name`; empty when there are no candidates.
 std::string nearest(std::string_view name, std::span<const std::string> candidates);
 

@@ -67,6 +67,10 @@ void File::fail(std::string_view what) const {
     throw InputError(fmt::format("{}: {} ({})", path_, what, std::strerror(errno)));
 }
 
+void File::fail_writing(std::string_view what) const {
+    throw OutputError(fmt::format("{}: {} ({})", path_, what, std::strerror(errno)));
+}
+
 std::uint64_t File::size() const {
     struct stat facts {};
     if (fstat(descriptor_, &facts) != 0) fail("cannot be read");
@@ -92,17 +96,17 @@ void File::write(std::uint64_t offset, std::string_view bytes) {
         const auto n =
             pwrite(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
         if (n < 0 && errno == EINTR) continue;
-        if (n < 0) fail("writing failed");
+        if (n < 0) fail_writing("writing failed");
         done += static_cast<std::size_t>(n);
     }
 }
 
 void File::truncate(std::uint64_t size) {
-    if (ftruncate(descriptor_, static_cast<off_t>(size)) != 0) fail("cannot be shortened");
+    if (ftruncate(descriptor_, static_cast<off_t>(size)) != 0) fail_writing("cannot be shortened");
 }
 
 void File::sync() {
-    if (fsync(descriptor_) != 0) fail("writing failed");
+    if (fsync(descriptor_) != 0) fail_writing("writing failed");
 }
 
 std::string read_whole(const std::string& path) {
@@ -116,7 +120,7 @@ void replace_whole(const std::string& path, std::string_view bytes) {
     file.write(0, bytes);
     file.sync();
     if (std::rename(partial.c_str(), path.c_str()) != 0)
-        throw InputError(fmt::format("{}: cannot be replaced ({})", path, std::strerror(errno)));
+        throw OutputError(fmt::format("{}: cannot be replaced ({})", path, std::strerror(errno)));
     sync_folder_of(path);
 }
 

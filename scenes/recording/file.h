@@ -8,7 +8,7 @@
 
 namespace tandem::recording {
 
-/// An open file. Every failure is an InputError "PATH: what (reason)".
+/// An open file. A failure is an InputError "PATH: what (reason)", of writing an OutputError.
 class File {
 public:
     /// How a file is opened: an existing one to read; a new one, which must not exist; an existing one to
@@ -36,6 +36,7 @@ public:
 
 private:
     [[noreturn]] void fail(std::string_view what) const;
+    [[noreturn]] void fail_writing(std::string_view what) const;
 
     std::string path_;
     int descriptor_;
@@ -45,7 +46,8 @@ private:
 std::string read_whole(const std::string& path);
 
 /// Gives `path` the content `bytes` so that a crash at any moment leaves the old or the new content, whole:
-/// written to PATH.partial, synced, renamed.
+/// written to PATH.partial, synced, renamed. Throws InputError when that cannot be made, OutputError when it
+/// cannot be written.
 void replace_whole(const std::string& path, std::string_view bytes);
 
 /// Deletes a file when there is one.

@@ -21,7 +21,8 @@ RecordingHeader recording_of(const std::string& specification, const Scene& scen
 ///         if (now and then) writer.checkpoint(simulation.steps_done(), simulation.state());
 ///     }
 ///
-/// One process at a time writes a recording. Everything throws InputError.
+/// One process at a time writes a recording. Everything throws InputError, and OutputError when the disk
+/// takes no more.
 class RecordingWriter {
 public:
     /// Starts a recording; an existing file is never overwritten.
