@@ -3,6 +3,7 @@
 // truth?
 #include "harness/inputs.h"
 #include "harness/job.h"
+#include "harness/standard_streams.h"
 #include "scenes/error.h"
 #include "scenes/hard/hard.h"
 
@@ -14,7 +15,8 @@ namespace tandem {
 
 namespace {
 
-/// Checks every cell; `print` is given each that finished. Returns the exit code.
+/// Checks every cell until a record cannot be written; `print` is given each that finished. Returns the exit
+/// code.
 int check_cells(const Job& job, const RunOptions& options, RecordFile& file, const Progress& progress,
                 const std::function<void(const Cell&, const Measurement&)>& print) {
     References references(job.scene, job.range);
@@ -26,33 +28,32 @@ int check_cells(const Job& job, const RunOptions& options, RecordFile& file, con
     int code = 0;
     for (const auto& cell : job.cells) {
         Measurement m;
-        const int own = run_cell(cell, job, references, sampling, file, progress, m);
-        code = std::max({code, own, misses_against_its_promise(m) ? 1 : 0});
-        if (own != 3) print(cell, m);
+        const auto result = run_cell(cell, job, references, sampling, file, progress, m);
+        code = std::max({code, result.code, misses_against_its_promise(m) ? 1 : 0});
+        if (result.measured) print(cell, m);
+        if (file.failed()) break;
     }
     return code;
 }
 
 /// One line a cell: its answer against the reference, then against the truth.
 void print_matrix_header() {
-    fmt::print("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n", "device",
-               "algorithm", "preset", "pairs", "missing", "extra", "retry", "contacts", "contacts equal",
-               "missed", "false");
+    put("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n", "device", "algorithm",
+        "preset", "pairs", "missing", "extra", "retry", "contacts", "contacts equal", "missed", "false");
 }
 
 void print_matrix_row(const Cell& cell, const Measurement& m) {
-    fmt::print("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n",
-               name_of(cell.devices), cell.algorithm->name(), cell.preset, m.agreement.digest.count,
-               m.agreement.missing, m.agreement.extra, m.retries,
-               std::accumulate(m.contacts.begin(), m.contacts.end(), std::uint64_t{0}),
-               m.agreement.contact_frames_wrong == 0 ? "yes" : "NO",
-               m.errors ? fmt::to_string(m.errors->missed()) : "-",
-               m.errors ? fmt::to_string(m.errors->pairs.disjoint) : "-");
+    put("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n", name_of(cell.devices),
+        cell.algorithm->name(), cell.preset, m.agreement.digest.count, m.agreement.missing, m.agreement.extra,
+        m.retries, std::accumulate(m.contacts.begin(), m.contacts.end(), std::uint64_t{0}),
+        m.agreement.contact_frames_wrong == 0 ? "yes" : "NO",
+        m.errors ? fmt::to_string(m.errors->missed()) : "-",
+        m.errors ? fmt::to_string(m.errors->pairs.disjoint) : "-");
 }
 
 void print_family_header() {
-    fmt::print("{:<26} {:>6} {:>9} {:>11} {:>7} {:>9} {:>6} {:>10}\n", "family", "frames", "touching",
-               "overlapping", "missed", "by others", "cells", "that differ");
+    put("{:<26} {:>6} {:>9} {:>11} {:>7} {:>9} {:>6} {:>10}\n", "family", "frames", "touching", "overlapping",
+        "missed", "by others", "cells", "that differ");
 }
 
 /// One family of hard:all, on one line.
@@ -68,12 +69,12 @@ int check_family(const Job& job, const RunOptions& options, RecordFile& file, co
         (m.settings[parameters::rounding] == Rounding::safe ? safe : others) += m.errors->missed();
     });
     const auto& flaws = job.range.flaws;
-    fmt::print("{:<26} {:>6} {:>9} {:>11} {:>7} {:>9} {:>6} {:>10}{}\n", job.scene.name,
-               job.range.frames.size(), meeting.touching + meeting.missed_touching,
-               meeting.overlapping + meeting.missed_overlapping, safe, others, job.cells.size(), wrong,
-               flaws.any() && flaws.handling == Degenerate::skip
-                   ? fmt::format("  skipped: {}", flaws.degenerate + flaws.non_finite)
-                   : "");
+    put("{:<26} {:>6} {:>9} {:>11} {:>7} {:>9} {:>6} {:>10}{}\n", job.scene.name, job.range.frames.size(),
+        meeting.touching + meeting.missed_touching, meeting.overlapping + meeting.missed_overlapping, safe,
+        others, job.cells.size(), wrong,
+        flaws.any() && flaws.handling == Degenerate::skip
+            ? fmt::format("  skipped: {}", flaws.degenerate + flaws.non_finite)
+            : "");
     return code;
 }
 
@@ -87,7 +88,7 @@ int check_refusal(RunOptions options, const std::vector<Cell>& cells) {
         refusal = error.what();
         if (refusal.find("not finite") == std::string::npos) throw; // refused for another reason
     }
-    fmt::print("{:<26} {}\n", "hard:not-finite", refusal.empty() ? "NOT refused" : "refused: " + refusal);
+    put("{:<26} {}\n", "hard:not-finite", refusal.empty() ? "NOT refused" : "refused: " + refusal);
     return refusal.empty() ? 1 : 0;
 }
 
@@ -107,10 +108,10 @@ int check_hard(const RunOptions& options, const std::vector<Cell>& cells,
             one.degenerate = Degenerate::skip;
         }
         code = std::max(code, check_family(open_job(one, cells), one, file, progress));
+        if (file.failed()) return code;
     }
-    fmt::print("{}\n", code == 0
-                           ? "all agree with the reference; with rounding=safe nothing that meets is missed"
-                           : "NOT all agree with the reference and the truth");
+    put("{}\n", code == 0 ? "all agree with the reference; with rounding=safe nothing that meets is missed"
+                          : "NOT all agree with the reference and the truth");
     return code;
 }
 
@@ -135,8 +136,9 @@ int check_command(const RunOptions& options) {
         print_matrix_row(cell, m);
         broken += misses_against_its_promise(m) ? 1 : 0;
     });
-    fmt::print("{}\n", code == 0 ? "all agree with the reference" : "NOT all agree with the reference");
-    if (broken > 0) fmt::print("{} cells with safe rounding MISS pairs that meet\n", broken);
+    if (file.failed()) return code;
+    put("{}\n", code == 0 ? "all agree with the reference" : "NOT all agree with the reference");
+    if (broken > 0) put("{} cells with safe rounding MISS pairs that meet\n", broken);
     return code;
 }
 

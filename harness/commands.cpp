@@ -6,7 +6,7 @@
 #include "harness/inputs.h"
 #include "harness/job.h"
 #include "harness/progress.h"
-#include "harness/record.h"
+#include "harness/standard_streams.h"
 #include "harness/table.h"
 #include "scenes/error.h"
 #include "scenes/hard/hard.h"
@@ -38,8 +38,8 @@ int profile(const Job& job, std::size_t times) {
         const auto session = cell.algorithm->prepare(cell.devices, job.scene, cell.settings);
         for (std::size_t i = 0; i < times; ++i)
             for (const auto& frame : job.range.frames) session->run(frame);
-        fmt::print("{}: replayed frames {}:{} {} times; nothing measured or recorded\n", describe(cell),
-                   job.range.first, job.range.last, times);
+        put("{}: replayed frames {}:{} {} times; nothing measured or recorded\n", describe(cell),
+            job.range.first, job.range.last, times);
     }
     return 0;
 }
@@ -104,16 +104,16 @@ int run_command(const RunOptions& options) {
             progress.show(fmt::format("[{}/{}] {}", i + 1, job.cells.size(), text));
         };
         auto& measurement = measurements.emplace_back();
-        const int own = run_cell(job.cells[i], job, references, sampling, file, progress, measurement);
-        code = std::max(code, own);
-        if (own != 3) rows.push_back({&job.cells[i], &measurement});
+        const auto result = run_cell(job.cells[i], job, references, sampling, file, progress, measurement);
+        code = std::max(code, result.code);
+        if (result.measured) rows.push_back({&job.cells[i], &measurement});
+        if (file.failed()) break;
     }
-    if (!rows.empty()) {
-        dump(*rows.front().cell, job, pairs, contacts);
-        fmt::print("\n{}\n{}\n", stage_table(rows), speedup_table(rows));
-    }
-    for (const auto& row : rows) fmt::print("{}: {}\n", describe(*row.cell), verdict(*row.measurement));
-    if (!options.out.empty()) fmt::print("{} records appended to {}\n", job.cells.size(), options.out);
+    if (!rows.empty()) put("\n{}\n{}\n", stage_table(rows), speedup_table(rows));
+    for (const auto& row : rows) put("{}: {}\n", describe(*row.cell), verdict(*row.measurement));
+    if (!options.out.empty()) put("{} records appended to {}\n", file.appended(), options.out);
+    // Last, for a file that cannot be written ends the run.
+    if (!rows.empty() && !file.failed()) dump(*rows.front().cell, job, pairs, contacts);
     return code;
 }
 

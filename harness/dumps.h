@@ -9,7 +9,7 @@
 
 namespace tandem {
 
-/// A text file that is written line by line and opened before anything is measured. Throws InputError.
+/// A text file that is written line by line and opened before anything is measured, which throws InputError.
 class DumpFile {
 public:
     /// An empty path writes nowhere.
@@ -17,7 +17,7 @@ public:
 
     explicit operator bool() const { return file_ != nullptr; }
     /// Appends a line each, in the order given. Coordinates are in the scene's units, the shortest decimals
-    /// that read back as the same numbers. Throws InputError when the file cannot take them.
+    /// that read back as the same numbers. Throws OutputError when the file cannot take them.
     void pairs(std::size_t frame, std::span<const Pair> pairs);
     void contacts(std::size_t frame, std::span<const ContactPoint> contacts);
 
@@ -25,7 +25,8 @@ private:
     struct Close {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
-    void check() const;
+    void write(std::string_view text) const;
+    void write_pieces(std::string& text, std::size_t least) const;
 
     std::string path_;
     std::unique_ptr<std::FILE, Close> file_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/hierarchy/order.h"
 #include "harness/inputs.h"
+#include "harness/standard_streams.h"
 #include "scenes/error.h"
 #include "scenes/export/glb.h"
 #include "scenes/export/vtk.h"
@@ -107,12 +108,12 @@ int export_command(const ExportOptions& options) {
     const auto told = fmt::format("{} of frames {}:{} of {}", frames.size(), first, last, scene.key);
     if (!options.glb.empty()) {
         write_glb(options.glb, scene, frames);
-        fmt::print("{}: {}\n", options.glb, told);
+        put("{}: {}\n", options.glb, told);
     }
     if (options.vtu.empty()) return 0;
     const auto found = export_vtu(options, scene, frames);
-    fmt::print("{}/bodies.pvd: {}\n", options.vtu, told);
-    if (options.contacts) fmt::print("{}/contacts.pvd: {} contacts\n", options.vtu, found);
+    put("{}/bodies.pvd: {}\n", options.vtu, told);
+    if (options.contacts) put("{}/contacts.pvd: {} contacts\n", options.vtu, found);
     return 0;
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "harness/commands.h"
+#include "harness/journal.h"
 #include "harness/progress.h"
-#include "harness/record.h"
 
 namespace tandem {
 
@@ -19,10 +19,16 @@ struct Job {
 Job open_job(const RunOptions& options, std::vector<Cell> cells);
 Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells);
 
-/// Measures one cell and appends its record, also when the device fails on the way. Returns the exit code: 1
-/// when the answer is wrong, 3 when the device failed, which is then said.
-int run_cell(const Cell& cell, const Job& job, References& references, const SampleOptions& sampling,
-             RecordFile& file, const Progress& progress, Measurement& out);
+/// What became of a cell.
+struct CellResult {
+    int code = 0; ///< 0 right, 1 the answer is wrong, 3 the device failed or the record was not written
+    bool measured = false; ///< also without a record
+};
+
+/// Measures one cell and appends its record, also when the device fails on the way. What fails is said; after
+/// a record that could not be written (file.failed()) no other cell should be measured.
+CellResult run_cell(const Cell& cell, const Job& job, References& references, const SampleOptions& sampling,
+                    RecordFile& file, const Progress& progress, Measurement& out);
 
 /// A line that says what scene it is, one for tetrahedra of negative volume and one for flawed ones.
 void print_scene(const Scene& scene, const FrameRange& range);

@@ -3,7 +3,8 @@
 #include "harness/commands.h"
 #include "harness/conditions.h"
 #include "harness/inputs.h"
-#include "harness/record.h"
+#include "harness/journal.h"
+#include "harness/standard_streams.h"
 #include "scenes/dynamics_settings.h"
 #include "scenes/hard/hard.h"
 
@@ -86,10 +87,10 @@ Json device_json(const DeviceInfo& info, const std::string& same, const GpuCondi
 }
 
 void print_device(const DeviceInfo& info, const std::string& same, const GpuCondition& now) {
-    fmt::print("{:<10} {} ({}), {} compute units, {:.1f} GB, {}{}\n", info.id, info.name, info.driver,
+    put("{:<10} {} ({}), {} compute units, {:.1f} GB, {}{}\n", info.id, info.name, info.driver,
                info.compute_units, static_cast<double>(info.global_bytes) * 1e-9, info.compiler,
                same.empty() ? "" : fmt::format("; the same GPU as {}", same));
-    if (const auto text = gpu_condition_text(now); !text.empty()) fmt::print("           now: {}\n", text);
+    if (const auto text = gpu_condition_text(now); !text.empty()) put("           now: {}\n", text);
 }
 
 Json algorithm_json(const Traversal& traversal, bool peer) {
@@ -105,14 +106,14 @@ Json algorithm_json(const Traversal& traversal, bool peer) {
 }
 
 void print_algorithm(const Traversal& traversal, bool peer) {
-    fmt::print("{}{}: {}\n  presets\n", traversal.name(),
-               peer ? ", a peer, which runs where it is named only" : "", traversal.summary());
-    for (const auto& p : traversal.presets()) fmt::print("    {:<18} {}\n", p.name, p.help);
-    fmt::print("  settings\n");
+    put("{}{}: {}\n  presets\n", traversal.name(), peer ? ", a peer, which runs where it is named only" : "",
+        traversal.summary());
+    for (const auto& p : traversal.presets()) put("    {:<18} {}\n", p.name, p.help);
+    put("  settings\n");
     for (const auto* p : traversal.parameters())
-        fmt::print("    {:<18} {:<10} {} [{}]\n", p->name, p->text(p->initial), p->help, values_of(*p));
-    fmt::print("  counters\n");
-    for (const auto& c : traversal.counters()) fmt::print("    {:<22} {} [{}]\n", c.name, c.meaning, c.unit);
+        put("    {:<18} {:<10} {} [{}]\n", p->name, p->text(p->initial), p->help, values_of(*p));
+    put("  counters\n");
+    for (const auto& c : traversal.counters()) put("    {:<22} {} [{}]\n", c.name, c.meaning, c.unit);
 }
 
 /// `tandem devices --measure`: the ceilings of the chosen devices.
@@ -126,29 +127,27 @@ int measure_devices(const std::vector<BackendReport>& backends, const DevicesOpt
         for (auto* device : group) {
             const auto ceilings = measure_ceilings(*device);
             records.push_back(ceilings_record(device->info(), ceilings));
-            file.append(records.back());
-            if (!options.json) fmt::print("{}", ceilings_table(device->info(), ceilings));
+            if (!file.failed()) file.append_or_tell(records.back());
+            if (!options.json) put("{}", ceilings_table(device->info(), ceilings));
         }
-    if (options.json) fmt::print("{}\n", records.dump(2));
-    return 0;
+    if (options.json) put("{}\n", records.dump(2));
+    return file.failed() ? 3 : 0;
 }
 
 void print_scene(const SceneKind& kind, const Scene& scene) {
-    fmt::print("{}: {}\n", kind.name, kind.models);
-    fmt::print("  {}\n", scene.dynamics
-                             ? fmt::format("{} steps of {} s by simulation; its frame is the start",
-                                           scene.dynamics->steps, scene.dynamics->stepping.step)
-                             : fmt::format("{} frames by script", scene.frame_count));
-    for (const auto& p : kind.parameters) fmt::print("    {:<12} {:<12} {}\n", p.name, p.value, p.help);
+    put("{}: {}\n", kind.name, kind.models);
+    put("  {}\n", scene.dynamics ? fmt::format("{} steps of {} s by simulation; its frame is the start",
+                                               scene.dynamics->steps, scene.dynamics->stepping.step)
+                                 : fmt::format("{} frames by script", scene.frame_count));
+    for (const auto& p : kind.parameters) put("    {:<12} {:<12} {}\n", p.name, p.value, p.help);
 }
 
 /// The first columns of the paper's Table 1, for the defaults.
 void print_scene_table(const Json& scenes) {
-    fmt::print("\n{:<10} {:>7} {:>10} {:>11}\n", "scene", "bodies", "vertices", "tetrahedra");
+    put("\n{:<10} {:>7} {:>10} {:>11}\n", "scene", "bodies", "vertices", "tetrahedra");
     for (const auto& row : scenes)
-        fmt::print("{:<10} {:>7} {:>10} {:>11}\n", row["name"].get<std::string>(),
-                   row["bodies"].get<std::size_t>(), row["vertices"].get<std::size_t>(),
-                   row["tetrahedra"].get<std::size_t>());
+        put("{:<10} {:>7} {:>10} {:>11}\n", row["name"].get<std::string>(), row["bodies"].get<std::size_t>(),
+            row["vertices"].get<std::size_t>(), row["tetrahedra"].get<std::size_t>());
 }
 
 /// The settings of a scene's motion with its own values; null when its motion is scripted.
@@ -188,18 +187,18 @@ Json hard_json(const HardFamily& family) {
 }
 
 void print_hard() {
-    fmt::print("\nhard cases, hard:NAME:difficulty=X,seed=N,pairs=N,together=N; 'tandem check hard:all' "
-               "takes all\n");
+    put("\nhard cases, hard:NAME:difficulty=X,seed=N,pairs=N,together=N; 'tandem check hard:all' "
+        "takes all\n");
     for (const auto& family : hard_families())
-        fmt::print("    {} {:<20} {}\n      {:<20} difficulty {}: {}, {}..{}\n", family.group, family.name,
-                   family.summary, "", family.knob.initial, family.knob.meaning, family.knob.least,
-                   family.knob.most);
+        put("    {} {:<20} {}\n      {:<20} difficulty {}: {}, {}..{}\n", family.group, family.name,
+            family.summary, "", family.knob.initial, family.knob.meaning, family.knob.least,
+            family.knob.most);
 }
 
 void print_dynamics() {
-    fmt::print("\nmotion by simulation, --dynamics NAME=VALUE; a scene may have other defaults (--json)\n");
+    put("\nmotion by simulation, --dynamics NAME=VALUE; a scene may have other defaults (--json)\n");
     for (const auto& setting : dynamics_settings())
-        fmt::print("    {:<20} {:<13} {}\n", setting.name, setting.value(Dynamics{}), setting.help);
+        put("    {:<20} {:<13} {}\n", setting.name, setting.value(Dynamics{}), setting.help);
 }
 
 } // namespace
@@ -222,10 +221,10 @@ int devices_command(const DevicesOptions& options) {
             entry["devices"].push_back(device_json(info, same, now));
             if (!json) print_device(info, same, now);
         }
-        if (!json && !backend.reason.empty()) fmt::print("{}\n", backend.reason);
+        if (!json && !backend.reason.empty()) put("{}\n", backend.reason);
         all.push_back(entry);
     }
-    if (json) fmt::print("{}\n", all.dump(2));
+    if (json) put("{}\n", all.dump(2));
     check_required(backends, options.require);
     return 0;
 }
@@ -242,7 +241,7 @@ int scenes_command(bool json) {
             all.push_back(scene_json(kind, make_scene(kind.name)));
             all.back()["hard"] = hard_json(hard_family(kind.name.substr(5)));
         }
-        fmt::print("{}\n", all.dump(2));
+        put("{}\n", all.dump(2));
         return 0;
     }
     print_scene_table(all);
@@ -258,7 +257,7 @@ int algorithms_command(bool json) {
             all.push_back(algorithm_json(*traversal, peer));
             if (!json) print_algorithm(*traversal, peer);
         }
-    if (json) fmt::print("{}\n", all.dump(2));
+    if (json) put("{}\n", all.dump(2));
     return 0;
 }
 

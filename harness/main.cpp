@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "backends/device.h"
 #include "harness/command_line/actions.h"
+#include "harness/standard_streams.h"
 #include "scenes/error.h"
 
 #include <CLI/CLI.hpp>
@@ -40,32 +41,39 @@ int dispatch(int argc, char** argv) {
     }
     try {
         app.parse(argc, argv);
-    } catch (const CLI::CallForHelp& help) {
-        return app.exit(help);
+    } catch (const CLI::CallForHelp&) {
+        tandem::put("{}", app.help());
+        return 0;
     } catch (const CLI::ParseError& error) {
         throw InputError(fmt::format("{}; see 'tandem --help'", error.what()));
     }
     return std::ranges::find_if(actions, [](const auto& action) { return action.first->parsed(); })->second();
 }
 
-} // namespace
-
 /// Exit codes: 0 ok, 1 a check failed (from the command), 2 bad use or bad input, 3 a device or the machine
 /// failed.
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
     try {
         return dispatch(argc, argv);
     } catch (const InputError& error) {
-        fmt::print(stderr, "tandem: {}\n", error.what());
+        tandem::tell("tandem: {}\n", error.what());
         return 2;
     } catch (const tandem::DeviceError& error) {
-        fmt::print(stderr, "tandem: {}\n", error.what());
+        tandem::tell("tandem: {}\n", error.what());
         return 3;
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "tandem: out of memory; use fewer bodies or frames\n");
+        tandem::tell("tandem: out of memory; use fewer bodies or frames\n");
         return 3;
     } catch (const std::exception& error) {
-        fmt::print(stderr, "tandem: {}\n", error.what());
+        tandem::tell("tandem: {}\n", error.what());
         return 3;
     }
+}
+
+} // namespace
+
+/// 3 as well when what was printed could not be written.
+int main(int argc, char** argv) {
+    tandem::prepare_standard_streams();
+    return tandem::finish_output(run(argc, argv));
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <fmt/format.h>
+#include "harness/standard_streams.h"
+
 #include <string_view>
 #include <unistd.h>
 
@@ -16,7 +17,7 @@ public:
     Progress& operator=(const Progress&) = delete;
 
     void show(std::string_view text) const {
-        if (on_) fmt::print(stderr, "\r\033[K{}", text);
+        if (on_) tell("\r\033[K{}", text);
     }
     void clear() const { show(""); }
 

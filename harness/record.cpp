@@ -5,15 +5,10 @@
 #include "harness/choosing/choice.h"
 #include "harness/environment.h"
 #include "harness/statistics.h"
-#include "scenes/error.h"
 
-#include <cerrno>
-#include <cstring>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <unistd.h>
 
 namespace tandem {
 
@@ -308,29 +303,6 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["error"] = measured ? error_json(m, range.flaws) : Json();
     json["environment"] = record_environment();
     return json;
-}
-
-RecordFile::RecordFile(const std::string& path) : path_(path) {
-    if (path.empty()) return;
-    file_ = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-    if (file_ < 0)
-        throw InputError(
-            fmt::format("{}: cannot be written ({}); choose another --out", path, std::strerror(errno)));
-}
-
-RecordFile::~RecordFile() {
-    if (file_ >= 0) close(file_);
-}
-
-void RecordFile::append(const Json& record) {
-    if (file_ < 0) return;
-    // File names need not be UTF-8; JSON must be.
-    const auto line = record.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-    // One write: lines of several processes that append to one file do not mix.
-    const bool written = write(file_, line.data(), line.size()) == static_cast<ssize_t>(line.size());
-    // Pipes and terminals cannot be synchronised.
-    if (!written || (fsync(file_) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP))
-        throw InputError(fmt::format("{}: writing failed ({})", path_, std::strerror(errno)));
 }
 
 } // namespace tandem

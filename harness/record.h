@@ -18,21 +18,4 @@ nlohmann::ordered_json record_device(const DeviceInfo& info);
 nlohmann::ordered_json record_devices(const DeviceGroup& devices);
 nlohmann::ordered_json record_environment();
 
-/// Appends records to a JSON-lines file, one write and one fsync a record.
-class RecordFile {
-public:
-    /// Opens for appending; throws InputError when the file cannot be written. An empty path writes nowhere.
-    explicit RecordFile(const std::string& path);
-    ~RecordFile();
-    RecordFile(const RecordFile&) = delete;
-    RecordFile& operator=(const RecordFile&) = delete;
-
-    /// On disk when it returns. Throws InputError when the line cannot be written whole.
-    void append(const nlohmann::ordered_json& record);
-
-private:
-    std::string path_;
-    int file_ = -1;
-};
-
 } // namespace tandem

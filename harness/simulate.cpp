@@ -3,18 +3,18 @@
 
 #include "harness/commands.h"
 #include "harness/inputs.h"
+#include "harness/journal.h"
 #include "harness/progress.h"
-#include "harness/record.h"
-#include "scenes/digest.h"
+#include "harness/simulate_session.h"
+#include "harness/standard_streams.h"
 #include "scenes/dynamics_settings.h"
 #include "scenes/error.h"
-#include "scenes/recording/writer.h"
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace tandem {
 
@@ -71,74 +71,17 @@ Cell only_cell(const SimulateOptions& options, const std::vector<BackendReport>&
     return cells.front();
 }
 
-/// The recording of a run, if there is to be one, with the state that goes into its checkpoints: that of the
-/// simulation behind a digest of its settings, so that nothing goes on with other settings.
-class Journal {
-public:
-    Journal(const SimulateOptions& options, const Scene& scene, const Cell& cell)
-        : settings_(describe(*scene.dynamics)) {
-        // What contacts depend on; devices and schedules find the same ones.
-        for (const auto* name :
-             {"k", "axes", "precision", "rounding", "placement", "contact_rule", "decision"})
-            settings_ += fmt::format(" {}={}", name, cell.settings.text(name));
-        if (options.recording.empty()) {
-            if (options.resume) throw InputError("--resume goes with -o FILE, the recording to go on with");
-            return;
-        }
-        const auto header = recording_of(options.scene, scene, scene.dynamics->stepping.step);
-        writer_.emplace(options.resume ? RecordingWriter::resume(options.recording, header)
-                                       : RecordingWriter::create(options.recording, header));
-    }
-
-    /// Brings the simulation to the last checkpoint.
-    void restore(Simulation& simulation) {
-        if (!writer_) return;
-        const auto checkpoint = writer_->restore();
-        // A new recording: the state before the first step is the first to go back to.
-        if (!checkpoint) {
-            save(simulation);
-            return;
-        }
-        const auto own = digest_of(settings_);
-        if (checkpoint->state.size() < sizeof own
-            || std::memcmp(checkpoint->state.data(), &own, sizeof own) != 0)
-            throw InputError(
-                fmt::format("{}: was simulated with other settings than {}; resume it with those "
-                            "it was begun with",
-                            writer_->path(), settings_));
-        simulation.restore(std::span(checkpoint->state).subspan(sizeof own));
-    }
-
-    void append(const StepReport& report, const Frame& frame) {
-        if (writer_) writer_->append(report.step, report.time, frame);
-    }
-
-    void save(const Simulation& simulation) {
-        if (!writer_) return;
-        const auto own = digest_of(settings_);
-        std::vector<std::byte> state(sizeof own);
-        std::memcpy(state.data(), &own, sizeof own);
-        const auto rest = simulation.state();
-        state.insert(state.end(), rest.begin(), rest.end());
-        writer_->checkpoint(simulation.steps_done(), state);
-    }
-
-    std::size_t frames() const { return writer_ ? writer_->frames() : 0; }
-
-private:
-    std::string settings_;
-    std::optional<RecordingWriter> writer_;
-};
-
 /// Books the simulation's own work on the host under its stage.
 void book(Search& search, Stage stage, std::int64_t host_ns) {
     search.stages[static_cast<std::size_t>(stage)].host_ns += host_ns;
 }
 
-/// Steps until `last` are done; totals and records get each as it ends.
+/// Steps until `last` are done; totals and records get each as it ends, but no step after the checkpoint is
+/// recorded again.
 void run_steps(const SimulateOptions& options, std::size_t last, Simulation& simulation,
-               ContactFinder& finder, Journal& journal, RecordFile& file, RunTotals& totals) {
+               ContactFinder& finder, SimulationSession& session, RecordFile& file, RunTotals& totals) {
     const Progress progress(options.quiet);
+    const auto recorded = options.resume ? steps_recorded(file, totals.session) : std::set<std::size_t>{};
     const auto detect = [&](const Frame& frame, std::vector<ContactPoint>& contacts) {
         finder.find(frame, contacts);
     };
@@ -151,10 +94,10 @@ void run_steps(const SimulateOptions& options, std::size_t last, Simulation& sim
         book(search, Stage::reduce, report.reduce_ns);
         book(search, Stage::solve, report.solve_ns);
         totals.add(report, search, wall);
-        journal.append(report, simulation.midway());
-        file.append(step_record(report, search, wall));
+        session.append(report, simulation.midway());
+        if (!recorded.contains(report.step)) file.append(step_record(report, search, wall, totals.session));
         const auto done = simulation.steps_done();
-        if (done % options.every == 0 || done == last) journal.save(simulation);
+        if (done % options.every == 0 || done == last) session.save(simulation);
         progress.show(fmt::format("step {} of {}: {} contacts, {} kept, {:.1f} ms", done, last, report.found,
                                   report.kept, static_cast<double>(wall) * 1e-6));
     }
@@ -196,27 +139,32 @@ int simulate_command(const SimulateOptions& options) {
     const auto cell = only_cell(options, backends);
     check_coordinates({&cell, 1}, scene, {0, 0, {scene.frame(0)}});
     Simulation simulation(scene);
-    Journal journal(options, scene, cell);
-    journal.restore(simulation);
+    // Before a recording is made, which a second try would find there.
     RecordFile file(options.record);
+    SimulationSession session(options, scene, cell);
+    session.restore(simulation);
     const auto last = options.steps > 0 ? options.steps : scene.dynamics->steps;
-    fmt::print("scene {}: {} bodies, {} vertices, {} tetrahedra; {}\n", scene.key, scene.bodies.size(),
-               vertex_count(scene), tetrahedron_count(scene), describe(cell));
-    if (simulation.steps_done() > 0) fmt::print("goes on after step {}\n", simulation.steps_done());
+    put("scene {}: {} bodies, {} vertices, {} tetrahedra; {}\n", scene.key, scene.bodies.size(),
+        vertex_count(scene), tetrahedron_count(scene), describe(cell));
+    if (simulation.steps_done() > 0) put("goes on after step {}\n", simulation.steps_done());
     RunTotals totals;
+    totals.session = session.number();
     // A run that breaks off leaves a line that says how far it came and why it ended.
     try {
         ContactFinder finder(cell, scene, !options.record.empty());
-        run_steps(options, last, simulation, finder, journal, file, totals);
+        run_steps(options, last, simulation, finder, session, file, totals);
     } catch (const std::exception& error) {
-        file.append(run_record(cell, scene, totals, error.what()));
+        if (file.failed())
+            put("{}", run_table(totals, true));
+        else
+            file.append_or_tell(run_record(cell, scene, totals, error.what()));
         throw;
     }
-    file.append(run_record(cell, scene, totals, {}));
-    fmt::print("{}", run_table(totals, !options.record.empty()));
+    put("{}", run_table(totals, !options.record.empty()));
     if (!options.recording.empty())
-        fmt::print("{}: {} frames; measure them with 'tandem run {}'\n", options.recording, journal.frames(),
-                   options.recording);
+        put("{}: {} frames; measure them with 'tandem run {}'\n", options.recording, session.frames(),
+            options.recording);
+    file.append(run_record(cell, scene, totals, {}));
     return 0;
 }
 

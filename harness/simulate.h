@@ -41,6 +41,7 @@ struct RunTotals {
     std::vector<std::size_t> found, kept; ///< by step
     double deepest = 0;
     StepReport last;
+    std::uint64_t session = 0; ///< the same for all processes that went on with a recording
 
     /// `wall_ns`: of the whole step, searches included.
     void add(const StepReport& report, const Search& search, std::int64_t wall_ns);
@@ -48,7 +49,8 @@ struct RunTotals {
 
 /// Lines of results/simulation.schema.json: of one step, and of a run once it has ended, with `failure` when
 /// it did not reach its last step.
-nlohmann::ordered_json step_record(const StepReport& report, const Search& search, std::int64_t wall_ns);
+nlohmann::ordered_json step_record(const StepReport& report, const Search& search, std::int64_t wall_ns,
+                                   std::uint64_t session);
 nlohmann::ordered_json run_record(const Cell& cell, const Scene& scene, const RunTotals& totals,
                                   const std::string& failure);
 

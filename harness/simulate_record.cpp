@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record.h"
 #include "harness/simulate.h"
+#include "harness/simulate_session.h"
 #include "scenes/dynamics_settings.h"
 
 #include <algorithm>
@@ -74,9 +75,11 @@ void RunTotals::add(const StepReport& report, const Search& search, std::int64_t
     last = report;
 }
 
-Json step_record(const StepReport& report, const Search& search, std::int64_t wall_ns) {
+Json step_record(const StepReport& report, const Search& search, std::int64_t wall_ns,
+                 std::uint64_t session) {
     return {{"schema", 2},
             {"kind", "step"},
+            {"session", session_name(session)},
             {"step", report.step},
             {"time_s", report.time},
             {"length_s", report.length},
@@ -103,6 +106,7 @@ Json step_record(const StepReport& report, const Search& search, std::int64_t wa
 Json run_record(const Cell& cell, const Scene& scene, const RunTotals& t, const std::string& failure) {
     Json json{{"schema", 2},
               {"kind", "run"},
+              {"session", session_name(t.session)},
               {"status", failure.empty() ? "ok" : "failed"},
               {"failure", failure.empty() ? Json(nullptr) : Json(failure)},
               {"scene", record_scene(scene)},

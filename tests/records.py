@@ -145,7 +145,7 @@ class Records(Case):
 
     def test_a_failing_cell_keeps_what_is_recorded(self):
         out = self.work / "fail.jsonl"
-        out.write_text("what was there before\n")
+        out.write_text('{"what": "was there before"}\n')
         memory = min(d["memory_bytes"] for e in json.loads(tandem("devices", "--json")[1]) for d in e["devices"]
                      if d["id"] == "opencl:0")
         if memory >= 34359738360:
@@ -153,7 +153,7 @@ class Records(Case):
         self.bad("34359738360", "run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "chunked", "--device", "opencl:0",
                  "--set", "pair_capacity=64,4294967295,128", "--repeat", 1, "--out", out, code=3)
         first, rest = out.read_text().split("\n", 1)
-        self.assertEqual(first, "what was there before")
+        self.assertEqual(first, '{"what": "was there before"}')
         out.write_text(rest)
         records = self.records(out)
         self.assertEqual([r["status"] for r in records], ["ok", "failed", "ok"])

@@ -4,6 +4,7 @@
 #include "harness/adversarial.h"
 #include "harness/inputs.h"
 #include "harness/job.h"
+#include "harness/standard_streams.h"
 #include "harness/statistics.h"
 #include "scenes/error.h"
 #include "scenes/hard/hard.h"
@@ -118,21 +119,21 @@ std::string p99(const std::vector<double>& samples) {
 }
 
 void print_header() {
-    fmt::print("{:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  cell\n", "ms/frame", "missed",
-               "false", "ratio", "no answer", "depth/uL", "degrees", "point/L", "volume");
+    put("{:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  cell\n", "ms/frame", "missed", "false",
+        "ratio", "no answer", "depth/uL", "degrees", "point/L", "volume");
 }
 
 /// Errors of contacts are 99th percentiles.
 void print_row(const Cell& cell, const Measurement& m) {
     const auto& e = *m.errors;
     const auto contacts = e.contacts.value_or(ContactErrors{});
-    fmt::print("{:>9.3g} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  {}{}\n", frame_ms(m), e.missed(),
-               e.pairs.disjoint, number(e.candidate_ratio()), contacts.unanswered, p99(contacts.depth_ulps),
-               p99(contacts.normal_degrees), p99(contacts.point), p99(contacts.volume_relative),
-               describe(cell), e.missed() > 0 ? "  MISSES" : "");
+    put("{:>9.3g} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  {}{}\n", frame_ms(m), e.missed(),
+        e.pairs.disjoint, number(e.candidate_ratio()), contacts.unanswered, p99(contacts.depth_ulps),
+        p99(contacts.normal_degrees), p99(contacts.point), p99(contacts.volume_relative), describe(cell),
+        e.missed() > 0 ? "  MISSES" : "");
 }
 
-/// All cells on one scene; the exit code.
+/// All cells on one scene, until a record cannot be written; the exit code.
 int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, RecordFile& file) {
     auto own = options;
     auto scene = open_scene(own);
@@ -149,17 +150,18 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
     sampling.truths = &truths;
     int code = 0;
     print_header();
-    for (std::size_t i = 0; i < job.cells.size(); ++i) {
+    for (std::size_t i = 0; i < job.cells.size() && !file.failed(); ++i) {
         sampling.progress = [&](std::string_view text) {
             progress.show(fmt::format("[{}/{}] {}", i + 1, job.cells.size(), text));
         };
         Measurement m;
-        const int result = run_cell(job.cells[i], job, references, sampling, file, progress, m);
-        code = std::max({code, result, misses_against_its_promise(m) ? 1 : 0});
-        if (result == 1) fmt::print("WRONG against the reference: {}\n", describe(job.cells[i]));
-        if (result != 3 && m.errors) print_row(job.cells[i], m);
+        const auto result = run_cell(job.cells[i], job, references, sampling, file, progress, m);
+        code = std::max({code, result.code, misses_against_its_promise(m) ? 1 : 0});
+        if (result.measured && !m.agreement.ok())
+            put("WRONG against the reference: {}\n", describe(job.cells[i]));
+        if (result.measured && m.errors) print_row(job.cells[i], m);
     }
-    fmt::print("\n");
+    put("\n");
     return code;
 }
 
@@ -186,12 +188,13 @@ int accuracy_command(const AccuracyOptions& options) {
             auto own = options.run;
             own.scene = scene;
             code = std::max(code, measure_scene(own, cells, file));
+            if (file.failed()) return code;
         }
-    fmt::print("ms of the whole frame; ratio: candidates per pair that meets; errors of contacts are 99th "
-               "percentiles, u half a unit in the\n"
-               "last place of 1, L the longest edge; volume: of the points' hull against the exact "
-               "intersection's, / exact; MISSES: pairs\n"
-               "that meet are not among the candidates\n");
+    put("ms of the whole frame; ratio: candidates per pair that meets; errors of contacts are 99th "
+        "percentiles, u half a unit in the\n"
+        "last place of 1, L the longest edge; volume: of the points' hull against the exact "
+        "intersection's, / exact; MISSES: pairs\n"
+        "that meet are not among the candidates\n");
     if (figures) figures->draw(records);
     return code;
 }

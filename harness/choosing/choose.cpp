@@ -2,6 +2,7 @@
 #include "harness/choosing/choose.h"
 
 #include "harness/choosing/trials.h"
+#include "harness/standard_streams.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -92,18 +93,17 @@ std::string lead(const Choice& choice) {
 void say(const Cell& cell, double limit, const std::filesystem::path& file) {
     const auto& choice = *cell.chosen;
     if (choice.from_cache)
-        fmt::print(stderr, "auto: {}, as {} says: {} on {}; --choose-afresh measures again\n", describe(cell),
-                   file.string(), lead(choice), choice.scene);
+        tell("auto: {}, as {} says: {} on {}; --choose-afresh measures again\n", describe(cell),
+             file.string(), lead(choice), choice.scene);
     else
-        fmt::print(stderr,
-                   "auto: {}: {} on frames {}:{}, in {:.1f} s of replays (at most {:g}) and {:.1f} s of "
-                   "preparing\n",
-                   describe(cell), lead(choice), choice.first, choice.last, choice.seconds, limit,
-                   choice.preparing);
+        tell("auto: {}: {} on frames {}:{}, in {:.1f} s of replays (at most {:g}) and {:.1f} s of "
+             "preparing\n",
+             describe(cell), lead(choice), choice.first, choice.last, choice.seconds, limit,
+             choice.preparing);
 }
 
 void warn(const std::string& line) {
-    if (!line.empty()) fmt::print(stderr, "tandem: {}\n", line);
+    if (!line.empty()) tell("tandem: {}\n", line);
 }
 
 /// Candidate pairs a frame, of the first candidate that works: the same for all of them.

@@ -57,7 +57,8 @@ void add_cell_options(CLI::App& app, RunOptions& options, std::vector<std::strin
 /// add_cell_options and how they are run: what `run`, `check` and `accuracy` have in common.
 void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string>& sets) {
     add_cell_options(app, options, sets);
-    app.add_option("--out", options.out, "append records to this JSON-lines file");
+    app.add_option("--out", options.out,
+                   "append records to this JSON-lines file, a torn last line of which goes to FILE.torn");
     app.add_option("--require", options.require, "devices or backends whose absence is a failure")
         ->delimiter(',');
     app.add_option_function<std::string>(

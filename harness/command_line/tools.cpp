@@ -19,7 +19,8 @@ void add_motion_options(CLI::App& app, SimulateOptions& options) {
     app.add_option("--steps", options.steps, "steps in all; those of the scene when left out")
         ->check(CLI::Range(std::size_t{1}, std::size_t{100000000}));
     app.add_option("--record", options.record,
-                   "append a line a step with its times and one for the run to this JSON-lines file");
+                   "append a line a step with its times and one for the run to this JSON-lines file; with "
+                   "--resume none of a step that the run has recorded there");
     app.add_flag("--resume", options.resume, "go on with the recording from its last checkpoint");
     app.add_option("--checkpoint", options.every, "steps from one checkpoint to the next")
         ->check(CLI::Range(std::size_t{1}, std::size_t{100000000}));

@@ -1,0 +1,193 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""journal.py PROGRAM SOURCE: files of records whatever becomes of the program that writes them, and of what it prints."""
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+from program import PROGRAM, Case, tandem
+
+LINE = b'{"what":"was there before"}\n'
+
+
+def run(*arguments, before=None, **streams):
+    """(exit code, standard output, lines of standard error); `before` is called in the process before the program."""
+    process = subprocess.run([str(PROGRAM), *map(str, arguments)], preexec_fn=before, timeout=120, text=True,
+                             **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **streams})
+    return process.returncode, process.stdout, (process.stderr or "").splitlines()
+
+
+class Journal(Case):
+    def cell(self, *more):
+        return ("--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked", "--truth", "none", "--quiet", *more)
+
+    def whole(self, path, before=LINE):
+        """The records behind what was there before."""
+        data = path.read_bytes()
+        self.assertTrue(data.startswith(before) and data.endswith(b"\n"), data[:100])
+        rest = self.work / "rest.jsonl"
+        rest.write_bytes(data[len(before):])
+        return self.records(rest)
+
+    def test_a_torn_line_is_set_aside(self):
+        out, torn = self.work / "torn.jsonl", self.work / "torn.jsonl.torn"
+        out.write_bytes(LINE + LINE[:-5])
+        status, text, errors = run("run", *self.cell("--repeat", 1, "--out", out))
+        self.assertEqual((status, errors), (0, [f"tandem: {out}: the last line was torn; its {len(LINE) - 5} bytes are set aside in {torn}"]), text)
+        self.assertEqual(len(self.whole(out)), 1)
+        self.assertEqual(torn.read_bytes(), LINE[:-5] + b"\n")
+        out.write_bytes(LINE + LINE[:-1])
+        self.assertEqual(run("run", *self.cell("--repeat", 1, "--out", out))[::2], (0, []))
+        self.assertEqual(len(self.whole(out, LINE + LINE)), 1)
+
+    def test_what_is_no_file_of_records_is_refused(self):
+        commands = (("run", *self.cell("--out")), ("check", *self.cell("--out")), ("accuracy", *self.cell()[:-3], "--out"),
+                    ("devices", "--measure", "--device", "host", "--out"), ("simulate", "block", "--steps", 1, "--device", "host", "--record"))
+        out = self.work / "other"
+        for data in (b"frame,body_a\n1,2\n", b"\x00\x01" * 3000, self.good.read_bytes()):
+            for command in commands:
+                out.write_bytes(data)
+                self.bad([str(out), "its first line is no JSON object", "choose another --out"], *command, out)
+                self.assertEqual(out.read_bytes(), data)
+        self.bad([str(self.work), "Is a directory", "choose another --out"], *commands[0], self.work)
+        self.assertFalse((self.work / "other.torn").exists())
+
+    def test_a_full_disk_keeps_the_table(self):
+        status, text, errors = run("run", *self.cell("--repeat", 1, "--set", "k=6,8", "--out", "/dev/full"))
+        self.assertEqual((status, errors), (3, ["tandem: /dev/full: writing failed (No space left on device); the records before are whole"]))
+        self.assertIn("traverse", text)
+        self.assertEqual(text.count(": right: "), 1, text)
+        for command in (("check", *self.cell("--set", "k=6,8")), ("accuracy", *self.cell()[:-3], "--set", "k=6,8")):
+            status, text, errors = run(*command, "--out", "/dev/full")
+            self.assertEqual((status, len(errors)), (3, 1), (text, errors))
+            self.assertEqual(text.count("k=6") if command[0] == "accuracy" else text.count("host "), 1, text)
+        status, text, errors = run("simulate", "block", "--steps", 2, "--device", "host", "--record", "/dev/full")
+        self.assertEqual((status, len(errors)), (3, 1), (text, errors))
+        self.assertIn("1 steps in", text)
+        status, text, errors = run("run", *self.cell("--repeat", 1, "--dump-pairs", "/dev/full"))
+        self.assertEqual((status, len(errors)), (2, 1), (text, errors))
+
+    def test_a_file_at_its_limit(self):
+        """The first record fits, the second does not; what is there of it is taken back."""
+        out = self.work / "limit.jsonl"
+        self.assertEqual(run("run", *self.cell("--repeat", 1, "--set", "k=6", "--out", out))[0], 0)
+        size = out.stat().st_size
+        out.write_bytes(LINE)
+        limit = len(LINE) + size + size // 2
+        status, text, errors = run("run", *self.cell("--repeat", 1, "--set", "k=6,8,18", "--out", out),
+                                   before=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+        self.assertEqual((status, len(errors)), (3, 1), (text, errors))
+        self.assertIn("writing failed (File too large)", errors[0])
+        self.assertEqual(text.count(": right: "), 2, text)
+        self.assertIn(f"1 records appended to {out}", text)
+        self.assertEqual([r["settings"]["k"] for r in self.whole(out)], ["6"])
+
+    def test_a_dump_at_its_limit_keeps_the_table(self):
+        dump = self.work / "pairs.csv"
+        status, text, errors = run("run", *self.cell("--repeat", 1, "--dump-pairs", dump),
+                                   before=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100)))
+        self.assertEqual((status, errors), (3, [f"tandem: {dump}: writing failed (File too large)"]), text)
+        self.assertIn(": right: ", text)
+        self.assertEqual(dump.stat().st_size, 100)
+
+    def test_programs_that_append_at_a_time(self):
+        out, capacities = self.work / "two.jsonl", range(1000, 1012)
+        out.write_bytes(LINE)
+        values = "pair_capacity=" + ",".join(map(str, capacities))
+        arguments = [str(PROGRAM), *map(str, ("run", *self.cell("--repeat", 1, "--set", values, "--out", out)))]
+        processes = [subprocess.Popen(arguments, stdout=subprocess.DEVNULL) for _ in range(2)]
+        self.assertEqual([p.wait(120) for p in processes], [0, 0])
+        self.assertEqual(sorted(r["settings"]["pair_capacity"] for r in self.whole(out)), sorted([*map(str, capacities)] * 2))
+
+    def test_standard_output_that_takes_nothing(self):
+        """Exit code 3 and one line, from every command; records and files are written as ever."""
+        commands = [("--help",), ("run", "--help"), ("devices",), ("devices", "--json"), ("scenes",), ("scenes", "--json"), ("algorithms",),
+                    ("algorithms", "--json"), ("run", *self.cell("--repeat", 1, "--out")), ("check", *self.cell("--preset", "resident", "--out")),
+                    ("accuracy", *self.cell()[:-3], "--set", "k=6", "--out"),
+                    ("simulate", "block", "--steps", 2, "--device", "host", "--quiet", "--record"),
+                    ("export", "block", "--frames", 0, "--glb")]
+        reader, broken = os.pipe()
+        os.close(reader)
+        with open("/dev/full", "w") as full:
+            for name, streams in (("closed", {"stdout": None, "before": lambda: os.close(1)}), ("full", {"stdout": full}),
+                                  ("broken", {"stdout": broken})):
+                for number, command in enumerate(commands):
+                    out = self.work / f"{name}{number}"
+                    writes = command[-1] in ("--out", "--record", "--glb")
+                    status, _, errors = run(*command, *([out] if writes else []), **streams)
+                    errors = [line for line in errors if line.strip() and not line.rstrip().endswith("generated.")]
+                    self.assertEqual((status, len(errors)), (3, 1), (name, command, errors))
+                    self.assertIn("tandem: standard output could not be written (", errors[0])
+                    if command[-1] == "--out":
+                        self.assertEqual(len(self.records(out)), 1)
+                    elif command[-1] == "--record":
+                        self.assertEqual([json.loads(line)["kind"] for line in out.read_text().splitlines()], ["step", "step", "run"])
+        os.close(broken)
+
+    def test_what_prints_nothing_needs_no_output(self):
+        for streams in ({"stdout": None, "before": lambda: os.close(1)}, {"before": lambda: (os.close(0), os.close(1)), "stdout": None}):
+            status, _, errors = run("fly", **streams)
+            self.assertEqual((status, len(errors)), (2, 1), errors)
+
+    def test_standard_error_that_takes_nothing(self):
+        with open("/dev/full", "w") as full:
+            for streams in ({"stderr": None, "before": lambda: os.close(2)}, {"stderr": full},
+                            {"stderr": None, "before": lambda: (os.close(0), os.close(2))}):
+                self.assertEqual(run("fly", **streams)[0], 2)
+                out = self.work / "silent.jsonl"
+                out.write_bytes(LINE + b"{")
+                status, text, _ = run("run", *self.cell("--repeat", 1, "--out", out), **streams)
+                self.assertEqual(status, 0, text)
+                self.assertEqual(len(self.whole(out)), 1)
+
+    def test_records_and_table_in_one_file(self):
+        """--out /dev/stdout into a file: records between what is printed, nothing over anything."""
+        both = self.work / "both"
+        with open(both, "w") as stream:
+            self.assertEqual(run("run", *self.cell("--repeat", 1, "--out", "/dev/stdout"), stdout=stream)[::2], (0, []))
+        lines = both.read_text().splitlines()
+        self.assertTrue(lines[0].startswith("scene "), lines[0])
+        self.assertEqual([json.loads(line)["status"] for line in lines if line.startswith("{")], ["ok"])
+        self.assertEqual(lines[-1], "1 records appended to /dev/stdout")
+
+    def test_no_step_of_a_resumed_simulation_twice(self):
+        record, frames = self.work / "simulation.jsonl", self.work / "resumed.frames"
+        arguments = ["simulate", "block", "--device", "host", "--checkpoint", "7", "--quiet", "--record", record, "-o", frames]
+
+        def steps():
+            return [line for line in map(json.loads, record.read_text().splitlines()) if line.get("kind") == "step"]
+
+        # Another run of the same in the same file.
+        self.assertEqual(run(*arguments[:-1], self.work / "other.frames", "--steps", 25)[0], 0)
+        others = len(steps())
+        process = subprocess.Popen([PROGRAM, *map(str, arguments), "--steps", "100000"], stdout=subprocess.DEVNULL)
+        deadline = time.monotonic() + 60
+        while len(record.read_bytes().splitlines()) < others + 1 + 20 and time.monotonic() < deadline:
+            time.sleep(0.01)
+        process.send_signal(signal.SIGKILL)
+        self.assertEqual(process.wait(), -signal.SIGKILL)
+        data = record.read_bytes()
+        record.write_bytes(data[:data.rfind(b"\n", 0, -1) + 30])  # the last line is torn
+        done = len(steps_of := [s for s in map(json.loads, record.read_bytes().splitlines()[:-1]) if s["kind"] == "step"]) - others
+        self.assertGreater(done, 10)
+        status, text, errors = run(*arguments, "--resume", "--steps", done + 5)
+        self.assertEqual((status, len(errors)), (0, 1), (text, errors))
+        self.assertIn("goes on after step", text)
+        lines = steps()
+        self.assertEqual(lines[:others + done], steps_of)
+        self.assertEqual([s["step"] for s in lines[others:]], list(range(done + 5)))
+        self.assertEqual(len({s["session"] for s in lines[others:]}), 1)
+        self.assertNotEqual(lines[0]["session"], lines[-1]["session"])
+        # The last steps are gone again: they are simulated and recorded once more.
+        record.write_bytes(b"".join(record.read_bytes().splitlines(True)[:-4]))
+        self.assertEqual(run(*arguments, "--resume", "--steps", done + 6)[0], 0)
+        self.assertEqual(len({s["step"] for s in steps()[others:]}), len(steps()[others:]))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)
