@@ -151,7 +151,7 @@ class Accuracy(Case):
         self.assertEqual(len(self.records(folder / "accuracy.jsonl")), 3)
         self.assertEqual(draw("--set", "k=26", "--out", self.work / "beside.jsonl")[0], 0)
         self.assertEqual(rows(), ["26"])
-        (self.work / "beside.jsonl").write_text("no record\n")
+        (self.work / "beside.jsonl").write_text('{"no": "record"}\n')
         status, _, errors = draw("--set", "k=26", "--out", self.work / "beside.jsonl")
         self.assertEqual((status, len(errors)), (2, 2), errors)
         self.assertIn("beside.jsonl:1 is no record", errors[0])

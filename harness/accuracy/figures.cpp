@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "harness/accuracy/figures.h"
 
+#include "harness/standard_streams.h"
 #include "scenes/error.h"
 
 #include <cerrno>
-#include <cstdio>
 #include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
+#include <initializer_list>
 #include <spawn.h>
 #include <string_view>
 #include <sys/wait.h>
@@ -20,15 +21,15 @@ std::string_view figures_script(); // made by CMakeLists.txt
 
 namespace {
 
-/// Whether the program ended with 0; one that is not there ends otherwise.
-bool succeeds(std::vector<std::string> words, bool quiet) {
+/// Whether the program ended with 0; one that is not there ends otherwise. What it prints to `silent`
+/// descriptors goes nowhere.
+bool succeeds(std::vector<std::string> words, std::initializer_list<int> silent) {
     std::vector<char*> arguments(words.size() + 1); // the last one stays null
     for (std::size_t i = 0; i < words.size(); ++i) arguments[i] = words[i].data();
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    if (quiet)
-        for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
-            posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
+    for (const int stream : silent)
+        posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
     pid_t process = 0;
     int status = ::posix_spawnp(&process, arguments[0], &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
@@ -41,7 +42,7 @@ bool succeeds(std::vector<std::string> words, bool quiet) {
 /// The system's, which has the system's packages, or the first one in PATH.
 std::string python_with_matplotlib() {
     for (const char* python : {"/usr/bin/python3", "python3"})
-        if (succeeds({python, "-c", "import matplotlib"}, true)) return python;
+        if (succeeds({python, "-c", "import matplotlib"}, {STDOUT_FILENO, STDERR_FILENO})) return python;
     throw InputError("--figures needs python3 with matplotlib; install python3-matplotlib");
 }
 
@@ -54,9 +55,9 @@ Figures::Figures(std::string folder) : folder_(std::move(folder)), python_(pytho
 }
 
 void Figures::draw(const std::string& records) const {
-    // What has been printed comes before what the script prints.
-    std::fflush(stdout);
-    if (!succeeds({python_, "-c", std::string(figures_script()), records, folder_}, false))
+    // What has been printed comes before what the script prints. It draws as well where that cannot be read.
+    const std::vector<std::string> script{python_, "-c", std::string(figures_script()), records, folder_};
+    if (!(flush_output() ? succeeds(script, {}) : succeeds(script, {STDOUT_FILENO})))
         throw InputError(fmt::format("--figures: nothing drawn; the records are in {}", records));
 }
 

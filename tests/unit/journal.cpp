@@ -174,6 +174,7 @@ TEST_F(JournalFile, TakesAShortWriteBack) {
     });
     EXPECT_EQ(end_of(child), 0);
     EXPECT_EQ(bytes_of(file()), numbered(0, 1).dump() + "\n{\"small\":1}\n");
+    EXPECT_FALSE(std::filesystem::exists(torn()));
 }
 
 TEST_F(JournalFile, LinesOfProcessesDoNotMix) {
