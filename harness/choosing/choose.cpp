@@ -32,6 +32,7 @@ std::vector<Choice::Candidate> ordered(const Cell& cell, const SearchResult& fou
                 && std::find(found.ranking.begin(), found.ranking.end(), i) == found.ranking.end())
                 order.push_back(i);
     std::vector<Choice::Candidate> all;
+    all.reserve(order.size());
     for (const auto i : order) all.push_back(timed(cell.candidates[i], found.replays[i], trials.failure(i)));
     return all;
 }
