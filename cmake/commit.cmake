@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Writes commit.h when the commit or the state of the tree changed. COMMIT overrides, for trees without git.
+# Writes commit.h when the commit, the state of the tree or the sources changed. COMMIT overrides, for trees without git.
 if(COMMIT STREQUAL "")
   execute_process(COMMAND git rev-parse --short=12 HEAD WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE COMMIT
                   OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
@@ -12,4 +12,14 @@ if("${changes}" STREQUAL "" AND clean STREQUAL COMMIT)
 else()
   set(dirty true)
 endif()
-file(CONFIGURE OUTPUT ${OUT} CONTENT "#define TANDEM_COMMIT_ID \"${clean}\"\n#define TANDEM_COMMIT_DIRTY ${dirty}\n")
+# Of what decides times and answers, path by path: equal on every machine, and without git.
+set(sources)
+file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/backends/*.cpp ${SOURCE}/backends/*.h ${SOURCE}/algorithms/*.c* ${SOURCE}/algorithms/*.h
+     ${SOURCE}/scenes/*.cpp ${SOURCE}/scenes/*.h ${SOURCE}/harness/sampling/* ${SOURCE}/cmake/embed_kernels.py)
+foreach(file ${files})
+  file(SHA256 ${SOURCE}/${file} digest)
+  string(APPEND sources "${file} ${digest}\n")
+endforeach()
+string(SHA256 sources "${sources}")
+string(SUBSTRING ${sources} 0 16 sources)
+file(CONFIGURE OUTPUT ${OUT} CONTENT "#define TANDEM_COMMIT_ID \"${clean}\"\n#define TANDEM_COMMIT_DIRTY ${dirty}\n#define TANDEM_SOURCES \"${sources}\"\n")

@@ -18,10 +18,10 @@ namespace tandem {
 
 namespace {
 
-constexpr std::uint32_t leaves = 32;
+constexpr std::uint32_t leaves_a_chunk = 32;
 constexpr std::uint32_t group_size = 128;
 constexpr std::uint64_t most_of_a_pose = 4096; ///< so that rigid families have many poses
-constexpr std::size_t part = 1024;             ///< pairs that a core takes at a time
+constexpr std::size_t part_size = 1024;        ///< pairs that a core takes at a time
 
 using Clock = std::chrono::steady_clock;
 
@@ -68,7 +68,7 @@ public:
             const auto group = std::min(group_size, cell.device->info().max_group_size);
             bodies_.push_back(
                 std::make_unique<Bodies>(*cell.device, scene_, cell.geometry, Bodies::Sharing::by_mesh));
-            trees_.push_back(std::make_unique<ChunkTrees>(*bodies_.back(), leaves, group));
+            trees_.push_back(std::make_unique<ChunkTrees>(*bodies_.back(), leaves_a_chunk, group));
             lists_.push_back(std::make_unique<PairList>(*trees_.back(), list_));
         }
     }
@@ -111,9 +111,10 @@ private:
         batch.frame.poses.resize(2);
         batch.frame.deformed.assign(2, std::vector<Eigen::Vector3d>(4 * together_));
         batch.truth.resize(together_);
-        parallel_for((together_ + part - 1) / part, [&](std::size_t index) {
-            const auto end = std::min<std::uint64_t>(together_, (index + 1) * part);
-            for (std::uint64_t i = index * part; i < end; ++i) make_pair(batch, number * together_ + i, i);
+        parallel_for((together_ + part_size - 1) / part_size, [&](std::size_t index) {
+            const auto end = std::min<std::uint64_t>(together_, (index + 1) * part_size);
+            for (std::uint64_t i = index * part_size; i < end; ++i)
+                make_pair(batch, number * together_ + i, i);
         });
     }
 

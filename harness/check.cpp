@@ -21,18 +21,15 @@ int check_cells(const Job& job, const RunOptions& options, RecordFile& file, con
                 const std::function<void(const Cell&, const Measurement&)>& print) {
     References references(job.scene, job.range);
     Truths truths(job.scene, job.range.frames, options.truth, options.truth_contacts);
-    SampleOptions sampling;
-    sampling.repeat = 0;
-    sampling.progress = [&](std::string_view text) { progress.show(text); };
-    if (options.truth != TruthAmount::none) sampling.truths = &truths;
+    Measuring measuring;
+    measuring.check.truths = options.truth == TruthAmount::none ? nullptr : &truths;
+    measuring.enough.repeat = 0;
     int code = 0;
-    for (const auto& cell : job.cells) {
-        Measurement m;
-        const auto result = run_cell(cell, job, references, sampling, file, progress, m);
+    measure_cells(job, job.cells, references, measuring, file, progress, [&](const CellResult& result) {
+        const auto& m = result.measurement;
         code = std::max({code, result.code, misses_against_its_promise(m) ? 1 : 0});
-        if (result.measured) print(cell, m);
-        if (file.failed()) break;
-    }
+        if (result.measured) print(*result.cell, m);
+    });
     return code;
 }
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <fmt/chrono.h>
 #include <fstream>
+#include <random>
 #include <sys/resource.h>
 #include <thread>
 #include <unistd.h>
@@ -55,6 +56,28 @@ std::uint64_t free_control_group() {
 std::uint64_t free_memory() {
     const auto available = number_in("/proc/meminfo", "MemAvailable:", unlimited >> 10) << 10;
     return std::min({available, free_control_group(), free_address_space()});
+}
+
+/// Arguments apart by blanks, in single quotes where they hold one.
+std::string command_line() {
+    std::ifstream file("/proc/self/cmdline", std::ios::binary);
+    std::string line;
+    for (std::string word; std::getline(file, word, '\0');) {
+        if (line.empty()) word = word.substr(word.rfind('/') + 1);
+        const bool plain = !word.empty() && word.find_first_of(" '\"\t\n") == std::string::npos;
+        line += (line.empty() ? "" : " ") + (plain ? word : "'" + word + "'");
+    }
+    return line;
+}
+
+std::string sources_digest() { return TANDEM_SOURCES; }
+
+const std::string& session_id() {
+    static const auto id = [] {
+        std::random_device chance;
+        return fmt::format("{:08x}{:08x}", chance(), chance());
+    }();
+    return id;
 }
 
 Environment environment() {

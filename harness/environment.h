@@ -20,6 +20,15 @@ struct Environment {
 /// Of this process, now. Never throws: what cannot be read is unknown.
 Environment environment();
 
+/// 16 hexadecimal digits of chance: of all records of one run of the program, and of no other.
+const std::string& session_id();
+
+/// 16 hexadecimal digits of the sources that the program was built from, those of its kernels included.
+std::string sources_digest();
+
+/// As it was given, the program without its folder; empty when unknown.
+std::string command_line();
+
 /// Bytes that this process can still get: the least of what Linux calls available, the rest of its control
 /// group, and the rest of its address space (ulimit -v).
 std::uint64_t free_memory();

@@ -49,7 +49,8 @@ Scene open_scene(const RunOptions& options) {
         if (!options.poses.empty()) throw InputError("--pose goes with --mesh; a scene brings its own poses");
         return make_scene(options.scene);
     }
-    if (!options.scene.empty()) throw InputError("a scene and --mesh exclude each other; leave one out");
+    if (!options.scene.empty() || options.scenes.size() > 1)
+        throw InputError("a scene and --mesh exclude each other; leave one out");
     if (options.poses.size() > options.meshes.size())
         throw InputError("more --pose than --mesh; give one pose a mesh at most");
     std::vector<Pose> poses;
@@ -111,6 +112,8 @@ void check_outputs(const RunOptions& options, std::span<const Cell> cells) {
     for (const auto* path : {&options.out, &options.dump_pairs, &options.dump_contacts})
         if (!path->empty() && !paths.insert(std::filesystem::path(*path).lexically_normal()).second)
             throw InputError(fmt::format("{}: named for two outputs; choose another file", *path));
+    if (options.scenes.size() > 1 && !(options.dump_pairs.empty() && options.dump_contacts.empty()))
+        throw InputError("dumps are of one scene; name one");
     const bool dumps = !options.dump_pairs.empty() || !options.dump_contacts.empty();
     if (options.profile > 0 && (dumps || !options.out.empty()))
         throw InputError("--profile only replays frames; leave out --out and dumps");

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "harness/commands.h"
-#include "harness/sampler.h"
+#include "harness/frames.h"
 
 namespace tandem {
 

@@ -6,6 +6,7 @@
 #include "harness/standard_streams.h"
 #include "scenes/error.h"
 
+#include <deque>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -26,20 +27,48 @@ Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells) {
     return job;
 }
 
-/// A device that fails costs its own cell: the record says why, and the next cell goes on.
-CellResult run_cell(const Cell& cell, const Job& job, References& references, const SampleOptions& sampling,
-                    RecordFile& file, const Progress& progress, Measurement& out) {
-    std::string failure;
-    try {
-        out = measure(cell, job.scene, job.range, references, sampling);
-    } catch (const DeviceError& error) {
-        failure = error.what();
-    }
-    progress.clear();
-    const bool recorded = file.append_or_tell(make_record(cell, job.scene, job.range, out, failure));
-    if (!failure.empty()) tell("tandem: {}: {}\n", describe(cell), failure);
-    if (!failure.empty() || !recorded) return {3, failure.empty()};
-    return {out.agreement.ok() ? 0 : 1, true};
+namespace {
+
+/// A device that fails costs its own cell: the record says why, and the others go on.
+CellResult end_cell(const Outcome& outcome, const Sampling& sampling, const Job& job, RecordFile& file) {
+    CellResult result;
+    result.cell = &outcome.sampler->cell();
+    result.measurement = outcome.sampler->measurement();
+    result.measured = outcome.failure.empty();
+    result.converged = outcome.converged;
+    const bool recorded = file.append_or_tell(
+        make_record(*result.cell, job.scene, job.range, result.measurement, outcome, sampling));
+    if (!result.measured) tell("tandem: {}: {}\n", describe(*result.cell), outcome.failure);
+    if (!result.measured || !recorded)
+        result.code = 3;
+    else
+        result.code = result.measurement.agreement.ok() ? 0 : 1;
+    return result;
+}
+
+} // namespace
+
+bool measure_cells(const Job& job, std::span<const Cell> cells, References& references,
+                   const Measuring& measuring, RecordFile& file, const Progress& progress,
+                   const std::function<void(const CellResult&)>& ended) {
+    std::deque<CellSampler> samplers;
+    std::vector<CellSampler*> group;
+    for (const auto& cell : cells)
+        group.push_back(&samplers.emplace_back(cell, job.scene, job.range, references));
+    RoundsListener listener;
+    std::size_t done = 0;
+    listener.progress = [&](std::string_view text) {
+        progress.show(fmt::format("[{}/{}] {}", done, cells.size(), text));
+    };
+    listener.stop = [&] { return file.failed() || measuring.stop(); };
+    listener.finished = [&](const Outcome& outcome, const Sampling& sampling) {
+        ++done;
+        progress.clear();
+        ended(end_cell(outcome, sampling, job, file));
+    };
+    auto check = measuring.check;
+    check.progress = listener.progress;
+    return sample_group(group, check, measuring.enough, measuring.seed, listener);
 }
 
 void print_scene(const Scene& scene, const FrameRange& range) {

@@ -4,6 +4,8 @@
 #include "harness/commands.h"
 #include "harness/journal.h"
 #include "harness/progress.h"
+#include "harness/record.h"
+#include "harness/sampling/rounds.h"
 
 namespace tandem {
 
@@ -19,16 +21,29 @@ struct Job {
 Job open_job(const RunOptions& options, std::vector<Cell> cells);
 Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells);
 
-/// What became of a cell.
-struct CellResult {
-    int code = 0; ///< 0 right, 1 the answer is wrong, 3 the device failed or the record was not written
-    bool measured = false; ///< also without a record
+/// How the cells of a job are measured.
+struct Measuring {
+    CheckOptions check;
+    Enough enough;
+    std::uint64_t seed = 0;
+    std::function<bool()> stop = [] { return false; };
 };
 
-/// Measures one cell and appends its record, also when the device fails on the way. What fails is said; after
-/// a record that could not be written (file.failed()) no other cell should be measured.
-CellResult run_cell(const Cell& cell, const Job& job, References& references, const SampleOptions& sampling,
-                    RecordFile& file, const Progress& progress, Measurement& out);
+/// What became of a cell.
+struct CellResult {
+    const Cell* cell = nullptr;
+    Measurement measurement;
+    int code = 0; ///< 0 right, 1 the answer is wrong, 3 the device failed or the record was not written
+    bool measured = false;  ///< also without a record
+    bool converged = false; ///< or sampled as often as asked for
+};
+
+/// Measures cells of the job as one group, appends a record for each as it ends, also when its device failed,
+/// which is then said, and hands it over. A record that cannot be written ends it. Returns whether it was
+/// interrupted: cells that had not begun then have no record.
+bool measure_cells(const Job& job, std::span<const Cell> cells, References& references,
+                   const Measuring& measuring, RecordFile& file, const Progress& progress,
+                   const std::function<void(const CellResult&)>& ended);
 
 /// A line that says what scene it is, one for tetrahedra of negative volume and one for flawed ones.
 void print_scene(const Scene& scene, const FrameRange& range);

@@ -88,8 +88,8 @@ Json device_json(const DeviceInfo& info, const std::string& same, const GpuCondi
 
 void print_device(const DeviceInfo& info, const std::string& same, const GpuCondition& now) {
     put("{:<10} {} ({}), {} compute units, {:.1f} GB, {}{}\n", info.id, info.name, info.driver,
-               info.compute_units, static_cast<double>(info.global_bytes) * 1e-9, info.compiler,
-               same.empty() ? "" : fmt::format("; the same GPU as {}", same));
+        info.compute_units, static_cast<double>(info.global_bytes) * 1e-9, info.compiler,
+        same.empty() ? "" : fmt::format("; the same GPU as {}", same));
     if (const auto text = gpu_condition_text(now); !text.empty()) put("           now: {}\n", text);
 }
 

@@ -41,6 +41,12 @@ std::vector<SettingTexts> combinations(const Request& request, const Traversal* 
     return all;
 }
 
+/// Whether no algorithm was named by itself.
+bool names_all(const Request& request) {
+    return request.algorithms.empty()
+           || std::ranges::find(request.algorithms, "all") != request.algorithms.end();
+}
+
 /// Null stands for auto.
 std::vector<const Traversal*> choose_algorithms(const Request& request) {
     std::vector<const Traversal*> chosen;
@@ -48,7 +54,10 @@ std::vector<const Traversal*> choose_algorithms(const Request& request) {
         if (name == automatic && !request.may_choose)
             throw InputError("--algorithm auto chooses for 'tandem run' only; name one of those that 'tandem "
                              "algorithms' lists");
-        add_once(chosen, name == automatic ? nullptr : &algorithm(name));
+        if (name == "all")
+            for (const auto* each : algorithms()) add_once(chosen, each);
+        else
+            add_once(chosen, name == automatic ? nullptr : &algorithm(name));
     }
     if (chosen.empty()) chosen.assign(algorithms().begin(), algorithms().end());
     return chosen;
@@ -114,7 +123,7 @@ std::vector<const Preset*> choose_presets(const Request& request, const Traversa
         if (std::any_of(request.presets.begin(), request.presets.end(),
                         [&](const auto& name) { return name == "all" || name == candidate.name; }))
             chosen.push_back(&candidate);
-    if (chosen.empty() && !request.algorithms.empty())
+    if (chosen.empty() && !names_all(request))
         throw InputError(fmt::format("{} has none of the presets {}; leave it or --preset out",
                                      traversal.name(), fmt::join(request.presets, ", ")));
     return chosen;
@@ -137,6 +146,21 @@ std::vector<Cell> plan(const Request& request, std::span<const DeviceGroup> devi
     for (const auto& group : devices)
         for (const auto* traversal : chosen) add_cells(cells, request, traversal, group, unfit);
     return cells;
+}
+
+std::size_t drop_repeated(std::vector<Cell>& cells) {
+    const auto before = cells.size();
+    std::vector<Cell> once;
+    for (auto& cell : cells) {
+        const auto is_same = [&](const Cell& other) {
+            return cell.candidates.empty() && other.candidates.empty() && other.algorithm == cell.algorithm
+                   && other.preset == cell.preset && other.settings == cell.settings
+                   && other.devices == cell.devices;
+        };
+        if (std::ranges::none_of(once, is_same)) once.push_back(std::move(cell));
+    }
+    cells = std::move(once);
+    return before - cells.size();
 }
 
 SettingTexts changes(const Cell& cell) {

@@ -27,7 +27,7 @@ inline constexpr std::string_view automatic = "auto";
 
 /// What the user asked for.
 struct Request {
-    std::vector<std::string> algorithms; ///< empty: all, without auto
+    std::vector<std::string> algorithms; ///< empty or "all": all, without auto
     std::vector<std::string> presets;    ///< empty: each algorithm's first; "all"
     std::vector<std::string> devices;    ///< "all": every one by itself; D+E: one cell on both
     std::vector<std::pair<std::string, std::vector<std::string>>> sets; ///< --set NAME=V1,V2
@@ -43,6 +43,9 @@ enum class Unfit { refuse, leave_out };
 /// fit a device or each other, and auto where nothing is chosen.
 std::vector<Cell> plan(const Request& request, std::span<const DeviceGroup> devices,
                        Unfit unfit = Unfit::refuse);
+
+/// Leaves out cells that stand there already; returns how many. Cells of auto stay.
+std::size_t drop_repeated(std::vector<Cell>& cells);
 
 /// The presets of `traversal` that the request names; its first when it names none at all. Throws InputError
 /// when it has none of them and was itself named.

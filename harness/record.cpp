@@ -4,8 +4,11 @@
 #include "backends/hardware.h"
 #include "harness/choosing/choice.h"
 #include "harness/environment.h"
+#include "harness/key.h"
 #include "harness/statistics.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -27,50 +30,134 @@ Json digest_json(const Digest& digest) {
     return {{"count", digest.count}, {"a", hex(digest.a)}, {"b", hex(digest.b)}};
 }
 
-/// Raw samples with their order statistics; the samples alone when there are none.
-Json with_summary(const std::vector<std::int64_t>& samples) {
-    Json json{{"samples", samples}};
-    if (samples.empty()) return json;
-    const auto s = summarise(samples);
-    json.update({{"median", s.median}, {"q1", s.q1}, {"q3", s.q3}, {"low", s.low}, {"high", s.high}});
-    return json;
+Json statistics_json(const Summary& s) {
+    return {{"median", s.median}, {"q1", s.q1}, {"q3", s.q3}, {"low", s.low}, {"high", s.high}};
 }
 
-/// A sample is the sum over the frames of one replay; the frames themselves stand beside it.
+/// The replays, then what is said of their rounds.
 Json total_json(const Measurement& m) {
-    std::vector<std::int64_t> sums;
-    for (const auto& frames : m.total_ns)
-        sums.push_back(std::accumulate(frames.begin(), frames.end(), std::int64_t{0}));
-    auto json = with_summary(sums);
-    json["frames"] = m.total_ns;
+    const auto totals = m.totals();
+    const auto rounds = m.rounds();
+    Json json{{"samples", totals}, {"rounds", rounds}};
+    if (!totals.empty()) json.update(statistics_json(summarise(totals, rounds)));
+    json["frames"] = Json::array();
+    for (const auto& sample : m.samples) json["frames"].push_back(sample.frame_ns);
     return json;
 }
 
-/// One number of one stage, by frame.
-template<class Value>
-std::vector<Value> column(const Measurement& m, std::size_t stage, Value StageSample::*member) {
-    std::vector<Value> values;
-    for (const auto& frame : m.stages) values.push_back(frame[stage].*member);
-    return values;
+/// Of what every instrumented replay has, frame by frame: their sums with statistics, and the median of each
+/// frame. `of(replay)` gives a vector by frame.
+template<class Of>
+Json replays_json(const Measurement& m, const Of& of) {
+    std::vector<std::int64_t> sums;
+    std::vector<std::vector<std::int64_t>> by_frame;
+    for (const auto& replay : m.breakdowns) {
+        const std::vector<std::int64_t> frames = of(replay);
+        by_frame.resize(frames.size());
+        for (std::size_t i = 0; i < frames.size(); ++i) by_frame[i].push_back(frames[i]);
+        sums.push_back(std::accumulate(frames.begin(), frames.end(), std::int64_t{0}));
+    }
+    Json json{{"samples", sums}};
+    if (sums.empty()) return json;
+    json.update(statistics_json(summarise(sums)));
+    json["frames"] = Json::array();
+    for (const auto& samples : by_frame)
+        json["frames"].push_back(static_cast<std::int64_t>(std::llround(summarise(samples).median)));
+    return json;
 }
 
+/// One number of one stage.
+Json stage_times_json(const Measurement& m, std::size_t stage, std::int64_t StageSample::*member) {
+    return replays_json(m, [&](const InstrumentedReplay& replay) {
+        std::vector<std::int64_t> values;
+        for (const auto& frame : replay.stages) values.push_back(frame[stage].*member);
+        return values;
+    });
+}
+
+/// Counts are of the last replay; times of all.
 Json stages_json(const Measurement& m) {
     Json json = Json::object();
+    if (m.breakdowns.empty()) return json;
+    const auto last = m.breakdowns.back().totals();
     for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
-        const auto host = column(m, stage, &StageSample::host_ns);
-        if (std::all_of(host.begin(), host.end(), [](auto v) { return v == 0; })) continue;
-        const auto sum = [&](auto member) {
-            const auto values = column(m, stage, member);
-            return std::accumulate(values.begin(), values.end(), std::uint64_t{0});
-        };
+        const auto& sum = last[stage];
+        if (std::ranges::all_of(m.breakdowns, [&](const auto& r) { return r.totals()[stage].host_ns == 0; }))
+            continue;
         json[std::string(stage_names[stage])] = {
-            {"device_ns", with_summary(column(m, stage, &StageSample::device_ns))},
-            {"host_ns", with_summary(host)},
-            {"launches", sum(&StageSample::launches)},
-            {"waits", sum(&StageSample::waits)},
-            {"bytes", sum(&StageSample::bytes)}};
+            {"device_ns", stage_times_json(m, stage, &StageSample::device_ns)},
+            {"host_ns", stage_times_json(m, stage, &StageSample::host_ns)},
+            {"launches", sum.launches},
+            {"waits", sum.waits},
+            {"bytes", sum.bytes}};
     }
     return json;
+}
+
+/// By entry point, as stages_json.
+Json kernel_times_json(const Measurement& m) {
+    Json json = Json::object();
+    if (m.breakdowns.empty()) return json;
+    for (const auto& [entry, last] : m.breakdowns.back().kernels) {
+        std::vector<std::int64_t> times;
+        for (const auto& replay : m.breakdowns) {
+            const auto found = replay.kernels.find(entry);
+            times.push_back(found == replay.kernels.end() ? 0 : found->second.device_ns);
+        }
+        Json samples{{"samples", times}};
+        samples.update(statistics_json(summarise(times)));
+        json[entry] = {{"launches", last.launches}, {"device_ns", samples}};
+    }
+    return json;
+}
+
+/// Null where a command told no times.
+Json device_span_json(const Measurement& m) {
+    for (const auto& replay : m.breakdowns)
+        if (std::ranges::any_of(replay.span_ns, [](auto span) { return span < 0; })) return nullptr;
+    return m.breakdowns.empty() ? Json() : replays_json(m, [](const auto& replay) { return replay.span_ns; });
+}
+
+/// Settings that the devices did not take as they were asked for, as they were.
+Json asked_json(const SettingTexts& asked, const SettingTexts& taken) {
+    Json json = Json::object();
+    for (const auto& [name, value] : asked) {
+        const auto found = taken.find(name);
+        if (found == taken.end() || found->second != value) json[name] = value;
+    }
+    return json;
+}
+
+/// By round; a sample of a machine that did something else as well is doubtful.
+Json conditions_json(const Measurement& m) {
+    Json json = Json::array();
+    for (const auto& round : m.conditions) {
+        const auto disturbed = round.disturbed();
+        json.push_back({{"round", round.round},
+                        {"disturbed", disturbed ? Json(*disturbed) : Json()},
+                        {"before", condition_json(round.before)},
+                        {"after", condition_json(round.after)}});
+    }
+    return json;
+}
+
+/// How it was sampled, and what is to be thought of it.
+Json sampling_json(const Measurement& m, const Cell& cell, const Outcome& outcome, const Sampling& sampling) {
+    const auto rounds = round_medians(m.totals(), m.rounds());
+    const auto change = drift(rounds);
+    const auto& enough = sampling.enough;
+    return {{"rounds", rounds.size()},
+            {"cells", sampling.cells},
+            {"seed", sampling.seed},
+            {"repeat", enough.repeat ? Json(*enough.repeat) : Json()},
+            {"noise", enough.repeat ? Json() : Json(noise_of(cell.devices, enough))},
+            {"seconds", enough.repeat ? Json() : Json(enough.seconds)},
+            {"spent_seconds",
+             outcome.sampler ? Json(static_cast<double>(outcome.sampler->spent_ns()) * 1e-9) : Json()},
+            {"converged", enough.repeat ? Json() : Json(outcome.converged)},
+            {"interrupted", sampling.interrupted},
+            {"outliers", count_outliers(rounds)},
+            {"drift", change ? Json(*change) : Json()}};
 }
 
 } // namespace
@@ -128,20 +215,12 @@ Json kernels_json(const std::vector<KernelFacts>& kernels) {
 
 Json record_environment() {
     const auto e = environment();
-    return {{"commit", known(e.commit)},       {"dirty", e.dirty},     {"date", e.date},
-            {"processor", known(e.processor)}, {"cores", e.cores},     {"memory_bytes", e.memory},
-            {"compiler", e.compiler},          {"clocks_mhz", nullptr}};
+    return {{"commit", known(e.commit)},       {"dirty", e.dirty},           {"date", e.date},
+            {"processor", known(e.processor)}, {"cores", e.cores},           {"memory_bytes", e.memory},
+            {"compiler", e.compiler},          {"sources", sources_digest()}};
 }
 
 namespace {
-
-/// "name=value,..." in the order of names: part of the key by which records are compared.
-std::string settings_key(const SettingTexts& settings) {
-    std::string key;
-    for (const auto& [name, value] : settings)
-        key += fmt::format("{}{}={}", key.empty() ? "" : ",", name, value);
-    return key;
-}
 
 /// Null when nothing was compared (--no-check).
 Json agreement_json(const Measurement& m, const Scene& scene) {
@@ -259,11 +338,6 @@ Json error_json(const Measurement& m, const Flaws& flaws) {
             {"truth", m.errors ? truth_json(*m.errors) : Json()}};
 }
 
-/// What was done with flawed tetrahedra, where that changes the answer.
-std::string handling_key(const Flaws& flaws) {
-    return flaws.handling == Degenerate::skip && flaws.any() ? ",degenerate=skip" : "";
-}
-
 std::string status_of(const Measurement& m, const std::string& failure) {
     if (!failure.empty()) return "failed";
     return m.agreement.ok() ? "ok" : "wrong";
@@ -272,29 +346,34 @@ std::string status_of(const Measurement& m, const std::string& failure) {
 } // namespace
 
 Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, const Measurement& m,
-                 const std::string& failure) {
+                 const Outcome& outcome, const Sampling& sampling) {
+    const auto& failure = outcome.failure;
     // Those the device took; of a cell that failed before that, those that were asked for.
-    const auto settings = (m.settings.empty() ? cell.settings : m.settings).texts();
+    const auto& settings = m.settings.empty() ? cell.settings : m.settings;
     Json json;
-    json["schema"] = 2;
-    // What was measured, without when and how fast: records of one key are comparable.
-    json["key"] = fmt::format("{}|{}|{}@{}|{}:{}{}|{}", cell.algorithm->name(), name_of(cell.devices),
-                              scene.key, hex(scene.digest), range.first, range.last,
-                              handling_key(range.flaws), settings_key(settings));
+    json["schema"] = record_schema;
+    json["key"] = key_of(cell, settings, scene, range);
+    json["session"] = session_id();
+    json["command"] = known(command_line());
     json["status"] = status_of(m, failure);
     json["failure"] = known(failure);
     json["algorithm"] = cell.algorithm->name();
     json["preset"] = cell.preset;
-    json["settings"] = settings;
+    json["settings"] = settings.texts();
+    json["asked"] = asked_json(cell.settings.texts(), settings.texts());
     json["chosen"] = cell.chosen ? choice_json(*cell.chosen) : Json();
     json["scene"] = record_scene(scene);
     json["frames"] = {{"first", range.first}, {"last", range.last}};
     json["devices"] = record_devices(cell.devices);
     const bool measured = failure.empty();
-    json["total_ns"] = measured ? total_json(m) : Json();
-    json["breakdown_ns"] = measured ? with_summary(m.breakdown_ns) : Json();
-    json["device_span_ns"] = m.device_span_ns.empty() ? Json() : with_summary(m.device_span_ns);
+    json["sampling"] = sampling_json(m, cell, outcome, sampling);
+    json["conditions"] = conditions_json(m);
+    json["total_ns"] = measured || !m.samples.empty() ? total_json(m) : Json();
+    json["breakdown_ns"] =
+        m.breakdowns.empty() ? Json() : replays_json(m, [](const auto& replay) { return replay.frame_ns; });
+    json["device_span_ns"] = device_span_json(m);
     json["stages"] = stages_json(m);
+    json["kernel_times"] = kernel_times_json(m);
     json["work"] = measured ? work_json(m, *cell.algorithm) : Json();
     json["kernels"] = kernels_json(m.kernels);
     json["preparation"] =

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/sampler.h"
+#include "harness/sampling/rounds.h"
 
 #include <nlohmann/json_fwd.hpp>
 
 namespace tandem {
 
-/// One measured cell as the JSON object of results/record.schema.json. `failure` is the reason when the cell
-/// did not finish; `measurement` is then what there is.
+/// The version of results/record.schema.json.
+inline constexpr int record_schema = 3;
+
+/// One measured cell as the JSON object of results/record.schema.json. Of a cell that failed it has what was
+/// measured before.
 nlohmann::ordered_json make_record(const Cell& cell, const Scene& scene, const FrameRange& range,
-                                   const Measurement& measurement, const std::string& failure);
+                                   const Measurement& measurement, const Outcome& outcome,
+                                   const Sampling& sampling);
 
 /// The parts of a record that say of what, where and with what it was made.
 nlohmann::ordered_json record_scene(const Scene& scene);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/sampler.h"
+#include "harness/sampling/measurement.h"
 #include "scenes/simulate/simulation.h"
 
 #include <nlohmann/json_fwd.hpp>

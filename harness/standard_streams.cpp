@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <unistd.h>
@@ -35,6 +36,11 @@ void prepare_standard_streams() {
         (void)open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
     }
     for (const int signal : {SIGPIPE, SIGXFSZ}) make_an_error_of(signal);
+}
+
+bool prints_colour() {
+    const char* no = std::getenv("NO_COLOR");
+    return isatty(STDOUT_FILENO) != 0 && (no == nullptr || *no == '\0');
 }
 
 void put_text(std::string_view text) {

@@ -22,6 +22,9 @@ void put(fmt::format_string<Values...> format, Values&&... values) {
     put_text(fmt::format(format, std::forward<Values>(values)...));
 }
 
+/// Whether standard output is a terminal whose user has not set NO_COLOR (no-color.org).
+bool prints_colour();
+
 /// Prints to standard error; never fails.
 void tell_text(std::string_view text);
 

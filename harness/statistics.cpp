@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 
 namespace tandem {
@@ -32,10 +33,7 @@ std::vector<double> bootstrap_medians(const std::vector<double>& samples) {
     return medians;
 }
 
-} // namespace
-
-Summary summarise(std::span<const std::int64_t> samples) {
-    std::vector<double> sorted(samples.begin(), samples.end());
+Summary summary_of(std::vector<double> sorted) {
     std::sort(sorted.begin(), sorted.end());
     Summary summary{quantile(sorted, 0.5), quantile(sorted, 0.25), quantile(sorted, 0.75), sorted.front(),
                     sorted.back()};
@@ -45,6 +43,59 @@ Summary summarise(std::span<const std::int64_t> samples) {
     summary.low = quantile(medians, 0.025);
     summary.high = quantile(medians, 0.975);
     return summary;
+}
+
+double median_of(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return quantile(values, 0.5);
+}
+
+} // namespace
+
+Summary summarise(std::span<const std::int64_t> samples) {
+    return summary_of({samples.begin(), samples.end()});
+}
+
+Summary summarise(std::span<const std::int64_t> samples, std::span<const std::uint32_t> rounds) {
+    return summary_of(round_medians(samples, rounds));
+}
+
+std::vector<double> round_medians(std::span<const std::int64_t> samples,
+                                  std::span<const std::uint32_t> rounds) {
+    std::map<std::uint32_t, std::vector<double>> by_round;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        by_round[rounds[i]].push_back(static_cast<double>(samples[i]));
+    std::vector<double> medians;
+    for (auto& [round, values] : by_round) medians.push_back(median_of(std::move(values)));
+    return medians;
+}
+
+std::size_t count_outliers(std::span<const double> values) {
+    if (values.size() < 8) return 0;
+    const double middle = median_of({values.begin(), values.end()});
+    std::vector<double> deviations;
+    for (const double value : values) deviations.push_back(std::abs(value - middle));
+    const double deviation = 1.4826 * median_of(deviations);
+    if (deviation == 0) return 0;
+    return static_cast<std::size_t>(
+        std::ranges::count_if(deviations, [&](double d) { return d > 5 * deviation; }));
+}
+
+std::optional<double> drift(std::span<const double> values) {
+    const auto n = static_cast<double>(values.size());
+    if (values.size() < 8) return std::nullopt;
+    double concordance = 0;
+    std::vector<double> slopes;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        for (auto j = i + 1; j < values.size(); ++j) {
+            const double change = values[j] - values[i];
+            concordance += change > 0 ? 1 : (change < 0 ? -1 : 0);
+            slopes.push_back(change / static_cast<double>(j - i));
+        }
+    // Normal from eight values on; the 1 corrects for steps of two.
+    const double deviation = std::sqrt(n * (n - 1) * (2 * n + 5) / 18);
+    if (std::abs(concordance) - 1 < 2.5758 * deviation) return std::nullopt; // 99 % of both sides
+    return median_of(std::move(slopes)) * (n - 1) / median_of({values.begin(), values.end()});
 }
 
 std::optional<Spread> spread(std::vector<double> samples) {

@@ -21,6 +21,24 @@ struct Summary {
 /// `samples` must not be empty.
 Summary summarise(std::span<const std::int64_t> samples);
 
+/// Of samples that were taken in rounds: rounds[i] is the round of samples[i]. Samples of a round share its
+/// luck (a session, a stretch of time), so that rounds are what is independent: all statistics are those of
+/// the rounds' medians. As many rounds as samples; not empty.
+Summary summarise(std::span<const std::int64_t> samples, std::span<const std::uint32_t> rounds);
+
+/// The median of each round, in the order of the rounds' numbers.
+std::vector<double> round_medians(std::span<const std::int64_t> samples,
+                                  std::span<const std::uint32_t> rounds);
+
+/// How many lie beyond five standard deviations of the median, estimated by 1.4826 times the median absolute
+/// deviation (Hampel 1974). None of fewer than eight values, or where more than half are equal.
+std::size_t count_outliers(std::span<const double> values);
+
+/// By how much values change from first to last, relative to their median, where they change in one direction
+/// (Mann 1945, p < 0.01, eight values at least): the median of all slopes between two of them (Sen 1968),
+/// times their number less one. None where they do not.
+std::optional<double> drift(std::span<const double> values);
+
 /// Median and 99th percentile (the least sample that so many do not exceed) and the largest sample.
 struct Spread {
     double median = 0, p99 = 0, maximum = 0;

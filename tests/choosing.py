@@ -36,7 +36,7 @@ class Choosing(Case):
         for word in (f"auto: {record['algorithm']} {record['preset']}", f"best of {chosen['of']} candidates", "% before",
                      "frames 0:0", "s of replays (at most 0.3)"):
             self.assertIn(word, errors[0])
-        self.assertTrue(record["key"].startswith(record["algorithm"] + "|host|"))
+        self.assertTrue(record["key"].startswith(record["algorithm"] + "|host:"))
         candidates = chosen["candidates"]
         self.assertEqual(len(candidates), chosen["of"])
         self.assertEqual((candidates[0]["algorithm"], candidates[0]["preset"]), (record["algorithm"], record["preset"]))

@@ -19,6 +19,7 @@ def record(factor=1.0, samples=9, k="8", commit="aaaa11112222", session=None):
     made["settings"]["k"] = k
     made["total_ns"] = {"samples": [round(1e7 * factor * (1 + 0.001 * (i * 7 % 11))) for i in range(samples)], "frames": []}
     made["environment"]["commit"] = commit
+    made["schema"] = 2
     if session:
         made.update(schema=3, session=session, sampling={"seed": 1})
         made["total_ns"]["rounds"] = list(range(samples))
@@ -186,7 +187,7 @@ class Compare(Case):
         with open("/dev/full", "w") as full:
             done = subprocess.run([str(PROGRAM), "compare", path, path], stdout=full, stderr=subprocess.PIPE, text=True)
         self.assertEqual((done.returncode, done.stderr.count("\n")), (3, 1), done.stderr)
-        self.assertIn("standard output cannot be written", done.stderr)
+        self.assertIn("standard output could not be written", done.stderr)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 import itertools
 import json
 import os
+import statistics
 import subprocess
 import sys
 import unittest
@@ -54,12 +55,15 @@ class Records(Case):
         status, text, errors = tandem(*arguments)
         self.assertEqual((status, errors), (0, []), text)
         self.assertEqual(text.count(": right: "), 4, text)
-        for word in ("method", "traverse", "launches", "total ms", "how many times chunked is faster", "narrow"):
+        for word in ("ms/frame", "traverse", "launches", "95 %", "times as long as chunked resident on host", "narrow"):
             self.assertIn(word, text)
         first = out.read_bytes()
         records = self.records(out)
-        self.assertEqual([(r["devices"][0]["id"], r["algorithm"]) for r in records],
+        # Cells end in the order of their last turns, which is drawn.
+        self.assertEqual(sorted((r["devices"][0]["id"], r["algorithm"]) for r in records),
                          list(itertools.product(["host", "opencl:0"], ["chunked", "gproximity"])))
+        self.assertEqual(len({r["session"] for r in records}), 1)
+        self.assertTrue(records[0]["command"].startswith("tandem run plates --frames 20:21 "), records[0]["command"])
         self.assertEqual({r["status"] for r in records}, {"ok"})
         self.assertEqual(len({json.dumps(r["agreement"]["digest"]) for r in records}), 1)
         self.assertEqual(len({json.dumps(r["agreement"]["contact_digest"]) for r in records}), 1)
@@ -67,11 +71,39 @@ class Records(Case):
             self.assertGreater(record["agreement"]["digest"]["count"], 1000)
             self.assertEqual(sum(record["work"]["candidate_pairs"]), record["agreement"]["digest"]["count"])
             self.assertEqual([sum(frames) for frames in record["total_ns"]["frames"]], record["total_ns"]["samples"])
-            self.assertEqual(len(record["total_ns"]["samples"]), 2)
+            self.assertEqual((len(record["total_ns"]["samples"]), record["total_ns"]["rounds"]), (2, [0, 1]))
+            self.assertEqual((record["sampling"]["rounds"], record["sampling"]["cells"], record["sampling"]["repeat"]), (2, 4, 2))
+            for times in (record["breakdown_ns"], record["stages"]["traverse"]["host_ns"]):
+                self.assertEqual((len(times["samples"]), len(times["frames"])), (2, 2))
+            device = record["devices"][0]
+            self.assertIn(device["compiler"] if device["id"] == "host" else device["name"], record["key"].split("|")[1])
+            walks = [name for name in record["kernel_times"] if name.startswith("traverse")]
+            self.assertGreater(sum(record["kernel_times"][name]["device_ns"]["median"] for name in walks), 0, record["kernel_times"].keys())
             self.assertGreater(record["stages"]["traverse"]["device_ns"]["median"], 0)
         self.assertEqual(tandem(*arguments)[0], 0)
         self.assertTrue(out.read_bytes().startswith(first))
-        self.assertEqual([r["key"] for r in self.records(out)], [r["key"] for r in records] * 2)
+        again = self.records(out)[4:]
+        self.assertEqual(sorted(r["key"] for r in again), sorted(r["key"] for r in records))
+        self.assertNotEqual(again[0]["session"], records[0]["session"])
+
+    def test_samples_until_they_suffice(self):
+        out = self.work / "suffice.jsonl"
+        arguments = ("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked,tiled", "--set", "k=6",
+                     "--truth", "none", "--out", out)
+        self.assertEqual(tandem(*arguments, "--seconds", 0.01, "--noise", "0.01%", "--seed", 7)[0], 0)
+        self.assertEqual(tandem(*arguments, "--seconds", 60, "--noise", 0.9, "--seed", 7)[0], 0)
+        records = self.records(out)
+        self.assertEqual([(r["sampling"]["converged"], r["sampling"]["seed"], r["sampling"]["noise"]) for r in records],
+                         [(False, 7, 0.0001)] * 2 + [(True, 7, 0.9)] * 2)
+        for record in records:
+            self.assertGreaterEqual(record["sampling"]["rounds"], 10)
+            rounds, samples = record["total_ns"]["rounds"], record["total_ns"]["samples"]
+            self.assertEqual((rounds, len(rounds)), (sorted(rounds), len(samples)))
+            self.assertEqual(len(record["breakdown_ns"]["samples"]), record["sampling"]["rounds"])
+            medians = [statistics.median(s for s, r in zip(samples, rounds) if r == n) for n in range(rounds[-1] + 1)]
+            self.assertAlmostEqual(record["total_ns"]["median"], statistics.median(medians), delta=1)
+        for wrong in (("--noise", "0"), ("--noise", "101%"), ("--noise", "x"), ("--seconds", "0"), ("--seed", "x")):
+            self.assertEqual(tandem(*arguments, *wrong)[0], 2, wrong)
 
     def test_several_values_make_several_cells(self):
         out = self.work / "cells.jsonl"
@@ -89,10 +121,14 @@ class Records(Case):
         tandem("run", "--mesh", flat, "--mesh", self.good, "--device", "opencl:0", "--algorithm", "gproximity", "--truth", "contacts",
                "--out", out)
         record = self.records(out)[0]
-        maps, nullable = {"settings", "defines", "counters"}, {"chosen", "failure", "agreement", "commit", "processor", "clocks_mhz", "hardware", "device_span_ns",
+        maps, nullable = {"settings", "defines", "counters", "kernel_times"}, {"chosen", "failure", "agreement", "commit", "hardware", "device_span_ns",
+                                                   "session", "command",
                                                    "registers", "local_bytes", "spill_bytes", "missed_upper95", "candidate_ratio", "decisions",
                                                    "depth_relative", "depth_ulps", "normal_degrees", "point", "hausdorff", "volume_relative"}
-        nullable_paths = {("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift"),
+        of_condition = ("quota_cores", "own_cores", "other_cores", "governor", "mhz", "throttled_periods", "pressure_percent")
+        nullable_paths = {("environment", "processor"), ("environment", "sources"), ("conditions", 0, "disturbed"),
+                          *(("conditions", 0, when, "processor", name) for when in ("before", "after") for name in of_condition),
+                          *(("conditions", 0, when, "gpus", 0) for when in ("before", "after")), *(("sampling", name) for name in ("cells", "seed", "repeat", "noise", "seconds", "spent_seconds", "converged", "drift")), ("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift"),
                           *(("work", name) for name in ("undecided_by_filter", "undecided_by_double", "batches")),
                           *(("work", "counters", name) for name in record["work"]["counters"])}
         since = {"chosen", "truth", "inputs", "volume_relative", "no_volume"}  # records from before each lack it
@@ -116,7 +152,7 @@ class Records(Case):
                     more = changed(record, path, lambda p, n: p.update(surprise=1))
                     self.assertFalse(self.validator.is_valid(more), "one more")
         self.assertGreater(len(seen), 150)
-        for change in ({"status": "fine"}, {"status": "failed"}, {"failure": "device lost"}, {"failure": ""}, {"schema": 1},
+        for change in ({"status": "fine"}, {"status": "failed"}, {"failure": "device lost"}, {"failure": ""}, {"schema": 2},
                        {"stages": {"travers": record["stages"]["traverse"]}}, {"breakdown_ns": {"samples": []}},
                        {"total_ns": {**record["total_ns"], "samples": []}}, {"devices": []}, {"settings": {"k": 18}},
                        {"scene": {**record["scene"], "digest": "0123456789ABCDEF"}},

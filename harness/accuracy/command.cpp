@@ -105,10 +105,7 @@ std::vector<std::string> expand(const std::string& scene, Degenerate handling) {
 
 /// Median over the samples of a frame's time, in ms.
 double frame_ms(const Measurement& m) {
-    std::vector<std::int64_t> sums;
-    for (const auto& frames : m.total_ns)
-        sums.push_back(std::accumulate(frames.begin(), frames.end(), std::int64_t{0}));
-    return summarise(sums).median * 1e-6 / static_cast<double>(m.total_ns.front().size());
+    return median_ns(m) * 1e-6 / static_cast<double>(m.candidate_pairs.size());
 }
 
 std::string number(const std::optional<double>& value) { return value ? fmt::format("{:.3g}", *value) : "-"; }
@@ -143,24 +140,20 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
     References references(job.scene, job.range);
     Truths truths(job.scene, job.range.frames, TruthAmount::contacts, options.truth_contacts);
     const Progress progress(options.quiet);
-    SampleOptions sampling;
-    sampling.repeat = options.repeat;
-    sampling.check = options.check;
-    sampling.count_work = false;
-    sampling.truths = &truths;
+    Measuring measuring;
+    measuring.check = {options.check, false, &truths};
+    measuring.enough.repeat = options.repeat.value_or(3);
     int code = 0;
     print_header();
-    for (std::size_t i = 0; i < job.cells.size() && !file.failed(); ++i) {
-        sampling.progress = [&](std::string_view text) {
-            progress.show(fmt::format("[{}/{}] {}", i + 1, job.cells.size(), text));
-        };
-        Measurement m;
-        const auto result = run_cell(job.cells[i], job, references, sampling, file, progress, m);
-        code = std::max({code, result.code, misses_against_its_promise(m) ? 1 : 0});
-        if (result.measured && !m.agreement.ok())
-            put("WRONG against the reference: {}\n", describe(job.cells[i]));
-        if (result.measured && m.errors) print_row(job.cells[i], m);
-    }
+    // Cell after cell: rows come as they are found, and time stands beside error only.
+    for (const auto& cell : job.cells)
+        measure_cells(job, {&cell, 1}, references, measuring, file, progress, [&](const CellResult& result) {
+            const auto& m = result.measurement;
+            code = std::max({code, result.code, misses_against_its_promise(m) ? 1 : 0});
+            if (result.measured && !m.agreement.ok())
+                put("WRONG against the reference: {}\n", describe(cell));
+            if (result.measured && m.errors) print_row(cell, m);
+        });
     put("\n");
     return code;
 }

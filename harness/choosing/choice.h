@@ -2,7 +2,7 @@
 #pragma once
 
 #include "harness/choosing/search.h"
-#include "harness/sampler.h"
+#include "harness/sampling/measurement.h"
 
 #include <nlohmann/json_fwd.hpp>
 

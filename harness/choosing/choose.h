@@ -2,6 +2,7 @@
 #pragma once
 
 #include "harness/choosing/choice_cache.h"
+#include "harness/frames.h"
 
 #include <functional>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/choosing/trials.h"
 
-#include "harness/sampler.h"
+#include "harness/sampling/measurement.h"
 #include "scenes/error.h"
 
 #include <algorithm>

@@ -36,7 +36,7 @@ void add_cell_options(CLI::App& app, RunOptions& options, std::vector<std::strin
         ->expected(1)
         ->take_all();
     app.add_option("--algorithm", options.request.algorithms,
-                   "A,B (see 'tandem algorithms'); all when left out")
+                   "A,B or all (see 'tandem algorithms'); all when left out")
         ->delimiter(',');
     app.add_option(
            "--preset", options.request.presets,
@@ -51,7 +51,9 @@ void add_cell_options(CLI::App& app, RunOptions& options, std::vector<std::strin
            "--threads", options.threads,
            "threads that run work-groups of device host, as --set threads=N; when left out one for each core")
         ->check(CLI::Range(0, 4096));
-    app.add_option("--set", sets, "NAME=V1,V2: several values make several cells")->expected(1)->take_all();
+    app.add_option("--set", sets, "NAME=V1,V2, A..B:STEP or A..B*FACTOR: several values make several cells")
+        ->expected(1)
+        ->take_all();
 }
 
 /// add_cell_options and how they are run: what `run`, `check` and `accuracy` have in common.
@@ -85,6 +87,19 @@ void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string
     app.add_flag("--quiet", options.quiet, "no progress line");
 }
 
+/// "1%" as "0.01".
+const CLI::Validator share(
+    [](std::string& text) -> std::string {
+        const bool percent = text.ends_with('%');
+        double value = 0;
+        if (!CLI::detail::lexical_cast(percent ? text.substr(0, text.size() - 1) : text, value)
+            || !(value > 0 && value <= (percent ? 100 : 1)))
+            return "give a share such as 0.01 or 1%";
+        if (percent) text = CLI::detail::to_string(value / 100);
+        return {};
+    },
+    "SHARE");
+
 /// What `run` alone has: --algorithm auto and how it chooses.
 void add_choosing(CLI::App& app, RunOptions& options) {
     app.get_option("--algorithm")
@@ -100,6 +115,24 @@ void add_choosing(CLI::App& app, RunOptions& options) {
     app.add_flag("--choose-afresh", options.choose_afresh,
                  "auto: measure again where a choice was kept ($TANDEM_KERNEL_CACHE, or "
                  "$XDG_CACHE_HOME/tandem)");
+}
+
+/// When a cell has been sampled enough.
+void add_sampling(CLI::App& app, RunOptions& options) {
+    app.add_option(
+           "--noise", options.noise,
+           "sample a cell, ten rounds at least, until the 95 % interval of its median is narrower than "
+           "this share of it (0.01 or 1%); 1 % on GPUs and 3 % on processors when left out")
+        ->transform(share)
+        ->option_text("P");
+    app.add_option("--seconds", options.seconds, "or until its rounds have taken so long; 10 when left out")
+        ->check(CLI::Range(0.001, 1e6))
+        ->option_text("S");
+    app.add_option("--repeat", options.repeat, "instead: so many samples of each cell")
+        ->check(CLI::Range(1, 1000));
+    app.add_option("--seed", options.seed,
+                   "of the order in which cells take turns in a round; by chance when left out")
+        ->option_text("N");
 }
 
 /// add_run_options with the other defaults of `accuracy`, which is about the truth and cannot leave it out.
@@ -121,10 +154,15 @@ void add_accuracy_run_options(CLI::App& app, RunOptions& options, std::vector<st
 Action add_run(CLI::App& app) {
     auto given = std::make_shared<Given<RunOptions>>();
     auto& options = given->options;
-    app.add_option("scene", options.scene, scene_help);
+    app.add_option("scenes", options.scenes, scene_help);
     add_run_options(app, options, given->sets);
     add_choosing(app, options);
-    app.add_option("--repeat", options.repeat, "samples per cell")->check(CLI::Range(1, 1000));
+    app.add_flag("--dry-run", options.dry_run,
+                 "list the cells with their keys and a guess of the time; measure none");
+    app.add_flag("--resume", options.resume,
+                 "leave out the cells that --out has of a program of the same sources")
+        ->needs("--out");
+    add_sampling(app, options);
     app.add_option("--profile", options.profile, "only replay the frames N times, for a profiler")
         ->check(CLI::Range(1, 1000000));
     app.add_option("--dump-pairs", options.dump_pairs,
@@ -154,7 +192,8 @@ Action add_accuracy(CLI::App& app) {
     auto& options = given->options;
     app.add_option("scenes", options.scenes, scene_help);
     add_accuracy_run_options(app, options.run, given->sets);
-    app.add_option("--repeat", options.run.repeat, "samples per cell")->check(CLI::Range(1, 1000));
+    app.add_option("--repeat", options.run.repeat, "samples per cell; 3 when left out")
+        ->check(CLI::Range(1, 1000));
     app.add_flag("!--no-check", options.run.check, "do not compare with the reference; the truth stays");
     app.add_option("--figures", options.figures,
                    "draw the records of --out, or of FOLDER/accuracy.jsonl without it, into this folder")

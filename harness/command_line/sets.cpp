@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/command_line/sets.h"
+
+#include "harness/command_line/ranges.h"
 #include "scenes/error.h"
 
 #include <CLI/CLI.hpp>
@@ -18,7 +20,9 @@ parse_sets(const std::vector<std::string>& texts) {
             throw InputError(
                 fmt::format("--set {0}: it is said of frames, for all cells; give --degenerate {1}", text,
                             text.substr(equals + 1)));
-        sets.emplace_back(text.substr(0, equals), CLI::detail::split(text.substr(equals + 1), ','));
+        auto& values = sets.emplace_back(text.substr(0, equals), std::vector<std::string>{}).second;
+        for (const auto& part : CLI::detail::split(text.substr(equals + 1), ','))
+            for (auto& value : expand_range(part, "--set " + text)) values.push_back(std::move(value));
     }
     return sets;
 }

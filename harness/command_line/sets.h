@@ -7,7 +7,8 @@
 
 namespace tandem {
 
-/// Settings and the values of each, in order, from texts "NAME=V1,V2". Throws InputError.
+/// Settings and the values of each, in order, from texts "NAME=V1,V2", where a value may be a range
+/// (ranges.h). Throws InputError.
 std::vector<std::pair<std::string, std::vector<std::string>>>
 parse_sets(const std::vector<std::string>& texts);
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands.h"
 #include "harness/compare/report.h"
-
-#include <cerrno>
-#include <cstring>
-#include <fmt/format.h>
+#include "harness/standard_streams.h"
 
 namespace tandem {
 
@@ -16,12 +13,9 @@ int compare_command(const CompareOptions& options) {
     if (options.threshold) how.threshold = *options.threshold / 100;
     const auto comparison = compare::compare(before, after, how);
     const compare::Report report{before, after, how, comparison};
-    fmt::print("{}", options.format == "json"       ? compare::json_of(report)
-                     : options.format == "markdown" ? compare::markdown_of(report)
-                                                    : compare::text_of(report));
-    if (std::fflush(stdout) != 0)
-        throw std::runtime_error(
-            fmt::format("standard output cannot be written ({}); make room for it", std::strerror(errno)));
+    put("{}", options.format == "json"       ? compare::json_of(report)
+              : options.format == "markdown" ? compare::markdown_of(report)
+                                             : compare::text_of(report));
     return comparison.changed() ? 1 : 0;
 }
 

@@ -68,8 +68,8 @@ Ratio unpaired_ratio(std::span<const double> before, std::span<const double> aft
     });
 }
 
-double least_effect(double log_error, double level, double power) {
-    return std::expm1((normal_quantile(1 - level / 2) + normal_quantile(power)) * log_error);
+double least_effect(double log_error, double level, double probability) {
+    return std::expm1((normal_quantile(1 - level / 2) + normal_quantile(probability)) * log_error);
 }
 
 double normal_quantile(double probability) {

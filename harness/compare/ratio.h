@@ -24,10 +24,10 @@ Ratio unpaired_ratio(std::span<const double> before, std::span<const double> aft
 /// The median; `values` must not be empty.
 double median(std::vector<double> values);
 
-/// The least relative change, 0.01 for 1 %, that a two-sided test at `level` shows with probability `power`
-/// where the logarithm of the ratio is normal with this standard error:
-/// exp((z(1 - level / 2) + z(power)) * log_error) - 1.
-double least_effect(double log_error, double level, double power);
+/// The least relative change, 0.01 for 1 %, that a two-sided test at `level` shows with probability
+/// `probability` where the logarithm of the ratio is normal with this standard error: exp((z(1 - level / 2) +
+/// z(probability)) * log_error) - 1.
+double least_effect(double log_error, double level, double probability);
 
 /// z with a share `probability` of the standard normal distribution below it; 0 < probability < 1.
 double normal_quantile(double probability);

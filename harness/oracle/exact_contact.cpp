@@ -35,7 +35,7 @@ void push_apart(const Lattice<mpz_class>& lattice, double slack, ExactContact& r
 
 std::optional<ExactContact> exact_contact(const TetraCorners& a, const TetraCorners& b, double slack) {
     ExactContact result;
-    result.relation = relation(a, b);
+    result.relation = tandem::relation(a, b);
     if (result.relation == Relation::invalid) return std::nullopt;
     const auto lattice = big_lattice(a, b);
     if (orientation(lattice.a) == 0 || orientation(lattice.b) == 0) return std::nullopt;

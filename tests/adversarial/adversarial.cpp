@@ -8,9 +8,7 @@
 #include "harness/adversarial.h"
 #include "harness/environment.h"
 #include "harness/plan.h"
-#include "harness/sampler.h"
-#include "harness/plan.h"
-#include "harness/sampler.h"
+#include "harness/sampling/measurement.h"
 #include "scenes/error.h"
 
 #include <CLI/CLI.hpp>

@@ -3,7 +3,7 @@
 // that kernels, reference and broad phase mean the same slabs.
 #include "algorithms/broad/broad.h"
 #include "algorithms/broad/broad.h"
-#include "harness/sampler.h"
+#include "harness/sampling/rounds.h"
 #include "scenes/error.h"
 #include "tests/support/cells.h"
 #include "tests/support/leaf_slabs.h"
@@ -41,10 +41,10 @@ Measurement measured(const Scene& scene, References& references, const FrameRang
                     std::string(preset.name),
                     resolve(chunked.parameters(), preset.values, given, chunked.name()),
                     {&device("host")}};
-    SampleOptions options;
-    options.repeat = 1;
-    options.count_work = false;
-    return measure(cell, scene, range, references, options);
+    CellSampler sampler(cell, scene, range, references);
+    sampler.check({.count_work = false});
+    sampler.round(1);
+    return sampler.measurement();
 }
 
 TEST(BoundsAnswers, SafeAndNearestAgreeWithoutCornersAndEveryCellWithItsOwnReference) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/sampler.h"
+#include "harness/frames.h"
 #include "tests/support/folder.h"
 #include "tests/support/recordings.h"
 

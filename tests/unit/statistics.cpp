@@ -2,6 +2,9 @@
 #include "harness/statistics.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
 #include <vector>
 
 namespace tandem {
@@ -42,6 +45,58 @@ TEST(Statistics, SpreadTakesTheLeastValueThatNinetyNinePercentDoNotExceed) {
     EXPECT_EQ(s->p99, 198);
     EXPECT_EQ(s->maximum, 200);
     EXPECT_FALSE(spread({}));
+}
+
+TEST(Statistics, RoundsAreWhatIsIndependent) {
+    // Three rounds, each with samples that hardly differ: as few values as rounds.
+    const std::vector<std::int64_t> samples{100, 101, 102, 200, 201, 202, 300, 301, 302};
+    const std::vector<std::uint32_t> rounds{0, 0, 0, 1, 1, 1, 2, 2, 2};
+    EXPECT_EQ(round_medians(samples, rounds), (std::vector<double>{101, 201, 301}));
+    const auto by_round = summarise(samples, rounds);
+    EXPECT_EQ(by_round.median, 201);
+    EXPECT_EQ(by_round.low, 101);
+    EXPECT_EQ(by_round.high, 301);
+    // A sample a round is the same as samples.
+    const std::vector<std::uint32_t> apart{0, 1, 2, 3, 4, 5, 6, 7, 8};
+    EXPECT_EQ(summarise(samples, apart).low, summarise(samples).low);
+    EXPECT_EQ(summarise(samples, apart).median, summarise(samples).median);
+}
+
+TEST(Statistics, OutliersAreFarFromTheMedianByWhatTheOthersScatter) {
+    EXPECT_EQ(count_outliers({}), 0u);
+    EXPECT_EQ(count_outliers(std::vector<double>{1, 2, 3, 4, 5, 6, 700}), 0u);  // seven are too few
+    EXPECT_EQ(count_outliers(std::vector<double>{5, 5, 5, 5, 5, 5, 5, 9}), 0u); // no scatter to go by
+    // Deviations have median 2: 1.4826 * 2 * 5 = 14.8.
+    EXPECT_EQ(count_outliers(std::vector<double>{96, 97, 98, 99, 100, 101, 102, 103, 104}), 0u);
+    EXPECT_EQ(count_outliers(std::vector<double>{97, 98, 98, 99, 100, 101, 102, 103, 114}), 0u);
+    EXPECT_EQ(count_outliers(std::vector<double>{97, 98, 98, 99, 100, 101, 102, 60, 140}), 2u);
+}
+
+TEST(Statistics, DriftIsOneDirection) {
+    std::vector<double> rising, swinging;
+    for (int i = 0; i < 20; ++i) {
+        rising.push_back(100 + i);
+        swinging.push_back(i % 2 == 0 ? 100 : 120);
+    }
+    EXPECT_FALSE(drift(std::vector<double>{1, 2, 3, 4, 5, 6, 7})); // seven are too few
+    EXPECT_FALSE(drift(swinging));
+    ASSERT_TRUE(drift(rising));
+    EXPECT_DOUBLE_EQ(*drift(rising), 19 / 109.5);
+    std::reverse(rising.begin(), rising.end());
+    EXPECT_DOUBLE_EQ(drift(rising).value_or(0), -19 / 109.5);
+}
+
+/// Of what does not drift at most 1 % is said to: 2,000 series, three deviations of the binomial.
+TEST(Statistics, DriftIsSeldomSeenWhereThereIsNone) {
+    std::mt19937_64 random(3);
+    int seen = 0;
+    for (int i = 0; i < 2000; ++i) {
+        std::vector<double> values(12);
+        for (auto& value : values) value = static_cast<double>(random() % 100000);
+        seen += drift(values) ? 1 : 0;
+    }
+    EXPECT_LE(seen, 20 + 3 * 4.5);
+    EXPECT_GT(seen, 0);
 }
 
 } // namespace

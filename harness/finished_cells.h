@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/frames.h"
+#include "harness/journal.h"
+#include "harness/plan.h"
+
+#include <map>
+#include <optional>
+
+namespace tandem {
+
+/// The cells that a file of records has already, by what was asked for: devices may take settings otherwise.
+class FinishedCells {
+public:
+    FinishedCells() = default;
+    /// Reads what this program, of the same sources, has finished (right or wrong) into the file. Throws
+    /// InputError where it holds records of another schema.
+    explicit FinishedCells(const RecordFile& file, const std::string& path);
+
+    bool has(const Cell& cell, const Scene& scene, const FrameRange& range) const;
+    /// What its rounds took, whichever sources they were of; none when it was never measured.
+    std::optional<double> seconds(const Cell& cell, const Scene& scene, const FrameRange& range) const;
+
+private:
+    struct Finished {
+        bool same_sources = false;
+        double seconds = 0;
+    };
+    std::map<std::string, Finished> by_key_;
+};
+
+} // namespace tandem

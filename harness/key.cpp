@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "harness/key.h"
+
+#include "harness/environment.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+std::string models_of(const DeviceGroup& devices) {
+    std::string models;
+    for (const auto* device : devices) models += (models.empty() ? "" : "+") + model_of(device->info());
+    return models;
+}
+
+/// "name=value,..." in the order of names.
+std::string settings_key(const SettingTexts& settings) {
+    std::string key;
+    for (const auto& [name, value] : settings)
+        key += fmt::format("{}{}={}", key.empty() ? "" : ",", name, value);
+    return key;
+}
+
+/// What was done with flawed tetrahedra, where that changes the answer.
+std::string handling_key(const Flaws& flaws) {
+    return flaws.handling == Degenerate::skip && flaws.any() ? ",degenerate=skip" : "";
+}
+
+} // namespace
+
+/// A bar would end the part.
+std::string model_of(const DeviceInfo& info) {
+    const auto backend = info.id.substr(0, info.id.find(':'));
+    const bool is_host = backend == "host"; // which is no product of anyone
+    auto model = fmt::format("{}:{}{}, {}", backend, is_host ? environment().processor : info.name,
+                             info.is_gpu ? "" : fmt::format(" x{}", info.compute_units),
+                             is_host ? info.compiler : info.driver);
+    std::replace(model.begin(), model.end(), '|', '/');
+    return model;
+}
+
+std::string with_settings(const std::string& before_settings, const SettingTexts& settings) {
+    return before_settings + "|" + settings_key(settings);
+}
+
+std::string key_of(const Cell& cell, const Settings& settings, const Scene& scene, const FrameRange& range) {
+    return with_settings(fmt::format("{}|{}|{}@{:016x}|{}:{}{}", cell.algorithm->name(),
+                                     models_of(cell.devices), scene.key, scene.digest, range.first,
+                                     range.last, handling_key(range.flaws)),
+                         settings.texts());
+}
+
+} // namespace tandem

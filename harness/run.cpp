@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: MIT
+#include "harness/commands.h"
+
+#include "harness/choosing/choose.h"
+#include "harness/dumps.h"
+#include "harness/environment.h"
+#include "harness/finished_cells.h"
+#include "harness/inputs.h"
+#include "harness/interrupt.h"
+#include "harness/job.h"
+#include "harness/key.h"
+#include "harness/progress.h"
+#include "harness/standard_streams.h"
+#include "harness/statistics.h"
+#include "harness/table/table.h"
+#include "scenes/error.h"
+#include "scenes/hard/hard.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+
+namespace tandem {
+
+namespace {
+
+/// Writes what was asked for in a replay of its own: files take longer than frames.
+void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts) {
+    if (!pairs && !contacts) return;
+    const auto session = cell.algorithm->prepare(cell.devices, job.scene, cell.settings);
+    for (std::size_t i = 0; i < job.range.frames.size(); ++i) {
+        const auto result = session->run(job.range.frames[i]);
+        if (pairs) pairs.pairs(job.range.first + i, result.download());
+        if (contacts) contacts.contacts(job.range.first + i, result.download_contacts());
+    }
+}
+
+/// Replays the frames and does nothing else, so that a profiler sees only the algorithm.
+int profile(const Job& job, std::size_t times) {
+    for (const auto& cell : job.cells) {
+        const auto session = cell.algorithm->prepare(cell.devices, job.scene, cell.settings);
+        for (std::size_t i = 0; i < times; ++i)
+            for (const auto& frame : job.range.frames) session->run(frame);
+        put("{}: replayed frames {}:{} {} times; nothing measured or recorded\n", describe(cell),
+            job.range.first, job.range.last, times);
+    }
+    return 0;
+}
+
+/// Decides the cells of auto.
+void choose_cells(Job& job, const RunOptions& options, const Progress& progress) {
+    ChoosingOptions choosing;
+    choosing.seconds = options.choose_seconds;
+    choosing.afresh = options.choose_afresh;
+    for (std::size_t i = 0; i < job.cells.size(); ++i) {
+        choosing.progress = [&](std::string_view text) {
+            progress.show(text.empty() ? "" : fmt::format("[{}/{}] {}", i + 1, job.cells.size(), text));
+        };
+        choose(job.cells[i], job.scene, job.range, choosing);
+    }
+}
+
+/// What of the options says how cells are measured.
+Measuring measuring_of(const RunOptions& options, Truths* truths) {
+    Measuring measuring;
+    measuring.check = {options.check, options.count, truths};
+    measuring.enough = {options.repeat, options.noise, options.seconds};
+    measuring.seed = options.seed ? *options.seed : std::random_device{}();
+    return measuring;
+}
+
+std::string truth_of(const AnswerErrors& e) {
+    return fmt::format("truth: {} of {} meeting pairs missed, {} candidates do not meet", e.missed(),
+                       e.meeting(), e.pairs.disjoint);
+}
+
+/// The last line of a cell: right, or by how much not.
+std::string verdict(const Measurement& m) {
+    const auto& a = m.agreement;
+    if (a.frames == 0) return "not checked";
+    if (a.ok())
+        return fmt::format("right: {} pairs in {} frames, 0 missing, 0 extra, contacts equal{}",
+                           a.digest.count, a.frames, m.errors ? "; " + truth_of(*m.errors) : "");
+    return fmt::format("WRONG: {} missing, {} extra, contacts differ in {} of {} frames", a.missing, a.extra,
+                       a.contact_frames_wrong, a.frames);
+}
+
+/// What is to be thought of a cell's times; empty when nothing speaks against them.
+std::string doubts(const CellResult& result) {
+    const auto& m = result.measurement;
+    std::vector<std::string> notes;
+    std::map<std::string, std::size_t> reasons;
+    std::size_t disturbed = 0;
+    for (const auto& round : m.conditions)
+        if (const auto reason = round.disturbed()) ++disturbed, ++reasons[*reason];
+    if (disturbed > 0) {
+        const auto most =
+            std::ranges::max_element(reasons, {}, [](const auto& entry) { return entry.second; });
+        notes.push_back(
+            fmt::format("{} of {} rounds disturbed ({})", disturbed, m.conditions.size(), most->first));
+    }
+    if (!result.converged) notes.emplace_back("interval wider than asked for");
+    const auto rounds = round_medians(m.totals(), m.rounds());
+    if (const auto outliers = count_outliers(rounds); outliers > 0)
+        notes.push_back(fmt::format("{} outlier{}", outliers, outliers == 1 ? "" : "s"));
+    if (const auto change = drift(rounds)) notes.push_back(fmt::format("drift {:+.1f} %", *change * 100));
+    return fmt::to_string(fmt::join(notes, "; "));
+}
+
+/// A run of the command: its scenes, one after the other.
+class Run {
+public:
+    explicit Run(const RunOptions& options);
+    int go();
+
+private:
+    Job open(const std::string& scene) const;
+    void open_files();
+    int measure(Job& job);
+    void print(const Job& job, const std::map<const Cell*, CellResult>& results) const;
+    int end(int code) const;
+    void leave_out_finished(Job& job);
+    void list(const Job& job);
+
+    const RunOptions& options_;
+    std::vector<BackendReport> backends_;
+    std::vector<Cell> cells_; ///< of every scene
+    std::optional<RecordFile> file_;
+    std::optional<DumpFile> pairs_, contacts_;
+    FinishedCells finished_;
+    Progress progress_;
+    std::size_t listed_ = 0, unknown_ = 0, measured_ = 0, left_out_ = 0;
+    double seconds_ = 0;
+    bool interrupted_ = false;
+};
+
+Request request_of(const RunOptions& options) {
+    auto request = options.request;
+    if (request.devices.empty()) request.devices.emplace_back("opencl:0");
+    request.may_choose = true;
+    return request;
+}
+
+Run::Run(const RunOptions& options) : options_(options), backends_(discover()), progress_(options.quiet) {
+    const auto request = request_of(options);
+    check_required(backends_, options.require);
+    cells_ = plan(request, open_devices(options, backends_, request.devices));
+    if (const auto repeated = drop_repeated(cells_); repeated > 0)
+        tell("tandem: {} cells are named more than once; each is measured once\n", repeated);
+}
+
+/// Once nothing is wrong with what was asked for: a mistake leaves no empty files behind.
+void Run::open_files() {
+    if (file_) return;
+    file_.emplace(options_.dry_run && !options_.resume ? std::string() : options_.out);
+    if (options_.resume) finished_ = FinishedCells(*file_, options_.out);
+    if (options_.dry_run) return;
+    pairs_.emplace(options_.dump_pairs, pairs_header);
+    contacts_.emplace(options_.dump_contacts, contacts_header);
+}
+
+void Run::leave_out_finished(Job& job) {
+    left_out_ += std::erase_if(job.cells, [&](const Cell& cell) {
+        return cell.candidates.empty() && finished_.has(cell, job.scene, job.range);
+    });
+}
+
+/// Of cells that were measured before the time that they took then; of others that of --seconds.
+void Run::list(const Job& job) {
+    for (const auto& cell : job.cells) {
+        const auto known = finished_.seconds(cell, job.scene, job.range);
+        if (!known && options_.repeat) ++unknown_;
+        seconds_ += known ? *known : (options_.repeat ? 0 : options_.seconds);
+        put("{:>5}  {}\n       {}\n", ++listed_, describe(cell),
+            key_of(cell, cell.settings, job.scene, job.range));
+    }
+}
+
+int Run::measure(Job& job) {
+    Truths truths(job.scene, job.range.frames, options_.truth, options_.truth_contacts);
+    auto measuring = measuring_of(options_, options_.truth == TruthAmount::none ? nullptr : &truths);
+    measuring.stop = Interrupt::asked;
+    References references(job.scene, job.range);
+    std::map<const Cell*, CellResult> results;
+    int code = 0;
+    interrupted_ = measure_cells(job, job.cells, references, measuring, *file_, progress_,
+                                 [&](const CellResult& result) {
+                                     code = std::max(code, result.code);
+                                     results.emplace(result.cell, result);
+                                 });
+    measured_ += results.size();
+    print(job, results);
+    // Last, for a file that cannot be written ends the run.
+    for (const auto& cell : job.cells)
+        if (const auto found = results.find(&cell); found != results.end() && found->second.measured) {
+            if (!file_->failed()) dump(cell, job, *pairs_, *contacts_);
+            break;
+        }
+    return code;
+}
+
+void Run::print(const Job& job, const std::map<const Cell*, CellResult>& results) const {
+    std::vector<Row> rows;
+    for (const auto& cell : job.cells) {
+        const auto found = results.find(&cell);
+        if (found != results.end() && found->second.measured)
+            rows.push_back({&cell, &found->second.measurement, {}});
+    }
+    if (rows.empty()) return;
+    put("\n{}\n", result_tables(rows, prints_colour()));
+    for (const auto& row : rows) {
+        const auto doubt = doubts(results.at(row.cell));
+        put("{}: {}{}\n", describe(*row.cell), verdict(*row.measurement),
+            doubt.empty() ? "" : "\n  " + doubt);
+    }
+}
+
+/// What is said last.
+int Run::end(int code) const {
+    if (left_out_ > 0) put("{} cells are in {} already\n", left_out_, options_.out);
+    if (!options_.out.empty()) put("{} records appended to {}\n", file_->appended(), options_.out);
+    if (!interrupted_ || file_->failed()) return code;
+    const bool can_go_on = !options_.out.empty();
+    tell("tandem: interrupted; {} cells are measured{}\n", measured_,
+         can_go_on ? fmt::format("; to go on: {}{}", command_line(), options_.resume ? "" : " --resume")
+                   : "");
+    return 3;
+}
+
+Job Run::open(const std::string& scene) const {
+    auto own = options_;
+    own.scene = scene;
+    return open_job(own, cells_);
+}
+
+int Run::go() {
+    auto scenes = options_.scenes;
+    if (scenes.empty()) scenes.emplace_back(options_.scene); // of --mesh, or the message that there is none
+    // A mistake in the last scene had better be known before the first is measured.
+    if (scenes.size() > 1)
+        for (const auto& scene : scenes) open(scene);
+    const Interrupt interrupt;
+    int code = 0;
+    for (const auto& scene : scenes) {
+        auto job = open(scene);
+        open_files();
+        leave_out_finished(job);
+        if (!options_.dry_run && job.cells.empty()) continue;
+        print_scene(job.scene, job.range);
+        if (options_.dry_run) {
+            list(job);
+            continue;
+        }
+        choose_cells(job, options_, progress_);
+        code = std::max(code, options_.profile > 0 ? profile(job, options_.profile) : measure(job));
+        if (interrupted_ || file_->failed()) break;
+    }
+    if (options_.profile > 0) return code;
+    if (!options_.dry_run) return end(code);
+    put("{} cells, about {:.0f} s of rounds{}{}; checks against the reference and the truth come on top\n",
+        listed_, seconds_,
+        unknown_ > 0 ? fmt::format(" and {} cells of which nothing is known", unknown_) : "",
+        left_out_ > 0 ? fmt::format("; {} more are in {} already", left_out_, options_.out) : "");
+    return 0;
+}
+
+} // namespace
+
+int run_command(const RunOptions& options) { return Run(options).go(); }
+
+} // namespace tandem

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "harness/sampling/measurement.h"
+
+#include "harness/statistics.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace tandem {
+
+std::int64_t since(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - begin)
+        .count();
+}
+
+StageSample& StageSample::operator+=(const StageSample& other) {
+    device_ns += other.device_ns;
+    host_ns += other.host_ns;
+    launches += other.launches;
+    waits += other.waits;
+    bytes += other.bytes;
+    return *this;
+}
+
+StageSamples by_stage(const Trace& trace) {
+    StageSamples samples{};
+    for (const auto& event : trace.events) {
+        auto& sample = samples[static_cast<std::size_t>(event.stage)];
+        sample.host_ns += event.host_ns;
+        sample.device_ns += std::max<std::int64_t>(event.device_ns, 0);
+        sample.launches += event.command == Command::launch ? 1 : 0;
+        sample.waits += event.blocked ? 1 : 0;
+        const bool moves = event.command == Command::upload || event.command == Command::download;
+        sample.bytes += moves ? event.bytes : 0;
+    }
+    return samples;
+}
+
+std::int64_t TimedReplay::total_ns() const {
+    return std::accumulate(frame_ns.begin(), frame_ns.end(), std::int64_t{0});
+}
+
+StageSamples InstrumentedReplay::totals() const {
+    StageSamples sums{};
+    for (const auto& frame : stages)
+        for (std::size_t stage = 0; stage < sums.size(); ++stage) sums[stage] += frame[stage];
+    return sums;
+}
+
+std::vector<std::int64_t> Measurement::totals() const {
+    std::vector<std::int64_t> sums;
+    for (const auto& sample : samples) sums.push_back(sample.total_ns());
+    return sums;
+}
+
+std::vector<std::uint32_t> Measurement::rounds() const {
+    std::vector<std::uint32_t> result;
+    for (const auto& sample : samples) result.push_back(sample.round);
+    return result;
+}
+
+double median_ns(const Measurement& m) {
+    if (!m.samples.empty()) return summarise(m.totals(), m.rounds()).median;
+    std::vector<std::int64_t> sums;
+    for (const auto& replay : m.breakdowns)
+        sums.push_back(std::accumulate(replay.frame_ns.begin(), replay.frame_ns.end(), std::int64_t{0}));
+    return sums.empty() ? 0 : summarise(sums).median;
+}
+
+} // namespace tandem

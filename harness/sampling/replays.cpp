@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "harness/sampling/replays.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace tandem {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Device time from the begin of the first command to the end of the last; -1 when a command has no times.
+std::int64_t device_span(const Trace& trace) {
+    std::int64_t first = std::numeric_limits<std::int64_t>::max();
+    std::int64_t last = -1;
+    for (const auto& event : trace.events) {
+        if (event.command == Command::host_work || event.command == Command::wait) continue;
+        if (event.begin_ns < 0 || event.device_ns < 0) return -1;
+        first = std::min(first, event.begin_ns);
+        last = std::max(last, event.begin_ns + event.device_ns);
+    }
+    return last < 0 ? -1 : last - first;
+}
+
+void add_kernels(const Trace& trace, std::map<std::string, KernelSample>& kernels) {
+    for (const auto& event : trace.events) {
+        if (event.command != Command::launch) continue;
+        auto& kernel = kernels[event.label];
+        kernel.device_ns += std::max<std::int64_t>(event.device_ns, 0);
+        ++kernel.launches;
+    }
+}
+
+} // namespace
+
+Replays::Replays(const Cell& cell, const Scene& scene, const FrameRange& range) : cell_(cell), range_(range) {
+    for (auto* device : cell.devices) device->set_clocks(Clocks::off);
+    const auto begin = Clock::now();
+    session_ = cell.algorithm->prepare(cell.devices, scene, cell.settings);
+    wait();
+    prepare_ns_ = since(begin);
+}
+
+void Replays::wait() {
+    for (auto* device : cell_.devices) device->finish();
+}
+
+std::uint64_t Replays::submissions() const {
+    std::uint64_t sum = 0;
+    for (const auto* device : cell_.devices) sum += device->submissions();
+    return sum;
+}
+
+InstrumentedReplay Replays::instrumented() {
+    session_->reset();
+    for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
+    InstrumentedReplay replay;
+    for (const auto& frame : range_.frames) {
+        wait();
+        const auto begin = Clock::now();
+        const auto result = session_->run(frame);
+        replay.frame_ns.push_back(since(begin));
+        auto& sum = replay.stages.emplace_back();
+        std::int64_t span = 0; // the longest of the devices, -1 when one does not tell
+        for (auto* device : cell_.devices) {
+            const auto trace = device->finish();
+            const auto own = by_stage(trace);
+            for (std::size_t stage = 0; stage < own.size(); ++stage) sum[stage] += own[stage];
+            add_kernels(trace, replay.kernels);
+            const auto own_span = device_span(trace);
+            span = span < 0 || own_span < 0 ? -1 : std::max(span, own_span);
+        }
+        replay.span_ns.push_back(span);
+    }
+    for (auto* device : cell_.devices) device->set_clocks(Clocks::off);
+    return replay;
+}
+
+std::map<std::string_view, std::uint64_t> Replays::counted() {
+    std::map<std::string_view, std::uint64_t> work;
+    session_->reset();
+    session_->count_work(true);
+    for (const auto& frame : range_.frames) {
+        const auto result = session_->run(frame);
+        for (const auto& counter : cell_.algorithm->counters()) {
+            const auto found = result.work.find(counter.name);
+            if (found == result.work.end()) continue;
+            auto& total = work[counter.name];
+            total = counter.total == Counter::Total::sum ? total + found->second : found->second;
+        }
+    }
+    session_->count_work(false);
+    return work;
+}
+
+} // namespace tandem

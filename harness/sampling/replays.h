@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/frames.h"
+#include "harness/sampling/measurement.h"
+
+namespace tandem {
+
+/// A session of a cell and the ways to replay the frames with it. Every function may throw DeviceError.
+class Replays {
+public:
+    /// Prepares the session and waits until it is. All must outlive this.
+    Replays(const Cell& cell, const Scene& scene, const FrameRange& range);
+
+    /// Upload of static data, and compilations that were not made before.
+    std::int64_t prepare_ns() const { return prepare_ns_; }
+    const Settings& settings() const { return session_->settings(); }
+
+    /// Runs every frame, with nothing but its span timed, and hands each result to `look` outside of that
+    /// span.
+    template<class Look>
+    TimedReplay timed(const Look& look) {
+        session_->reset();
+        TimedReplay replay;
+        for (std::size_t i = 0; i < range_.frames.size(); ++i) {
+            wait();
+            const auto begin = std::chrono::steady_clock::now();
+            const auto result = session_->run(range_.frames[i]);
+            replay.frame_ns.push_back(since(begin));
+            look(i, result);
+        }
+        return replay;
+    }
+    /// With a clock around every command.
+    InstrumentedReplay instrumented();
+    /// By counter of the algorithm, over the frames. The kernels that count are others: what they take is not
+    /// measured, and the session is of no use for times afterwards.
+    std::map<std::string_view, std::uint64_t> counted();
+
+    /// Calls that handed work to the devices so far.
+    std::uint64_t submissions() const;
+
+private:
+    void wait();
+
+    const Cell& cell_;
+    const FrameRange& range_;
+    std::unique_ptr<Session> session_;
+    std::int64_t prepare_ns_ = 0;
+};
+
+} // namespace tandem

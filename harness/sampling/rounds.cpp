@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "harness/sampling/rounds.h"
+
+#include "harness/statistics.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <new>
+#include <random>
+
+namespace tandem {
+
+namespace {
+
+/// A group at work.
+class Group {
+public:
+    Group(std::span<CellSampler* const> cells, const CheckOptions& check, const Enough& enough,
+          std::uint64_t seed, const RoundsListener& listener)
+        : check_(check), listener_(listener), random_(seed) {
+        sampling_.enough = enough;
+        sampling_.seed = seed;
+        sampling_.cells = cells.size();
+        for (auto* cell : cells) outcomes_.push_back({cell, {}, false});
+    }
+
+    bool run();
+
+private:
+    /// One thing with a cell; false when it failed, or has been sampled enough, and is finished.
+    template<class Work>
+    bool goes_on(Outcome& outcome, const Work& work);
+    bool begin(Outcome& outcome);
+    bool round(Outcome& outcome);
+    bool is_enough(Outcome& outcome) const;
+    std::size_t next_samples(const CellSampler& cell) const;
+    std::string name(const Outcome& outcome) const;
+
+    const CheckOptions& check_;
+    const RoundsListener& listener_;
+    std::mt19937_64 random_;
+    Sampling sampling_;
+    std::vector<Outcome> outcomes_;
+};
+
+std::size_t Group::next_samples(const CellSampler& cell) const {
+    const auto& repeat = sampling_.enough.repeat;
+    if (!repeat) return cell.samples_a_round();
+    const auto left = *repeat - std::min(*repeat, cell.measurement().samples.size());
+    // One a round, but where every round would take long before its sample.
+    return std::min(left, cell.preparation_is_long() ? cell.samples_a_round() : std::size_t{1});
+}
+
+bool Group::is_enough(Outcome& outcome) const {
+    auto& cell = *outcome.sampler;
+    const auto& m = cell.measurement();
+    const auto& enough = sampling_.enough;
+    if (enough.repeat) return outcome.converged = m.samples.size() >= *enough.repeat;
+    if (m.round_count() < Enough::least) return false;
+    const auto s = summarise(m.totals(), m.rounds());
+    outcome.converged = s.high - s.low <= noise_of(cell.cell().devices, enough) * s.median;
+    return outcome.converged || static_cast<double>(cell.spent_ns()) * 1e-9 >= enough.seconds;
+}
+
+template<class Work>
+bool Group::goes_on(Outcome& outcome, const Work& work) {
+    try {
+        work();
+        if (!is_enough(outcome)) return true;
+    } catch (const DeviceError& error) {
+        outcome.failure = error.what();
+    } catch (const std::bad_alloc&) {
+        outcome.failure = "out of host memory; use fewer bodies or frames";
+    }
+    outcome.sampler->release();
+    listener_.finished(outcome, sampling_);
+    return false;
+}
+
+bool Group::begin(Outcome& outcome) {
+    auto& cell = *outcome.sampler;
+    return goes_on(outcome, [&] {
+        cell.check(check_);
+        listener_.progress(fmt::format("{}: first round", name(outcome)));
+        cell.round(next_samples(cell));
+        if (check_.count_work) cell.count_work();
+        cell.release();
+    });
+}
+
+bool Group::round(Outcome& outcome) {
+    auto& cell = *outcome.sampler;
+    listener_.progress(fmt::format("{}: round {}", name(outcome), cell.measurement().round_count() + 1));
+    return goes_on(outcome, [&] {
+        cell.round(next_samples(cell));
+        cell.release();
+    });
+}
+
+std::string Group::name(const Outcome& outcome) const { return describe(outcome.sampler->cell()); }
+
+bool Group::run() {
+    std::vector<Outcome*> left;
+    for (auto& outcome : outcomes_) {
+        if (listener_.stop()) break;
+        if (begin(outcome)) left.push_back(&outcome);
+    }
+    while (!left.empty() && !listener_.stop()) {
+        // std::shuffle is not the same everywhere; this is.
+        for (std::size_t i = left.size(); i > 1; --i) std::swap(left[i - 1], left[random_() % i]);
+        std::vector<Outcome*> going;
+        for (auto* outcome : left)
+            if (listener_.stop() || round(*outcome)) going.push_back(outcome);
+        left = std::move(going);
+    }
+    sampling_.interrupted = listener_.stop();
+    for (auto* outcome : left) listener_.finished(*outcome, sampling_);
+    return sampling_.interrupted;
+}
+
+} // namespace
+
+double noise_of(const DeviceGroup& devices, const Enough& enough) {
+    if (enough.noise) return *enough.noise;
+    const bool gpus = std::ranges::all_of(devices, [](const auto* device) { return device->info().is_gpu; });
+    return gpus ? 0.01 : 0.03;
+}
+
+bool sample_group(std::span<CellSampler* const> cells, const CheckOptions& check, const Enough& enough,
+                  std::uint64_t seed, const RoundsListener& listener) {
+    return Group(cells, check, enough, seed, listener).run();
+}
+
+} // namespace tandem

@@ -1,0 +1,115 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""running.py PROGRAM SOURCE: cells of several scenes and ranges, listed, interrupted and continued."""
+import json
+import os
+import re
+import signal
+import subprocess
+import time
+import unittest
+import sys
+
+from program import PROGRAM, Case, tandem
+
+SCENES = ("plates:count=2", "pile:bodies=2,frames=1")
+CELLS = (*SCENES, "--frames", 0, "--device", "host", "--algorithm", "chunked,tiled", "--truth", "none")
+
+
+class Running(Case):
+    def records(self, path):
+        return [json.loads(line) for line in path.read_text().splitlines()]
+
+    def cells(self, path):
+        """What was asked for in each record."""
+        return sorted((r["scene"]["name"], r["algorithm"], r["settings"]["k"]) for r in self.records(path))
+
+    def test_ranges(self):
+        for text, values in (("6..8:2", "6 8"), ("6..26*2", "6 12 24"), ("6,8..12*1.5", "6 8 12"), ("18", "18")):
+            status, out, errors = tandem("run", "plates:count=2", "--frames", 0, "--device", "host", "--algorithm", "tiled", "--set", f"k={text}", "--dry-run")
+            self.assertEqual((status, errors), (0, []), out)
+            self.assertEqual(re.findall(r",k=(\d+),", out), values.split())
+        for text, said in (("8..6", "never ends"), ("6..8*1", "never ends"), ("0..8*2", "never ends"), ("6..8:0", "never ends"), ("x..8", "a range is"),
+                           ("6..", "a range is"), ("6..8*", "a range is"), ("0..1e9", "more than 10000 values"), ("6..1e999", "a range is"), ("-2..6", "a range is")):
+            self.bad(said, "run", "plates:count=2", "--set", f"k={text}")
+
+    def test_dry_run_lists_and_writes_nothing(self):
+        out = self.work / "dry.jsonl"
+        status, text, errors = tandem("run", *CELLS, "--set", "k=6,8,6", "--seconds", 7, "--dry-run", "--out", out)
+        self.assertEqual((status, len(errors)), (0, 1), errors)
+        self.assertIn("2 cells are named more than once", errors[0])
+        self.assertIn("8 cells, about 56 s of rounds", text)
+        self.assertEqual(len(re.findall(r"(?m)^ +(?:chunked|tiled)\|host:", text)), 8)
+        self.assertFalse(out.exists())
+
+    def test_resume_measures_what_is_left(self):
+        out = self.work / "resumed.jsonl"
+        arguments = ("run", *CELLS, "--set", "k=6,8", "--out", out)
+        self.assertEqual(tandem(*arguments)[0], 0)
+        whole = self.cells(out)
+        self.assertEqual(len(set(whole)), 8)
+        lines = out.read_text().splitlines(keepends=True)
+        # Another program's record of a cell counts as none, a failed one too.
+        other = json.loads(lines[3])
+        other["environment"]["sources"] = "0" * 16
+        failed = {**json.loads(lines[4]), "status": "failed", "failure": "device lost"}
+        out.write_text("".join(lines[:3]) + json.dumps(other) + "\n" + json.dumps(failed) + "\n")
+        status, text, errors = tandem(*arguments, "--resume", "--dry-run")
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertIn("5 cells, about ", text)
+        self.assertIn("; 3 more are in ", text)
+        self.assertEqual(tandem(*arguments, "--resume")[0], 0)
+        self.assertEqual(len(self.records(out)), 10)
+        self.assertEqual(self.cells(out), sorted(whole + [whole_of(other), whole_of(failed)]))
+        status, text, _ = tandem(*arguments, "--resume")
+        self.assertIn("8 cells are in ", text)
+        self.assertEqual((status, len(self.records(out))), (0, 10))
+        self.bad("--resume requires --out", "run", *CELLS, "--resume")
+        out.write_text(lines[0].replace('"schema":3', '"schema":2', 1))
+        self.bad("has records of schema 2", *arguments, "--resume")
+
+    def test_interrupt_keeps_what_is_measured(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            out = self.work / f"interrupted{number}.jsonl"
+            words = ["run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked,tiled", "--truth", "none", "--no-count",
+                     "--noise", "0.0001%", "--seconds", "1000", "--out", out]
+            process = subprocess.Popen([str(PROGRAM), *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            time.sleep(3)
+            process.send_signal(number)
+            text, errors = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 3, errors)
+            self.assertRegex(errors, r"^tandem: interrupted; 2 cells are measured; to go on: tandem run .* --resume\n$")
+            self.assertIn("ms/frame", text)
+            records = self.records(out)
+            self.assertEqual([r["status"] for r in records], ["ok", "ok"])
+            for record in records:
+                self.assertTrue(record["sampling"]["interrupted"])
+                self.assertGreater(record["sampling"]["rounds"], 1)
+
+    def test_what_speaks_against_a_time_is_said(self):
+        status, text, _ = tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "tiled", "--truth", "none",
+                                 "--noise", "0.0001%", "--seconds", 0.01)
+        self.assertEqual(status, 0)
+        self.assertIn("interval wider than asked for", text)
+
+    def test_tables_fit_a_hundred_columns(self):
+        status, text, _ = tandem("run", "plates:count=2", "--frames", 0, "--device", "host", "--algorithm", "all", "--preset", "all", "--truth", "none", "--no-count",
+                                 "--set", "pair_capacity=65536", "--set", "queue_bytes=65536")
+        self.assertEqual(status, 0, text)
+        tables = re.split(r"\n\n.*: right", text)[0].split("\n", 1)[1]
+        self.assertLessEqual(max(map(len, tables.splitlines())), 100, tables)
+        self.assertNotIn("\033", text)
+        self.assertIn("times as long as chunked resident", tables)
+
+    def test_scenes_are_opened_before_they_are_measured(self):
+        self.bad("unknown scene", "run", "plates:count=2", "plaits", "--frames", 0, "--device", "host", "--algorithm", "tiled")
+        self.bad("dumps are of one scene", "run", *CELLS, "--dump-pairs", self.work / "pairs.csv")
+        self.bad("exclude each other", "run", *SCENES, "--mesh", self.good)
+
+
+def whole_of(record):
+    return record["scene"]["name"], record["algorithm"], record["settings"]["k"]
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// Rounds of a group of cells: how many samples, in what order, when they suffice, and what a failure costs.
+#include "harness/sampling/rounds.h"
+#include "tests/support/cells.h"
+#include "tests/support/scenes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <deque>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+using testing::ElementsAre;
+
+/// Cells of a small scene on the host, and what became of them.
+class SamplingRounds : public testing::Test {
+protected:
+    SamplingRounds() {
+        for (const std::string k : {"6", "8", "18"})
+            add({{"k", k}, {"pair_capacity", "4096"}, {"contact_capacity", "4096"}});
+        check_.count_work = false;
+    }
+
+    void add(const SettingTexts& given, Device& on = device("host")) {
+        const auto& tiled = algorithm("tiled");
+        cells_.push_back(make_cell(tiled, tiled.presets().front(), given, {&on}));
+    }
+
+    bool sample(const Enough& enough, std::uint64_t seed = 1) {
+        std::vector<CellSampler*> group;
+        for (const auto& cell : cells_)
+            group.push_back(&samplers_.emplace_back(cell, scene_, range_, references_));
+        RoundsListener listener;
+        listener.progress = [&](std::string_view text) {
+            if (text.find("round") != text.npos) turns_.emplace_back(text);
+        };
+        listener.finished = [&](const Outcome& outcome, const Sampling& sampling) {
+            outcomes_.push_back(outcome);
+            sampling_ = sampling;
+        };
+        listener.stop = [&] { return turns_.size() >= most_turns_; };
+        return sample_group(group, check_, enough, seed, listener);
+    }
+
+    Scene scene_ = crowd(5, 6, 1.0);
+    FrameRange range_ = make_frames(scene_, 0, 1);
+    References references_{scene_, range_};
+    std::deque<Cell> cells_;
+    std::deque<CellSampler> samplers_;
+    CheckOptions check_;
+    std::vector<std::string> turns_; ///< a line for each turn of a cell
+    std::size_t most_turns_ = 1000000;
+    std::vector<Outcome> outcomes_;
+    Sampling sampling_;
+};
+
+TEST_F(SamplingRounds, RepeatFixesTheNumberOfSamples) {
+    EXPECT_FALSE(sample({.repeat = 4}));
+    ASSERT_EQ(outcomes_.size(), 3u);
+    for (const auto& outcome : outcomes_) {
+        const auto& m = outcome.sampler->measurement();
+        EXPECT_THAT(m.rounds(), ElementsAre(0, 1, 2, 3));
+        EXPECT_EQ(m.breakdowns.size(), 4u);
+        for (const auto& sample : m.samples) EXPECT_EQ(sample.frame_ns.size(), 2u);
+        EXPECT_EQ(m.agreement.frames, 2u);
+        EXPECT_TRUE(m.agreement.ok());
+        EXPECT_TRUE(outcome.failure.empty());
+    }
+    EXPECT_EQ(sampling_.cells, 3u);
+    EXPECT_EQ(turns_.size(), 12u);
+}
+
+TEST_F(SamplingRounds, NoSamplesAreAnswersAndOneBreakdown) {
+    sample({.repeat = 0});
+    for (const auto& outcome : outcomes_) {
+        EXPECT_TRUE(outcome.sampler->measurement().samples.empty());
+        EXPECT_EQ(outcome.sampler->measurement().breakdowns.size(), 1u);
+        EXPECT_GT(median_ns(outcome.sampler->measurement()), 0);
+    }
+}
+
+/// Every round has every cell once, and the order is not the same in all of them; equal seeds, equal orders.
+TEST_F(SamplingRounds, TakeTurnsInADrawnOrder) {
+    sample({.repeat = 6}, 7);
+    const auto first = turns_;
+    bool differs = false;
+    for (std::size_t round = 1; round < 6; ++round) {
+        std::set<std::string> in_round(first.begin() + 3 * static_cast<long>(round),
+                                       first.begin() + 3 * static_cast<long>(round) + 3);
+        EXPECT_EQ(in_round.size(), 3u);
+        const auto cell = [&](std::size_t turn) { return turns_[turn].substr(0, turns_[turn].find(':')); };
+        differs |= cell(3 * round) != cell(0);
+    }
+    EXPECT_TRUE(differs);
+    turns_.clear();
+    samplers_.clear();
+    sample({.repeat = 6}, 7);
+    EXPECT_EQ(turns_, first);
+}
+
+TEST_F(SamplingRounds, AreTenAtLeastAndAsManyAsTheIntervalNeeds) {
+    sample({.noise = 1.0, .seconds = 1e6});
+    for (const auto& outcome : outcomes_) {
+        EXPECT_GE(outcome.sampler->measurement().round_count(), Enough::least);
+        EXPECT_TRUE(outcome.converged);
+    }
+    samplers_.clear();
+    outcomes_.clear();
+    sample({.noise = 1e-9, .seconds = 1e-3});
+    for (const auto& outcome : outcomes_) {
+        EXPECT_EQ(outcome.sampler->measurement().round_count(), Enough::least);
+        EXPECT_FALSE(outcome.converged);
+    }
+}
+
+TEST_F(SamplingRounds, AFailureCostsItsOwnCell) {
+    auto& short_of_memory = device("opencl:0");
+    short_of_memory.set_memory_limit(1024);
+    add({{"k", "8"}}, short_of_memory);
+    sample({.repeat = 2});
+    short_of_memory.set_memory_limit(Device::no_memory_limit);
+    ASSERT_EQ(outcomes_.size(), 4u);
+    std::size_t failed = 0;
+    for (const auto& outcome : outcomes_) {
+        const bool is_short = &outcome.sampler->cell() == &cells_.back();
+        EXPECT_EQ(!outcome.failure.empty(), is_short) << outcome.failure;
+        EXPECT_EQ(outcome.sampler->measurement().samples.size(), is_short ? 0u : 2u);
+        failed += outcome.failure.empty() ? 0 : 1;
+    }
+    EXPECT_EQ(failed, 1u);
+}
+
+TEST_F(SamplingRounds, StopKeepsWhatThereIs) {
+    most_turns_ = 8; // in the third round
+    EXPECT_TRUE(sample({.repeat = 50}));
+    ASSERT_EQ(outcomes_.size(), 3u);
+    std::size_t samples = 0;
+    for (const auto& outcome : outcomes_) samples += outcome.sampler->measurement().samples.size();
+    EXPECT_EQ(samples, 8u);
+    EXPECT_TRUE(sampling_.interrupted);
+}
+
+TEST_F(SamplingRounds, StopBeforeACellLeavesItOut) {
+    most_turns_ = 2;
+    EXPECT_TRUE(sample({.repeat = 50}));
+    EXPECT_EQ(outcomes_.size(), 2u);
+}
+
+} // namespace
+} // namespace tandem
