@@ -125,10 +125,10 @@ class Records(Case):
                                                    "session", "command",
                                                    "registers", "local_bytes", "spill_bytes", "missed_upper95", "candidate_ratio", "decisions",
                                                    "depth_relative", "depth_ulps", "normal_degrees", "point", "hausdorff", "volume_relative"}
-        of_condition = ("quota_cores", "own_cores", "other_cores", "governor", "mhz", "throttled_periods", "pressure_percent")
-        nullable_paths = {("environment", "processor"), ("environment", "sources"), ("conditions", 0, "disturbed"),
-                          *(("conditions", 0, when, "processor", name) for when in ("before", "after") for name in of_condition),
-                          *(("conditions", 0, when, "gpus", 0) for when in ("before", "after")), *(("sampling", name) for name in ("cells", "seed", "repeat", "noise", "seconds", "spent_seconds", "converged", "drift")), ("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift"),
+        of_condition = ("cores", "quota_cores", "own_cores", "other_cores", "governor", "mhz", "throttled_periods", "pressure_percent")
+        nullable_paths = {("environment", "processor"), ("environment", "sources"), ("conditions",),
+                          *(("conditions", when, "processor", name) for when in ("before", "after") for name in of_condition),
+                          *(("conditions", when, "gpus", 0) for when in ("before", "after")), *(("sampling", name) for name in ("cells", "seed", "repeat", "noise", "seconds", "spent_seconds", "converged", "drift")), ("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift"),
                           *(("work", name) for name in ("undecided_by_filter", "undecided_by_double", "batches")),
                           *(("work", "counters", name) for name in record["work"]["counters"])}
         since = {"chosen", "truth", "inputs", "volume_relative", "no_volume"}  # records from before each lack it

@@ -5,14 +5,17 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <limits>
 
 namespace tandem {
 
 namespace {
 
-/// Warming up ends when a replay is not faster than the one before by more than this share, or here.
+/// Warming up ends when so many replays have not been faster than the fastest before them by more than this
+/// share: one alone says little where a frame takes a tenth of a millisecond. Or when it has taken so long.
 constexpr double falling = 0.02;
-constexpr std::int64_t longest_warming_ns = 1'000'000'000;
+constexpr int patience = 3;
+constexpr std::int64_t longest_warming_ns = 250'000'000;
 
 } // namespace
 
@@ -32,6 +35,7 @@ void CellSampler::begin_session() {
     replays_.emplace(cell_, scene_, range_);
     prepare_ns_ = replays_->prepare_ns();
     last_replay_ns_ = -1;
+    warmed_ns_ = 0;
 }
 
 bool CellSampler::makes_contacts() const {
@@ -120,6 +124,8 @@ void CellSampler::check(const CheckOptions& options) {
     const auto replay =
         replays_->timed([&](std::size_t index, const FrameResult& result) { look(index, result, options); });
     last_replay_ns_ = replay.total_ns();
+    // But for the first frame, in which kernels are compiled and buffers grow.
+    warmed_ns_ = last_replay_ns_ - replay.frame_ns.front();
     for (const auto* device : cell_.devices) out_.device_bytes += device->bytes_allocated();
     take_kernels();
 }
@@ -127,13 +133,14 @@ void CellSampler::check(const CheckOptions& options) {
 /// Clocks rise, caches fill and buffers grow in the first replays of a session, and while the host did
 /// something else clocks may have fallen.
 void CellSampler::warm_up() {
-    std::int64_t spent = std::max<std::int64_t>(last_replay_ns_, 0);
-    for (bool fell = true; fell && spent < longest_warming_ns;) {
-        const auto now = replays_->timed([](std::size_t, const FrameResult&) {}).total_ns();
-        fell = last_replay_ns_ < 0
-               || static_cast<double>(now) < static_cast<double>(last_replay_ns_) * (1 - falling);
-        spent += now;
-        last_replay_ns_ = now;
+    auto spent = warmed_ns_;
+    auto least = std::numeric_limits<std::int64_t>::max();
+    for (int without_gain = 0; without_gain < patience && spent < longest_warming_ns;) {
+        last_replay_ns_ = replays_->timed([](std::size_t, const FrameResult&) {}).total_ns();
+        spent += last_replay_ns_;
+        const bool fell = static_cast<double>(last_replay_ns_) < static_cast<double>(least) * (1 - falling);
+        without_gain = fell ? 0 : without_gain + 1;
+        least = std::min(least, last_replay_ns_);
     }
 }
 

@@ -68,6 +68,7 @@ private:
     Geometry geometry_;
     std::vector<Digest> digests_;             ///< [frame] of the checking replay
     std::int64_t last_replay_ns_ = -1;        ///< of the session; -1 before its first
+    std::int64_t warmed_ns_ = 0;              ///< that the session has replayed when warming up begins
     std::int64_t prepare_ns_ = 0, spent_ = 0; ///< of the last session; of all rounds
     std::uint32_t round_ = 0;
 };
