@@ -4,6 +4,7 @@
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/sources.h"
 #include "harness/record.h"
+#include "harness/statistics.h"
 
 #include <algorithm>
 #include <chrono>
@@ -175,12 +176,6 @@ constexpr Row rows[] = {
     {"overlap_tests_k8_per_s", "overlap tests from registers, k = 8", &Ceilings::overlaps8, 1e-9, "G/s"},
     {"overlap_tests_k18_per_s", "overlap tests from registers, k = 18", &Ceilings::overlaps18, 1e-9, "G/s"},
 };
-
-double median(Samples samples) {
-    std::sort(samples.begin(), samples.end());
-    const auto n = samples.size();
-    return (samples[(n - 1) / 2] + samples[n / 2]) / 2;
-}
 
 } // namespace
 

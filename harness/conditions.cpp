@@ -106,6 +106,45 @@ nlohmann::ordered_json condition_json(const Condition& condition) {
     return {{"processor", processor_json(condition.processor)}, {"gpus", gpus}};
 }
 
+namespace {
+
+/// Of one shape whatever slows a GPU down: the reasons as one text, empty where there are none.
+nlohmann::ordered_json with_reasons_as_text(nlohmann::ordered_json condition) {
+    for (auto& gpu : condition["gpus"])
+        if (!gpu.is_null() && gpu["throttled"].is_array())
+            gpu["throttled"] =
+                fmt::to_string(fmt::join(gpu["throttled"].get<std::vector<std::string>>(), ", "));
+    return condition;
+}
+
+/// Values of one shape, or null, as one value.
+nlohmann::ordered_json folded(const std::vector<nlohmann::ordered_json>& values) {
+    const auto shape = std::ranges::find_if(values, [](const auto& value) { return value.is_structured(); });
+    if (shape == values.end()) {
+        const bool is_same = std::ranges::all_of(values, [&](const auto& v) { return v == values.front(); });
+        return is_same ? values.front() : nlohmann::ordered_json(values);
+    }
+    auto result = *shape;
+    for (const auto& [name, part] : shape->items()) {
+        std::vector<nlohmann::ordered_json> parts;
+        for (const auto& value : values)
+            parts.push_back(value.is_null()     ? nlohmann::ordered_json()
+                            : shape->is_array() ? value.at(std::stoul(name))
+                                                : value.at(name));
+        (shape->is_array() ? result.at(std::stoul(name)) : result.at(name)) = folded(parts);
+    }
+    return result;
+}
+
+} // namespace
+
+nlohmann::ordered_json conditions_json(std::span<const Condition> conditions) {
+    std::vector<nlohmann::ordered_json> readings;
+    for (const auto& condition : conditions)
+        readings.push_back(with_reasons_as_text(condition_json(condition)));
+    return folded(readings);
+}
+
 std::string gpu_condition_text(const GpuCondition& g) {
     std::vector<std::string> parts;
     if (g.sm_mhz) parts.push_back(fmt::format("{} MHz SM", *g.sm_mhz));

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,10 @@ std::optional<std::string> disturbance(const Condition& before, const Condition&
 
 /// With units in the names; unknown is null, as is the whole of a device of which nothing is known.
 nlohmann::ordered_json condition_json(const Condition& condition);
+/// Of one or more readings of the same devices in that form: what was the same at each stands by itself, what
+/// was not as an array, one a reading, for most never changes and there are many rounds; reasons of
+/// throttling as one text. Of a device of which nothing was known at one reading, all is null there.
+nlohmann::ordered_json conditions_json(std::span<const Condition> conditions);
 nlohmann::ordered_json gpu_condition_json(const GpuCondition& condition);
 
 /// "1980 MHz SM, 3201 MHz memory, 34 C, 76 of 700 W", as far as known; empty when nothing is.

@@ -30,7 +30,7 @@ FinishedCells::FinishedCells(const RecordFile& file, const std::string& path) {
                 fmt::format("{}: has records of schema {}, and this program writes {}; bring them to it "
                             "with scripts/convert_records, or choose another --out",
                             path, record.value("schema", 0), record_schema));
-        if (record.at("status") == "failed") return;
+        if (record.at("status") == "failed" || record.at("sampling").at("interrupted") == true) return;
         auto& finished = by_key_[asked_key(record)];
         const auto& sources = record.at("environment").at("sources");
         finished.same_sources |= sources.is_string() && sources == sources_digest();

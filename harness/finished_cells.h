@@ -14,8 +14,8 @@ namespace tandem {
 class FinishedCells {
 public:
     FinishedCells() = default;
-    /// Reads what this program, of the same sources, has finished (right or wrong) into the file. Throws
-    /// InputError where it holds records of another schema.
+    /// Reads what this program, of the same sources, has finished (right or wrong, and not interrupted) into
+    /// the file. Throws InputError where it holds records of another schema.
     explicit FinishedCells(const RecordFile& file, const std::string& path);
 
     bool has(const Cell& cell, const Scene& scene, const FrameRange& range) const;

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -129,43 +128,16 @@ Json asked_json(const SettingTexts& asked, const SettingTexts& taken) {
     return json;
 }
 
-/// Readings of one shape as one: what was the same at each stands by itself, what was not as an array, one a
-/// reading. Most of a condition never changes, and there are many rounds.
-Json folded(const std::vector<Json>& readings) {
-    auto result = readings.front();
-    if (result.is_structured()) {
-        for (auto& [name, value] : result.items()) {
-            std::vector<Json> values;
-            for (const auto& reading : readings)
-                values.push_back(result.is_array() ? reading.at(std::stoul(name)) : reading.at(name));
-            value = folded(values);
-        }
-        return result;
-    }
-    const bool is_same = std::ranges::all_of(readings, [&](const Json& other) { return other == result; });
-    return is_same ? result : Json(readings);
-}
-
-/// Of one shape whatever slows a GPU down: the reasons as one text, null where there are none.
-Json of_one_shape(Json condition) {
-    for (auto& gpu : condition["gpus"]) {
-        if (gpu.is_null() || !gpu["throttled"].is_array()) continue;
-        const auto reasons = gpu["throttled"].get<std::vector<std::string>>();
-        gpu["throttled"] = reasons.empty() ? Json() : Json(fmt::to_string(fmt::join(reasons, ", ")));
-    }
-    return condition;
-}
-
 Json conditions_json(const Measurement& m) {
     if (m.conditions.empty()) return nullptr;
     Json disturbed = Json::array();
-    std::vector<Json> before, after;
+    std::vector<Condition> before, after;
     for (const auto& round : m.conditions) {
         if (const auto why = round.disturbed()) disturbed.push_back({{"round", round.round}, {"why", *why}});
-        before.push_back(of_one_shape(condition_json(round.before)));
-        after.push_back(of_one_shape(condition_json(round.after)));
+        before.push_back(round.before);
+        after.push_back(round.after);
     }
-    return {{"disturbed", disturbed}, {"before", folded(before)}, {"after", folded(after)}};
+    return {{"disturbed", disturbed}, {"before", conditions_json(before)}, {"after", conditions_json(after)}};
 }
 
 /// How it was sampled, and what is to be thought of it.
@@ -179,8 +151,7 @@ Json sampling_json(const Measurement& m, const Cell& cell, const Outcome& outcom
             {"repeat", enough.repeat ? Json(*enough.repeat) : Json()},
             {"noise", enough.repeat ? Json() : Json(noise_of(cell.devices, enough))},
             {"seconds", enough.repeat ? Json() : Json(enough.seconds)},
-            {"spent_seconds",
-             outcome.sampler ? Json(static_cast<double>(outcome.sampler->spent_ns()) * 1e-9) : Json()},
+            {"spent_seconds", static_cast<double>(outcome.sampler->spent_ns()) * 1e-9},
             {"converged", enough.repeat ? Json() : Json(outcome.converged)},
             {"interrupted", sampling.interrupted},
             {"outliers", count_outliers(rounds)},

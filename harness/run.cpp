@@ -13,14 +13,11 @@
 #include "harness/standard_streams.h"
 #include "harness/statistics.h"
 #include "harness/table/table.h"
-#include "scenes/error.h"
-#include "scenes/hard/hard.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <random>
 
 namespace tandem {

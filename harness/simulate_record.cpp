@@ -2,6 +2,7 @@
 #include "harness/record.h"
 #include "harness/simulate.h"
 #include "harness/simulate_session.h"
+#include "harness/statistics.h"
 #include "scenes/dynamics_settings.h"
 
 #include <algorithm>
@@ -42,13 +43,8 @@ Json energies_json(const StepReport& report) {
     return {{"kinetic", report.kinetic}, {"potential", report.potential}, {"elastic", report.elastic}};
 }
 
-/// Of an even number the mean of the middle two; 0 of none.
-double median(std::vector<std::size_t> values) {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    const auto n = values.size();
-    return (static_cast<double>(values[(n - 1) / 2]) + static_cast<double>(values[n / 2])) / 2;
-}
+/// 0 of none.
+double median_or_0(const std::vector<std::size_t>& values) { return values.empty() ? 0 : median(values); }
 
 /// The settings of a simulation by name.
 Json dynamics_json(const Dynamics& dynamics) {
@@ -117,8 +113,8 @@ Json run_record(const Cell& cell, const Scene& scene, const RunTotals& t, const 
               {"devices", record_devices(cell.devices)},
               {"first_step", t.first},
               {"steps", t.steps}};
-    json["contacts_found_median"] = median(t.found);
-    json["contacts_kept_median"] = median(t.kept);
+    json["contacts_found_median"] = median_or_0(t.found);
+    json["contacts_kept_median"] = median_or_0(t.kept);
     json["deepest_m"] = t.deepest;
     json["energy_j"] = energies_json(t.last);
     json["host_ns"] = {{"total", t.wall_ns},    {"broad", t.broad_ns},       {"narrow", t.narrow_ns},
@@ -150,7 +146,7 @@ std::string run_table(const RunTotals& t, bool timed) {
                             t.wall_ns == 0 ? 0.0
                                            : 100 * static_cast<double>(ns) / static_cast<double>(t.wall_ns));
     text += fmt::format("contacts a step, median: {:.0f} found, {:.0f} kept; deepest penetration {:.3g} m\n",
-                        median(t.found), median(t.kept), t.deepest);
+                        median_or_0(t.found), median_or_0(t.kept), t.deepest);
     return text
            + fmt::format("energy at the end: kinetic {:.6g} J, potential {:.6g} J, elastic {:.6g} J\n",
                          t.last.kinetic, t.last.potential, t.last.elastic);

@@ -45,12 +45,12 @@ Summary summary_of(std::vector<double> sorted) {
     return summary;
 }
 
-double median_of(std::vector<double> values) {
+} // namespace
+
+double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     return quantile(values, 0.5);
 }
-
-} // namespace
 
 Summary summarise(std::span<const std::int64_t> samples) {
     return summary_of({samples.begin(), samples.end()});
@@ -66,16 +66,16 @@ std::vector<double> round_medians(std::span<const std::int64_t> samples,
     for (std::size_t i = 0; i < samples.size(); ++i)
         by_round[rounds[i]].push_back(static_cast<double>(samples[i]));
     std::vector<double> medians;
-    for (auto& [round, values] : by_round) medians.push_back(median_of(std::move(values)));
+    for (auto& [round, values] : by_round) medians.push_back(median(std::move(values)));
     return medians;
 }
 
 std::size_t count_outliers(std::span<const double> values) {
     if (values.size() < 8) return 0;
-    const double middle = median_of({values.begin(), values.end()});
+    const double middle = median({values.begin(), values.end()});
     std::vector<double> deviations;
     for (const double value : values) deviations.push_back(std::abs(value - middle));
-    const double deviation = 1.4826 * median_of(deviations);
+    const double deviation = 1.4826 * median(deviations);
     if (deviation == 0) return 0;
     return static_cast<std::size_t>(
         std::ranges::count_if(deviations, [&](double d) { return d > 5 * deviation; }));
@@ -95,7 +95,7 @@ std::optional<double> drift(std::span<const double> values) {
     // Normal from eight values on; the 1 corrects for steps of two.
     const double deviation = std::sqrt(n * (n - 1) * (2 * n + 5) / 18);
     if (std::abs(concordance) - 1 < 2.5758 * deviation) return std::nullopt; // 99 % of both sides
-    return median_of(std::move(slopes)) * (n - 1) / median_of({values.begin(), values.end()});
+    return median(std::move(slopes)) * (n - 1) / median({values.begin(), values.end()});
 }
 
 std::optional<Spread> spread(std::vector<double> samples) {

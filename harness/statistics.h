@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,6 +11,13 @@ namespace tandem {
 
 /// Linear between order statistics (Hyndman and Fan 1996, definition 7). `sorted` ascends and is not empty.
 double quantile(const std::vector<double>& sorted, double fraction);
+
+/// The median: of an even number the mean of the middle two. `values` must not be empty.
+double median(std::vector<double> values);
+template<std::integral Whole>
+double median(const std::vector<Whole>& values) {
+    return median(std::vector<double>(values.begin(), values.end()));
+}
 
 /// Order statistics of samples. Quartiles interpolate linearly between order statistics (Hyndman and Fan
 /// 1996, definition 7); low..high is the 95 % percentile-bootstrap interval of the median (Efron 1979; 1,000

@@ -49,21 +49,23 @@ class Running(Case):
         whole = self.cells(out)
         self.assertEqual(len(set(whole)), 8)
         lines = out.read_text().splitlines(keepends=True)
-        # Another program's record of a cell counts as none, a failed one too.
+        # Another program's record of a cell counts as none, a failed and an interrupted one too.
         other = json.loads(lines[3])
         other["environment"]["sources"] = "0" * 16
         failed = {**json.loads(lines[4]), "status": "failed", "failure": "device lost"}
-        out.write_text("".join(lines[:3]) + json.dumps(other) + "\n" + json.dumps(failed) + "\n")
+        short = json.loads(lines[5])
+        short["sampling"]["interrupted"] = True
+        out.write_text("".join(lines[:3]) + "".join(json.dumps(record) + "\n" for record in (other, failed, short)))
         status, text, errors = tandem(*arguments, "--resume", "--dry-run")
         self.assertEqual((status, errors), (0, []), text)
         self.assertIn("5 cells, about ", text)
         self.assertIn("; 3 more are in ", text)
         self.assertEqual(tandem(*arguments, "--resume")[0], 0)
-        self.assertEqual(len(self.records(out)), 10)
-        self.assertEqual(self.cells(out), sorted(whole + [whole_of(other), whole_of(failed)]))
+        self.assertEqual(len(self.records(out)), 11)
+        self.assertEqual(self.cells(out), sorted(whole + [whole_of(other), whole_of(failed), whole_of(short)]))
         status, text, _ = tandem(*arguments, "--resume")
         self.assertIn("8 cells are in ", text)
-        self.assertEqual((status, len(self.records(out))), (0, 10))
+        self.assertEqual((status, len(self.records(out))), (0, 11))
         self.bad("--resume requires --out", "run", *CELLS, "--resume")
         out.write_text(lines[0].replace('"schema":3', '"schema":2', 1))
         self.bad("has records of schema 2", *arguments, "--resume")

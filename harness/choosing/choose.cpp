@@ -3,6 +3,7 @@
 
 #include "harness/choosing/trials.h"
 #include "harness/standard_streams.h"
+#include "harness/statistics.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/choosing/search.h"
 
+#include "harness/statistics.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -137,14 +139,6 @@ SearchResult Search::run() {
 }
 
 } // namespace
-
-double median(const std::vector<std::int64_t>& replays) {
-    auto sorted = replays;
-    std::sort(sorted.begin(), sorted.end());
-    const auto middle = sorted.size() / 2;
-    const auto upper = static_cast<double>(sorted[middle]);
-    return sorted.size() % 2 == 1 ? upper : (static_cast<double>(sorted[middle - 1]) + upper) / 2;
-}
 
 SearchResult search(std::size_t count, const SearchSteps& steps, const SearchLimits& limits) {
     return Search(count, steps, limits).run();

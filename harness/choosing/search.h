@@ -38,7 +38,4 @@ struct SearchResult {
 /// half by the median is dropped (successive halving; Karnin, Koren and Somekh 2013).
 SearchResult search(std::size_t count, const SearchSteps& steps, const SearchLimits& limits);
 
-/// Of nanoseconds; `replays` must not be empty.
-double median(const std::vector<std::int64_t>& replays);
-
 } // namespace tandem

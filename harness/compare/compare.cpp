@@ -3,6 +3,7 @@
 
 #include "harness/compare/holm.h"
 #include "harness/compare/nothing_common.h"
+#include "harness/statistics.h"
 #include "scenes/error.h"
 
 #include <algorithm>

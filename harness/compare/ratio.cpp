@@ -47,11 +47,6 @@ Ratio bootstrap(double log_ratio, Draw draw) {
 
 } // namespace
 
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return quantile(values, 0.5);
-}
-
 Ratio paired_ratio(std::span<const double> log_ratios) {
     std::vector<double> drawn;
     return bootstrap(median({log_ratios.begin(), log_ratios.end()}),

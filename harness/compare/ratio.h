@@ -21,9 +21,6 @@ Ratio paired_ratio(std::span<const double> log_ratios);
 /// The ratio of the medians; each side is resampled by itself. Values are above 0, neither side is empty.
 Ratio unpaired_ratio(std::span<const double> before, std::span<const double> after);
 
-/// The median; `values` must not be empty.
-double median(std::vector<double> values);
-
 /// The least relative change, 0.01 for 1 %, that a two-sided test at `level` shows with probability
 /// `probability` where the logarithm of the ratio is normal with this standard error: exp((z(1 - level / 2) +
 /// z(probability)) * log_error) - 1.

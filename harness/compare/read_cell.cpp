@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/compare/cells.h"
 
-#include "harness/compare/ratio.h"
+#include "harness/statistics.h"
 #include "scenes/error.h"
 
 #include <fmt/format.h>

@@ -21,7 +21,7 @@ public:
         sampling_.enough = enough;
         sampling_.seed = seed;
         sampling_.cells = cells.size();
-        for (auto* cell : cells) outcomes_.push_back({cell, {}, false});
+        for (auto* cell : cells) outcomes_.push_back({cell, {}, false, 0});
     }
 
     bool run();
@@ -56,10 +56,14 @@ bool Group::is_enough(Outcome& outcome) const {
     const auto& m = cell.measurement();
     const auto& enough = sampling_.enough;
     if (enough.repeat) return outcome.converged = m.samples.size() >= *enough.repeat;
-    if (m.round_count() < Enough::least) return false;
+    const std::size_t rounds = m.round_count();
+    if (rounds < Enough::least) return false;
+    const bool is_late = static_cast<double>(cell.spent_ns()) * 1e-9 >= enough.seconds;
+    if (!is_late && rounds < outcome.next_look) return false;
+    outcome.next_look = rounds + rounds / 10;
     const auto s = summarise(m.totals(), m.rounds());
     outcome.converged = s.high - s.low <= noise_of(cell.cell().devices, enough) * s.median;
-    return outcome.converged || static_cast<double>(cell.spent_ns()) * 1e-9 >= enough.seconds;
+    return outcome.converged || is_late;
 }
 
 template<class Work>

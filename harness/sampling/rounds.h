@@ -27,8 +27,9 @@ struct Sampling {
 /// A cell of a group, and what became of it.
 struct Outcome {
     CellSampler* sampler = nullptr;
-    std::string failure;    ///< of its device or its memory; empty when it finished
-    bool converged = false; ///< its interval is narrower than asked for; always so with `repeat`
+    std::string failure;       ///< of its device or its memory; empty when it finished
+    bool converged = false;    ///< its interval is narrower than asked for; always so with `repeat`
+    std::size_t next_look = 0; ///< rounds at which to ask again: many take as long to judge as to sample
 };
 
 /// What a group tells while it is sampled.

@@ -124,11 +124,5 @@ TEST(ChoosingSearch, GoesOnWithoutWhatFails) {
     EXPECT_THAT(Bench{{}}.run().ranking, IsEmpty());
 }
 
-TEST(ChoosingSearch, MediansAreThoseOfTheMiddle) {
-    EXPECT_EQ(median({5}), 5);
-    EXPECT_EQ(median({9, 1, 4}), 4);
-    EXPECT_EQ(median({9, 1, 4, 5}), 4.5);
-}
-
 } // namespace
 } // namespace tandem

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/compare/ratio.h"
+#include "harness/statistics.h"
 #include "tests/unit/compare_noise.h"
 
 #include <cmath>

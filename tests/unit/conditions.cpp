@@ -298,5 +298,29 @@ TEST(HardwareDigest, StandsInRecordsForTheUuid) {
     EXPECT_TRUE(record_device({})["hardware"].is_null());
 }
 
+TEST(ConditionsJson, ReadingsStandTogether) {
+    Condition quiet, busy, unknown;
+    for (auto* condition : {&quiet, &busy}) {
+        condition->processor.cores = 2;
+        condition->gpus.resize(1);
+        condition->gpus[0].sm_mhz = 1980;
+        condition->gpus[0].throttle = 0;
+    }
+    busy.gpus[0].sm_mhz = 1200;
+    busy.gpus[0].throttle = 4; // software power cap
+    unknown.processor.cores = 2;
+    unknown.gpus.resize(1);
+    const auto alone = conditions_json(std::vector{quiet});
+    EXPECT_EQ(alone["gpus"][0]["sm_mhz"], 1980);
+    EXPECT_EQ(alone["gpus"][0]["throttled"], "");
+    const auto three = conditions_json(std::vector{unknown, quiet, busy});
+    EXPECT_EQ(three["processor"]["cores"], 2);
+    EXPECT_EQ(three["gpus"][0]["sm_mhz"].dump(), "[null,1980,1200]");
+    EXPECT_EQ(three["gpus"][0]["throttled"][1], "");
+    EXPECT_FALSE(three["gpus"][0]["throttled"][2].get<std::string>().empty());
+    EXPECT_TRUE(three["gpus"][0]["power_w"].is_null());
+    EXPECT_EQ(conditions_json(std::vector{unknown, unknown})["gpus"].dump(), "[null]");
+}
+
 } // namespace
 } // namespace tandem

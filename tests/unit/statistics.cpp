@@ -10,6 +10,12 @@
 namespace tandem {
 namespace {
 
+TEST(Statistics, MediansAreThoseOfTheMiddle) {
+    EXPECT_EQ(median({5}), 5);
+    EXPECT_EQ(median({9, 1, 4}), 4);
+    EXPECT_EQ(median(std::vector<std::int64_t>{9, 1, 4, 5}), 4.5);
+}
+
 TEST(Statistics, QuartilesInterpolate) {
     const std::vector<std::int64_t> samples{40, 10, 30, 20};
     const auto s = summarise(samples);
