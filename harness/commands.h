@@ -3,7 +3,7 @@
 
 #include "harness/accuracy/truths.h"
 #include "harness/flaws.h"
-#include "harness/plan.h"
+#include "harness/plans/plan_file.h"
 
 #include <optional>
 #include <string>
@@ -15,6 +15,8 @@ namespace tandem {
 struct RunOptions {
     std::string scene;
     std::vector<std::string> scenes; ///< of `tandem run`: one after the other
+    std::optional<PlanFile>
+        plan; ///< of `tandem run`: for scenes; what `request` and `frames` have goes first
     std::vector<std::string> meshes; ///< --mesh: instead of a scene
     std::vector<std::string> poses;  ///< --pose "tx ty tz qw qx qy qz", in the order of the meshes
     Request request;

@@ -3,7 +3,7 @@
 
 #include "harness/frames.h"
 #include "harness/journal.h"
-#include "harness/plan.h"
+#include "harness/plans/cells.h"
 
 #include <map>
 #include <optional>

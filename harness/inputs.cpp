@@ -97,14 +97,9 @@ void check_required(const std::vector<BackendReport>& backends, const std::vecto
     }
 }
 
-/// The question depends on the precision alone, so that it is asked once for each and not for each cell.
-void check_coordinates(std::span<const Cell> cells, const Scene& scene, const FrameRange& range) {
-    std::set<Precision> seen;
-    for (const auto& cell : cells) {
-        const auto geometry = geometry_of(cell.settings);
-        if (!seen.insert(geometry.precision).second) continue;
-        for (const auto& frame : range.frames) check_range(scene, frame, geometry.precision);
-    }
+void check_coordinates(const Cell& cell, const Scene& scene, const FrameRange& range) {
+    const auto precision = geometry_of(cell.settings).precision;
+    for (const auto& frame : range.frames) check_range(scene, frame, precision);
 }
 
 void check_outputs(const RunOptions& options, std::span<const Cell> cells) {

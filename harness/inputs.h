@@ -22,8 +22,8 @@ std::vector<DeviceGroup> open_devices(const RunOptions& options, const std::vect
 /// Throws InputError for each name that is no backend with devices and no device.
 void check_required(const std::vector<BackendReport>& backends, const std::vector<std::string>& require);
 
-/// Refuses coordinates that the precision of a cell cannot hold, before anything is measured.
-void check_coordinates(std::span<const Cell> cells, const Scene& scene, const FrameRange& range);
+/// Refuses coordinates that the precision of the cell cannot hold, before anything is measured.
+void check_coordinates(const Cell& cell, const Scene& scene, const FrameRange& range);
 
 /// Refuses dumps that no cell can give, and two outputs in one file.
 void check_outputs(const RunOptions& options, std::span<const Cell> cells);

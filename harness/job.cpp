@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/job.h"
 
+#include "algorithms/bounds/geometry.h"
 #include "harness/inputs.h"
 #include "harness/record.h"
 #include "harness/standard_streams.h"
@@ -8,22 +9,42 @@
 
 #include <deque>
 #include <fmt/format.h>
+#include <map>
 #include <nlohmann/json.hpp>
 
 namespace tandem {
 
-Job open_job(const RunOptions& options, std::vector<Cell> cells) {
-    return open_job(open_scene(options), options, std::move(cells));
+namespace {
+
+/// Cells whose precision cannot hold the coordinates of a frame; asked once for each precision.
+void fit_coordinates(Job& job, const Unfit& unfit) {
+    std::map<Precision, std::optional<InputError>> known;
+    std::erase_if(job.cells, [&](const Cell& cell) {
+        const auto [found, is_new] = known.try_emplace(geometry_of(cell.settings).precision);
+        if (is_new) try {
+                check_coordinates(cell, job.scene, job.range);
+            } catch (const InputError& error) {
+                found->second = error;
+            }
+        if (found->second) unfit(*found->second);
+        return found->second.has_value();
+    });
 }
 
-Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells) {
+} // namespace
+
+Job open_job(const RunOptions& options, std::vector<Cell> cells, const Unfit& unfit) {
+    return open_job(open_scene(options), options, std::move(cells), unfit);
+}
+
+Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells, const Unfit& unfit) {
     Job job;
     job.scene = std::move(scene);
     job.range = open_frames(options, job.scene);
     job.range.flaws = handle_flaws(job.scene, job.range.first, job.range.frames, options.degenerate);
     job.cells = std::move(cells);
     check_outputs(options, job.cells);
-    check_coordinates(job.cells, job.scene, job.range);
+    fit_coordinates(job, unfit);
     return job;
 }
 

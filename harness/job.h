@@ -17,9 +17,9 @@ struct Job {
 };
 
 /// Opens the scene and its frames and handles their flaws; throws InputError when they, the outputs or the
-/// cells do not fit each other.
-Job open_job(const RunOptions& options, std::vector<Cell> cells);
-Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells);
+/// cells do not fit each other; cells that the scene does not fit are `unfit`.
+Job open_job(const RunOptions& options, std::vector<Cell> cells, const Unfit& unfit = refuse);
+Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells, const Unfit& unfit = refuse);
 
 /// How the cells of a job are measured.
 struct Measuring {

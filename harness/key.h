@@ -2,7 +2,7 @@
 #pragma once
 
 #include "harness/frames.h"
-#include "harness/plan.h"
+#include "harness/plans/cells.h"
 
 namespace tandem {
 

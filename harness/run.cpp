@@ -9,6 +9,7 @@
 #include "harness/interrupt.h"
 #include "harness/job.h"
 #include "harness/key.h"
+#include "harness/plans/cell_groups.h"
 #include "harness/progress.h"
 #include "harness/standard_streams.h"
 #include "harness/statistics.h"
@@ -107,14 +108,38 @@ std::string doubts(const CellResult& result) {
     return fmt::to_string(fmt::join(notes, "; "));
 }
 
-/// A run of the command: its scenes, one after the other.
+/// The cells of the options: those of a plan, or one product.
+CellGroups groups_of(const RunOptions& options, const std::vector<BackendReport>& backends) {
+    Product given{options.scenes, {}, options.request};
+    if (!options.frames.empty()) given.frames = {options.frames};
+    if (given.scenes.empty()) given.scenes.emplace_back(); // of --mesh, or the message that there is none
+    PlanFile plan;
+    if (options.plan) {
+        plan = *options.plan;
+        replace(plan, given);
+    } else {
+        plan.products = {given};
+    }
+    open_devices(options, backends, devices_of(plan));
+    return make_groups(plan, backends);
+}
+
+/// What is not measured, and why.
+void tell_left_out(const CellGroups& all) {
+    if (all.repeated > 0)
+        tell("tandem: {} cells are named more than once; each is measured once\n", all.repeated);
+    for (const auto& [why, count] : all.impossible)
+        tell("tandem: skipped {} impossible combination{}: {}\n", count, count == 1 ? "" : "s", why);
+}
+
+/// A run of the command: its groups of cells, one after the other.
 class Run {
 public:
     explicit Run(const RunOptions& options);
     int go();
 
 private:
-    Job open(const std::string& scene) const;
+    Job open(const CellGroup& group, const Unfit& unfit) const;
     void open_files();
     int measure(Job& job);
     void print(const Job& job, const std::map<const Cell*, CellResult>& results) const;
@@ -124,7 +149,7 @@ private:
 
     const RunOptions& options_;
     std::vector<BackendReport> backends_;
-    std::vector<Cell> cells_; ///< of every scene
+    CellGroups all_;
     std::optional<RecordFile> file_;
     std::optional<DumpFile> pairs_, contacts_;
     FinishedCells finished_;
@@ -134,19 +159,10 @@ private:
     bool interrupted_ = false;
 };
 
-Request request_of(const RunOptions& options) {
-    auto request = options.request;
-    if (request.devices.empty()) request.devices.emplace_back("opencl:0");
-    request.may_choose = true;
-    return request;
-}
-
 Run::Run(const RunOptions& options) : options_(options), backends_(discover()), progress_(options.quiet) {
-    const auto request = request_of(options);
     check_required(backends_, options.require);
-    cells_ = plan(request, open_devices(options, backends_, request.devices));
-    if (const auto repeated = drop_repeated(cells_); repeated > 0)
-        tell("tandem: {} cells are named more than once; each is measured once\n", repeated);
+    all_ = groups_of(options, backends_);
+    tell_left_out(all_);
 }
 
 /// Once nothing is wrong with what was asked for: a mistake leaves no empty files behind.
@@ -227,22 +243,23 @@ int Run::end(int code) const {
     return 3;
 }
 
-Job Run::open(const std::string& scene) const {
+Job Run::open(const CellGroup& group, const Unfit& unfit) const {
     auto own = options_;
-    own.scene = scene;
-    return open_job(own, cells_);
+    own.scene = group.scene;
+    own.frames = group.frames;
+    const bool skips = options_.plan && options_.plan->skips_impossible;
+    return open_job(own, group.cells, skips ? unfit : Unfit(refuse));
 }
 
 int Run::go() {
-    auto scenes = options_.scenes;
-    if (scenes.empty()) scenes.emplace_back(options_.scene); // of --mesh, or the message that there is none
     // A mistake in the last scene had better be known before the first is measured.
-    if (scenes.size() > 1)
-        for (const auto& scene : scenes) open(scene);
+    if (all_.groups.size() > 1)
+        for (const auto& group : all_.groups) open(group, leave_out);
     const Interrupt interrupt;
     int code = 0;
-    for (const auto& scene : scenes) {
-        auto job = open(scene);
+    for (const auto& group : all_.groups) {
+        auto job =
+            open(group, [](const InputError& error) { tell("tandem: skipped a cell: {}\n", error.what()); });
         open_files();
         leave_out_finished(job);
         if (!options_.dry_run && job.cells.empty()) continue;

@@ -6,7 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-/// Reading of values from scene descriptions; every function throws InputError that names the place.
+/// Reading of values from scene descriptions and plans; every function throws InputError that names the
+/// place.
 namespace tandem::description {
 
 using Json = nlohmann::json;
@@ -24,6 +25,9 @@ struct Place {
     std::string text() const { return pointer.empty() ? file : fmt::format("{}: {}", file, pointer); }
     [[noreturn]] void fail(std::string_view what) const;
 };
+
+/// The JSON of a file, which is a `what`. Throws InputError, with the line where the JSON breaks off.
+Json parse_file(const std::string& path, std::string_view what);
 
 /// Refuses what is no object or has other names than these.
 void check_names(const Json& object, const Place& place, const std::vector<std::string>& allowed);

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 #include <map>
 
 namespace tandem {
@@ -116,21 +115,6 @@ Body read_body(const Json& json, const Place& place, const std::map<std::string,
     return body;
 }
 
-/// Throws InputError with the line where the JSON breaks off.
-Json parse(const std::string& path) {
-    std::ifstream file(path);
-    if (!file || std::filesystem::is_directory(path))
-        throw InputError(fmt::format("{}: cannot be read; name an existing scene description", path));
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    try {
-        return Json::parse(text);
-    } catch (const Json::parse_error& error) {
-        const auto read = text.substr(0, error.byte == 0 ? 0 : error.byte - 1);
-        const auto line = 1 + std::count(read.begin(), read.end(), '\n');
-        throw InputError(fmt::format("{}:{}: not JSON; repair the description around this line", path, line));
-    }
-}
-
 /// Made when asked for: a scripted scene has no frames in memory.
 Frame frame_of(const std::vector<Motion>& motions, std::size_t index) {
     Frame frame;
@@ -161,7 +145,9 @@ std::vector<Motion> read_bodies(const Json& json, const Place& root, Scene& scen
 } // namespace
 
 Scene load_description(const std::string& path) {
-    const auto json = parse(path);
+    const auto json = parse_file(path, "scene description");
+    if (json.is_object() && json.contains("plan"))
+        throw InputError(fmt::format("{}: is a plan, not a scene; 'tandem run' takes it", path));
     const Place root{path, {}};
     check_names(json, root, {"name", "units", "frames", "meshes", "bodies", "dynamics"});
     Scene scene;

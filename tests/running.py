@@ -37,7 +37,7 @@ class Running(Case):
         out = self.work / "dry.jsonl"
         status, text, errors = tandem("run", *CELLS, "--set", "k=6,8,6", "--seconds", 7, "--dry-run", "--out", out)
         self.assertEqual((status, len(errors)), (0, 1), errors)
-        self.assertIn("2 cells are named more than once", errors[0])
+        self.assertIn("4 cells are named more than once", errors[0])
         self.assertIn("8 cells, about 56 s of rounds", text)
         self.assertEqual(len(re.findall(r"(?m)^ +(?:chunked|tiled)\|host:", text)), 8)
         self.assertFalse(out.exists())

@@ -64,7 +64,7 @@ std::vector<Cell> sweep(const Request& request, std::span<const DeviceGroup> dev
         own.presets = {base.preset};
         for (const auto& axes : {axes_of_bounds(*base.algorithm), axes_of_contacts(*base.algorithm)}) {
             own.sets = axes;
-            for (const auto& cell : plan(own, std::array{base.devices}, Unfit::leave_out))
+            for (const auto& cell : plan(own, std::array{base.devices}, leave_out))
                 if (std::none_of(cells.begin(), cells.end(), [&](const auto& c) { return same(c, cell); }))
                     cells.push_back(cell);
         }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/plan.h"
+#include "harness/plans/cells.h"
 
 #include <optional>
 #include <string>

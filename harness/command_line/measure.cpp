@@ -6,6 +6,7 @@
 #include "scenes/error.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <fmt/format.h>
 #include <memory>
 
@@ -149,12 +150,44 @@ void add_accuracy_run_options(CLI::App& app, RunOptions& options, std::vector<st
         ->description("exact contacts of at most so many pairs a frame; 1000 when left out");
 }
 
+/// The options of the plan that the line does not give: what says when a cell has enough as a whole.
+void take_measure(CLI::App& app, const PlanFile& plan) {
+    const auto is_given = [&](const std::string& name) { return app.count("--" + name) > 0; };
+    const auto says_enough = [](const std::string& name) {
+        return name == "repeat" || name == "noise" || name == "seconds";
+    };
+    const bool enough_is_given = is_given("repeat") || is_given("noise") || is_given("seconds");
+    for (const auto& [name, value] : plan.measure) {
+        if (is_given(name) || (says_enough(name) && enough_is_given)) continue;
+        auto* option = app.get_option("--" + name);
+        option->add_result(value.empty() ? option->get_flag_value(name, "") : value);
+        option->run_callback();
+    }
+}
+
+/// A plan among the scenes, which stands by itself.
+void take_plan(CLI::App& app, RunOptions& options) {
+    const auto found = std::ranges::find_if(options.scenes, is_plan);
+    if (found == options.scenes.end()) return;
+    const auto path = *found;
+    if (options.scenes.size() > 1 || !options.meshes.empty())
+        throw InputError(fmt::format("{}: is a plan and names its scenes; give no others beside it", path));
+    options.plan = read_plan(path);
+    options.scenes.clear();
+    try {
+        take_measure(app, *options.plan);
+    } catch (const CLI::ParseError& error) {
+        throw InputError(fmt::format("{}: /measure: {}", path, error.what()));
+    }
+}
+
 } // namespace
 
 Action add_run(CLI::App& app) {
     auto given = std::make_shared<Given<RunOptions>>();
     auto& options = given->options;
-    app.add_option("scenes", options.scenes, scene_help);
+    app.add_option("scenes", options.scenes,
+                   fmt::format("{}; or a plan of cells (.json, see results/plan.schema.json)", scene_help));
     add_run_options(app, options, given->sets);
     add_choosing(app, options);
     app.add_flag("--dry-run", options.dry_run,
@@ -171,8 +204,9 @@ Action add_run(CLI::App& app) {
                    "write the first finished cell's contacts as CSV");
     app.add_flag("!--no-count", options.count, "leave out the replay that counts work");
     app.add_flag("!--no-check", options.check, "do not compare with the reference");
-    return [given] {
+    return [given, line = &app] {
         given->options.request.sets = sets_of(given->sets, given->options);
+        take_plan(*line, given->options);
         return run_command(given->options);
     };
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/command_line/sets.h"
 
-#include "harness/command_line/ranges.h"
+#include "harness/plans/ranges.h"
 #include "scenes/error.h"
 
 #include <CLI/CLI.hpp>

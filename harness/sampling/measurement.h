@@ -4,7 +4,7 @@
 
 #include "harness/accuracy/answer_errors.h"
 #include "harness/conditions.h"
-#include "harness/plan.h"
+#include "harness/plans/cells.h"
 
 #include <chrono>
 #include <map>

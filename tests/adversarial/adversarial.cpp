@@ -7,7 +7,7 @@
 #include "backends/registry.h"
 #include "harness/adversarial.h"
 #include "harness/environment.h"
-#include "harness/plan.h"
+#include "harness/plans/cells.h"
 #include "harness/sampling/measurement.h"
 #include "scenes/error.h"
 

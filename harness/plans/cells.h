@@ -3,7 +3,9 @@
 
 #include "algorithms/traversal.h"
 #include "harness/device_groups.h"
+#include "scenes/error.h"
 
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -34,15 +36,18 @@ struct Request {
     bool may_choose = false;                                            ///< whether `auto` may be named
 };
 
-/// What plan() does with a combination that does not fit a device or itself.
-enum class Unfit { refuse, leave_out };
+/// What becomes of a combination that fits no device, no scene or not itself: refused by throwing the error
+/// again; left out by doing nothing.
+using Unfit = std::function<void(const InputError&)>;
+[[noreturn]] void refuse(const InputError& error);
+inline void leave_out(const InputError&) {}
 
 /// All cells: devices x algorithms x presets x every combination of values; of auto, devices x every
 /// combination. InputErrors: a preset that none of the chosen algorithms has, an algorithm chosen by name
 /// that has none of the presets, a setting that none declares or that is given twice, settings that do not
 /// fit a device or each other, and auto where nothing is chosen.
 std::vector<Cell> plan(const Request& request, std::span<const DeviceGroup> devices,
-                       Unfit unfit = Unfit::refuse);
+                       const Unfit& unfit = refuse);
 
 /// Leaves out cells that stand there already; returns how many. Cells of auto stay.
 std::size_t drop_repeated(std::vector<Cell>& cells);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/command_line/ranges.h"
+#include "harness/plans/ranges.h"
 
 #include "scenes/error.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/plan.h"
+#include "harness/plans/cells.h"
 
 #include "harness/choosing/candidates.h"
 #include "scenes/error.h"
@@ -97,12 +97,12 @@ void check_presets(const Request& request, std::span<const Traversal* const> cho
 
 /// The cells of one algorithm, or of auto, on one group of devices.
 void add_cells(std::vector<Cell>& cells, const Request& request, const Traversal* traversal,
-               const DeviceGroup& devices, Unfit unfit) {
+               const DeviceGroup& devices, const Unfit& unfit) {
     const auto add = [&](const auto& make) {
         try {
             cells.push_back(make());
-        } catch (const InputError&) {
-            if (unfit == Unfit::refuse) throw;
+        } catch (const InputError& error) {
+            unfit(error);
         }
     };
     const auto all = combinations(request, traversal);
@@ -137,7 +137,9 @@ Cell make_cell(const Traversal& traversal, const Preset& preset, const SettingTe
     return cell;
 }
 
-std::vector<Cell> plan(const Request& request, std::span<const DeviceGroup> devices, Unfit unfit) {
+void refuse(const InputError& error) { throw error; }
+
+std::vector<Cell> plan(const Request& request, std::span<const DeviceGroup> devices, const Unfit& unfit) {
     const auto chosen = choose_algorithms(request);
     const auto named = named_by(chosen);
     check_sets(request, named);

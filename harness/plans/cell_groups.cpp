@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "harness/plans/cell_groups.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+constexpr const char* usual_device = "opencl:0";
+
+std::vector<std::string> devices_of(const Product& product) {
+    if (product.request.devices.empty()) return {usual_device};
+    return product.request.devices;
+}
+
+/// Whether a field of an exclusion, which is empty where it does not matter, has the value.
+bool has(const std::vector<std::string>& field, std::string_view value) {
+    return field.empty() || std::ranges::find(field, value) != field.end();
+}
+
+/// A setting that the cell does not have is not matched by any value.
+bool has_settings(const Cell& cell, const Request& request) {
+    const auto texts = cell.settings.texts();
+    return std::ranges::all_of(request.sets, [&](const auto& set) {
+        const auto own = texts.find(set.first);
+        return own != texts.end() && has(set.second, own->second);
+    });
+}
+
+bool matches(const Product& excluded, const CellGroup& group, const Cell& cell) {
+    const auto& request = excluded.request;
+    const auto algorithm = cell.candidates.empty() ? cell.algorithm->name() : automatic;
+    return has(excluded.scenes, group.scene) && has(excluded.frames, group.frames)
+           && has(request.algorithms, algorithm) && has(request.presets, cell.preset)
+           && has(request.devices, name_of(cell.devices)) && has_settings(cell, request);
+}
+
+CellGroup& group_of(std::vector<CellGroup>& groups, const std::string& scene, const std::string& frames) {
+    for (auto& group : groups)
+        if (group.scene == scene && group.frames == frames) return group;
+    return groups.emplace_back(CellGroup{scene, frames, {}});
+}
+
+void add_product(CellGroups& all, const Product& product, const std::vector<BackendReport>& backends,
+                 const Unfit& unfit) {
+    auto request = product.request;
+    request.may_choose = true;
+    const auto names = devices_of(product);
+    const auto cells = plan(request, choose_devices(backends, names), unfit);
+    const auto frames = product.frames.empty() ? std::vector<std::string>{""} : product.frames;
+    for (const auto& scene : product.scenes)
+        for (const auto& range : frames) {
+            auto& own = group_of(all.groups, scene, range).cells;
+            own.insert(own.end(), cells.begin(), cells.end());
+        }
+}
+
+void exclude(CellGroups& all, const Exclusion& exclusion) {
+    std::size_t matched = 0;
+    for (auto& group : all.groups)
+        matched += std::erase_if(group.cells,
+                                 [&](const Cell& cell) { return matches(exclusion.product, group, cell); });
+    if (matched == 0 && !exclusion.may_be_empty)
+        throw InputError(
+            fmt::format("{}: matches no cell of the plan; mend it or leave it out", exclusion.place));
+    all.excluded += matched;
+}
+
+} // namespace
+
+void replace(PlanFile& plan, const Product& given) {
+    const auto put = [](std::vector<std::string>& field, const std::vector<std::string>& texts) {
+        if (!texts.empty()) field = texts;
+    };
+    const auto& asked = given.request;
+    const bool replaces = !(given.frames.empty() && asked.algorithms.empty() && asked.presets.empty()
+                            && asked.devices.empty() && asked.sets.empty());
+    for (auto& exclusion : plan.exclusions) exclusion.may_be_empty = replaces;
+    for (auto& product : plan.products) {
+        put(product.frames, given.frames);
+        put(product.request.algorithms, asked.algorithms);
+        put(product.request.presets, asked.presets);
+        put(product.request.devices, asked.devices);
+        for (const auto& set : asked.sets) {
+            std::erase_if(product.request.sets, [&](const auto& own) { return own.first == set.first; });
+            product.request.sets.push_back(set);
+        }
+    }
+}
+
+std::vector<std::string> devices_of(const PlanFile& plan) {
+    std::vector<std::string> names;
+    for (const auto& product : plan.products)
+        for (auto& name : devices_of(product))
+            if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
+    return names;
+}
+
+CellGroups make_groups(const PlanFile& plan, const std::vector<BackendReport>& backends) {
+    CellGroups all;
+    Unfit unfit = refuse;
+    if (plan.skips_impossible) unfit = [&](const InputError& error) { ++all.impossible[error.what()]; };
+    for (const auto& product : plan.products) add_product(all, product, backends, unfit);
+    for (auto& group : all.groups) all.repeated += drop_repeated(group.cells);
+    for (const auto& exclusion : plan.exclusions) exclude(all, exclusion);
+    std::erase_if(all.groups, [](const auto& group) { return group.cells.empty(); });
+    return all;
+}
+
+} // namespace tandem

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "harness/plans/plan_file.h"
+
+#include "harness/plans/ranges.h"
+#include "scenes/describe.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+namespace tandem {
+
+namespace {
+
+using namespace description;
+using Texts = std::vector<std::string>;
+
+const Texts product_fields{"scenes", "frames", "algorithms", "presets", "settings", "devices"};
+
+/// Options of `tandem run` that take a value and that a plan may give.
+const Texts valued{"noise",          "seconds",    "repeat", "seed",   "truth",
+                   "truth-contacts", "degenerate", "memory", "timeout"};
+const Texts flags{"no-check", "no-count", "isolate"};
+
+/// A number as a user would write it, or the string.
+std::string scalar(const Json& json, const Place& place) {
+    if (json.is_string()) {
+        if (json.get<std::string>().empty()) place.fail("is empty");
+        return json.get<std::string>();
+    }
+    if (json.is_number_integer()) return json.dump();
+    if (!json.is_number()) place.fail("must be a string or a number");
+    return fmt::format("{}", number(json, place));
+}
+
+/// One string or number, or a list of them, which is not empty.
+Texts scalars(const Json& json, const Place& place) {
+    if (!json.is_array()) return {scalar(json, place)};
+    if (json.empty()) place.fail("is empty, and so would be the plan; leave it out or name something");
+    Texts texts;
+    for (std::size_t i = 0; i < json.size(); ++i) texts.push_back(scalar(json[i], place / i));
+    return texts;
+}
+
+Texts expanded(const Texts& values, const Place& place) {
+    Texts all;
+    for (const auto& value : values)
+        for (auto& each : expand_range(value, place.text())) all.push_back(std::move(each));
+    return all;
+}
+
+/// Values by name over those of the plan; null takes a setting of the plan away.
+void read_sets(const Json& json, const Place& place, Request& request) {
+    if (!json.is_object()) place.fail("must be an object: a value, or a list of them, for each setting");
+    for (const auto& [name, value] : json.items()) {
+        std::erase_if(request.sets, [&name = name](const auto& set) { return set.first == name; });
+        if (!value.is_null())
+            request.sets.emplace_back(name, expanded(scalars(value, place / name), place / name));
+    }
+}
+
+Texts scene_texts(const Texts& given, const std::filesystem::path& folder) {
+    Texts scenes;
+    for (const auto& text : given) {
+        const bool is_file = text.ends_with(".json") || text.ends_with(".frames");
+        scenes.push_back(is_file ? (folder / text).lexically_normal().string() : text);
+    }
+    return scenes;
+}
+
+/// The fields of a product over those of `base`.
+Product read_product(const Json& json, const Place& place, const Product& base) {
+    auto product = base;
+    const auto take = [&](const char* name, Texts& texts) {
+        if (json.contains(name)) texts = scalars(json[name], place / name);
+    };
+    if (json.contains("scenes"))
+        product.scenes = scene_texts(scalars(json["scenes"], place / "scenes"),
+                                     std::filesystem::path(place.file).parent_path());
+    take("frames", product.frames);
+    take("algorithms", product.request.algorithms);
+    take("presets", product.request.presets);
+    take("devices", product.request.devices);
+    if (json.contains("settings")) read_sets(json["settings"], place / "settings", product.request);
+    return product;
+}
+
+const Json& list(const Json& json, const char* name, const Place& place) {
+    static const Json none = Json::array();
+    if (!json.contains(name)) return none;
+    if (!json[name].is_array() || json[name].empty()) (place / name).fail("must be a list that is not empty");
+    return json[name];
+}
+
+void read_products(const Json& json, const Place& root, PlanFile& plan) {
+    const auto base = read_product(json, root, {});
+    if (!base.scenes.empty()) plan.products.push_back(base);
+    const auto& more = list(json, "include", root);
+    for (std::size_t i = 0; i < more.size(); ++i) {
+        const auto place = root / "include" / i;
+        check_names(more[i], place, product_fields);
+        plan.products.push_back(read_product(more[i], place, base));
+        if (plan.products.back().scenes.empty()) place.fail("has no scenes, and neither has the plan");
+    }
+    if (plan.products.empty()) root.fail("has no scenes; name some in \"scenes\", or in \"include\"");
+}
+
+void read_exclusions(const Json& json, const Place& root, PlanFile& plan) {
+    const auto& all = list(json, "exclude", root);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto place = root / "exclude" / i;
+        check_names(all[i], place, product_fields);
+        if (all[i].empty()) place.fail("matches every cell; name at least one field");
+        plan.exclusions.push_back({read_product(all[i], place, {}), place.text()});
+    }
+}
+
+void read_measure(const Json& json, const Place& place, PlanFile& plan) {
+    auto known = valued;
+    known.insert(known.end(), flags.begin(), flags.end());
+    check_names(json, place, known);
+    for (const auto& [name, value] : json.items()) {
+        const bool is_flag = std::ranges::find(flags, name) != flags.end();
+        if (!is_flag)
+            plan.measure.emplace_back(name, scalar(value, place / name));
+        else if (flag(json, name.c_str(), place))
+            plan.measure.emplace_back(name, "");
+    }
+}
+
+} // namespace
+
+/// A file that is no JSON is left to whom it is for, who says what is wrong with it.
+bool is_plan(const std::string& path) {
+    if (!path.ends_with(".json") || std::filesystem::is_directory(path)) return false;
+    std::ifstream file(path);
+    const auto json = file ? Json::parse(file, nullptr, false) : Json();
+    return json.is_object() && json.contains("plan");
+}
+
+PlanFile read_plan(const std::string& path) {
+    const auto json = parse_file(path, "plan");
+    const Place root{path, {}};
+    auto known = product_fields;
+    for (const auto* name : {"plan", "include", "exclude", "impossible", "measure"}) known.emplace_back(name);
+    check_names(json, root, known);
+    PlanFile plan;
+    plan.name = text(json.at("plan"), root / "plan");
+    if (plan.name.empty()) (root / "plan").fail("is empty; say in a few words what is measured");
+    read_products(json, root, plan);
+    read_exclusions(json, root, plan);
+    if (json.contains("impossible"))
+        plan.skips_impossible =
+            choice(json["impossible"], root / "impossible", "word", {"refuse", "skip"}) == 1;
+    if (json.contains("measure")) read_measure(json["measure"], root / "measure", plan);
+    return plan;
+}
+
+} // namespace tandem

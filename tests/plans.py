@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""plans.py PROGRAM SOURCE: plan files: what cells they make, what goes before them, what is refused."""
+import json
+import re
+import sys
+import unittest
+
+import jsonschema
+
+from program import SOURCE, Case, tandem
+
+SMALL, LARGE = "plates:count=2", "pile:bodies=2,frames=3"
+PLAN = {"plan": "two walks", "scenes": [SMALL, LARGE], "frames": 0, "algorithms": ["chunked", "tiled"], "devices": ["host"],
+        "settings": {"k": [8, 18]}, "measure": {"repeat": 1, "truth": "none"}}
+
+
+class Plans(Case):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.schema = jsonschema.Draft7Validator(json.loads((SOURCE / "results/plan.schema.json").read_text()))
+
+    def plan(self, **fields):
+        """A file of PLAN with other fields; those that are None are left out."""
+        path = self.work / "plan.json"
+        path.write_text(json.dumps({name: value for name, value in {**PLAN, **fields}.items() if value is not None}))
+        return path
+
+    def is_valid(self, path):
+        return not list(self.schema.iter_errors(json.loads(path.read_text())))
+
+    def listed(self, path, *arguments):
+        """(scene, frames, algorithm, k) of every cell, as --dry-run lists them; the schema agrees."""
+        self.assertTrue(self.is_valid(path), path.read_text())
+        status, out, self.said = tandem("run", path, *arguments, "--dry-run")
+        self.assertEqual(status, 0, (out, self.said))
+        return re.findall(r"(?m)^ +(\w+)\|[^|]+\|(\w+):[^|]*\|([\d:]+)\|.*,k=(\d+),", out)
+
+    def refused(self, said, schema_agrees=True, **fields):
+        path = self.plan(**fields)
+        self.assertEqual(self.is_valid(path), not schema_agrees, path.read_text())
+        self.bad(["plan.json", *([said] if isinstance(said, str) else said)], "run", path, "--dry-run")
+
+    def test_a_product(self):
+        cells = self.listed(self.plan())
+        expected = [(a, s, "0:0", k) for s in ("plates", "pile") for a in ("chunked", "tiled") for k in ("8", "18")]
+        self.assertEqual(cells, expected)
+        self.assertEqual(self.listed(self.plan(settings={"k": "8..18*1.5"}, scenes=SMALL, algorithms="tiled")),
+                         [("tiled", "plates", "0:0", k) for k in ("8", "12", "18")])
+        self.assertEqual(len(self.listed(self.plan(frames=["0", "1:2"], scenes=SMALL))), 8)
+
+    def test_include_and_exclude(self):
+        path = self.plan(include=[{"scenes": SMALL, "frames": "3", "algorithms": "gproximity", "settings": {"k": None, "refill": "no"}}],
+                         exclude=[{"algorithms": "tiled", "settings": {"k": 8}}, {"scenes": LARGE, "algorithms": ["chunked"]}])
+        self.assertEqual(self.listed(path), [("chunked", "plates", "0:0", "8"), ("chunked", "plates", "0:0", "18"), ("tiled", "plates", "0:0", "18"),
+                                             ("tiled", "pile", "0:0", "18"), ("gproximity", "plates", "3:3", "18")])
+        repeated = self.listed(self.plan(include=[{"scenes": SMALL, "settings": {"k": 18}}]))
+        self.assertEqual(len(repeated), 8)
+        self.assertIn("2 cells are named more than once", self.said[0])
+
+    def test_the_command_line_goes_first(self):
+        path = self.plan(exclude=[{"settings": {"k": 8}}])
+        cells = self.listed(path, "--set", "k=24", "--algorithm", "tiled", "--frames", 2, "--preset", "resident", "--device", "host")
+        self.assertEqual(cells, [("tiled", scene, "2:2", "24") for scene in ("plates", "pile")])
+
+    def test_it_is_measured_and_continued(self):
+        out = self.work / "plan.jsonl"
+        path = self.plan(measure={"repeat": 2, "truth": "none", "no-count": True})
+        status, text, errors = tandem("run", path, "--repeat", 1, "--out", out)
+        self.assertEqual(status, 0, errors)
+        records = self.records(out)
+        self.assertEqual([len(r["total_ns"]["samples"]) for r in records], [1] * 8)
+        self.assertTrue(all(sum(r["work"]["candidate_pairs"]) > 0 and r["work"]["counters"]["bvtt_nodes"] is None for r in records), records[0]["work"])
+        out.write_text("".join(out.read_text().splitlines(keepends=True)[:3]))
+        status, text, _ = tandem("run", path, "--noise", "50%", "--out", out, "--resume")
+        self.assertEqual(status, 0, text)
+        records = self.records(out)
+        self.assertEqual((len(records), len({r["key"] for r in records})), (8, 8))
+        self.assertIsNone(records[-1]["sampling"]["repeat"])  # a rule of the line goes before all of the plan's
+
+    def test_impossible_combinations(self):
+        fields = {"scenes": SMALL, "algorithms": ["gproximity", "tiled"], "settings": {"batch": [0, 1]}}
+        self.bad("goes with batch=0", "run", self.plan(**fields), "--dry-run")
+        cells = self.listed(self.plan(**fields, impossible="skip"))
+        self.assertEqual([cell[0] for cell in cells], ["gproximity", "tiled"])
+        self.assertIn("skipped 1 impossible combination: ", self.said[0])
+        far = {"meshes": {"box": {"box": [1e37, 1e37, 1e37]}}, "bodies": [{"mesh": "box"}, {"mesh": "box"}]}
+        (self.work / "far.json").write_text(json.dumps(far))
+        fields = {"scenes": [SMALL, "far.json"], "algorithms": "tiled", "settings": {"k": 18, "precision": ["float", "double"]}}
+        self.bad("use precision=double", "run", self.plan(**fields), "--dry-run")
+        self.assertEqual([cell[1] for cell in self.listed(self.plan(**fields, impossible="skip"))], ["plates", "plates", "far"])
+        self.assertEqual(len(self.said), 1)
+        self.assertIn("skipped a cell: body 0", self.said[0])
+
+    def test_bad_plans(self):
+        self.refused("unknown name 'algoritms'; the nearest is 'algorithms'", algoritms=["tiled"])
+        self.refused(["/include/0", "unknown name 'scene'; the nearest is 'scenes'"], include=[{"scene": SMALL}])
+        self.refused(["/settings/k", "is empty"], settings={"k": []})
+        self.refused(["/scenes", "is empty"], scenes=[])
+        self.refused("has no scenes", scenes=None, schema_agrees=False)
+        self.refused(["/exclude/0", "matches no cell"], exclude=[{"settings": {"k": 24}}], schema_agrees=False)
+        self.refused(["/exclude/0", "matches every cell"], exclude=[{}])
+        self.refused(["/settings/k", "never ends"], settings={"k": "18..8"}, schema_agrees=False)
+        self.refused(["/settings/k/1", "must be a string or a number"], settings={"k": [8, True]})
+        self.refused(["/impossible", "'refuse'"], impossible="refuses")
+        self.refused(["/plan", "must be a string"], plan=3)
+        self.refused(["/measure", "--noise"], measure={"noise": "much"}, schema_agrees=False)
+        self.refused(["/measure", "unknown name 'repeats'; the nearest is 'repeat'"], measure={"repeats": 3})
+        self.refused(["/measure/no-check", "must be true or false"], measure={"no-check": 1})
+        self.bad("give no others beside it", "run", self.plan(), SMALL)
+        self.bad("is a plan, not a scene", "check", self.plan())
+        self.bad("unknown scene 'plate'", "run", self.plan(scenes="plate"))
+        self.bad("unknown setting 'kk'", "run", self.plan(settings={"kk": 8}))
+        torn = self.work / "torn.json"
+        torn.write_text('{"plan": "x",\n "scenes": [')
+        self.bad(["torn.json:2", "not JSON"], "run", torn)
+
+    def test_committed_plans_are_valid(self):
+        plans = [path for path in SOURCE.glob("results/**/*.json") if "plan" in json.loads(path.read_text())]
+        for path in plans:
+            self.assertTrue(self.is_valid(path), path)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)
