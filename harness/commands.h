@@ -30,6 +30,8 @@ struct RunOptions {
     std::size_t profile = 0;                ///< replay so often, with nothing else, for a profiler
     bool dry_run = false;                   ///< list the cells and measure none
     bool resume = false;                    ///< leave out what `out` has
+    bool isolate = false;                   ///< a process of its own for each cell's check and each round
+    double timeout = 0;                     ///< seconds of such a process; 0: no limit
     std::string out;                        ///< append records to this file; empty: none are written
     std::string dump_pairs, dump_contacts;  ///< CSV files of the first cell that finishes; empty: none
     std::vector<std::string> require;       ///< devices or backends whose absence is a failure

@@ -3,11 +3,13 @@
 
 #include "algorithms/bounds/geometry.h"
 #include "harness/inputs.h"
+#include "harness/isolation/isolated_sampler.h"
+#include "harness/key.h"
 #include "harness/record.h"
+#include "harness/sampling/local_sampler.h"
 #include "harness/standard_streams.h"
 #include "scenes/error.h"
 
-#include <deque>
 #include <fmt/format.h>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -39,6 +41,7 @@ Job open_job(const RunOptions& options, std::vector<Cell> cells, const Unfit& un
 
 Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells, const Unfit& unfit) {
     Job job;
+    job.options = options;
     job.scene = std::move(scene);
     job.range = open_frames(options, job.scene);
     job.range.flaws = handle_flaws(job.scene, job.range.first, job.range.frames, options.degenerate);
@@ -67,21 +70,37 @@ CellResult end_cell(const Outcome& outcome, const Sampling& sampling, const Job&
     return result;
 }
 
+std::string asked_key(const Cell& cell, const Job& job) {
+    return key_of(cell, cell.settings, job.scene, job.range);
+}
+
+std::unique_ptr<CellSampler> make_sampler(const Cell& cell, const Job& job, References& references,
+                                          const Measuring& measuring) {
+    CellState state;
+    if (measuring.unfinished != nullptr) state = measuring.unfinished->state(cell, asked_key(cell, job));
+    if (job.options.isolate) return std::make_unique<IsolatedSampler>(cell, job.options, std::move(state));
+    return std::make_unique<LocalSampler>(cell, job.scene, job.range, references, std::move(state));
+}
+
 } // namespace
 
 bool measure_cells(const Job& job, std::span<const Cell> cells, References& references,
                    const Measuring& measuring, RecordFile& file, const Progress& progress,
                    const std::function<void(const CellResult&)>& ended) {
-    std::deque<CellSampler> samplers;
+    std::vector<std::unique_ptr<CellSampler>> samplers;
     std::vector<CellSampler*> group;
     for (const auto& cell : cells)
-        group.push_back(&samplers.emplace_back(cell, job.scene, job.range, references));
+        group.push_back(samplers.emplace_back(make_sampler(cell, job, references, measuring)).get());
     RoundsListener listener;
     std::size_t done = 0;
     listener.progress = [&](std::string_view text) {
         progress.show(fmt::format("[{}/{}] {}", done, cells.size(), text));
     };
     listener.stop = [&] { return file.failed() || measuring.stop(); };
+    if (measuring.unfinished != nullptr)
+        listener.kept = [&](const CellSampler& sampler, bool is_first) {
+            measuring.unfinished->keep(asked_key(sampler.cell(), job), sampler.state(), is_first);
+        };
     listener.finished = [&](const Outcome& outcome, const Sampling& sampling) {
         ++done;
         progress.clear();

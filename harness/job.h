@@ -6,11 +6,13 @@
 #include "harness/progress.h"
 #include "harness/record.h"
 #include "harness/sampling/rounds.h"
+#include "harness/unfinished.h"
 
 namespace tandem {
 
 /// What is measured: a scene's frames and cells; the devices belong to whoever found them.
 struct Job {
+    RunOptions options; ///< with this scene and its frames
     Scene scene;
     FrameRange range;
     std::vector<Cell> cells;
@@ -26,6 +28,7 @@ struct Measuring {
     CheckOptions check;
     Enough enough;
     std::uint64_t seed = 0;
+    Unfinished* unfinished = nullptr; ///< where rounds are kept; null: nowhere
     std::function<bool()> stop = [] { return false; };
 };
 

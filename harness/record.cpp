@@ -151,9 +151,10 @@ Json sampling_json(const Measurement& m, const Cell& cell, const Outcome& outcom
             {"repeat", enough.repeat ? Json(*enough.repeat) : Json()},
             {"noise", enough.repeat ? Json() : Json(noise_of(cell.devices, enough))},
             {"seconds", enough.repeat ? Json() : Json(enough.seconds)},
-            {"spent_seconds", static_cast<double>(outcome.sampler->spent_ns()) * 1e-9},
+            {"spent_seconds", static_cast<double>(outcome.sampler->state().spent_ns) * 1e-9},
             {"converged", enough.repeat ? Json() : Json(outcome.converged)},
             {"interrupted", sampling.interrupted},
+            {"continued", m.continued},
             {"outliers", count_outliers(rounds)},
             {"drift", change ? Json(*change) : Json()}};
 }

@@ -143,7 +143,7 @@ private:
     void open_files();
     int measure(Job& job);
     void print(const Job& job, const std::map<const Cell*, CellResult>& results) const;
-    int end(int code) const;
+    int end(int code);
     void leave_out_finished(Job& job);
     void list(const Job& job);
 
@@ -153,6 +153,7 @@ private:
     std::optional<RecordFile> file_;
     std::optional<DumpFile> pairs_, contacts_;
     FinishedCells finished_;
+    Unfinished unfinished_;
     Progress progress_;
     std::size_t listed_ = 0, unknown_ = 0, measured_ = 0, left_out_ = 0;
     double seconds_ = 0;
@@ -171,6 +172,7 @@ void Run::open_files() {
     file_.emplace(options_.dry_run && !options_.resume ? std::string() : options_.out);
     if (options_.resume) finished_ = FinishedCells(*file_, options_.out);
     if (options_.dry_run) return;
+    unfinished_ = Unfinished(options_.out, options_.resume);
     pairs_.emplace(options_.dump_pairs, pairs_header);
     contacts_.emplace(options_.dump_contacts, contacts_header);
 }
@@ -195,6 +197,7 @@ void Run::list(const Job& job) {
 int Run::measure(Job& job) {
     Truths truths(job.scene, job.range.frames, options_.truth, options_.truth_contacts);
     auto measuring = measuring_of(options_, options_.truth == TruthAmount::none ? nullptr : &truths);
+    measuring.unfinished = &unfinished_;
     measuring.stop = Interrupt::asked;
     References references(job.scene, job.range);
     std::map<const Cell*, CellResult> results;
@@ -232,9 +235,10 @@ void Run::print(const Job& job, const std::map<const Cell*, CellResult>& results
 }
 
 /// What is said last.
-int Run::end(int code) const {
+int Run::end(int code) {
     if (left_out_ > 0) put("{} cells are in {} already\n", left_out_, options_.out);
     if (!options_.out.empty()) put("{} records appended to {}\n", file_->appended(), options_.out);
+    if (!interrupted_ && !file_->failed()) unfinished_.remove();
     if (!interrupted_ || file_->failed()) return code;
     const bool can_go_on = !options_.out.empty();
     tell("tandem: interrupted; {} cells are measured{}\n", measured_,

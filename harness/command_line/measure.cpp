@@ -3,6 +3,7 @@
 #include "harness/command_line/actions.h"
 #include "harness/command_line/sets.h"
 #include "harness/commands.h"
+#include "harness/isolation/isolated_sampler.h"
 #include "scenes/error.h"
 
 #include <CLI/CLI.hpp>
@@ -196,6 +197,15 @@ Action add_run(CLI::App& app) {
                  "leave out the cells that --out has of a program of the same sources")
         ->needs("--out");
     add_sampling(app, options);
+    auto* isolate = app.add_flag(
+        "--isolate", options.isolate,
+        "check a cell, and take each of its rounds, in a process of its own: a crash or a hang costs "
+        "that cell only, and the luck of a process is part of the noise");
+    app.add_option("--timeout", options.timeout,
+                   "seconds after which such a process is ended; no limit when left out")
+        ->needs(isolate)
+        ->check(CLI::Range(0.001, 1e7))
+        ->option_text("S");
     app.add_option("--profile", options.profile, "only replay the frames N times, for a profiler")
         ->check(CLI::Range(1, 1000000));
     app.add_option("--dump-pairs", options.dump_pairs,
@@ -209,6 +219,11 @@ Action add_run(CLI::App& app) {
         take_plan(*line, given->options);
         return run_command(given->options);
     };
+}
+
+Action add_isolated(CLI::App& app) {
+    app.group(""); // not in the help
+    return isolated_command;
 }
 
 Action add_check(CLI::App& app) {

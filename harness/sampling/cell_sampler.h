@@ -3,7 +3,7 @@
 
 #include "harness/accuracy/truths.h"
 #include "harness/references.h"
-#include "harness/sampling/replays.h"
+#include "harness/sampling/cell_state.h"
 
 #include <functional>
 
@@ -23,54 +23,49 @@ struct CheckOptions {
 /// Every function may throw DeviceError; what was measured before stays.
 class CellSampler {
 public:
-    /// All must outlive this.
-    CellSampler(const Cell& cell, const Scene& scene, const FrameRange& range, References& references);
+    /// The cell must outlive this; it goes on with the state.
+    explicit CellSampler(const Cell& cell, CellState state = {}) : cell_(cell), state_(std::move(state)) {}
+    virtual ~CellSampler() = default;
 
-    /// The first session: every answer against the reference and the truth. The first round goes on with it.
-    void check(const CheckOptions& options);
+    /// The first session: every answer against the reference and the truth. The first round may go on with
+    /// it.
+    void check(const CheckOptions& options) { do_check(options); }
     /// A round of so many samples, which may be 0.
-    void round(std::size_t samples);
+    void round(std::size_t samples) { do_round(samples); }
     /// With a session of its own, which has the kernels that count.
-    void count_work();
+    void count_work() {
+        if (!state_.counted) do_count_work();
+        state_.counted = true;
+    }
     /// Frees the session, which the next round prepares anew.
-    void release() { replays_.reset(); }
+    void release() { do_release(); }
+
+    /// The next round is this one, of another run of the program than those before it.
+    void go_on_from(std::uint32_t round) {
+        state_.rounds = round;
+        if (state_.is_checked()) state_.measurement.continued.push_back(round);
+    }
 
     const Cell& cell() const { return cell_; }
-    const Measurement& measurement() const { return out_; }
-    /// Nanoseconds that its rounds have taken, with their preparations.
-    std::int64_t spent_ns() const { return spent_; }
+    const CellState& state() const { return state_; }
+    const Measurement& measurement() const { return state_.measurement; }
     /// How many samples of it take a quarter of the time that a preparation does; 1 to 32.
     std::size_t samples_a_round() const;
     /// Of seconds, so that every sample had better not have its own.
-    bool preparation_is_long() const { return prepare_ns_ > 2'000'000'000; }
+    bool preparation_is_long() const { return state_.prepare_ns > 2'000'000'000; }
+
+    CellSampler(const CellSampler&) = delete;
+    CellSampler& operator=(const CellSampler&) = delete;
+
+protected:
+    const Cell& cell_;
+    CellState state_;
 
 private:
-    void begin_session();
-    void warm_up();
-    void sample();
-    bool makes_contacts() const;
-    void compare(const ReferenceAnswer& expected, const FrameResult& result, const Digest& digest,
-                 const Digest& contacts);
-    void look(std::size_t index, const FrameResult& result, const CheckOptions& options);
-    void add_errors(Truths& truths, std::size_t index, const FrameResult& result, const Digest& digest,
-                    const Digest& contacts, const Report& report);
-    void add_counts(const FrameResult& result);
-    void take_kernels();
-
-    const Cell& cell_;
-    const Scene& scene_;
-    const FrameRange& range_;
-    References& references_;
-    std::string name_;
-    Measurement out_;
-    std::optional<Replays> replays_;
-    ConditionReader conditions_;
-    Geometry geometry_;
-    std::vector<Digest> digests_;             ///< [frame] of the checking replay
-    std::int64_t last_replay_ns_ = -1;        ///< of the session; -1 before its first
-    std::int64_t warmed_ns_ = 0;              ///< that the session has replayed when warming up begins
-    std::int64_t prepare_ns_ = 0, spent_ = 0; ///< of the last session; of all rounds
-    std::uint32_t round_ = 0;
+    virtual void do_check(const CheckOptions& options) = 0;
+    virtual void do_round(std::size_t samples) = 0;
+    virtual void do_count_work() = 0;
+    virtual void do_release() = 0;
 };
 
 } // namespace tandem

@@ -53,6 +53,13 @@ std::vector<std::int64_t> Measurement::totals() const {
     return sums;
 }
 
+std::size_t Measurement::round_count() const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        count += i == 0 || samples[i].round != samples[i - 1].round ? 1 : 0;
+    return count;
+}
+
 std::vector<std::uint32_t> Measurement::rounds() const {
     std::vector<std::uint32_t> result;
     for (const auto& sample : samples) result.push_back(sample.round);

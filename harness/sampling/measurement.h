@@ -82,7 +82,8 @@ struct Measurement {
     Settings settings; ///< as the device took them
     std::vector<TimedReplay> samples;
     std::vector<InstrumentedReplay> breakdowns;
-    std::vector<RoundConditions> conditions;                          ///< of every round with samples
+    std::vector<RoundConditions> conditions; ///< of every round with samples
+    std::vector<std::uint32_t> continued;    ///< rounds from which on another run of the program went on
     std::vector<std::uint64_t> body_pairs, candidate_pairs, contacts; ///< [frame]
     std::uint64_t degenerate = 0, rejected = 0, undecided_by_filter = 0, undecided_by_double = 0;
     std::uint64_t retries = 0, batches = 0;         ///< of the checking replay
@@ -97,7 +98,7 @@ struct Measurement {
     /// Of the samples, and the round of each: what summarise() takes.
     std::vector<std::int64_t> totals() const;
     std::vector<std::uint32_t> rounds() const;
-    std::uint32_t round_count() const { return samples.empty() ? 0 : samples.back().round + 1; }
+    std::size_t round_count() const; ///< rounds with samples
 };
 
 /// Median nanoseconds of a replay; of a cell without samples (tandem check) that of its instrumented ones.

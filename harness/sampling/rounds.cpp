@@ -27,9 +27,10 @@ public:
     bool run();
 
 private:
-    /// One thing with a cell; false when it failed, or has been sampled enough, and is finished.
+    /// The first round of a cell, or another; false when it failed, or has been sampled enough, and is
+    /// finished.
     template<class Work>
-    bool goes_on(Outcome& outcome, const Work& work);
+    bool goes_on(Outcome& outcome, bool is_first, const Work& work);
     bool begin(Outcome& outcome);
     bool round(Outcome& outcome);
     bool is_enough(Outcome& outcome) const;
@@ -58,7 +59,7 @@ bool Group::is_enough(Outcome& outcome) const {
     if (enough.repeat) return outcome.converged = m.samples.size() >= *enough.repeat;
     const std::size_t rounds = m.round_count();
     if (rounds < Enough::least) return false;
-    const bool is_late = static_cast<double>(cell.spent_ns()) * 1e-9 >= enough.seconds;
+    const bool is_late = static_cast<double>(cell.state().spent_ns) * 1e-9 >= enough.seconds;
     if (!is_late && rounds < outcome.next_look) return false;
     outcome.next_look = rounds + rounds / 10;
     const auto s = summarise(m.totals(), m.rounds());
@@ -67,10 +68,13 @@ bool Group::is_enough(Outcome& outcome) const {
 }
 
 template<class Work>
-bool Group::goes_on(Outcome& outcome, const Work& work) {
+bool Group::goes_on(Outcome& outcome, bool is_first, const Work& work) {
     try {
         work();
-        if (!is_enough(outcome)) return true;
+        if (!is_enough(outcome)) {
+            listener_.kept(*outcome.sampler, is_first);
+            return true;
+        }
     } catch (const DeviceError& error) {
         outcome.failure = error.what();
     } catch (const std::bad_alloc&) {
@@ -83,10 +87,12 @@ bool Group::goes_on(Outcome& outcome, const Work& work) {
 
 bool Group::begin(Outcome& outcome) {
     auto& cell = *outcome.sampler;
-    return goes_on(outcome, [&] {
-        cell.check(check_);
-        listener_.progress(fmt::format("{}: first round", name(outcome)));
-        cell.round(next_samples(cell));
+    return goes_on(outcome, true, [&] {
+        if (!cell.state().is_checked()) cell.check(check_);
+        if (cell.measurement().breakdowns.empty()) {
+            listener_.progress(fmt::format("{}: first round", name(outcome)));
+            cell.round(next_samples(cell));
+        }
         if (check_.count_work) cell.count_work();
         cell.release();
     });
@@ -95,7 +101,7 @@ bool Group::begin(Outcome& outcome) {
 bool Group::round(Outcome& outcome) {
     auto& cell = *outcome.sampler;
     listener_.progress(fmt::format("{}: round {}", name(outcome), cell.measurement().round_count() + 1));
-    return goes_on(outcome, [&] {
+    return goes_on(outcome, false, [&] {
         cell.round(next_samples(cell));
         cell.release();
     });
@@ -104,6 +110,11 @@ bool Group::round(Outcome& outcome) {
 std::string Group::name(const Outcome& outcome) const { return describe(outcome.sampler->cell()); }
 
 bool Group::run() {
+    // Cells that go on with earlier rounds may have taken unlike numbers of them; rounds of one number are
+    // taken side by side.
+    std::uint32_t next = 0;
+    for (const auto& outcome : outcomes_) next = std::max(next, outcome.sampler->state().rounds);
+    for (auto& outcome : outcomes_) outcome.sampler->go_on_from(next);
     std::vector<Outcome*> left;
     for (auto& outcome : outcomes_) {
         if (listener_.stop()) break;

@@ -37,6 +37,8 @@ struct RoundsListener {
     std::function<void(std::string_view)> progress = [](std::string_view) {};
     /// A cell that needs no more rounds, or has failed; once each.
     std::function<void(const Outcome&, const Sampling&)> finished = [](const Outcome&, const Sampling&) {};
+    /// Of a cell that needs more rounds: after the first that it took here, and after each of the others.
+    std::function<void(const CellSampler&, bool first)> kept = [](const CellSampler&, bool) {};
     /// Asked between rounds of cells: whether to end now, with what there is.
     std::function<bool()> stop = [] { return false; };
 };

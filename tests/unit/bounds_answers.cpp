@@ -41,7 +41,7 @@ Measurement measured(const Scene& scene, References& references, const FrameRang
                     std::string(preset.name),
                     resolve(chunked.parameters(), preset.values, given, chunked.name()),
                     {&device("host")}};
-    CellSampler sampler(cell, scene, range, references);
+    LocalSampler sampler(cell, scene, range, references);
     sampler.check({.count_work = false});
     sampler.round(1);
     return sampler.measurement();

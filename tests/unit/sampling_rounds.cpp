@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Rounds of a group of cells: how many samples, in what order, when they suffice, and what a failure costs.
 #include "harness/sampling/rounds.h"
+
+#include "harness/sampling/local_sampler.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
 
@@ -49,7 +51,7 @@ protected:
     FrameRange range_ = make_frames(scene_, 0, 1);
     References references_{scene_, range_};
     std::deque<Cell> cells_;
-    std::deque<CellSampler> samplers_;
+    std::deque<LocalSampler> samplers_;
     CheckOptions check_;
     std::vector<std::string> turns_; ///< a line for each turn of a cell
     std::size_t most_turns_ = 1000000;

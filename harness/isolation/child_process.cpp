@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "harness/isolation/child_process.h"
+
+#include "scenes/error.h"
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+extern char** environ;
+
+namespace tandem {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+[[noreturn]] void fail(const char* what, int error) {
+    throw OutputError(fmt::format("a process of its own cannot be made: {}: {}", what, std::strerror(error)));
+}
+
+/// A descriptor that is closed with it.
+class Descriptor {
+public:
+    explicit Descriptor(int number = -1) : number_(number) {}
+    Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+    Descriptor& operator=(Descriptor&& other) noexcept {
+        std::swap(number_, other.number_);
+        return *this;
+    }
+    ~Descriptor() { close(); }
+
+    int number() const { return number_; }
+    bool is_open() const { return number_ >= 0; }
+    void close() {
+        if (is_open()) ::close(std::exchange(number_, -1));
+    }
+
+private:
+    int number_;
+};
+
+struct Pipe {
+    Pipe() {
+        std::array<int, 2> ends{};
+        if (pipe2(ends.data(), O_CLOEXEC) != 0) fail("pipe", errno);
+        read = Descriptor(ends[0]);
+        write = Descriptor(ends[1]);
+    }
+    Descriptor read, write;
+};
+
+/// Starts the program with the descriptors as its standard input and output.
+pid_t start(std::span<const std::string> arguments, const Descriptor& input, const Descriptor& output) {
+    static const std::string program = "/proc/self/exe";
+    std::vector<char*> words{const_cast<char*>(program.c_str())};
+    for (const auto& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+    words.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawnattr_t attributes;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawnattr_init(&attributes);
+    posix_spawn_file_actions_adddup2(&actions, input.number(), STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, output.number(), STDOUT_FILENO);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    pid_t child = 0;
+    const int error = posix_spawn(&child, program.c_str(), &actions, &attributes, words.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&attributes);
+    if (error != 0) fail("posix_spawn", error);
+    return child;
+}
+
+/// Milliseconds for poll(); -1: no limit.
+int left_ms(Clock::time_point begin, double seconds) {
+    if (seconds <= 0) return -1;
+    const std::chrono::duration<double> left = begin + std::chrono::duration<double>(seconds) - Clock::now();
+    return std::max(0, static_cast<int>(std::min(left.count() * 1e3 + 1, 1e9)));
+}
+
+/// A part of the input into the pipe, which is closed behind the last one, and where nobody reads it.
+void feed(Descriptor& pipe, std::string_view& input) {
+    const auto written = ::write(pipe.number(), input.data(), input.size());
+    if (written < 0 && (errno == EINTR || errno == EAGAIN)) return;
+    if (written > 0) input.remove_prefix(static_cast<std::size_t>(written));
+    if (written < 0 || input.empty()) pipe.close();
+}
+
+/// Adds what there is to the output; false at its end.
+bool take(const Descriptor& pipe, std::string& output) {
+    std::array<char, 65536> part{};
+    const auto count = ::read(pipe.number(), part.data(), part.size());
+    if (count < 0) return errno == EINTR;
+    output.append(part.data(), static_cast<std::size_t>(count));
+    return count > 0;
+}
+
+/// Until the child has closed its output; false when time was over first.
+bool converse(Descriptor to, const Descriptor& from, std::string_view input, std::string& output,
+              double seconds) {
+    const auto begin = Clock::now();
+    fcntl(to.number(), F_SETFL, O_NONBLOCK);
+    if (input.empty()) to.close();
+    for (;;) {
+        std::array<pollfd, 2> ends{{{from.number(), POLLIN, 0}, {to.number(), POLLOUT, 0}}};
+        const int ready = poll(ends.data(), ends.size(), left_ms(begin, seconds));
+        if (ready == 0) return false;
+        if (ready < 0 && errno != EINTR) fail("poll", errno);
+        if (ready < 0) continue;
+        if (ends[1].revents != 0) feed(to, input);
+        if (ends[0].revents != 0 && !take(from, output)) return true;
+    }
+}
+
+std::string described(int status) {
+    if (WIFSIGNALED(status))
+        return fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+    return WEXITSTATUS(status) == 0 ? "" : fmt::format("ended with code {}", WEXITSTATUS(status));
+}
+
+} // namespace
+
+ChildResult run_child(std::span<const std::string> arguments, const std::string& input, double seconds) {
+    Pipe in, out;
+    const auto child = start(arguments, in.read, out.write);
+    in.read.close();
+    out.write.close();
+    ChildResult result;
+    const bool in_time = converse(std::move(in.write), out.read, input, result.output, seconds);
+    if (!in_time) kill(child, SIGKILL);
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    result.failure =
+        in_time ? described(status) : fmt::format("took longer than {:g} s and was ended", seconds);
+    return result;
+}
+
+void end_with_parent() {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() == 1) std::_Exit(3); // it has ended already
+}
+
+} // namespace tandem

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// The side of the process that asks.
+#include "harness/isolation/isolated_sampler.h"
+
+#include "harness/isolation/child_process.h"
+#include "harness/isolation/request.h"
+#include "scenes/error.h"
+
+#include <array>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tandem {
+
+namespace {
+
+/// The answer, which is the last line: libraries have been seen to print before it. Throws DeviceError when
+/// there is none.
+nlohmann::json answer_of(const ChildResult& result) {
+    auto text = result.output;
+    while (text.ends_with('\n')) text.pop_back();
+    const auto json = nlohmann::json::parse(text.substr(text.rfind('\n') + 1), nullptr, false);
+    if (json.is_object()) return json;
+    throw DeviceError(
+        fmt::format("its process {}", result.failure.empty() ? "ended without an answer" : result.failure));
+}
+
+} // namespace
+
+void IsolatedSampler::ask(const char* work, const CheckOptions& options, std::size_t samples) {
+    const auto request = request_json(options_, *this, {work, samples, options});
+    const auto answer =
+        answer_of(run_child(std::array<std::string, 1>{"isolated"}, request.dump(), options_.timeout));
+    if (answer.contains("input_error")) throw InputError(answer["input_error"].get<std::string>());
+    if (answer.contains("checked") && !answer["checked"].is_null()) {
+        take_checked(state_, answer["checked"], cell_);
+        take_rounds(state_, answer["rounds"]);
+    }
+    if (answer.contains("failure")) throw DeviceError(answer["failure"].get<std::string>());
+}
+
+/// Counting as well, in the same process.
+void IsolatedSampler::do_check(const CheckOptions& options) {
+    options.progress(fmt::format("{}: checking in a process of its own", describe(cell_)));
+    ask("check", options, 0);
+}
+
+void IsolatedSampler::do_round(std::size_t samples) { ask("round", {}, samples); }
+
+void IsolatedSampler::do_count_work() { ask("count", {}, 0); }
+
+} // namespace tandem

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// The side of the process that answers.
+#include "harness/inputs.h"
+#include "harness/isolation/child_process.h"
+#include "harness/isolation/isolated_sampler.h"
+#include "harness/isolation/request.h"
+#include "harness/job.h"
+#include "harness/sampling/local_sampler.h"
+#include "harness/standard_streams.h"
+#include "scenes/error.h"
+
+#include <array>
+#include <iostream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+namespace tandem {
+
+namespace {
+
+using nlohmann::json;
+
+/// Does what was asked for; a failure of the device leaves what was measured before.
+void work(LocalSampler& sampler, const IsolatedWork& asked, json& answer) {
+    try {
+        if (asked.work == "check") sampler.check(asked.check);
+        if (asked.work == "round") sampler.round(asked.samples);
+        if (asked.work == "count" || (asked.work == "check" && asked.check.count_work)) sampler.count_work();
+    } catch (const DeviceError& error) {
+        answer["failure"] = error.what();
+    } catch (const std::bad_alloc&) {
+        answer["failure"] = "out of host memory; use fewer bodies or frames";
+    }
+}
+
+json answer_to(const json& asked) {
+    auto request = request_of(asked);
+    const auto backends = discover();
+    const auto group = open_devices(request.options, backends, std::array{request.devices}).front();
+    const auto& traversal = algorithm(request.algorithm);
+    const auto job = open_job(
+        request.options, {make_cell(traversal, preset(traversal, request.preset), request.settings, group)});
+    References references(job.scene, job.range);
+    Truths truths(job.scene, job.range.frames, request.options.truth, request.options.truth_contacts);
+    if (request.options.truth != TruthAmount::none) request.work.check.truths = &truths;
+    CellState state;
+    if (!asked.at("checked").is_null()) take_checked(state, asked["checked"], job.cells.front());
+    take_rounds(state, asked.at("rounds"));
+    const auto first = state.rounds;
+    LocalSampler sampler(job.cells.front(), job.scene, job.range, references, std::move(state));
+    json answer = json::object();
+    work(sampler, request.work, answer);
+    answer["checked"] = sampler.state().is_checked() ? checked_json(sampler.state()) : json();
+    answer["rounds"] = rounds_json(sampler.state(), first);
+    return answer;
+}
+
+} // namespace
+
+int isolated_command() {
+    end_with_parent();
+    json answer;
+    try {
+        const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
+        answer = answer_to(json::parse(text));
+    } catch (const InputError& error) {
+        answer = {{"input_error", error.what()}};
+    } catch (const std::exception& error) {
+        answer = {{"failure", error.what()}};
+    }
+    put("\n{}\n", answer.dump());
+    return 0;
+}
+
+} // namespace tandem

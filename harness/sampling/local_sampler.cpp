@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+#include "harness/sampling/local_sampler.h"
+
+#include "algorithms/bounds/geometry.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <limits>
+
+namespace tandem {
+
+namespace {
+
+/// Warming up ends when so many replays have not been faster than the fastest before them by more than this
+/// share: one alone says little where a frame takes a tenth of a millisecond. Or when it has taken so long.
+constexpr double falling = 0.02;
+constexpr int patience = 3;
+constexpr std::int64_t longest_warming_ns = 250'000'000;
+
+} // namespace
+
+LocalSampler::LocalSampler(const Cell& cell, const Scene& scene, const FrameRange& range,
+                           References& references, CellState state)
+    : CellSampler(cell, std::move(state)),
+      scene_(scene),
+      range_(range),
+      references_(references),
+      name_(describe(cell)),
+      out_(state_.measurement),
+      conditions_(cell.devices) {}
+
+void LocalSampler::begin_session() {
+    replays_.reset(); // before the next takes memory
+    // Facts of kernels from here on are those of this cell; the ones of the cells before are dropped.
+    for (auto* device : cell_.devices) device->take_kernels();
+    replays_.emplace(cell_, scene_, range_);
+    state_.prepare_ns = replays_->prepare_ns();
+    state_.replay_ns = -1;
+    warmed_ns_ = 0;
+}
+
+bool LocalSampler::makes_contacts() const {
+    return out_.settings[parameters::output] == Output::pairs
+           && out_.settings[parameters::contact_rule] != ContactRule::none;
+}
+
+/// Pairs are told apart one by one where there are pairs. With output=count or digest only sums are left: a
+/// wrong sum with the right count is at least one pair missing and one too many.
+void LocalSampler::compare(const ReferenceAnswer& expected, const FrameResult& result, const Digest& digest,
+                           const Digest& contacts) {
+    auto& agreement = out_.agreement;
+    ++agreement.frames;
+    if (digest != expected.digest) {
+        if (result.has_pairs()) {
+            const auto found = difference(expected.pairs, result.download());
+            agreement.missing += found.missing;
+            agreement.extra += found.extra;
+        } else {
+            const auto more = expected.digest.count, found = result.count;
+            agreement.missing += more > found ? more - found : (more == found ? 1 : 0);
+            agreement.extra += found > more ? found - more : (more == found ? 1 : 0);
+        }
+    }
+    if (makes_contacts() && contacts != expected.contact_digest) ++agreement.contact_frames_wrong;
+}
+
+/// The truth keeps errors by digest, so that the answer is downloaded only when no other cell gave the same.
+void LocalSampler::add_errors(Truths& truths, std::size_t index, const FrameResult& result,
+                              const Digest& digest, const Digest& contacts, const Report& report) {
+    FrameAnswer answer;
+    answer.pairs = digest;
+    answer.contacts = contacts;
+    answer.makes_contacts = makes_contacts();
+    answer.download = [&] { return result.download(); };
+    answer.download_contacts = [&] { return result.download_contacts(); };
+    if (!out_.errors) out_.errors.emplace();
+    out_.errors->add(truths.errors(geometry_, index, answer, report));
+}
+
+void LocalSampler::add_counts(const FrameResult& result) {
+    out_.body_pairs.push_back(result.body_pairs);
+    out_.candidate_pairs.push_back(result.count);
+    out_.contacts.push_back(result.contacts);
+    out_.degenerate += result.degenerate;
+    out_.rejected += result.rejected;
+    out_.undecided_by_filter += result.undecided_by_filter;
+    out_.undecided_by_double += result.undecided_by_double;
+    out_.retries += result.retries;
+    out_.batches += result.batches;
+}
+
+/// At one answer of the checking replay.
+void LocalSampler::look(std::size_t index, const FrameResult& result, const CheckOptions& options) {
+    const auto frame = fmt::format("frame {} of {}", index + 1, range_.frames.size());
+    options.progress(fmt::format("{}: checking {}", name_, frame));
+    // output=count makes no digest: its count stands for it, and for the whole where it is right.
+    const bool counted = out_.settings[parameters::output] == Output::count;
+    auto digest = counted ? Digest{result.count, 0, 0} : result.digest();
+    const auto contacts = result.contact_digest();
+    if (options.check) {
+        const auto& expected = references_.answer(geometry_, contact_settings_of(out_.settings), index);
+        if (counted && result.count == expected.digest.count) digest = expected.digest;
+        compare(expected, result, digest, contacts);
+    }
+    if (options.truths != nullptr && result.has_pairs())
+        add_errors(*options.truths, index, result, digest, contacts,
+                   [&](double share, std::uint64_t decided) {
+                       options.progress(fmt::format("truth of {}: {:.0f} %, {} pairs decided", frame,
+                                                    share * 100, decided));
+                   });
+    out_.agreement.digest += digest;
+    out_.agreement.contact_digest += contacts;
+    state_.digests.push_back(digest);
+    add_counts(result);
+}
+
+/// Kernels compile at their first launch on some devices, buffers grow to their size, and every later sample
+/// is held against the digests kept here.
+void LocalSampler::do_check(const CheckOptions& options) {
+    options.progress(fmt::format("{}: preparing", name_));
+    begin_session();
+    out_.prepare_ns = state_.prepare_ns;
+    out_.settings = replays_->settings();
+    geometry_ = geometry_of(out_.settings);
+    const auto replay =
+        replays_->timed([&](std::size_t index, const FrameResult& result) { look(index, result, options); });
+    state_.replay_ns = replay.total_ns();
+    // But for the first frame, in which kernels are compiled and buffers grow.
+    warmed_ns_ = state_.replay_ns - replay.frame_ns.front();
+    is_compiled_ = true;
+    for (const auto* device : cell_.devices) out_.device_bytes += device->bytes_allocated();
+    take_kernels();
+}
+
+/// Of a state that another process has begun, the first replay of this one is what warming up may not count.
+void LocalSampler::compile() {
+    if (is_compiled_) return;
+    replays_->timed([](std::size_t, const FrameResult&) {});
+    is_compiled_ = true;
+}
+
+/// Clocks rise, caches fill and buffers grow in the first replays of a session, and while the host did
+/// something else clocks may have fallen.
+void LocalSampler::warm_up() {
+    auto spent = warmed_ns_;
+    auto least = std::numeric_limits<std::int64_t>::max();
+    for (int without_gain = 0; without_gain < patience && spent < longest_warming_ns;) {
+        state_.replay_ns = replays_->timed([](std::size_t, const FrameResult&) {}).total_ns();
+        spent += state_.replay_ns;
+        const bool fell = static_cast<double>(state_.replay_ns) < static_cast<double>(least) * (1 - falling);
+        without_gain = fell ? 0 : without_gain + 1;
+        least = std::min(least, state_.replay_ns);
+    }
+}
+
+/// The answer is looked at between the frames, outside the span that is timed: a sample that gives another
+/// than the checked replay counts against the cell.
+void LocalSampler::sample() {
+    const auto before = replays_->submissions();
+    std::uint64_t looking = 0;
+    auto replay = replays_->timed([&](std::size_t index, const FrameResult& result) {
+        const auto begin = replays_->submissions();
+        if (out_.settings[parameters::output] != Output::count && result.digest() != state_.digests[index])
+            ++out_.agreement.extra;
+        if (result.count != out_.candidate_pairs[index]) ++out_.agreement.extra;
+        looking += replays_->submissions() - begin;
+    });
+    out_.submissions = replays_->submissions() - before - looking;
+    replay.round = state_.rounds;
+    state_.replay_ns = replay.total_ns();
+    out_.samples.push_back(std::move(replay));
+}
+
+void LocalSampler::do_round(std::size_t samples) {
+    const auto begin = std::chrono::steady_clock::now();
+    if (!replays_) begin_session();
+    compile();
+    if (samples > 0) {
+        warm_up();
+        RoundConditions conditions{state_.rounds, conditions_.read(), {}};
+        for (std::size_t i = 0; i < samples; ++i) sample();
+        conditions.after = conditions_.read();
+        out_.conditions.push_back(std::move(conditions));
+    }
+    auto breakdown = replays_->instrumented();
+    breakdown.round = state_.rounds;
+    out_.breakdowns.push_back(std::move(breakdown));
+    ++state_.rounds;
+    state_.spent_ns += since(begin);
+}
+
+void LocalSampler::do_count_work() {
+    if (!replays_) begin_session();
+    out_.work = replays_->counted();
+    take_kernels();
+    do_release();
+}
+
+/// Of the devices since the last time; asking again for a kernel that is known adds nothing.
+void LocalSampler::take_kernels() {
+    for (auto* device : cell_.devices)
+        for (auto& facts : device->take_kernels()) {
+            const bool known = std::ranges::any_of(out_.kernels, [&](const KernelFacts& other) {
+                return other.entry == facts.entry && other.defines == facts.defines;
+            });
+            if (!known) out_.kernels.push_back(std::move(facts));
+        }
+}
+
+} // namespace tandem

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/sampling/cell_sampler.h"
+#include "harness/sampling/replays.h"
+
+namespace tandem {
+
+/// A cell as this process measures it.
+class LocalSampler : public CellSampler {
+public:
+    /// All must outlive this.
+    LocalSampler(const Cell& cell, const Scene& scene, const FrameRange& range, References& references,
+                 CellState state = {});
+
+private:
+    void do_check(const CheckOptions& options) override;
+    void do_round(std::size_t samples) override;
+    void do_count_work() override;
+    void do_release() override { replays_.reset(); }
+
+    void begin_session();
+    void compile();
+    void warm_up();
+    void sample();
+    bool makes_contacts() const;
+    void compare(const ReferenceAnswer& expected, const FrameResult& result, const Digest& digest,
+                 const Digest& contacts);
+    void look(std::size_t index, const FrameResult& result, const CheckOptions& options);
+    void add_errors(Truths& truths, std::size_t index, const FrameResult& result, const Digest& digest,
+                    const Digest& contacts, const Report& report);
+    void add_counts(const FrameResult& result);
+    void take_kernels();
+
+    const Scene& scene_;
+    const FrameRange& range_;
+    References& references_;
+    std::string name_;
+    Measurement& out_; ///< of the state
+    std::optional<Replays> replays_;
+    ConditionReader conditions_;
+    Geometry geometry_;
+    bool is_compiled_ = false;   ///< by a replay of this process
+    std::int64_t warmed_ns_ = 0; ///< that the session has replayed when warming up begins
+};
+
+} // namespace tandem

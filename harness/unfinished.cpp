@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "harness/unfinished.h"
+
+#include "harness/environment.h"
+#include "harness/standard_streams.h"
+#include "scenes/error.h"
+
+#include <filesystem>
+
+namespace tandem {
+
+namespace {
+
+/// Of its lines; those of another are as if they were not there.
+constexpr int unfinished_schema = 1;
+
+} // namespace
+
+Unfinished::Unfinished(const std::string& path, bool go_on) {
+    if (path.empty() || !std::filesystem::is_regular_file(path)) return;
+    path_ = path + ".unfinished";
+    if (!go_on || !std::filesystem::exists(path_)) return;
+    file_ = std::make_unique<RecordFile>(path_);
+    file_->for_each([&](const nlohmann::ordered_json& line) {
+        if (line.value("schema", 0) != unfinished_schema || line.value("sources", "") != sources_digest())
+            return;
+        auto& lines = lines_[line.at("key").get<std::string>()];
+        if (line.contains("checked")) lines.clear();
+        lines.push_back(line);
+    });
+}
+
+CellState Unfinished::state(const Cell& cell, const std::string& key) const {
+    CellState state;
+    const auto found = lines_.find(key);
+    if (found == lines_.end() || !found->second.front().contains("checked")) return state;
+    take_checked(state, found->second.front().at("checked"), cell);
+    for (const auto& line : found->second) take_rounds(state, line.at("rounds"));
+    return state;
+}
+
+void Unfinished::append(nlohmann::ordered_json line) {
+    line["schema"] = unfinished_schema;
+    line["sources"] = sources_digest();
+    try {
+        if (!file_) file_ = std::make_unique<RecordFile>(path_);
+        file_->append(line);
+    } catch (const std::runtime_error& error) {
+        tell("tandem: {}; rounds are no longer kept, records are\n", error.what());
+        path_.clear();
+    }
+}
+
+void Unfinished::keep(const std::string& key, const CellState& state, bool whole) {
+    if (path_.empty()) return;
+    if (whole)
+        append({{"key", key}, {"checked", checked_json(state)}, {"rounds", rounds_json(state, 0)}});
+    else
+        append({{"key", key}, {"rounds", rounds_json(state, state.rounds - 1)}});
+}
+
+void Unfinished::remove() {
+    if (path_.empty()) return;
+    file_.reset();
+    std::error_code none; // that it is not there, or stays
+    std::filesystem::remove(path_, none);
+}
+
+} // namespace tandem

@@ -1,0 +1,155 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""isolation.py PROGRAM SOURCE: processes of their own for cells, and what kills of them and of the program cost."""
+import json
+import os
+import pathlib
+import random
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+from program import LONG, PROGRAM, SMALL, Case, sets, tandem
+
+ROOMS = {name: room for name, room in SMALL.items() if name in ("pair_capacity", "contact_capacity")}
+CELLS = ("plates:count=2", "--frames", "0:1", "--device", "host", "--algorithm", "chunked,tiled", "--truth", "none", *sets(ROOMS))
+PLAN = {"plan": "to be killed", "scenes": ["plates:count=2", "pile:bodies=2,frames=1", "pile:bodies=3,frames=1"], "frames": 0,
+        "devices": ["host"], "algorithms": ["chunked", "tiled"], "settings": {"k": [8, 18], **ROOMS}, "measure": {"repeat": 5, "truth": "none"}}
+LONG_PLAN = {**PLAN, "devices": ["host", "opencl:0"], "settings": {"k": [6, 8, 12, 14, 18, 26], "group_size": "32..128*2", "broad": ["device", "sphere"], **ROOMS},
+             "exclude": [{"algorithms": "chunked", "settings": {"group_size": 128}}, {"algorithms": "tiled", "settings": {"group_size": 32}}],
+             "measure": {"repeat": 3, "truth": "none", "no-count": True}}
+
+
+def children(process):
+    """Processes for cells that it started and that run: past exec, before which the program waits for them."""
+    try:
+        started = [int(word) for word in pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+        return [child for child in started if b"isolated" in pathlib.Path(f"/proc/{child}/cmdline").read_bytes()]
+    except (FileNotFoundError, ProcessLookupError):
+        return []
+
+
+def is_alive(process):
+    try:
+        return pathlib.Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0] not in "ZX"
+    except FileNotFoundError:
+        return False
+
+
+def wait_for(what, seconds=20):
+    end = time.monotonic() + seconds
+    while not (result := what()):
+        assert time.monotonic() < end, "nothing happened"
+        time.sleep(0.002)
+    return result
+
+
+class Isolation(Case):
+    def start(self, *arguments):
+        return subprocess.Popen([str(PROGRAM), "run", *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def end(self, process):
+        out, errors = process.communicate(timeout=300)
+        return process.returncode, out, errors.splitlines()
+
+    def test_the_same_answers(self):
+        here, there = self.work / "here.jsonl", self.work / "there.jsonl"
+        for path, more in ((here, ()), (there, ("--isolate", "--timeout", 100))):
+            status, out, errors = tandem("run", *CELLS, "--repeat", 2, "--out", path, *more)
+            self.assertEqual((status, errors), (0, []), out)
+        one, two = ({r["key"]: r for r in self.records(path)} for path in (here, there))
+        self.assertEqual(set(one), set(two))
+        for key, record in one.items():
+            other = two[key]
+            for part in ("agreement", "error", "settings"):
+                self.assertEqual(record[part], other[part])
+            for part in ("body_pairs", "candidate_pairs", "contacts", "digest", "counters", "submissions"):
+                self.assertEqual(record["work"][part], other["work"][part], part)
+            self.assertEqual(other["total_ns"]["rounds"], [0, 1])
+            self.assertEqual(len(other["stages"]["traverse"]["device_ns"]["samples"]), 2)
+
+    def test_a_crash_costs_its_cell(self):
+        out = self.work / "crash.jsonl"
+        process = self.start(*CELLS, "--repeat", 2, "--isolate", "--out", out)
+        victim = wait_for(lambda: children(process.pid))[0]
+        os.kill(victim, signal.SIGSEGV)
+        status, text, errors = self.end(process)
+        self.assertEqual((status, len(errors)), (3, 1), (text, errors))
+        self.assertIn("its process ended by signal 11 (Segmentation fault)", errors[0])
+        self.assertEqual([r["status"] for r in self.records(out)], ["failed", "ok"])
+
+    def test_a_hang_costs_its_cell(self):
+        out = self.work / "hang.jsonl"
+        process = self.start(*CELLS, "--repeat", 2, "--isolate", "--timeout", 10, "--out", out)
+        victim = wait_for(lambda: children(process.pid))[0]
+        os.kill(victim, signal.SIGSTOP)
+        status, text, errors = self.end(process)
+        self.assertEqual((status, len(errors)), (3, 1), (text, errors))
+        self.assertIn("its process took longer than 10 s and was ended", errors[0])
+        self.assertEqual([r["status"] for r in self.records(out)], ["failed", "ok"])
+        self.assertFalse(is_alive(victim))
+
+    def test_nothing_outlives_the_program(self):
+        process = self.start("pile:bodies=300,frames=1", "--device", "host", "--algorithm", "chunked", "--isolate")  # checked for 20 s
+        child = wait_for(lambda: children(process.pid))[0]
+        time.sleep(1)  # it has read what to do
+        self.assertTrue(is_alive(child))
+        process.kill()
+        process.wait()
+        wait_for(lambda: not is_alive(child), 8)
+
+    def test_bad_use(self):
+        self.bad("--timeout requires --isolate", "run", *CELLS, "--timeout", 3)
+        self.bad("--timeout", "run", *CELLS, "--isolate", "--timeout", 0)
+
+    def test_rounds_outlive_a_kill(self):
+        """A cell that was killed in its third round goes on with the fourth, without another check."""
+        out, left = self.work / "rounds.jsonl", self.work / "rounds.jsonl.unfinished"
+        arguments = ("plates:count=2", "--frames", "0:40", "--device", "host", "--algorithm", "chunked,tiled", "--repeat", 8, "--truth", "none", "--out", out)
+        process = self.start(*arguments)
+        wait_for(lambda: left.exists() and len(left.read_text().splitlines()) >= 5)
+        process.kill()
+        self.end(process)
+        self.assertEqual(out.read_text(), "")
+        kept = [json.loads(line) for line in left.read_text().splitlines() if line.endswith("}")]
+        taken = [round["frame_ns"] for line in kept for round in line["rounds"]["samples"]]
+        status, text, errors = tandem("run", *arguments, "--resume")
+        self.assertEqual((status, [line for line in errors if "torn" not in line]), (0, []), text)  # of a round half written
+        records = self.records(out)
+        self.assertEqual([len(r["total_ns"]["samples"]) for r in records], [8, 8])
+        self.assertTrue(all(len(r["sampling"]["continued"]) == 1 for r in records))
+        frames = [sample for r in records for sample in r["total_ns"]["frames"]]
+        self.assertEqual(len([sample for sample in taken if sample in frames]), len(taken))
+        at = {r["sampling"]["continued"][0] for r in records}
+        self.assertEqual(len(at), 1)  # side by side from here on
+        self.assertFalse(left.exists())
+
+    def test_kills_at_any_moment(self):
+        """Every cell once in the end, and a file that is valid all the time."""
+        out, path = self.work / "kills.jsonl", self.work / "plan.json"
+        path.write_text(json.dumps(LONG_PLAN if LONG else PLAN))
+        chance = random.Random(20180)
+        kills = 0
+        for _ in range(60 if LONG else 15):
+            process = self.start(path, "--out", out, "--resume", *(["--isolate"] if chance.random() < 0.3 else []))
+            try:
+                process.wait(timeout=chance.expovariate(0.2 if LONG else 4))
+            except subprocess.TimeoutExpired:
+                process.kill()
+                kills += 1
+            self.end(process)
+            self.records(out) if out.exists() else None
+        self.assertGreater(kills, 5)
+        status, text, errors = tandem("run", path, "--out", out, "--resume")
+        self.assertEqual(status, 0, (text, errors))
+        records = self.records(out)
+        cells, samples = (3 * 48 * 2, 3) if LONG else (12, 5)
+        self.assertEqual((len(records), len({r["key"] for r in records})), (cells, cells))
+        self.assertTrue(all(len(r["total_ns"]["samples"]) == samples and r["status"] == "ok" for r in records))
+        print(f"\n  {kills} kills, {sum(len(r['sampling']['continued']) for r in records)} times a cell went on", end="", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)
