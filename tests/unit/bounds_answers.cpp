@@ -3,7 +3,7 @@
 // that kernels, reference and broad phase mean the same slabs.
 #include "algorithms/broad/broad.h"
 #include "algorithms/broad/broad.h"
-#include "harness/sampling/rounds.h"
+#include "harness/sampling/local_sampler.h"
 #include "scenes/error.h"
 #include "tests/support/cells.h"
 #include "tests/support/leaf_slabs.h"
