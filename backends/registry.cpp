@@ -5,6 +5,9 @@
 #include "backends/host/host_device.h"
 #include "backends/opencl/opencl_device.h"
 
+#include <algorithm>
+#include <string_view>
+
 namespace tandem {
 
 namespace {
@@ -25,22 +28,44 @@ BackendReport find_cuda() {
     return {.name = "cuda", .devices = std::move(found.devices), .reason = std::move(found.reason)};
 }
 
-template<class Find>
-BackendReport guarded(std::string name, Find find) {
+struct Backend {
+    std::string_view name;
+    BackendReport (*find)();
+};
+
+constexpr Backend known_backends[] = {{"host", find_host}, {"opencl", find_opencl}, {"cuda", find_cuda}};
+
+BackendReport guarded(const Backend& backend) {
     try {
-        return find();
+        return backend.find();
     } catch (const std::exception& error) {
-        return {.name = std::move(name), .devices = {}, .reason = error.what()};
+        return {.name = std::string(backend.name), .devices = {}, .reason = error.what()};
     }
+}
+
+/// Whether one of "D+E+..." is the backend, a device of it, or all.
+bool names(std::string_view wanted, std::string_view backend) {
+    for (std::size_t begin = 0; begin <= wanted.size();) {
+        const auto end = std::min(wanted.find('+', begin), wanted.size());
+        const auto part = wanted.substr(begin, end - begin);
+        if (part == "all" || part.substr(0, part.find(':')) == backend) return true;
+        begin = end + 1;
+    }
+    return false;
 }
 
 } // namespace
 
 std::vector<BackendReport> discover() {
+    const std::string all = "all";
+    return discover({&all, 1});
+}
+
+std::vector<BackendReport> discover(std::span<const std::string> wanted) {
     std::vector<BackendReport> reports;
-    reports.push_back(guarded("host", find_host));
-    reports.push_back(guarded("opencl", find_opencl));
-    reports.push_back(guarded("cuda", find_cuda));
+    for (const auto& backend : known_backends)
+        if (std::ranges::any_of(wanted, [&](const auto& name) { return names(name, backend.name); }))
+            reports.push_back(guarded(backend));
     return reports;
 }
 

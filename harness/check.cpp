@@ -117,7 +117,7 @@ int check_hard(const RunOptions& options, const std::vector<Cell>& cells,
 int check_command(const RunOptions& options) {
     auto request = options.request;
     if (request.devices.empty()) request.devices.emplace_back("all");
-    const auto backends = discover();
+    const auto backends = open_backends(request.devices, options.require);
     check_required(backends, options.require);
     const auto devices = open_devices(options, backends, request.devices);
     const auto scenes = expand_hard(options.scene);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <sstream>
 
 namespace tandem {
 
@@ -18,15 +19,19 @@ std::string reasons(const std::vector<BackendReport>& backends) {
     return text.empty() ? "" : fmt::format(" ({})", text);
 }
 
-/// The device of that id; throws InputError that names the reason of absence and what there is.
-Device* named_device(const std::vector<BackendReport>& backends, const std::string& name) {
+std::vector<std::string> ids_of(const std::vector<BackendReport>& backends) {
     std::vector<std::string> ids;
     for (const auto& backend : backends)
-        for (const auto& device : backend.devices) {
+        for (const auto& device : backend.devices) ids.push_back(device->info().id);
+    return ids;
+}
+
+/// The device of that id; throws InputError that names the reason of absence and what there is.
+Device* named_device(const std::vector<BackendReport>& backends, const std::string& name) {
+    for (const auto& backend : backends)
+        for (const auto& device : backend.devices)
             if (device->info().id == name) return device.get();
-            ids.push_back(device->info().id);
-        }
-    throw InputError(unknown("device", name, ids) + reasons(backends));
+    throw InputError(unknown("device", name, ids_of(backends)) + reasons(backends));
 }
 
 /// "D" or "D+E+..." as a group.
@@ -44,6 +49,15 @@ DeviceGroup named_group(const std::vector<BackendReport>& backends, const std::s
     return group;
 }
 
+/// Whether every device of "D+E+..." is there.
+bool all_there(const std::string& group, std::span<const std::string> ids) {
+    if (group.empty() || group.ends_with('+')) return false;
+    std::istringstream parts(group);
+    for (std::string part; std::getline(parts, part, '+');)
+        if (part != "all" && std::ranges::find(ids, part) == ids.end()) return false;
+    return true;
+}
+
 void add_once(std::vector<DeviceGroup>& groups, DeviceGroup group) {
     if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(std::move(group));
 }
@@ -54,6 +68,23 @@ std::string name_of(const DeviceGroup& devices) {
     std::string name;
     for (const auto* device : devices) name += (name.empty() ? "" : "+") + device->info().id;
     return name;
+}
+
+std::vector<BackendReport> open_backends(std::span<const std::string> names,
+                                         std::span<const std::string> require) {
+    std::vector<std::string> wanted(names.begin(), names.end());
+    wanted.insert(wanted.end(), require.begin(), require.end());
+    auto backends = discover(wanted);
+    const auto ids = ids_of(backends);
+    const auto is_backend = [&](const std::string& name) {
+        return std::ranges::any_of(backends,
+                                   [&](const auto& b) { return b.name == name && !b.devices.empty(); });
+    };
+    const bool known = std::ranges::all_of(names, [&](const auto& name) { return all_there(name, ids); })
+                       && std::ranges::all_of(require, [&](const auto& name) {
+                              return is_backend(name) || all_there(name, ids);
+                          });
+    return known ? std::move(backends) : discover();
 }
 
 std::vector<DeviceGroup> choose_devices(const std::vector<BackendReport>& backends,

@@ -15,6 +15,11 @@ using DeviceGroup = std::vector<Device*>;
 /// Their names, "host" or "host+opencl:0".
 std::string name_of(const DeviceGroup& devices);
 
+/// The backends of those devices and of what is required, opened. No other is, so that it can neither break
+/// nor delay the command, unless one of the names is of nothing that there is: then all are, for the message.
+std::vector<BackendReport> open_backends(std::span<const std::string> names,
+                                         std::span<const std::string> require);
+
 /// Devices of the request, in its order. Throws InputError that names the reason of absence and what there
 /// is.
 std::vector<DeviceGroup> choose_devices(const std::vector<BackendReport>& backends,

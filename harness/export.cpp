@@ -41,11 +41,15 @@ CellNumbers chunks_of(const Scene& scene) {
 /// Finds the contacts of one frame after the other.
 class Contacts {
 public:
-    Contacts(const std::string& device, const Scene& scene) : scene_(scene), backends_(discover()) {
+    Contacts(const std::string& device, const Scene& scene)
+        : scene_(scene), backends_(open_backends({&device, 1}, {})) {
         Request request;
         request.algorithms = {std::string(algorithms().front()->name())};
         request.devices = {device};
-        cell_ = plan(request, choose_devices(backends_, request.devices)).front();
+        const auto devices = choose_devices(backends_, request.devices);
+        if (devices.size() != 1)
+            throw InputError(fmt::format("--device {}: one device finds contacts; name it", device));
+        cell_ = plan(request, devices).front();
         session_ = cell_.algorithm->prepare(cell_.devices, scene, cell_.settings);
     }
 

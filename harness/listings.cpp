@@ -117,10 +117,11 @@ void print_algorithm(const Traversal& traversal, bool peer) {
 }
 
 /// `tandem devices --measure`: the ceilings of the chosen devices.
-int measure_devices(const std::vector<BackendReport>& backends, const DevicesOptions& options) {
+int measure_devices(const DevicesOptions& options) {
+    const auto names = options.devices.empty() ? std::vector<std::string>{"all"} : options.devices;
+    const auto backends = open_backends(names, options.require);
     check_required(backends, options.require);
-    const std::vector<std::string> all{"all"};
-    const auto chosen = choose_devices(backends, options.devices.empty() ? all : options.devices);
+    const auto chosen = choose_devices(backends, names);
     RecordFile file(options.out);
     Json records = Json::array();
     for (const auto& group : chosen)
@@ -139,6 +140,7 @@ void print_scene(const SceneKind& kind, const Scene& scene) {
     put("  {}\n", scene.dynamics ? fmt::format("{} steps of {} s by simulation; its frame is the start",
                                                scene.dynamics->steps, scene.dynamics->stepping.step)
                                  : fmt::format("{} frames by script", scene.frame_count));
+    if (options.measure) return measure_devices(options);
     for (const auto& p : kind.parameters) put("    {:<12} {:<12} {}\n", p.name, p.value, p.help);
 }
 
@@ -207,7 +209,6 @@ void print_dynamics() {
 /// there to see.
 int devices_command(const DevicesOptions& options) {
     const auto backends = discover();
-    if (options.measure) return measure_devices(backends, options);
     const bool json = options.json;
     Json all = Json::array();
     for (const auto& backend : backends) {

@@ -108,8 +108,8 @@ std::string doubts(const CellResult& result) {
     return fmt::to_string(fmt::join(notes, "; "));
 }
 
-/// The cells of the options: those of a plan, or one product.
-CellGroups groups_of(const RunOptions& options, const std::vector<BackendReport>& backends) {
+/// The plan of the options, or one of a single product.
+PlanFile plan_of(const RunOptions& options) {
     Product given{options.scenes, {}, options.request};
     if (!options.frames.empty()) given.frames = {options.frames};
     if (given.scenes.empty()) given.scenes.emplace_back(); // of --mesh, or the message that there is none
@@ -120,8 +120,7 @@ CellGroups groups_of(const RunOptions& options, const std::vector<BackendReport>
     } else {
         plan.products = {given};
     }
-    open_devices(options, backends, devices_of(plan));
-    return make_groups(plan, backends);
+    return plan;
 }
 
 /// What is not measured, and why.
@@ -160,9 +159,13 @@ private:
     bool interrupted_ = false;
 };
 
-Run::Run(const RunOptions& options) : options_(options), backends_(discover()), progress_(options.quiet) {
+Run::Run(const RunOptions& options) : options_(options), progress_(options.quiet) {
+    const auto plan = plan_of(options);
+    const auto names = devices_of(plan);
+    backends_ = open_backends(names, options.require);
     check_required(backends_, options.require);
-    all_ = groups_of(options, backends_);
+    open_devices(options, backends_, names);
+    all_ = make_groups(plan, backends_);
     tell_left_out(all_);
 }
 

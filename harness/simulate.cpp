@@ -52,12 +52,16 @@ void prefer_certain_contacts(Request& request, std::span<const DeviceGroup> devi
     if (std::all_of(devices.begin(), devices.end(), have_double)) prefer("decision", "recheck");
 }
 
-/// The one cell that finds contacts. Throws InputError when more are asked for, or one that makes no
-/// contacts.
-Cell only_cell(const SimulateOptions& options, const std::vector<BackendReport>& backends) {
+Request contacts_request(const SimulateOptions& options) {
     auto request = options.request;
     if (request.algorithms.empty()) request.algorithms = {std::string(algorithms().front()->name())};
     if (request.devices.empty()) request.devices = {"opencl:0"};
+    return request;
+}
+
+/// The one cell that finds contacts. Throws InputError when more are asked for, or one that makes no
+/// contacts.
+Cell only_cell(Request request, const std::vector<BackendReport>& backends) {
     const auto devices = choose_devices(backends, request.devices);
     prefer_certain_contacts(request, devices);
     const auto cells = plan(request, devices);
@@ -134,9 +138,10 @@ Search ContactFinder::take() { return std::exchange(search_, {}); }
 
 int simulate_command(const SimulateOptions& options) {
     const auto scene = open_scene(options);
-    const auto backends = discover();
+    const auto request = contacts_request(options);
+    const auto backends = open_backends(request.devices, options.require);
     check_required(backends, options.require);
-    const auto cell = only_cell(options, backends);
+    const auto cell = only_cell(request, backends);
     check_coordinates(cell, scene, {0, 0, {scene.frame(0)}});
     Simulation simulation(scene);
     // Before a recording is made, which a second try would find there.

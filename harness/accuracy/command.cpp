@@ -164,7 +164,7 @@ int accuracy_command(const AccuracyOptions& options) {
     auto request = options.run.request;
     if (request.devices.empty()) request.devices.emplace_back("opencl:0");
     if (request.algorithms.empty()) request.algorithms.emplace_back(algorithms().front()->name());
-    const auto backends = discover();
+    const auto backends = open_backends(request.devices, options.run.require);
     check_required(backends, options.run.require);
     const auto devices = open_devices(options.run, backends, request.devices);
     const auto cells = request.sets.empty() ? sweep(request, devices) : plan(request, devices);

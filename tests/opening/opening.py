@@ -1,0 +1,80 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""opening.py PROGRAM STUBS TRAP: which backends a command opens, with drivers that break whoever loads them: TRAP in place of
+an OpenCL driver, of CUDA's and of NVML. STUBS has a driver of CUDA that works."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+if len(sys.argv) != 4:
+    sys.exit(__doc__)
+PROGRAM, STUBS, TRAP = (pathlib.Path(a).resolve() for a in sys.argv[1:])
+SCENE = "pile:bodies=2,frames=1"
+RUN = ("run", SCENE, "--algorithm", "chunked", "--repeat", "1", "--truth", "none")
+
+
+class Opening(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.work = pathlib.Path(folder.name)
+        for name in ("cuda", "icd"):
+            (self.work / name).mkdir()
+        for name in ("libcuda.so.1", "libnvidia-ml.so.1"):
+            (self.work / "cuda" / name).symlink_to(TRAP)
+        (self.work / "icd/trap.icd").write_text(f"{TRAP}\n")
+
+    def tandem(self, *arguments, opencl=True, cuda=True):
+        """With traps for what is true: exit code, negative for a signal, standard output and error."""
+        environment = {**os.environ, "LD_LIBRARY_PATH": str(self.work / "cuda" if cuda else STUBS / "driver")}
+        for name in ("TANDEM_NVML", "TANDEM_NVRTC"):
+            environment.pop(name, None)
+        if not cuda:
+            environment.update(TANDEM_NVRTC=str(STUBS / "nvrtc/libnvrtc.so"), TANDEM_NVML="/nonexistent")
+        if opencl:
+            environment["OCL_ICD_VENDORS"] = f"{self.work}/icd/"
+        done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, env=environment, timeout=300)
+        return done.returncode, done.stdout, done.stderr
+
+    def test_the_traps_work(self):
+        self.assertLess(self.tandem("devices", cuda=False)[0], 0)
+        self.assertLess(self.tandem("devices", opencl=False)[0], 0)
+        for device in ("opencl:0", "cuda:0", "all", "host,opencl:0", "host+opencl:0"):
+            self.assertLess(self.tandem(*RUN, "--device", device)[0], 0, device)
+
+    def test_host_alone(self):
+        frames = self.work / "arch.frames"
+        for arguments in ((*RUN, "--device", "host"), (*RUN, "--device", "host", "--require", "host"),
+                          ("check", SCENE, "--device", "host", "--algorithm", "tiled"),
+                          ("accuracy", SCENE, "--device", "host", "--set", "k=6", "--repeat", 1, "--truth-contacts", 1),
+                          ("simulate", "block", "--steps", 1, "--device", "host", "-o", frames),
+                          ("export", SCENE, "--vtu", self.work / "vtu", "--contacts"),
+                          ("devices", "--measure", "--device", "host"), ("algorithms",), ("scenes",),
+                          ("completion", "--words", "run", "--set", "")):
+            status, out, errors = self.tandem(*arguments)
+            self.assertEqual(status, 0, (arguments, out, errors))
+
+    def test_cuda_alone(self):
+        """The stub runs no kernels: what counts is that it was reached, and nothing else."""
+        status, out, errors = self.tandem(*RUN, "--device", "cuda:0", "--dry-run", cuda=False)
+        self.assertEqual((status, errors), (0, ""), out)
+        self.assertIn("on cuda:0", out)
+        self.assertEqual(self.tandem(*RUN, "--device", "host", "--require", "cuda", "--dry-run", cuda=False)[0], 0)
+
+    def test_what_is_required_is_opened(self):
+        for required in ("opencl", "opencl:0", "cuda"):
+            self.assertLess(self.tandem(*RUN, "--device", "host", "--require", required)[0], 0, required)
+
+    def test_what_is_unknown_is_looked_for_everywhere(self):
+        for arguments in (("--device", "nix"), ("--device", "host:1"), ("--device", "host", "--require", "nix")):
+            self.assertLess(self.tandem(*RUN, *arguments)[0], 0, arguments)
+        status, _, errors = self.tandem(*RUN, "--device", "cuda:7", cuda=False, opencl=False)
+        self.assertEqual(status, 2)
+        self.assertRegex(errors, r"unknown device 'cuda:7'; the nearest is 'cuda:0' \(there are: host, (opencl:0, )?cuda:0\)")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)
