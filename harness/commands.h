@@ -70,6 +70,12 @@ struct DevicesOptions {
     std::vector<std::string> require; ///< as of RunOptions
 };
 
+/// Options of `tandem algorithms`.
+struct AlgorithmsOptions {
+    std::vector<std::string> names; ///< explain these; empty: list all
+    bool json = false;              ///< one JSON document instead of lines
+};
+
 /// Options of `tandem export`.
 struct ExportOptions {
     std::string scene;
@@ -104,6 +110,6 @@ int simulate_command(const SimulateOptions& options);
 int export_command(const ExportOptions& options);
 int devices_command(const DevicesOptions& options);
 int scenes_command(bool json);
-int algorithms_command(bool json);
+int algorithms_command(const AlgorithmsOptions& options);
 
 } // namespace tandem

@@ -9,7 +9,6 @@
 #include "scenes/hard/hard.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace tandem {
@@ -17,49 +16,6 @@ namespace tandem {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::vector<std::string> words_of(const Parameter& parameter) {
-    std::vector<std::string> words;
-    for (const auto& word : parameter.choices()) words.emplace_back(word.text);
-    return words;
-}
-
-/// What auto tries of it.
-std::vector<std::string> alternatives_of(const Parameter& parameter) {
-    std::vector<std::string> texts;
-    for (const auto value : parameter.alternatives()) texts.push_back(parameter.text(value));
-    return texts;
-}
-
-/// "1..1024", or its words; then what auto tries.
-std::string values_of(const Parameter& parameter) {
-    const auto values = parameter.choices().empty() ? fmt::format("{}..{}", parameter.least, parameter.most)
-                                                    : fmt::format("{}", fmt::join(words_of(parameter), ", "));
-    if (parameter.alternatives().empty()) return values;
-    return fmt::format("{}; auto tries {}", values, fmt::join(alternatives_of(parameter), ", "));
-}
-
-/// Numbers have a range, words their choices.
-Json parameters_json(std::span<const Parameter* const> parameters) {
-    Json json = Json::array();
-    for (const auto* p : parameters) {
-        Json row{{"name", p->name}, {"default", p->text(p->initial)}, {"help", p->help}};
-        if (p->choices().empty())
-            row["range"] = {p->least, p->most};
-        else
-            row["choices"] = words_of(*p);
-        row["alternatives"] = alternatives_of(*p);
-        json.push_back(row);
-    }
-    return json;
-}
-
-Json counters_json(std::span<const Counter> counters) {
-    Json json = Json::array();
-    for (const auto& c : counters)
-        json.push_back({{"name", c.name}, {"unit", c.unit}, {"meaning", c.meaning}});
-    return json;
-}
 
 /// The device before `info` that is the same piece of hardware; empty when there is none.
 std::string same_as(const std::vector<BackendReport>& backends, const DeviceInfo& info) {
@@ -93,29 +49,6 @@ void print_device(const DeviceInfo& info, const std::string& same, const GpuCond
     if (const auto text = gpu_condition_text(now); !text.empty()) put("           now: {}\n", text);
 }
 
-Json algorithm_json(const Traversal& traversal, bool peer) {
-    Json presets = Json::array();
-    for (const auto& p : traversal.presets())
-        presets.push_back({{"name", p.name}, {"help", p.help}, {"values", p.texts()}});
-    return {{"name", traversal.name()},
-            {"peer", peer},
-            {"summary", traversal.summary()},
-            {"parameters", parameters_json(traversal.parameters())},
-            {"counters", counters_json(traversal.counters())},
-            {"presets", presets}};
-}
-
-void print_algorithm(const Traversal& traversal, bool peer) {
-    put("{}{}: {}\n  presets\n", traversal.name(), peer ? ", a peer, which runs where it is named only" : "",
-        traversal.summary());
-    for (const auto& p : traversal.presets()) put("    {:<18} {}\n", p.name, p.help);
-    put("  settings\n");
-    for (const auto* p : traversal.parameters())
-        put("    {:<18} {:<10} {} [{}]\n", p->name, p->text(p->initial), p->help, values_of(*p));
-    put("  counters\n");
-    for (const auto& c : traversal.counters()) put("    {:<22} {} [{}]\n", c.name, c.meaning, c.unit);
-}
-
 /// `tandem devices --measure`: the ceilings of the chosen devices.
 int measure_devices(const DevicesOptions& options) {
     const auto names = options.devices.empty() ? std::vector<std::string>{"all"} : options.devices;
@@ -140,7 +73,6 @@ void print_scene(const SceneKind& kind, const Scene& scene) {
     put("  {}\n", scene.dynamics ? fmt::format("{} steps of {} s by simulation; its frame is the start",
                                                scene.dynamics->steps, scene.dynamics->stepping.step)
                                  : fmt::format("{} frames by script", scene.frame_count));
-    if (options.measure) return measure_devices(options);
     for (const auto& p : kind.parameters) put("    {:<12} {:<12} {}\n", p.name, p.value, p.help);
 }
 
@@ -208,6 +140,7 @@ void print_dynamics() {
 /// Backends without devices are listed with their reason; --require is looked at last, so that the list is
 /// there to see.
 int devices_command(const DevicesOptions& options) {
+    if (options.measure) return measure_devices(options);
     const auto backends = discover();
     const bool json = options.json;
     Json all = Json::array();
@@ -248,17 +181,6 @@ int scenes_command(bool json) {
     print_scene_table(all);
     print_hard();
     print_dynamics();
-    return 0;
-}
-
-int algorithms_command(bool json) {
-    Json all = Json::array();
-    for (const bool peer : {false, true})
-        for (const auto* traversal : peer ? peers() : algorithms()) {
-            all.push_back(algorithm_json(*traversal, peer));
-            if (!json) print_algorithm(*traversal, peer);
-        }
-    if (json) put("{}\n", all.dump(2));
     return 0;
 }
 

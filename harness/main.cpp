@@ -28,7 +28,7 @@ constexpr Command commands[] = {
     {"export", "frames as files for ParaView and other viewers", tandem::add_export},
     {"devices", "what there is, or why there is not", tandem::add_devices},
     {"scenes", "scenes the program makes, with their parameters", tandem::add_scenes},
-    {"algorithms", "algorithms with their presets and settings", tandem::add_algorithms},
+    {"algorithms", "algorithms with their presets and settings; one at length", tandem::add_algorithms},
     {"isolated", "what a process of --isolate does", tandem::add_isolated}};
 
 /// Reads the line, then does what its subcommand says. Every mistake in the line is an InputError.

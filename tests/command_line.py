@@ -194,6 +194,38 @@ class CommandLine(Case):
             self.bad("--repeat", "run", "plates", "--repeat", repeat)
         self.bad("--help", "fly")
 
+    def test_algorithms_at_length(self):
+        algorithms = json.loads(tandem("algorithms", "--json")[1])
+        for entry in algorithms:
+            status, out, errors = tandem("algorithms", entry["name"])
+            self.assertEqual((status, errors), (0, []))
+            self.assertEqual([line for line in out.splitlines() if len(line) > 100], [])
+            initial = {p["name"]: p["default"] for p in entry["parameters"]}
+            for preset in entry["presets"]:
+                # As they take effect: the preset's own over the parameters'.
+                self.assertEqual(preset["settings"], {**initial, **preset["values"]})
+                text = " ".join(out.split(f"\n    {preset['name']}: ")[1].split("\n    ")[1:6]).replace("    ", " ")
+                for name, value in preset["settings"].items():
+                    self.assertEqual(f"{name}={value}" in re.split(r"[\s,]+", text.split(": ")[0]), value != initial[name], (name, text))
+            flat = " ".join(out.split())
+            for parameter in entry["parameters"]:
+                value = entry["presets"][0]["settings"][parameter["name"]]
+                said = " ".join(f"{parameter['name']} = {value} {parameter['help']}".split())
+                values = "choices: " + ", ".join(parameter["choices"]) if "choices" in parameter else "range: {}..{}".format(*parameter["range"])
+                self.assertIn(f"{said} {values}", flat)
+            for counter in entry["counters"]:
+                self.assertIn(" ".join(f"{counter['name']} {counter['meaning']} [{counter['unit']}]".split()), flat)
+            only = json.loads(tandem("algorithms", entry["name"], "--json")[1])
+            self.assertEqual(only, [entry])
+        self.assertIn("device in resident; sphere in published", tandem("algorithms", "chunked")[1])
+        self.assertIn("device in resident; sphere where no preset sets it", tandem("algorithms", "tiled")[1])
+        self.bad("the nearest is 'tiled'", "algorithms", "chunked", "tild")
+        listing = tandem("algorithms")[1]
+        self.assertEqual([line for line in listing.splitlines() if len(line) > 100], [])
+        self.assertIn("settings, as in preset resident", listing)
+        self.assertRegex(listing, r"\n    broad +device +who finds body pairs")
+        self.assertIn("[sphere, tight, device; sphere where no preset sets it]", " ".join(listing.split()))
+
     def test_a_peer_beside_the_own(self):
         """Same pairs in the same record, where the program has it; what it does not do it refuses, and its absence too."""
         summary = next(e["summary"] for e in json.loads(tandem("algorithms", "--json")[1]) if e["name"] == "embree")

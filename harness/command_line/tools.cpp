@@ -30,13 +30,6 @@ void add_motion_options(CLI::App& app, SimulateOptions& options) {
         ->take_all();
 }
 
-/// Of a command that lists something and has no other option.
-Action add_listing(CLI::App& app, int (*list)(bool json)) {
-    auto json = std::make_shared<bool>(false);
-    app.add_flag("--json", *json, "as JSON");
-    return [json, list] { return list(*json); };
-}
-
 } // namespace
 
 Action add_simulate(CLI::App& app) {
@@ -92,8 +85,17 @@ Action add_devices(CLI::App& app) {
     return [given] { return devices_command(*given); };
 }
 
-Action add_scenes(CLI::App& app) { return add_listing(app, scenes_command); }
+Action add_scenes(CLI::App& app) {
+    auto json = std::make_shared<bool>(false);
+    app.add_flag("--json", *json, "as JSON");
+    return [json] { return scenes_command(*json); };
+}
 
-Action add_algorithms(CLI::App& app) { return add_listing(app, algorithms_command); }
+Action add_algorithms(CLI::App& app) {
+    auto given = std::make_shared<AlgorithmsOptions>();
+    app.add_option("names", given->names, "explain these at length; list all in short when left out");
+    app.add_flag("--json", given->json, "as JSON");
+    return [given] { return algorithms_command(*given); };
+}
 
 } // namespace tandem
