@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Writes commit.h when the commit, the state of the tree or the sources changed. COMMIT overrides, for trees without git.
+# Writes commit.h when the commit, the state of the tree or the sources changed. COMMIT overrides, for trees without git;
+# VERSION and PARTS are what `tandem --version` says.
 if(COMMIT STREQUAL "")
   execute_process(COMMAND git rev-parse --short=12 HEAD WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE COMMIT
                   OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
@@ -22,4 +23,5 @@ foreach(file ${files})
 endforeach()
 string(SHA256 sources "${sources}")
 string(SUBSTRING ${sources} 0 16 sources)
-file(CONFIGURE OUTPUT ${OUT} CONTENT "#define TANDEM_COMMIT_ID \"${clean}\"\n#define TANDEM_COMMIT_DIRTY ${dirty}\n#define TANDEM_SOURCES \"${sources}\"\n")
+file(CONFIGURE OUTPUT ${OUT} CONTENT "#define TANDEM_COMMIT_ID \"${clean}\"\n#define TANDEM_COMMIT_DIRTY ${dirty}\n#define TANDEM_SOURCES \"${sources}\"\n\
+#define TANDEM_VERSION \"${VERSION}\"\n#define TANDEM_PARTS \"${PARTS}\"\n")

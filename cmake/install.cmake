@@ -7,6 +7,8 @@ include(CMakePackageConfigHelpers)
 target_include_directories(tandem INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 install(TARGETS tandem EXPORT tandem-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS tandem-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES scripts/completion/tandem.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME tandem)
+install(FILES scripts/completion/_tandem DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 set(public_headers
   backends/device.h backends/trace.h backends/registry.h backends/host/host_device.h backends/opencl/opencl_device.h
   backends/cuda/cuda_device.h

@@ -16,6 +16,8 @@ namespace tandem {
 
 namespace {
 
+constexpr auto compiler = "g++ " __VERSION__;
+
 std::string processor_name() {
     std::ifstream file("/proc/cpuinfo");
     for (std::string line; std::getline(file, line);)
@@ -70,6 +72,12 @@ std::string command_line() {
     return line;
 }
 
+std::string version_line() {
+    const std::string commit = TANDEM_COMMIT_ID;
+    return fmt::format("tandem {}, commit {}{}, {}, {}", TANDEM_VERSION, commit.empty() ? "unknown" : commit,
+                       TANDEM_COMMIT_DIRTY ? ", dirty" : "", compiler, TANDEM_PARTS);
+}
+
 std::string sources_digest() { return TANDEM_SOURCES; }
 
 const std::string& session_id() {
@@ -90,7 +98,7 @@ Environment environment() {
     result.cores = std::thread::hardware_concurrency();
     result.memory = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES))
                     * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
-    result.compiler = "g++ " __VERSION__;
+    result.compiler = compiler;
     return result;
 }
 

@@ -20,6 +20,10 @@ struct Environment {
 /// Of this process, now. Never throws: what cannot be read is unknown.
 Environment environment();
 
+/// "tandem 0.1.0, commit 0123456789ab, dirty, g++ 12.2.0, with Embree 3.13.5, ...": what `tandem --version`
+/// prints.
+std::string version_line();
+
 /// 16 hexadecimal digits of chance: of all records of one run of the program, and of no other.
 const std::string& session_id();
 

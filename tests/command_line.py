@@ -8,7 +8,7 @@ import subprocess
 import sys
 import unittest
 
-from program import LONG, PROGRAM, SMALL, Case, bar, gmsh, sets, tandem
+from program import LONG, PROGRAM, SMALL, SOURCE, Case, bar, gmsh, sets, tandem
 
 
 def boxes(points, tets):
@@ -194,6 +194,82 @@ class CommandLine(Case):
             self.bad("--repeat", "run", "plates", "--repeat", repeat)
         self.bad("--help", "fly")
 
+    def test_version(self):
+        for arguments in (("--version",), ("run", "--version")):
+            status, out, errors = tandem(*arguments)
+            self.assertEqual((status, errors), (0, []))
+            self.assertRegex(out, r"^tandem \d+\.\d+\.\d+, commit [0-9a-f]{7,}(, dirty)?, g\+\+ [\d.]+, with(out)? Embree[^\n]*\n$")
+        version = re.search(r"project\(tandem VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text())[1]
+        summary = next(e["summary"] for e in json.loads(tandem("algorithms", "--json")[1]) if e["name"] == "embree")
+        self.assertIn(f"tandem {version}, ", out)
+        self.assertEqual("without Embree" in out, "built without Embree" in summary)
+        record = self.work / "version.jsonl"
+        tandem("run", "--mesh", self.good, "--device", "host", "--algorithm", "chunked", "--out", record)
+        environment = self.records(record)[0]["environment"]
+        self.assertIn(f", commit {environment['commit']}{', dirty' if environment['dirty'] else ''}, {environment['compiler']}, ", out)
+
+    def test_unknown_words(self):
+        """In any form and any place: the nearest that there is, and where to read on."""
+        for arguments, named in (
+                (("run", "plates", "--algoritm"), "--algorithm"), (("run", "plates", "--algoritm", "tiled"), "--algorithm"),
+                (("run", "--algoritm=tiled", "plates"), "--algorithm"), (("check", "plates", "--algoritm", "tiled"), "--algorithm"),
+                (("run", "plates", "--algo"), "--algorithm"), (("run", "plates", "-devices", "host"), "--device"),
+                (("compare", "a", "b", "--treshold=1"), "--threshold"), (("devices", "--jsn"), "--json"),
+                (("run", "plates", "--algoritm", "--repeat", "x"), "--algorithm")):
+            word = next(a for a in arguments if a.startswith("-")).split("=")[0]
+            self.bad(f"tandem: unknown option {word}; did you mean {named}? see 'tandem {arguments[0]} --help'", *arguments)
+        self.bad("tandem: unknown option --algoritm; did you mean --algorithm? see 'tandem --help'", "--algoritm", "scenes")
+        self.bad("option --device belongs behind a command", "--device", "host", "run", "plates")
+        for word, named in (("rum", "run"), ("algorithm", "algorithms"), ("devises", "devices")):
+            self.bad(f"tandem: unknown command '{word}'; the nearest is '{named}' (there are: run, ", word, "--device", "host")
+        self.bad("unknown command 'rum'", "--", "rum")
+        self.bad("'b' is too much; see 'tandem check --help'", "check", "a", "b")
+        self.bad("'--algoritm' is too much", "check", "a", "--", "--algoritm")
+        self.bad("unknown scene '--algoritm'", "run", "--", "--algoritm")
+        self.bad("--set: 1 required", "run", "plates", "--set")
+        for word in ("-", "--", "---", "--=", "-=", "-x", "=", ""):
+            self.assertEqual(tandem(word, word)[0], 2, word)
+            self.assertEqual(tandem("run", "--device", "host", word, word)[0], 2, word)
+
+    def test_contradictions(self):
+        """What would be left out silently is refused, and by what."""
+        for said, *arguments in (
+                (("--repeat does not go with --noise", "N samples"), "--repeat", 3, "--noise", "1%"),
+                ("--repeat does not go with --seconds", "--seconds", 3, "--repeat", 3),
+                ("--truth-contacts goes with --truth contacts", "--truth", "none", "--truth-contacts", 3),
+                ("--truth-contacts goes with --truth contacts", "--truth-contacts", 3),
+                ("--choose-seconds goes with --algorithm auto", "--choose-seconds", 1),
+                ("--choose-afresh goes with --algorithm auto", "--choose-afresh", "--algorithm", "chunked,tiled"),
+                ("--threads does not go with --set threads", "--device", "host", "--threads", 1, "--set", "k=6", "--set", "threads=2"),
+                ("--threads goes with --device host", "--threads", 1),
+                ("--threads goes with --device host", "--threads", 1, "--device", "opencl:0,cuda:0"),
+                *((f"--profile does not go with {word}", "--profile", 1, word, *value)
+                  for word, *value in (("--dry-run",), ("--resume", "--out", "x"), ("--repeat", 1), ("--noise", "1%"), ("--seconds", 1),
+                                       ("--seed", 1))),
+                ("--profile does not go with --truth contacts", "--profile", 1, "--truth", "contacts"),
+                ("--dry-run does not go with --dump-pairs", "--dry-run", "--dump-pairs", "x"),
+                ("--dry-run does not go with --dump-contacts", "--dry-run", "--dump-contacts", "x"),
+                ("--pose goes with --mesh", "--pose", "0 0 0 1 0 0 0")):
+            self.bad(said, "run", "plates", *arguments)
+        for command in ("check", "accuracy", "export"):
+            self.bad("--pose goes with --mesh", command, "--pose", "0 0 0 1 0 0 0")
+        self.bad("--truth-contacts goes with", "check", "plates", "--truth-contacts", 3)
+        self.bad("--threads does not go with --set threads", "check", "plates", "--threads", 1, "--set", "threads=2")
+        self.bad("--resume goes with -o", "simulate", "arch", "--resume")
+        self.bad("--checkpoint goes with -o", "simulate", "arch", "--checkpoint", 3)
+        self.bad("--steps", "simulate", "arch", "--steps", 0)
+        self.bad("--every", "export", "plates", "--every", 0, "--glb", "x")
+        self.bad("--contacts goes with --vtu", "export", "plates", "--contacts", "--glb", "x")
+        self.bad("--device requires --contacts", "export", "plates", "--device", "host", "--glb", "x")
+        self.bad("--device all: one device", "export", "plates", "--contacts", "--device", "all", "--vtu", self.work / "vtu")
+        for option in (("--device", "host"), ("--out", "x")):
+            self.bad(f"{option[0]} requires --measure", "devices", *option)
+        # What a rule must not hit: its options beside others, and the same ones where they say something.
+        for arguments in (("--truth", "contacts", "--truth-contacts", 3), ("--threads", 1, "--set", "k=6"), ("--seconds", 1, "--noise", "1%"),
+                          ("--algorithm", "chunked,auto", "--choose-afresh", "--choose-seconds", 1), ("--set", "threads=1,2")):
+            status, out, errors = tandem("run", "--mesh", self.good, "--device", "host", *arguments, "--dry-run")
+            self.assertEqual((status, errors), (0, []), out)
+
     def test_algorithms_at_length(self):
         algorithms = json.loads(tandem("algorithms", "--json")[1])
         for entry in algorithms:
@@ -299,7 +375,7 @@ class Repaired(Case):
 
     def cell(self, *arguments, **options):
         return tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked",
-                      "--repeat", 1, *arguments, **options)
+                      *arguments, **options)
 
     def test_check_takes_one_algorithm(self):
         for name in ("chunked", "gproximity"):

@@ -31,7 +31,7 @@ def tandem(*arguments, environment=None, timeout=300, address_space=None):
     """(exit code, standard output, lines of standard error less PoCL's own); with so many bytes of address space.
     A run takes one sample of a cell unless it says otherwise: ten rounds are for who measures."""
     is_plan = any(str(argument).endswith("plan.json") for argument in arguments)  # which says itself when a cell has enough
-    if arguments[:1] == ("run",) and not is_plan and not {"--repeat", "--noise", "--seconds"} & set(arguments):
+    if arguments[:1] == ("run",) and not is_plan and not {"--repeat", "--noise", "--seconds", "--profile"} & set(arguments):
         arguments = ("run", "--repeat", 1, *arguments[1:])
     limit = (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space))) if address_space else None
     done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, timeout=timeout,

@@ -23,5 +23,6 @@ Action add_export(CLI::App& app);
 Action add_devices(CLI::App& app);
 Action add_scenes(CLI::App& app);
 Action add_algorithms(CLI::App& app);
+Action add_completion(CLI::App& app);
 
 } // namespace tandem

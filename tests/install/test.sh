@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # test.sh BUILD_FOLDER: installs into an empty folder, builds a stranger's programs against it and runs them: on the
 # host, inside an application's OpenCL queue, and inside an application's CUDA stream, on the stub of the driver and
-# on the driver where there is one. All have to find the same pairs.
+# on the driver where there is one. All have to find the same pairs. Completion lies where shells look for it.
 set -euo pipefail
 build=$(cd "$1" && pwd)
 here=$(cd "$(dirname "$0")" && pwd)
@@ -21,6 +21,8 @@ cmake -S "$here" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix;
   >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }
 cmake --build "$work/consumer" >"$work/log" || { cat "$work/log" >&2; exit 1; }
 "$work/prefix/bin/tandem" scenes >/dev/null
+"$work/prefix/bin/tandem" completion bash | cmp - "$work/prefix/share/bash-completion/completions/tandem"
+"$work/prefix/bin/tandem" completion zsh | cmp - "$work/prefix/share/zsh/site-functions/_tandem"
 
 expected=$("$work/consumer/consumer")
 echo "host: $expected"

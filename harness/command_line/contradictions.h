@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace tandem {
+
+/// Options of a command that say no to each other, or that say nothing without another: throws InputError for
+/// the first that the line has, so that none is silently left out. After the line has been read.
+void refuse_contradictions(const CLI::App& command);
+
+} // namespace tandem
