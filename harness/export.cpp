@@ -103,8 +103,6 @@ std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
 int export_command(const ExportOptions& options) {
     if (options.vtu.empty() && options.glb.empty())
         throw InputError("nothing to export to; give --vtu FOLDER, --glb FILE or both");
-    if (options.contacts && options.vtu.empty())
-        throw InputError("--contacts goes with --vtu FOLDER; a .glb has surfaces only");
     const auto scene = open_scene(options);
     const auto [first, last] = named_frames(options.frames, scene);
     std::vector<std::size_t> frames;

@@ -250,7 +250,7 @@ class CommandLine(Case):
                 ("--dry-run does not go with --dump-pairs", "--dry-run", "--dump-pairs", "x"),
                 ("--dry-run does not go with --dump-contacts", "--dry-run", "--dump-contacts", "x"),
                 ("--pose goes with --mesh", "--pose", "0 0 0 1 0 0 0")):
-            self.bad(said, "run", "plates", *arguments)
+            self.bad(said, "run", "plates:count=2", "--frames", 0, *arguments)
         for command in ("check", "accuracy", "export"):
             self.bad("--pose goes with --mesh", command, "--pose", "0 0 0 1 0 0 0")
         self.bad("--truth-contacts goes with", "check", "plates", "--truth-contacts", 3)

@@ -14,8 +14,8 @@ namespace {
 /// Whether the first of two options wants the second or cannot be with it.
 enum class Together { must, must_not };
 
-/// Options are "--name", or "--name=value" where one value of several matters: of lists an entry, of settings
-/// what stands before the '='.
+/// Options are "--name", "--name WHAT" as it is to be said, or "--name=value" where one value of several
+/// matters: of lists an entry, of settings what stands before the '='.
 struct Rule {
     std::string_view option;
     Together together;
@@ -44,15 +44,15 @@ constexpr Rule rules[] = {
     {"--dry-run", Together::must_not, "--dump-pairs", "no cell is measured whose pairs could be written"},
     {"--dry-run", Together::must_not, "--dump-contacts",
      "no cell is measured whose contacts could be written"},
-    {"--pose", Together::must, "--mesh", "a scene brings its own poses"},
-    {"--resume", Together::must, "-o", "that recording is what it goes on with"},
-    {"--checkpoint", Together::must, "-o", "checkpoints are kept beside a recording"},
-    {"--contacts", Together::must, "--vtu", "a .glb has surfaces only"},
+    {"--pose", Together::must, "--mesh FILE", "a scene brings its own poses"},
+    {"--resume", Together::must, "-o FILE", "that recording is what it goes on with"},
+    {"--checkpoint", Together::must, "-o FILE", "checkpoints are kept beside a recording"},
+    {"--contacts", Together::must, "--vtu FOLDER", "a .glb has surfaces only"},
 };
 
 /// Null where the command has no such option.
 const CLI::Option* option_of(const CLI::App& command, std::string_view text) {
-    return command.get_option_no_throw(std::string(text.substr(0, text.find('='))));
+    return command.get_option_no_throw(std::string(text.substr(0, text.find_first_of("= "))));
 }
 
 /// Values apart by commas are one result each, or one together, as the option has it.
