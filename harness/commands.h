@@ -36,6 +36,7 @@ struct RunOptions {
     std::string dump_pairs, dump_contacts;  ///< CSV files of the first cell that finishes; empty: none
     std::vector<std::string> require;       ///< devices or backends whose absence is a failure
     bool check = true;                      ///< compare answers with the reference
+    bool check_afresh = false;              ///< with what is computed now, not with what was kept
     bool count = true;                      ///< replay once more with kernels that count their work
     TruthAmount truth = TruthAmount::pairs; ///< compare answers with the exact truth
     std::size_t truth_contacts = 0;         ///< of this many pairs a frame at most; 0: all

@@ -2,6 +2,7 @@
 #include "harness/job.h"
 
 #include "algorithms/bounds/geometry.h"
+#include "harness/choosing/choice_cache.h"
 #include "harness/inputs.h"
 #include "harness/isolation/isolated_sampler.h"
 #include "harness/key.h"
@@ -109,6 +110,10 @@ bool measure_cells(const Job& job, std::span<const Cell> cells, References& refe
     auto check = measuring.check;
     check.progress = listener.progress;
     return sample_group(group, check, measuring.enough, measuring.seed, listener);
+}
+
+std::filesystem::path checks_folder(const RunOptions& options) {
+    return options.check_afresh ? std::filesystem::path() : ChoiceCache::default_folder();
 }
 
 void print_scene(const Scene& scene, const FrameRange& range) {

@@ -48,6 +48,9 @@ bool measure_cells(const Job& job, std::span<const Cell> cells, References& refe
                    const Measuring& measuring, RecordFile& file, const Progress& progress,
                    const std::function<void(const CellResult&)>& ended);
 
+/// Where digests of references and errors against the truth are kept; empty with --check-afresh.
+std::filesystem::path checks_folder(const RunOptions& options);
+
 /// A line that says what scene it is, one for tetrahedra of negative volume and one for flawed ones.
 void print_scene(const Scene& scene, const FrameRange& range);
 

@@ -198,11 +198,12 @@ void Run::list(const Job& job) {
 }
 
 int Run::measure(Job& job) {
-    Truths truths(job.scene, job.range.frames, options_.truth, options_.truth_contacts);
+    Truths truths(job.scene, job.range.frames, options_.truth, options_.truth_contacts,
+                  checks_folder(options_));
     auto measuring = measuring_of(options_, options_.truth == TruthAmount::none ? nullptr : &truths);
     measuring.unfinished = &unfinished_;
     measuring.stop = Interrupt::asked;
-    References references(job.scene, job.range);
+    References references(job.scene, job.range, checks_folder(options_));
     std::map<const Cell*, CellResult> results;
     int code = 0;
     interrupted_ = measure_cells(job, job.cells, references, measuring, *file_, progress_,

@@ -53,6 +53,16 @@ std::uint64_t digest_of(std::string_view text) {
     return digester.value();
 }
 
+std::uint64_t digest_of(const Frame& frame) {
+    Digester digester;
+    add(digester, frame);
+    for (const auto& list : frame.skipped) {
+        digester.add(std::uint64_t{list.size()});
+        for (const auto tetrahedron : list) digester.add(std::uint64_t{tetrahedron});
+    }
+    return digester.value();
+}
+
 std::uint64_t digest_of(const Scene& scene) {
     Digester digester;
     digester.add(scene.key);

@@ -8,6 +8,9 @@ namespace tandem {
 /// 64-bit digest of a text, for keys of scenes that have no parameters.
 std::uint64_t digest_of(std::string_view text);
 
+/// 64-bit digest of a frame: poses, vertices of deformable bodies, and what is skipped.
+std::uint64_t digest_of(const Frame& frame);
+
 /// 64-bit digest of a scene: key, meshes, bodies, and the states of the first and the last frame. The key
 /// holds every parameter of a motion, so that frames between need no visit.
 std::uint64_t digest_of(const Scene& scene);

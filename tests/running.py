@@ -42,6 +42,24 @@ class Running(Case):
         self.assertEqual(len(re.findall(r"(?m)^ +(?:chunked|tiled)\|host:", text)), 8)
         self.assertFalse(out.exists())
 
+    def test_checks_are_kept(self):
+        """What a reference and a truth said of a frame is there in the next run; none of it makes an answer wrong."""
+        folder = self.work / "kept"
+        arguments = ("run", "plates:count=2", "--frames", "0:1", "--device", "host", "--algorithm", "tiled")
+        words = lambda *more: re.search(r"right: (\d+) pairs.* (\d+) candidates do not meet", tandem(*arguments, *more, environment={"TANDEM_KERNEL_CACHE": str(folder)})[1]).groups()
+        first = words()
+        files = {path: path.read_text() for path in folder.glob("checks-*.jsonl")}
+        self.assertEqual((len(files), [text.count("question") for text in files.values()]), (2, [2, 2]))
+        self.assertEqual(words("--isolate"), first)
+        self.assertEqual({path: path.read_text() for path in files}, files)  # nothing was found anew
+        for path, text in files.items():
+            path.write_text(re.sub(r'"disjoint":(\d+)', '"disjoint":1000000', text).replace('"pairs":[', '"pairs":[1'))
+        self.assertEqual(words(), (first[0], "2000000"))
+        self.assertEqual(words("--check-afresh"), first)
+        for path, text in files.items():
+            path.write_text(text[:len(text) // 3] + '\n{"question": 3}\n[]\n' + text.replace('"pairs":', '"pair":'))
+        self.assertEqual(words(), first)
+
     def test_resume_measures_what_is_left(self):
         out = self.work / "resumed.jsonl"
         arguments = ("run", *CELLS, "--set", "k=6,8", "--out", out)

@@ -137,8 +137,9 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
     if (own.frames.empty()) own.frames = middle_frames(scene);
     const auto job = open_job(std::move(scene), own, cells);
     print_scene(job.scene, job.range);
-    References references(job.scene, job.range);
-    Truths truths(job.scene, job.range.frames, TruthAmount::contacts, options.truth_contacts);
+    const auto kept = checks_folder(options);
+    References references(job.scene, job.range, kept);
+    Truths truths(job.scene, job.range.frames, TruthAmount::contacts, options.truth_contacts, kept);
     const Progress progress(options.quiet);
     Measuring measuring;
     measuring.check = {options.check, false, &truths};

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "harness/accuracy/truths.h"
 
+#include "harness/accuracy/answer_errors_json.h"
 #include "harness/environment.h"
+#include "scenes/digest.h"
 #include "scenes/error.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace tandem {
 
@@ -23,6 +26,14 @@ void check_room(const FrameTruth& first, std::size_t frames) {
 }
 
 } // namespace
+
+Truths::Truths(const Scene& scene, std::span<const Frame> frames, TruthAmount amount,
+               std::size_t most_contacts, const std::filesystem::path& folder)
+    : scene_(scene),
+      frames_(frames),
+      amount_(amount),
+      most_contacts_(most_contacts),
+      kept_(folder, fmt::format("truths of {} {:016x}", scene.key, scene.digest)) {}
 
 /// Found once and kept, for all cells of the same positions.
 const FrameTruth& Truths::truth_of(const Place& place, const Report& report) {
@@ -49,7 +60,26 @@ const AnswerErrors& Truths::errors(const Geometry& geometry, std::size_t index, 
                          Numbers{answer.pairs.count, answer.pairs.a, answer.pairs.b, answer.contacts.count,
                                  answer.contacts.a, answer.contacts.b}};
     if (const auto found = errors_.find(key); found != errors_.end()) return found->second;
-    return errors_.emplace(key, errors_of(precision, place, answer, report)).first->second;
+    const auto asked = question(precision, place, answer);
+    AnswerErrors known;
+    if (kept_.take(asked, [&](const nlohmann::json& value) { value.get_to(known); }))
+        return errors_.emplace(key, std::move(known)).first->second;
+    const auto& errors = errors_.emplace(key, errors_of(precision, place, answer, report)).first->second;
+    kept_.keep(asked, errors);
+    return errors;
+}
+
+/// The frame by what is in it; the first of a range has its drift besides.
+std::string Truths::question(Precision precision, const Place& place, const FrameAnswer& answer) const {
+    const auto& [positions, index] = place;
+    const auto& p = answer.pairs;
+    const auto& c = answer.contacts;
+    return fmt::format("frame {:016x}{}, precision {}, positions {} {}, amount {} {}, pairs {} {:x} {:x}, "
+                       "contacts {} {} {:x} {:x}",
+                       digest_of(frames_[index]), index == 0 ? " first" : "", static_cast<int>(precision),
+                       static_cast<int>(positions.precision), static_cast<int>(positions.placement),
+                       static_cast<int>(amount_), most_contacts_, p.count, p.a, p.b, answer.makes_contacts,
+                       c.count, c.a, c.b);
 }
 
 /// Kept by the caller only when nothing has thrown: a download may fail, and the next cell asks again.

@@ -3,6 +3,7 @@
 
 #include "algorithms/traversal.h"
 #include "harness/accuracy/answer_errors.h"
+#include "harness/kept_values.h"
 
 #include <map>
 #include <tuple>
@@ -33,8 +34,9 @@ class Truths {
 public:
     /// `scene` and `frames` must outlive it. `most_contacts`: of this many pairs of a frame at most the exact
     /// contact is found, 0 for all.
-    Truths(const Scene& scene, std::span<const Frame> frames, TruthAmount amount, std::size_t most_contacts)
-        : scene_(scene), frames_(frames), amount_(amount), most_contacts_(most_contacts) {}
+    /// Errors are kept in the folder from one run of the program to the next; nowhere when it is empty.
+    Truths(const Scene& scene, std::span<const Frame> frames, TruthAmount amount, std::size_t most_contacts,
+           const std::filesystem::path& folder = {});
 
     TruthAmount amount() const { return amount_; }
 
@@ -49,6 +51,7 @@ private:
     using Numbers = std::array<std::uint64_t, 6>; ///< of the digests
     const FrameTruth& truth_of(const Place& place, const Report& report);
     const ContactTruths& contact_truths_of(const Place& place, const Report& report);
+    std::string question(Precision precision, const Place& place, const FrameAnswer& answer) const;
     AnswerErrors errors_of(Precision precision, const Place& place, const FrameAnswer& answer,
                            const Report& report);
 
@@ -56,6 +59,7 @@ private:
     std::span<const Frame> frames_;
     TruthAmount amount_;
     std::size_t most_contacts_;
+    KeptValues kept_;
     std::map<Place, FrameTruth> truths_;
     std::map<Place, ContactTruths> contact_truths_; ///< of Placement::rounded
     std::map<Precision, Drift> drifts_;             ///< of the first frame

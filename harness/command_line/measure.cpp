@@ -102,6 +102,12 @@ const CLI::Validator share(
     },
     "SHARE");
 
+void add_check_afresh(CLI::App& app, RunOptions& options) {
+    app.add_flag("--check-afresh", options.check_afresh,
+                 "compute references and truths where what they say of the same frames was kept "
+                 "($TANDEM_KERNEL_CACHE, or $XDG_CACHE_HOME/tandem)");
+}
+
 /// What `run` alone has: --algorithm auto and how it chooses.
 void add_choosing(CLI::App& app, RunOptions& options) {
     app.get_option("--algorithm")
@@ -214,6 +220,7 @@ Action add_run(CLI::App& app) {
                    "write the first finished cell's contacts as CSV");
     app.add_flag("!--no-count", options.count, "leave out the replay that counts work");
     app.add_flag("!--no-check", options.check, "do not compare with the reference");
+    add_check_afresh(app, options);
     return [given, line = &app] {
         given->options.request.sets = sets_of(given->sets, given->options);
         take_plan(*line, given->options);
@@ -244,6 +251,7 @@ Action add_accuracy(CLI::App& app) {
     app.add_option("--repeat", options.run.repeat, "samples per cell; 3 when left out")
         ->check(CLI::Range(1, 1000));
     app.add_flag("!--no-check", options.run.check, "do not compare with the reference; the truth stays");
+    add_check_afresh(app, options.run);
     app.add_option("--figures", options.figures,
                    "draw the records of --out, or of FOLDER/accuracy.jsonl without it, into this folder")
         ->option_text("FOLDER");

@@ -3,7 +3,7 @@
 
 #include "algorithms/traversal.h"
 #include "backends/registry.h"
-#include "harness/plan.h"
+#include "harness/plans/cells.h"
 #include "scenes/dynamics_settings.h"
 #include "scenes/hard/hard.h"
 

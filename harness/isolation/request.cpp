@@ -23,6 +23,7 @@ nlohmann::json request_json(const RunOptions& options, const CellSampler& sample
             {"work", work.work},
             {"samples", work.samples},
             {"check", work.check.check},
+            {"check_afresh", options.check_afresh},
             {"count", work.check.count_work},
             {"checked", state.is_checked() ? checked_json(state) : nlohmann::json()},
             {"rounds", rounds_json(state, state.rounds)}}; // none of them, but how many there are
@@ -46,6 +47,7 @@ IsolatedRequest request_of(const nlohmann::json& json) {
     json.at("work").get_to(request.work.work);
     json.at("samples").get_to(request.work.samples);
     json.at("check").get_to(request.work.check.check);
+    json.at("check_afresh").get_to(options.check_afresh);
     json.at("count").get_to(request.work.check.count_work);
     return request;
 }

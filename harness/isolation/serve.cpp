@@ -40,8 +40,9 @@ json answer_to(const json& asked) {
     const auto& traversal = algorithm(request.algorithm);
     const auto job = open_job(
         request.options, {make_cell(traversal, preset(traversal, request.preset), request.settings, group)});
-    References references(job.scene, job.range);
-    Truths truths(job.scene, job.range.frames, request.options.truth, request.options.truth_contacts);
+    const auto kept = checks_folder(request.options);
+    References references(job.scene, job.range, kept);
+    Truths truths(job.scene, job.range.frames, request.options.truth, request.options.truth_contacts, kept);
     if (request.options.truth != TruthAmount::none) request.work.check.truths = &truths;
     CellState state;
     if (!asked.at("checked").is_null()) take_checked(state, asked["checked"], job.cells.front());

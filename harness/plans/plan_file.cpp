@@ -21,7 +21,7 @@ const Texts product_fields{"scenes", "frames", "algorithms", "presets", "setting
 /// Options of `tandem run` that take a value and that a plan may give.
 const Texts valued{"noise",          "seconds",    "repeat", "seed",   "truth",
                    "truth-contacts", "degenerate", "memory", "timeout"};
-const Texts flags{"no-check", "no-count", "isolate"};
+const Texts flags{"no-check", "no-count", "check-afresh", "isolate"};
 
 /// A number as a user would write it, or the string.
 std::string scalar(const Json& json, const Place& place) {

@@ -2,20 +2,8 @@
 // States of cells as JSON: a list of the fields of every structure in them.
 #include "harness/sampling/cell_state.h"
 
-#include <algorithm>
-#include <nlohmann/json.hpp>
-
-namespace nlohmann {
-
-template<class T>
-struct adl_serializer<std::optional<T>> {
-    static void to_json(json& to, const std::optional<T>& value) { to = value ? json(*value) : json(); }
-    static void from_json(const json& from, std::optional<T>& value) {
-        value = from.is_null() ? std::nullopt : std::optional<T>(from.get<T>());
-    }
-};
-
-} // namespace nlohmann
+#include "harness/accuracy/answer_errors_json.h"
+#include "harness/optional_json.h"
 
 namespace tandem {
 
@@ -34,14 +22,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Agreement, frames, missing, extra, contact_fr
                                    contact_digest)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KernelFacts, entry, defines, compile_ms, registers, local_bytes,
                                    spill_bytes, max_group_size)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PairErrors, candidates, disjoint, touching, overlapping, invalid,
-                                   missed_touching, missed_overlapping)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DecisionCounts, relations, tiers)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Drift, vertices, median, p99, max, of_bound)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ContactErrors, overlapping, unanswered, not_finite, depth_relative,
-                                   depth_ulps, normal_degrees, point, hausdorff, volume_relative, no_volume)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AnswerErrors, frames, pairs, decided, invalid_tetrahedra, decisions,
-                                   contacts, drift, every_contact)
 
 namespace {
 

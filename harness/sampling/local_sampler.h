@@ -24,8 +24,8 @@ private:
     void warm_up();
     void sample();
     bool makes_contacts() const;
-    void compare(const ReferenceAnswer& expected, const FrameResult& result, const Digest& digest,
-                 const Digest& contacts);
+    void compare(std::size_t index, const FrameResult& result, const Digest& digest, const Digest& contacts);
+    ReferenceDigests expected_digests(std::size_t index);
     void look(std::size_t index, const FrameResult& result, const CheckOptions& options);
     void add_errors(Truths& truths, std::size_t index, const FrameResult& result, const Digest& digest,
                     const Digest& contacts, const Report& report);
