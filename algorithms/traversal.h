@@ -9,10 +9,12 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace tandem {
 
-struct Ground; // steps.h
+struct Ground;     // steps.h
+struct KernelCost; // cost.h
 struct Steps;
 
 /// Two bodies whose volumes may overlap; a < b.
@@ -94,6 +96,10 @@ public:
     std::unique_ptr<Session> prepare(std::span<Device* const> devices, const Scene& scene,
                                      const Settings& settings) const;
 
+    /// What each kernel of a frame with these settings, as a device took them, has to move and to compute at
+    /// least: its own and those of every algorithm, by entry point (cost.h).
+    std::vector<KernelCost> costs(const Scene& scene, const Settings& settings) const;
+
     /// Its own steps of a frame; for pipelines. Throws OutOfMemory or DeviceError.
     Steps build(const Ground& ground) const;
 
@@ -101,6 +107,8 @@ private:
     /// Throws InputError when the algorithm's own settings do not fit.
     virtual void do_check(const Settings& settings, const DeviceInfo& info) const = 0;
     virtual Steps do_build(const Ground& ground) const = 0;
+    /// Those of its own kernels; none where nothing is said of them.
+    virtual std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const;
 };
 
 /// Every algorithm of the project but its peers, then those added by add_algorithm.

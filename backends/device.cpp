@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "backends/device.h"
 
+#include "backends/ranges.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <utility>
@@ -58,6 +60,8 @@ std::shared_ptr<Buffer::Impl> counted(std::shared_ptr<Buffer::Impl> impl,
 } // namespace
 
 void Device::record(Event event, Clock::time_point begin) {
+    event.host_begin_ns =
+        std::chrono::duration_cast<std::chrono::nanoseconds>(begin.time_since_epoch()).count();
     event.host_ns = nanoseconds_since(begin);
     trace_.events.push_back(std::move(event));
 }
@@ -156,7 +160,10 @@ Kernel Device::compile(const KernelSource& source, std::string_view entry, const
 void Device::launch(const Kernel& kernel, Grid grid, std::span<const Argument> arguments) {
     if (grid.groups == 0) return;
     check_group_size(info(), kernel.facts(), grid.group_size);
-    submit({.command = Command::launch, .groups = grid.groups, .group_size = grid.group_size},
+    submit({.command = Command::launch,
+            .groups = grid.groups,
+            .group_size = grid.group_size,
+            .kernel = &kernel.facts()},
            kernel.facts().entry, [&] { return do_launch(kernel.impl(), grid, arguments); });
 }
 
@@ -189,6 +196,15 @@ std::vector<KernelFacts> Device::take_kernels() {
 }
 
 std::size_t Device::bytes_allocated() const { return *allocated_; }
+
+StageScope::StageScope(Device& device, Stage stage) : device_(device), before_(device.set_stage(stage)) {
+    ranges::push(stage_names[static_cast<std::size_t>(stage)].data());
+}
+
+StageScope::~StageScope() {
+    ranges::pop();
+    device_.set_stage(before_);
+}
 
 HostWork::HostWork(Device& device, Stage stage, std::string_view label)
     : device_(device), stage_(stage), timed_(device.clocks() == Clocks::on), label_(label) {

@@ -91,6 +91,9 @@ struct KernelFacts {
     std::int64_t local_bytes = -1;    ///< a work-group's
     std::int64_t spill_bytes = -1;    ///< stores and loads of a work-item
     std::int64_t max_group_size = -1; ///< work-items; more are refused by launch()
+    /// Share of the work-items that a compute unit can hold which groups of GROUP_SIZE fill at most, as far
+    /// as registers and local memory let them; negative where the backend does not tell.
+    double occupancy = -1;
 };
 
 /// A compiled entry point of one device; a cheap handle.
@@ -222,6 +225,10 @@ public:
     /// and ignore it.
     void set_threads(std::uint32_t threads) { do_set_threads(threads); }
 
+    /// Tells a profiler that is attached to the process to begin or to end here; nothing where the backend
+    /// has no such call.
+    void profile(bool on) { do_profile(on); }
+
     /// The facts of every kernel asked for since the last call, each once; compile_ms is 0 for those that
     /// were there already.
     std::vector<KernelFacts> take_kernels();
@@ -272,6 +279,7 @@ private:
     virtual void do_end_collecting() {}
     virtual void do_set_clocks(Clocks clocks) = 0;
     virtual void do_set_threads(std::uint32_t) {}
+    virtual void do_profile(bool) {}
     /// Begin and duration in device nanoseconds of a finished command; releases the ticket.
     virtual std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) = 0;
 
@@ -295,11 +303,11 @@ private:
 };
 
 /// Books commands of its lifetime under a stage; an inner scope's stage stands until it ends. Dies before its
-/// device.
+/// device. A profiler sees it as a range of that name.
 class StageScope {
 public:
-    StageScope(Device& device, Stage stage) : device_(device), before_(device.set_stage(stage)) {}
-    ~StageScope() { device_.set_stage(before_); }
+    StageScope(Device& device, Stage stage);
+    ~StageScope();
     StageScope(const StageScope&) = delete;
     StageScope& operator=(const StageScope&) = delete;
 

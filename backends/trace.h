@@ -9,6 +9,8 @@
 
 namespace tandem {
 
+struct KernelFacts; // device.h
+
 /// The parts of a frame that time is booked under.
 enum class Stage {
     transform,
@@ -39,11 +41,13 @@ struct Event {
     std::uint64_t bytes = 0;  ///< moved by transfers and clears
     std::uint64_t groups = 0; ///< launches: work-groups
     std::uint32_t group_size = 0;
-    std::int64_t host_ns = 0;    ///< host time inside the call
-    std::int64_t device_ns = -1; ///< from the API's events; -1 when not measured
-    std::int64_t begin_ns = -1;  ///< device clock at the begin; -1 when not measured
-    std::uint64_t ticket = 0;    ///< the adaptor's handle for its timing event; 0 = none
-    bool blocked = false;        ///< the host waited for the device in this call
+    std::int64_t host_begin_ns = -1;     ///< the host's steady clock when the call began
+    std::int64_t host_ns = 0;            ///< host time inside the call
+    std::int64_t device_ns = -1;         ///< from the API's events; -1 when not measured
+    std::int64_t begin_ns = -1;          ///< device clock at the begin; -1 when not measured
+    std::uint64_t ticket = 0;            ///< the adaptor's handle for its timing event; 0 = none
+    bool blocked = false;                ///< the host waited for the device in this call
+    const KernelFacts* kernel = nullptr; ///< of launches: what was launched; lives as long as the device
 };
 
 /// What ran since the last finish, in order of submission.

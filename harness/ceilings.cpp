@@ -30,7 +30,7 @@ public:
           group_(std::min(256u, device.info().max_group_size)),
           groups_(device.info().is_gpu ? device.info().compute_units * 8 : device.info().compute_units * 4),
           large_(fitted(device.info().is_gpu ? std::size_t{2} << 30 : std::size_t{256} << 20)),
-          small_(fitted(device.info().is_gpu ? std::size_t{16} << 20 : std::size_t{1} << 20)) {}
+          small_(fitted(cached_bytes(device.info()))) {}
 
     Ceilings run();
 
@@ -53,6 +53,7 @@ private:
     Samples per_second(double amount, const Work& work);
     template<class Work>
     Samples seconds(double count, const Work& work);
+    Samples timed_launch(const Kernel& nothing, const Buffer& buffer);
     Samples overlaps(int k);
     Samples upload_pinned(const Buffer& buffer, std::span<const std::byte> bytes);
 
@@ -116,6 +117,14 @@ Samples Bench::upload_pinned(const Buffer& buffer, std::span<const std::byte> by
     return per_second(static_cast<double>(bytes.size()), [&] { device_.upload(buffer, bytes); });
 }
 
+/// What a clock around a command makes of nothing: no kernel's time is shorter.
+Samples Bench::timed_launch(const Kernel& nothing, const Buffer& buffer) {
+    const std::array<Argument, 1> one{buffer};
+    auto samples = per_second(1, [&] { device_.launch(nothing, {1, group_}, one); });
+    for (auto& s : samples) s = 1 / s;
+    return samples;
+}
+
 Ceilings Bench::run() {
     const StageScope scope(device_, Stage::traverse); // nothing of a frame: no one looks at the stage
     Ceilings c;
@@ -151,6 +160,7 @@ Ceilings Bench::run() {
     c.launch_queued = seconds(many, [&] {
         for (int i = 0; i < many; ++i) submit();
     });
+    c.launch_timed = timed_launch(nothing, to);
     c.overlaps8 = overlaps(8);
     c.overlaps18 = overlaps(18);
     return c;
@@ -173,11 +183,16 @@ constexpr Row rows[] = {
     {"download_pageable_bytes_per_s", "download, pageable", &Ceilings::download, 1e-9, "GB/s"},
     {"launch_s", "launch and wait", &Ceilings::launch, 1e6, "us"},
     {"launch_queued_s", "launch, one of many in a row", &Ceilings::launch_queued, 1e6, "us"},
+    {"launch_timed_s", "launch, by the device's clock", &Ceilings::launch_timed, 1e6, "us"},
     {"overlap_tests_k8_per_s", "overlap tests from registers, k = 8", &Ceilings::overlaps8, 1e-9, "G/s"},
     {"overlap_tests_k18_per_s", "overlap tests from registers, k = 18", &Ceilings::overlaps18, 1e-9, "G/s"},
 };
 
 } // namespace
+
+std::size_t cached_bytes(const DeviceInfo& info) {
+    return info.is_gpu ? std::size_t{16} << 20 : std::size_t{1} << 20;
+}
 
 Ceilings measure_ceilings(Device& device) { return Bench(device).run(); }
 

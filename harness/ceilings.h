@@ -18,9 +18,14 @@ struct Ceilings {
     std::vector<double> download; ///< host's time of a download into ordinary memory, bytes a second
     std::vector<double> launch;   ///< a launch of nothing and the wait for it, seconds
     std::vector<double> launch_queued; ///< one of many launches of nothing in a row, seconds
-    std::vector<double> overlaps8;     ///< k-DOP overlap tests from registers a second, k = 8, float
-    std::vector<double> overlaps18;    ///< the same with k = 18
+    std::vector<double>
+        launch_timed;               ///< device's time of a launch of nothing with a clock around it, seconds
+    std::vector<double> overlaps8;  ///< k-DOP overlap tests from registers a second, k = 8, float
+    std::vector<double> overlaps18; ///< the same with k = 18
 };
+
+/// Bytes of the buffer that cache_read is of.
+std::size_t cached_bytes(const DeviceInfo& info);
 
 /// Measures a device; takes a second or so. May throw DeviceError.
 Ceilings measure_ceilings(Device& device);

@@ -34,6 +34,7 @@ struct RunOptions {
     double timeout = 0;                     ///< seconds of such a process; 0: no limit
     std::string out;                        ///< append records to this file; empty: none are written
     std::string dump_pairs, dump_contacts;  ///< CSV files of the first cell that finishes; empty: none
+    std::string trace;                      ///< timeline of a frame of the first cell that finishes; empty: none
     std::vector<std::string> require;       ///< devices or backends whose absence is a failure
     bool check = true;                      ///< compare answers with the reference
     bool check_afresh = false;              ///< with what is computed now, not with what was kept
@@ -51,6 +52,13 @@ struct AccuracyOptions {
     std::vector<std::string> scenes;
     RunOptions run;      ///< its scene is not used
     std::string figures; ///< the folder of the figures; empty: none are drawn
+};
+
+/// Options of `tandem profile`, as given: those of `tandem run` for one scene, and
+struct ProfileOptions {
+    RunOptions run;
+    std::string ceilings; ///< a file of records of ceilings; empty: they are measured
+    bool all = false;     ///< a row for every kernel, however short
 };
 
 /// Options of `tandem compare`.
@@ -106,6 +114,7 @@ struct SimulateOptions {
 int run_command(const RunOptions& options);
 int check_command(const RunOptions& options);
 int accuracy_command(const AccuracyOptions& options);
+int profile_command(const ProfileOptions& options);
 int compare_command(const CompareOptions& options); ///< 1: something changed
 int simulate_command(const SimulateOptions& options);
 int export_command(const ExportOptions& options);

@@ -27,6 +27,8 @@ constexpr Command commands[] = {
     {"run", "measure; print a table, append records", tandem::add_run},
     {"check", "device x algorithm agreement matrix; exit 1 on any difference", tandem::add_check},
     {"accuracy", "error beside speed over settings, for several scenes", tandem::add_accuracy},
+    {"profile", "per kernel: time, registers, occupancy, bytes, operations, share of the ceilings",
+     tandem::add_profile},
     {"compare", "which cells changed, by how much, how sure; exit 1 beyond --threshold", tandem::add_compare},
     {"simulate", "move a scene with dynamics; record its frames", tandem::add_simulate},
     {"export", "frames as files for ParaView and other viewers", tandem::add_export},

@@ -11,9 +11,11 @@
 #include "harness/key.h"
 #include "harness/plans/cell_groups.h"
 #include "harness/progress.h"
+#include "harness/sampling/replays.h"
 #include "harness/standard_streams.h"
 #include "harness/statistics.h"
 #include "harness/table/table.h"
+#include "harness/timeline/trace_frame.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -36,12 +38,16 @@ void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts)
     }
 }
 
-/// Replays the frames and does nothing else, so that a profiler sees only the algorithm.
+/// Replays the frames and does nothing else, so that a profiler sees only the algorithm: it is told to begin
+/// once kernels are compiled and buffers have grown.
 int profile(const Job& job, std::size_t times) {
     for (const auto& cell : job.cells) {
-        const auto session = cell.algorithm->prepare(cell.devices, job.scene, cell.settings);
-        for (std::size_t i = 0; i < times; ++i)
-            for (const auto& frame : job.range.frames) session->run(frame);
+        Replays replays(cell, job.scene, job.range);
+        const auto replay = [&] { replays.timed([](std::size_t, const FrameResult&) {}); };
+        replay();
+        for (auto* device : cell.devices) device->profile(true);
+        for (std::size_t i = 0; i < times; ++i) replay();
+        for (auto* device : cell.devices) device->profile(false);
         put("{}: replayed frames {}:{} {} times; nothing measured or recorded\n", describe(cell),
             job.range.first, job.range.last, times);
     }
@@ -151,6 +157,7 @@ private:
     CellGroups all_;
     std::optional<RecordFile> file_;
     std::optional<DumpFile> pairs_, contacts_;
+    std::optional<TimelineFile> trace_;
     FinishedCells finished_;
     Unfinished unfinished_;
     Progress progress_;
@@ -178,6 +185,7 @@ void Run::open_files() {
     unfinished_ = Unfinished(options_.out, options_.resume);
     pairs_.emplace(options_.dump_pairs, pairs_header);
     contacts_.emplace(options_.dump_contacts, contacts_header);
+    trace_.emplace(options_.trace);
 }
 
 void Run::leave_out_finished(Job& job) {
@@ -217,6 +225,7 @@ int Run::measure(Job& job) {
     for (const auto& cell : job.cells)
         if (const auto found = results.find(&cell); found != results.end() && found->second.measured) {
             if (!file_->failed()) dump(cell, job, *pairs_, *contacts_);
+            if (!file_->failed() && *trace_) trace_->write(trace_frame(cell, job));
             break;
         }
     return code;

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """validate_records.py [FILE.jsonl|FILE.jsonl.xz ...]: checks records against results/record.schema.json, those of files named
-ceilings*.jsonl against results/ceilings.schema.json and simulation*.jsonl against results/simulation.schema.json;
-without files, all committed ones. Exit 1 names file:line and the place of the first problems."""
+ceilings*.jsonl against results/ceilings.schema.json, simulation*.jsonl against results/simulation.schema.json and profile*.jsonl,
+or a profile's in any file, against results/profile.schema.json; without files, all committed ones. Exit 1 names file:line and the place of the first problems."""
 import json
 import lzma
 import pathlib
@@ -18,16 +18,20 @@ def no_constant(name):
     raise ValueError(f"{name} is not JSON; unknown is null")
 
 
-def problems_of(line, validator):
+def problems_of(line, validators, kind):
     """What is wrong with one line, each with its place in the record."""
     try:
         record = json.loads(line, parse_constant=no_constant)
     except ValueError as error:
         return [f"not JSON: {error}"]
+    # A profile's line and a cell's say themselves what they are, in one file as well.
+    if isinstance(record, dict) and kind in ("record", "profile"):
+        kind = "profile" if "profile_of" in record else "record" if "key" in record else kind
+    validator = validators[kind]
     return [f"/{'/'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in validator.iter_errors(record)]
 
 
-def problems_in(path, validator):
+def problems_in(path, validators, kind):
     """(line number, text) of everything wrong in a file, and how many lines it has."""
     try:
         data = lzma.open(path).read() if path.suffix == ".xz" else path.read_bytes()
@@ -35,7 +39,7 @@ def problems_in(path, validator):
     except (OSError, EOFError, lzma.LZMAError, UnicodeDecodeError) as error:
         return [(1, str(error))], 0
     lines = [] if lines == [""] else lines
-    return [(n, text) for n, line in enumerate(lines, 1) for text in problems_of(line, validator)], len(lines)
+    return [(n, text) for n, line in enumerate(lines, 1) for text in problems_of(line, validators, kind)], len(lines)
 
 
 def resolved(schema, records):
@@ -61,7 +65,7 @@ def validator_of(name):
 
 
 def main(names):
-    validators = {kind: validator_of(kind + ".schema.json") for kind in ("record", "ceilings", "simulation")}
+    validators = {kind: validator_of(kind + ".schema.json") for kind in ("record", "ceilings", "simulation", "profile")}
     files = [pathlib.Path(name) for name in names] or sorted([*(ROOT / "results").glob("**/*.jsonl"), *(ROOT / "results").glob("**/*.jsonl.xz")])
     if not files:
         print("no records are committed yet")
@@ -69,7 +73,7 @@ def main(names):
     total, found = 0, []
     for path in files:
         kind = next((kind for kind in validators if path.name.startswith(kind)), "record")
-        problems, count = problems_in(path, validators[kind])
+        problems, count = problems_in(path, validators, kind)
         total += count
         found += [f"{path}:{number}: {text}" for number, text in problems]
     if not found and total == 0:

@@ -4,6 +4,7 @@
 #include "algorithms/chunked/chunked_walker.h"
 #include "algorithms/chunked/levels.clh"
 #include "algorithms/published/chunked_seeds.h"
+#include "algorithms/cost.h"
 #include "algorithms/pipeline.h"
 #include "scenes/error.h"
 
@@ -68,6 +69,18 @@ private:
         check_local_memory(settings, info,
                            local_bytes(settings[schedule], group_size, ceil_log2(leaves_of(settings))),
                            fmt::format("schedule={}", settings.text(schedule.name)), "lower it, or leaves");
+    }
+
+    std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const override {
+        const SceneFacts s(scene, settings);
+        auto costs = chunk_tree_costs(s, leaves_of(settings));
+        const auto rows = [](const FrameFacts& f) { return 16 * f.body_pairs; };
+        costs.push_back(
+            {"count_seeds", rows, no_operations, "body pairs in, a number of seeds for each out"});
+        costs.push_back(
+            {"scan_seeds", rows, no_operations, "a number for each body pair in, a start for each out"});
+        for (const auto* entry : {"traverse", "traverse_in_groups"}) costs.push_back(walk_cost(s, entry));
+        return costs;
     }
 
     Steps do_build(const Ground& ground) const override {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/embree/embree.h"
 
+#include "algorithms/cost.h"
 #include "algorithms/embree/embree_steps.h"
 #include "algorithms/pipeline.h"
 #include "scenes/error.h"
@@ -51,6 +52,13 @@ private:
         if (settings[tandem::parameters::precision] != Precision::fp32)
             throw InputError("setting precision=double is impossible with algorithm embree, whose boxes are "
                              "floats; choose float");
+    }
+
+    std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const override {
+        auto costs = tile_tree_costs({scene, settings}, 6);
+        for (const auto* entry : {"refit_embree", "collide_embree"})
+            costs.push_back({entry, {}, {}, "nothing: what another library does is its own"});
+        return costs;
     }
 
     Steps do_build(const Ground& ground) const override { return embree_steps(ground); }

@@ -2,6 +2,7 @@
 #include "algorithms/gproximity/gproximity.h"
 
 #include "algorithms/gproximity/queue_walker.h"
+#include "algorithms/cost.h"
 #include "algorithms/pipeline.h"
 #include "algorithms/published/queue_words.h"
 #include "scenes/error.h"
@@ -43,6 +44,18 @@ private:
             throw InputError(
                 "setting broad=device goes with batch=0 and upload=seeds only: the host makes "
                 "batches and queues, and would have to know the body pairs; choose broad=sphere");
+    }
+
+    std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const override {
+        const SceneFacts s(scene, settings);
+        auto costs = chunk_tree_costs(s, whole_mesh(scene));
+        costs.push_back({"scatter_roots", [](const FrameFacts& f) { return 12 * f.body_pairs; },
+                         no_operations, "an item for each body pair out"});
+        costs.push_back(walk_cost(s, "traverse_queues"));
+        costs.push_back({"plan_balance", {}, {}, "nothing: a sum over queues, a launch"});
+        for (const auto* entry : {"move_balance", "move_balance_serially"})
+            costs.push_back({entry, {}, {}, "nothing: how many items move is not counted"});
+        return costs;
     }
 
     Steps do_build(const Ground& ground) const override {

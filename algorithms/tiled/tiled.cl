@@ -199,6 +199,7 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
     reserve(&team, waiting, 1, counter);
     LANE_BARRIER;
     write_tile_pairs(&team, waiting, below, below_capacity);
+    if (COUNT_WORK) counter_add_wide(status + STATUS_UPPER_TESTS, tally.tests);
     if (COUNT_WORK) flush(&tally, status);
 }
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/tiled/tiled.h"
 
+#include "algorithms/cost.h"
 #include "algorithms/pipeline.h"
 #include "algorithms/tiled/tile_pairs.clh"
 #include "algorithms/tiled/tiled_walker.h"
+
+#include <algorithm>
 
 namespace tandem {
 
@@ -16,7 +19,8 @@ const std::vector<Preset> all_presets{
      "everything resident, body pairs included, one wait per frame",
      {parameters::broad(Broad::device), parameters::builder(Builder::sah)}}};
 
-constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds};
+constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds, tiled_counters::upper_tests,
+                                  tiled_counters::leaf_tile_pairs};
 
 /// Local memory in bytes of a work-group of so many teams of lanes, in the greediest of the kernels
 /// (tiled.cl, refit_tiles.cl).
@@ -39,6 +43,12 @@ std::uint64_t local_bytes(const Settings& settings, std::uint64_t teams, bool is
 std::uint64_t local_bytes_of_group(const Settings& settings, std::uint32_t group_size) {
     const auto one = local_bytes(settings, 1, false);
     return group_size % 32 == 0 ? std::max(one, local_bytes(settings, group_size / 32, true)) : one;
+}
+
+/// Ends of slabs that the bounds of a tetrahedron have.
+double leaf_words_of(const Settings& settings) {
+    const auto k = static_cast<double>(settings[parameters::k]);
+    return settings[parameters::slabs] == Slabs::three ? std::min(k, 6.0) : k;
 }
 
 /// Groups of the tiles' own kernels: as large as the setting says and local memory has room for. Doubles with
@@ -73,6 +83,31 @@ private:
         const auto smallest = fitting_shape(settings, info, {group_size, 1}).group_size;
         check_local_memory(settings, info, local_bytes_of_group(settings, smallest), "algorithm tiled",
                            "lower it");
+    }
+
+    std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const override {
+        const SceneFacts s(scene, settings);
+        const auto words = leaf_words_of(settings);
+        auto costs = tile_tree_costs(s, words);
+        const auto upper = [](const FrameFacts& f) { return f.counted(tiled_counters::upper_tests.name); };
+        const auto pairs = [](const FrameFacts& f) {
+            return 4 * TILE_PAIR_WORDS * f.counted(tiled_counters::leaf_tile_pairs.name);
+        };
+        costs.push_back({"walk_upper_tiles", [=](const FrameFacts& f) { return 8 * f.body_pairs + pairs(f); },
+                         [=](const FrameFacts& f) { return s.k * upper(f); },
+                         "body pairs in, pairs of tiles of tetrahedra out; k a box tested"});
+        costs.push_back(
+            {"walk_leaf_tiles",
+             [=](const FrameFacts& f) {
+                 return pairs(f) + words * s.real * f.touched + s.pair_bytes * f.candidate_pairs;
+             },
+             [=](const FrameFacts& f) {
+                 return words * (f.counted(counters::bvtt_nodes.name) - upper(f))
+                        + (s.k - words) * f.candidate_pairs;
+             },
+             "pairs of tiles and bounds of tetrahedra in candidate pairs in, candidate pairs out; as many a "
+             "box tested as leaves have ends, and the rest of k a candidate pair"});
+        return costs;
     }
 
     Steps do_build(const Ground& ground) const override {

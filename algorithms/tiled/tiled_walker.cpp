@@ -59,6 +59,11 @@ bool TiledWalker::do_grow(const Status& status) {
 void TiledWalker::do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
     work[counters::bvtt_nodes.name] += status.counter(STATUS_BVTT_NODES);
     work[counters::seeds.name] += status.counter(STATUS_SEEDS);
+    work[tiled_counters::upper_tests.name] += status.counter(STATUS_UPPER_TESTS);
+    const std::uint64_t begins = trees_.begins(0);
+    work[tiled_counters::leaf_tile_pairs.name] +=
+        begins * begins * status.counter(STATUS_BODY_PAIRS)
+        + (trees_.walked_levels() > 1 ? status.counter(STATUS_TILE_PAIRS) : 0);
 }
 
 void TiledWalker::launch_upper(const WalkTask& task, std::uint32_t level) {

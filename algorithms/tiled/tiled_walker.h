@@ -16,6 +16,14 @@ inline constexpr Setting<std::int64_t> tile_pair_capacity{"tile_pair_capacity", 
                                                           "pairs of tiles a level has room for at first"};
 } // namespace tiled_parameters
 
+/// Beside those of every walk.
+namespace tiled_counters {
+inline constexpr Counter upper_tests{"upper_tests", "boxes",
+                                     "of the node pairs tested those above tetrahedra"};
+inline constexpr Counter leaf_tile_pairs{"leaf_tile_pairs", "pairs of tiles",
+                                         "pairs of tiles of tetrahedra that were tested"};
+} // namespace tiled_counters
+
 /// Pairs of tiles, a launch a level from the highest of any body down to candidate pairs.
 class TiledWalker final : public Walker {
 public:

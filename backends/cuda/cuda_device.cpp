@@ -84,6 +84,7 @@ private:
     bool do_begin_collecting() override;
     void do_end_collecting() override;
     void do_set_clocks(Clocks clocks) override { timed_ = clocks == Clocks::on; }
+    void do_profile(bool on) override;
     std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) override;
 
     void describe();
@@ -114,6 +115,8 @@ private:
     std::uint64_t enqueue_and_wait(const Command& command, bool staged);
     std::uint64_t enqueue_now(const Command& command);
     void submit_collected();
+    /// As KernelFacts has it.
+    double occupancy(Function function, const Defines& defines) const;
     const LoadedModule& module(const KernelSource& source, const Defines& defines);
     const Driver& driver() const { return libraries_->driver; }
     /// Runs `submit` between two events when timestamps are on; the ticket.
@@ -130,6 +133,7 @@ private:
     bool owned_ = true;
     bool timed_ = false;
     int capability_ = 0;
+    int threads_of_unit_ = 0; ///< that a multiprocessor holds at once
     std::map<std::string, LoadedModule> modules_;
     Staging staging_{page_locked(libraries_->driver), most_staged};
     std::vector<EventHandle>
@@ -195,6 +199,7 @@ void CudaDevice::describe() {
     info_.compute_units = static_cast<std::uint32_t>(attribute(multiprocessor_count));
     info_.max_group_size = static_cast<std::uint32_t>(attribute(max_threads_per_block));
     info_.local_bytes = static_cast<std::uint64_t>(attribute(max_shared_per_block));
+    threads_of_unit_ = attribute(max_threads_per_multiprocessor);
     std::size_t memory = 0;
     check(driver().cuDeviceTotalMem_v2(&memory, handle_), "cuDeviceTotalMem",
           "asking for the device's memory");
@@ -410,7 +415,30 @@ std::shared_ptr<Kernel::Impl> CudaDevice::do_compile(const KernelSource& source,
     kernel->facts.local_bytes = ask(function_shared_bytes);
     kernel->facts.max_group_size = ask(function_max_threads);
     kernel->facts.spill_bytes = use_of(loaded.image.log, entry).spill_bytes;
+    kernel->facts.occupancy = occupancy(kernel->function, defines);
     return kernel;
+}
+
+/// A group is held as whole warps.
+double CudaDevice::occupancy(Function function, const Defines& defines) const {
+    const auto group_size = defines.find("GROUP_SIZE");
+    if (driver().cuOccupancyMaxActiveBlocksPerMultiprocessor == nullptr || group_size == defines.end()
+        || threads_of_unit_ <= 0)
+        return -1;
+    constexpr int warp = 32;
+    const int threads = std::stoi(group_size->second);
+    int groups = 0;
+    if (driver().cuOccupancyMaxActiveBlocksPerMultiprocessor(&groups, function, threads, 0) != 0) return -1;
+    return static_cast<double>(groups) * ((threads + warp - 1) / warp * warp) / threads_of_unit_;
+}
+
+/// What was submitted before is finished first, so that a profiler counts what comes between the two calls.
+void CudaDevice::do_profile(bool on) {
+    const auto call = on ? driver().cuProfilerStart : driver().cuProfilerStop;
+    if (call == nullptr) return;
+    do_finish();
+    const Scope scope(*this);
+    check(call(), on ? "cuProfilerStart" : "cuProfilerStop", "profiling");
 }
 
 std::uint64_t CudaDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) {

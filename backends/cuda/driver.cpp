@@ -34,6 +34,10 @@ Driver::Driver() : library(open_driver()) {
 #define TANDEM_LOAD(name, arguments) load(name, #name);
     TANDEM_CUDA_ENTRIES(TANDEM_LOAD)
 #undef TANDEM_LOAD
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a name
+#define TANDEM_FIND(name, arguments) name = reinterpret_cast<decltype(name)>(library.find(#name));
+    TANDEM_CUDA_OPTIONAL_ENTRIES(TANDEM_FIND)
+#undef TANDEM_FIND
     if (const auto code = cuInit(0); code != 0)
         throw DeviceError(
             fmt::format("cuda: the driver is there, but cuInit failed with {}", describe(code)));

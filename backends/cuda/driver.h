@@ -36,6 +36,7 @@ enum DeviceAttribute : int {
     max_threads_per_block = 1,
     max_shared_per_block = 8,
     multiprocessor_count = 16,
+    max_threads_per_multiprocessor = 39,
     capability_major = 75,
     capability_minor = 76
 };
@@ -86,6 +87,12 @@ enum FunctionAttribute : int { function_max_threads = 0, function_shared_bytes =
     ENTRY(cuLaunchKernel, (Function, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned,   \
                            Stream, void**, void**))
 
+// Entry points that the adaptor does without where a driver has none of them.
+#define TANDEM_CUDA_OPTIONAL_ENTRIES(ENTRY)                                                                  \
+    ENTRY(cuOccupancyMaxActiveBlocksPerMultiprocessor, (int*, Function, int, std::size_t))                   \
+    ENTRY(cuProfilerStart, ())                                                                               \
+    ENTRY(cuProfilerStop, ())
+
 /// The driver's entry points.
 struct Driver {
     /// Loads libcuda.so.1 and starts it. Throws DeviceError: one sentence on what is missing.
@@ -94,6 +101,7 @@ struct Driver {
 // NOLINTNEXTLINE(bugprone-macro-parentheses): a declaration
 #define TANDEM_DECLARE(name, arguments) Result(*name) arguments = nullptr;
     TANDEM_CUDA_ENTRIES(TANDEM_DECLARE)
+    TANDEM_CUDA_OPTIONAL_ENTRIES(TANDEM_DECLARE) ///< null where the driver has none
 #undef TANDEM_DECLARE
 
     Library library;

@@ -88,6 +88,7 @@ Image Nvrtc::compile(const KernelSource& source, const Defines& defines, int arc
         "-prec-div=true",
         "-prec-sqrt=true",
         "-ftz=false",
+        "-lineinfo", // for profilers: the same code, with sections beside it that name files and lines
         "-diag-suppress=177"}; // a kernel file has more functions than each entry needs
     if (machine_code) options.emplace_back("--ptxas-options=-v");
     for (const auto& [name, value] : defines) options.push_back(fmt::format("-D{}={}", name, value));

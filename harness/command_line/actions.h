@@ -17,6 +17,7 @@ Action add_run(CLI::App& app);
 Action add_check(CLI::App& app);
 Action add_isolated(CLI::App& app); ///< for --isolate: see isolated_command()
 Action add_accuracy(CLI::App& app);
+Action add_profile(CLI::App& app);
 Action add_compare(CLI::App& app);
 Action add_simulate(CLI::App& app);
 Action add_export(CLI::App& app);

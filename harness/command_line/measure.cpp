@@ -29,6 +29,8 @@ auto sets_of(const std::vector<std::string>& texts, const RunOptions& options) {
     return sets;
 }
 
+constexpr auto trace_help = "write the timeline of a frame, the middle one, of the first finished cell: JSON "
+                            "for ui.perfetto.dev or chrome://tracing";
 constexpr auto scene_help = "NAME, NAME:par=value,..., a scene description (.json) or a recording (.frames)";
 
 /// What is measured: the scene's meshes and frames, and the cells.
@@ -218,6 +220,7 @@ Action add_run(CLI::App& app) {
                    "write the first finished cell's candidate pairs as CSV");
     app.add_option("--dump-contacts", options.dump_contacts,
                    "write the first finished cell's contacts as CSV");
+    app.add_option("--trace", options.trace, trace_help);
     app.add_flag("!--no-count", options.count, "leave out the replay that counts work");
     app.add_flag("!--no-check", options.check, "do not compare with the reference");
     add_check_afresh(app, options);
@@ -258,6 +261,28 @@ Action add_accuracy(CLI::App& app) {
     return [given] {
         given->options.run.request.sets = sets_of(given->sets, given->options.run);
         return accuracy_command(given->options);
+    };
+}
+
+/// The truth has nothing to do with it.
+Action add_profile(CLI::App& app) {
+    auto given = std::make_shared<Given<ProfileOptions>>();
+    auto& options = given->options;
+    auto& run = options.run;
+    run.truth = TruthAmount::none;
+    app.add_option("scene", run.scene, scene_help);
+    add_run_options(app, run, given->sets);
+    for (const auto* name : {"--truth", "--truth-contacts"}) app.remove_option(app.get_option(name));
+    add_sampling(app, run);
+    app.add_option("--ceilings", options.ceilings,
+                   "take the device's ceilings from this file of 'tandem devices --measure --out'; measured "
+                   "when left out");
+    app.add_option("--trace", run.trace, trace_help);
+    app.add_flag("--all", options.all, "a row for every kernel; those below 1 % are one when left out");
+    app.add_flag("!--no-check", run.check, "do not compare with the reference");
+    return [given] {
+        given->options.run.request.sets = sets_of(given->sets, given->options.run);
+        return profile_command(given->options);
     };
 }
 

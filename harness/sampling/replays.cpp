@@ -2,6 +2,7 @@
 #include "harness/sampling/replays.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <limits>
 
 namespace tandem {
@@ -29,12 +30,19 @@ void add_kernels(const Trace& trace, std::map<std::string, KernelSample>& kernel
         auto& kernel = kernels[event.label];
         kernel.device_ns += std::max<std::int64_t>(event.device_ns, 0);
         ++kernel.launches;
+        kernel.stage = event.stage;
+        kernel.groups = std::max(kernel.groups, event.groups);
+        kernel.group_size = event.group_size;
+        if (event.kernel != nullptr) kernel.facts = *event.kernel;
     }
 }
 
 } // namespace
 
-Replays::Replays(const Cell& cell, const Scene& scene, const FrameRange& range) : cell_(cell), range_(range) {
+Replays::Replays(const Cell& cell, const Scene& scene, const FrameRange& range)
+    : cell_(cell), range_(range), name_(describe(cell)) {
+    for (auto frame = range.first; frame <= range.last; ++frame)
+        frame_names_.push_back(fmt::format("frame {}", frame));
     for (auto* device : cell.devices) device->set_clocks(Clocks::off);
     const auto begin = Clock::now();
     session_ = cell.algorithm->prepare(cell.devices, scene, cell.settings);
@@ -55,11 +63,13 @@ std::uint64_t Replays::submissions() const {
 InstrumentedReplay Replays::instrumented() {
     session_->reset();
     for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
+    const ranges::Range cell(name_.c_str());
     InstrumentedReplay replay;
-    for (const auto& frame : range_.frames) {
+    for (std::size_t i = 0; i < range_.frames.size(); ++i) {
+        const ranges::Range frame(frame_names_[i].c_str());
         wait();
         const auto begin = Clock::now();
-        const auto result = session_->run(frame);
+        const auto result = session_->run(range_.frames[i]);
         replay.frame_ns.push_back(since(begin));
         auto& sum = replay.stages.emplace_back();
         std::int64_t span = 0; // the longest of the devices, -1 when one does not tell
@@ -75,6 +85,19 @@ InstrumentedReplay Replays::instrumented() {
     }
     for (auto* device : cell_.devices) device->set_clocks(Clocks::off);
     return replay;
+}
+
+std::vector<Trace> Replays::traced(std::size_t index) {
+    const ranges::Range cell(name_.c_str());
+    session_->reset();
+    for (std::size_t i = 0; i <= index; ++i) session_->run(range_.frames[i]);
+    for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
+    const ranges::Range frame(frame_names_[index].c_str());
+    const auto result = session_->run(range_.frames[index]);
+    std::vector<Trace> traces;
+    for (auto* device : cell_.devices) traces.push_back(device->finish());
+    for (auto* device : cell_.devices) device->set_clocks(Clocks::off);
+    return traces;
 }
 
 std::map<std::string_view, std::uint64_t> Replays::counted() {

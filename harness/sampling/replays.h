@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "backends/ranges.h"
 #include "harness/frames.h"
 #include "harness/sampling/measurement.h"
 
@@ -20,9 +21,11 @@ public:
     /// span.
     template<class Look>
     TimedReplay timed(const Look& look) {
+        const ranges::Range cell(name_.c_str());
         session_->reset();
         TimedReplay replay;
         for (std::size_t i = 0; i < range_.frames.size(); ++i) {
+            const ranges::Range frame(frame_names_[i].c_str());
             wait();
             const auto begin = std::chrono::steady_clock::now();
             const auto result = session_->run(range_.frames[i]);
@@ -33,6 +36,9 @@ public:
     }
     /// With a clock around every command.
     InstrumentedReplay instrumented();
+    /// The commands of frame number `index` of the range on each device, with a clock around them, once the
+    /// frames up to it have run without.
+    std::vector<Trace> traced(std::size_t index);
     /// By counter of the algorithm, over the frames. The kernels that count are others: what they take is not
     /// measured, and the session is of no use for times afterwards.
     std::map<std::string_view, std::uint64_t> counted();
@@ -45,6 +51,8 @@ private:
 
     const Cell& cell_;
     const FrameRange& range_;
+    std::string name_;                     ///< of the cell, for profilers
+    std::vector<std::string> frame_names_; ///< of its frames
     std::unique_ptr<Session> session_;
     std::int64_t prepare_ns_ = 0;
 };

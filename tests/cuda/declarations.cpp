@@ -6,6 +6,7 @@
 #include "tests/cuda/callable_as.h"
 
 #include <cuda.h>
+#include <cudaProfiler.h>
 #include <nvrtc.h>
 
 #include <gtest/gtest.h>
@@ -19,6 +20,7 @@ TEST(Declarations, EntriesOfTheDriver) {
         callable_as(static_cast<int(*) arguments>(nullptr), static_cast<decltype(&::name)>(nullptr)))        \
         << #name;
     TANDEM_CUDA_ENTRIES(TANDEM_COMPARE)
+    TANDEM_CUDA_OPTIONAL_ENTRIES(TANDEM_COMPARE)
 }
 
 TEST(Declarations, EntriesOfNvrtc) {
@@ -32,6 +34,8 @@ TEST(Declarations, Attributes) {
     EXPECT_EQ(int{cuda::max_threads_per_block}, int{CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_BLOCK});
     EXPECT_EQ(int{cuda::max_shared_per_block}, int{CU_DEVICE_ATTRIBUTE_MAX_SHARED_MEMORY_PER_BLOCK});
     EXPECT_EQ(int{cuda::multiprocessor_count}, int{CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT});
+    EXPECT_EQ(int{cuda::max_threads_per_multiprocessor},
+              int{CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_MULTIPROCESSOR});
     EXPECT_EQ(int{cuda::capability_major}, int{CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR});
     EXPECT_EQ(int{cuda::capability_minor}, int{CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR});
     EXPECT_EQ(int{cuda::function_max_threads}, int{CU_FUNC_ATTRIBUTE_MAX_THREADS_PER_BLOCK});

@@ -94,6 +94,22 @@ TEST_F(CudaDevice, FramesTakeNothingFromTheHeap) {
 }
 
 /// Memory that a command in flight reads may be freed by whoever catches the error.
+TEST_F(CudaDevice, TellsAProfilerWhereToBegin) {
+    const auto starts = entry_of_stub<unsigned long()>("stub_profiler_starts");
+    const auto stops = entry_of_stub<unsigned long()>("stub_profiler_stops");
+    const auto before = std::pair{starts(), stops()};
+    device->profile(true);
+    EXPECT_EQ(std::pair(starts(), stops()), std::pair(before.first + 1, before.second));
+    device->profile(false);
+    EXPECT_EQ(std::pair(starts(), stops()), std::pair(before.first + 1, before.second + 1));
+    EXPECT_EQ(current(), nullptr);
+}
+
+/// The stub holds 1,024 work-items of the 2,048 that there is room for.
+TEST_F(CudaDevice, TellsTheOccupancyOfAKernel) {
+    EXPECT_EQ(test::compile(*device, "do_nothing", {{"GROUP_SIZE", "64"}}).facts().occupancy, 0.5);
+}
+
 TEST_F(CudaDevice, AnErrorWaitsForWhatIsInFlight) {
     const auto waits = entry_of_stub<unsigned long()>("stub_waits");
     const StageScope scope(*device, Stage::traverse);

@@ -43,6 +43,7 @@ bool capturing = false;
 Work captured;            ///< since a capture began
 unsigned long graphs = 0; ///< that live
 unsigned long graph_launches = 0, commands_in_graphs = 0;
+unsigned long profiler_starts = 0, profiler_stops = 0;
 
 /// At once, or whenever the graph is launched that is being captured.
 template<class Command>
@@ -119,11 +120,9 @@ Result cuDeviceGetUuid_v2(unsigned char* uuid, DeviceHandle) {
     return 0;
 }
 Result cuDeviceGetAttribute(int* value, int what, DeviceHandle) {
-    static const std::map<int, int> values{{max_threads_per_block, 1024},
-                                           {max_shared_per_block, 49152},
-                                           {multiprocessor_count, 2},
-                                           {capability_major, 9},
-                                           {capability_minor, 0}};
+    static const std::map<int, int> values{
+        {max_threads_per_block, 1024},          {max_shared_per_block, 49152}, {multiprocessor_count, 2},
+        {max_threads_per_multiprocessor, 2048}, {capability_major, 9},         {capability_minor, 0}};
     *value = values.at(what);
     return 0;
 }
@@ -274,6 +273,18 @@ Result cuFuncGetAttribute(int* value, int what, Function) {
     return 0;
 }
 #ifndef STUB_OLD
+Result cuOccupancyMaxActiveBlocksPerMultiprocessor(int* groups, Function, int threads, std::size_t) {
+    *groups = 1024 / threads;
+    return in_context();
+}
+Result cuProfilerStart() {
+    ++profiler_starts;
+    return in_context();
+}
+Result cuProfilerStop() {
+    ++profiler_stops;
+    return in_context();
+}
 Result cuLaunchKernel(Function, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned,
                       Stream stream, void**, void**) {
     run([] { launched = true; });
@@ -287,6 +298,8 @@ unsigned long stub_calls(Stream stream, Context context) {
     return found == calls.end() ? 0 : found->second;
 }
 unsigned long stub_waits() { return waits; }
+unsigned long stub_profiler_starts() { return profiler_starts; }
+unsigned long stub_profiler_stops() { return profiler_stops; }
 unsigned long stub_graphs() { return graphs; }
 unsigned long stub_graph_launches() { return graph_launches; }
 unsigned long stub_commands_in_graphs() { return commands_in_graphs; }

@@ -17,4 +17,7 @@ unsigned long stub_waits();
 unsigned long stub_graphs();
 unsigned long stub_graph_launches();
 unsigned long stub_commands_in_graphs();
+/// How often a profiler was told to begin and to end.
+unsigned long stub_profiler_starts();
+unsigned long stub_profiler_stops();
 }

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/cost.h"
+
+#include "algorithms/bounds/geometry.h"
+#include "algorithms/parameters/table.h"
+#include "algorithms/pipeline.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+namespace tandem {
+
+namespace {
+
+double number(std::size_t value) { return static_cast<double>(value); }
+
+/// Marks, of which it counts those that are new.
+class Marks {
+public:
+    bool add(std::size_t place) {
+        if (place >= marked_.size()) marked_.resize(place + 1);
+        if (marked_[place]) return false;
+        marked_[place] = true;
+        ++count_;
+        return true;
+    }
+    double count() const { return number(count_); }
+
+private:
+    std::vector<bool> marked_;
+    std::size_t count_ = 0;
+};
+
+double total(const std::vector<Marks>& all) {
+    return std::accumulate(all.begin(), all.end(), 0.0,
+                           [](double sum, const Marks& marks) { return sum + marks.count(); });
+}
+
+} // namespace
+
+double FrameFacts::counted(std::string_view counter) const {
+    const auto found = work.find(counter);
+    return found == work.end() ? 0 : found->second;
+}
+
+/// The published data path refits everything and shares nothing.
+SceneFacts::SceneFacts(const Scene& scene, const Settings& settings) {
+    const auto geometry = geometry_of(settings);
+    const bool published = is_published(settings);
+    bodies = number(scene.bodies.size());
+    k = geometry.k;
+    real = number(real_bytes(geometry));
+    pose_bytes = number(pose_reals(geometry)) * real;
+    row_bytes = 4 * number(words_of(settings[parameters::pair_layout]));
+    pair_bytes = settings[parameters::output] == Output::pairs ? row_bytes : 0;
+    std::set<std::uint32_t> meshes, shared; // whose tetrahedra, and whose vertices, are counted
+    for (const auto& body : scene.bodies) {
+        if (body.fixed && !published) continue;
+        const auto& mesh = scene.meshes[body.mesh];
+        tetrahedra.push_back(static_cast<std::uint32_t>(mesh.tetrahedra.size()));
+        const bool first = meshes.insert(body.mesh).second;
+        if (first) mesh_tetrahedra.push_back(tetrahedra.back());
+        if (first || published) tetrahedron_rows += number(mesh.tetrahedra.size());
+        if (body.deformable || published || shared.insert(body.mesh).second)
+            vertex_rows += number(mesh.vertices.size());
+    }
+    moving = number(tetrahedra.size());
+}
+
+void add_touched(FrameFacts& facts, const Scene& scene, const Settings& settings,
+                 std::span<const Pair> pairs) {
+    const bool published = is_published(settings);
+    // Of each body, and of each mesh behind the bodies.
+    std::vector<Marks> bodies(scene.bodies.size()), rows(bodies.size() + scene.meshes.size()), vertices(rows);
+    const auto touch = [&](std::uint32_t body, std::uint32_t tetrahedron) {
+        if (!bodies[body].add(tetrahedron)) return;
+        const auto& is = scene.bodies[body];
+        const auto of_mesh = scene.bodies.size() + is.mesh;
+        rows[published ? body : of_mesh].add(tetrahedron);
+        for (const auto vertex : scene.meshes[is.mesh].tetrahedra[tetrahedron])
+            vertices[published || is.deformable ? body : of_mesh].add(vertex);
+    };
+    for (const auto& pair : pairs) {
+        touch(pair.body_a, pair.tet_a);
+        touch(pair.body_b, pair.tet_b);
+    }
+    facts.touched += total(bodies);
+    facts.touched_rows += total(rows);
+    facts.touched_vertices += total(vertices);
+}
+
+KernelCost walk_cost(const SceneFacts& scene, std::string_view entry) {
+    return {
+        entry,
+        [=](const FrameFacts& f) { return scene.dop() * f.touched + scene.pair_bytes * f.candidate_pairs; },
+        [k = scene.k](const FrameFacts& f) { return k * f.counted(counters::bvtt_nodes.name); },
+        "nodes of tetrahedra in candidate pairs in, candidate pairs out; k a node pair tested"};
+}
+
+std::vector<KernelCost> Traversal::do_costs(const Scene&, const Settings&) const { return {}; }
+
+std::vector<KernelCost> Traversal::costs(const Scene& scene, const Settings& settings) const {
+    const SceneFacts facts(scene, settings);
+    auto all = do_costs(scene, settings);
+    for (const auto& common :
+         {broad_costs(facts), contact_costs(facts), answer_costs(facts), published_costs(facts)})
+        all.insert(all.end(), common.begin(), common.end());
+    return all;
+}
+
+} // namespace tandem

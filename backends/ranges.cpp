@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#include "backends/ranges.h"
+
+#ifdef TANDEM_NVTX
+// The header alone: whatever records ranges puts its functions behind it when the first one begins.
+#include <nvtx3/nvToolsExt.h>
+#endif
+
+namespace tandem::ranges {
+
+#ifdef TANDEM_NVTX
+namespace {
+
+/// The project's own, so that a filter tells its ranges from a library's.
+nvtxDomainHandle_t domain() {
+    static const auto handle = nvtxDomainCreateA("tandem");
+    return handle;
+}
+
+} // namespace
+
+bool available() { return true; }
+
+void push(const char* name) {
+    nvtxEventAttributes_t attributes{};
+    attributes.version = NVTX_VERSION;
+    attributes.size = NVTX_EVENT_ATTRIB_STRUCT_SIZE;
+    attributes.messageType = NVTX_MESSAGE_TYPE_ASCII;
+    attributes.message.ascii = name;
+    nvtxDomainRangePushEx(domain(), &attributes);
+}
+
+void pop() { nvtxDomainRangePop(domain()); }
+#else
+bool available() { return false; }
+void push(const char*) {}
+void pop() {}
+#endif
+
+} // namespace tandem::ranges

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+// `tandem profile`.
+#include "harness/ceilings.h"
+#include "harness/commands.h"
+#include "harness/inputs.h"
+#include "harness/interrupt.h"
+#include "harness/job.h"
+#include "harness/profile/output.h"
+#include "harness/standard_streams.h"
+#include "harness/timeline/trace_frame.h"
+#include "scenes/error.h"
+
+#include <algorithm>
+#include <deque>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <random>
+
+namespace tandem {
+
+namespace {
+
+/// Pairs of a frame that are looked at for what they touch: more take long to sort, and 16 bytes each.
+constexpr std::uint64_t most_pairs_looked_at = std::uint64_t{1} << 27;
+
+/// What the candidate pairs of the mean frame touch, in a replay of its own.
+void look_at_pairs(profile::Profile& profile, const Cell& cell, const Job& job, const Measurement& m) {
+    if (m.candidate_pairs.empty() || m.settings[parameters::output] != Output::pairs
+        || *std::ranges::max_element(m.candidate_pairs) > most_pairs_looked_at)
+        return;
+    auto& facts = profile.facts;
+    Replays replays(cell, job.scene, job.range);
+    replays.timed([&](std::size_t, const FrameResult& result) {
+        add_touched(facts, job.scene, m.settings, result.download());
+    });
+    const auto frames = static_cast<double>(job.range.frames.size());
+    for (auto* sum : {&facts.touched, &facts.touched_rows, &facts.touched_vertices}) *sum /= frames;
+}
+
+/// A profile of every cell of a job.
+class Profiling {
+public:
+    explicit Profiling(const ProfileOptions& options);
+    int go();
+
+private:
+    void find_ceilings();
+    void end(const Outcome& outcome, const Sampling& sampling);
+    void print(const Cell& cell, const Measurement& m, const profile::Profile& profile) const;
+
+    const ProfileOptions& options_;
+    const RunOptions& run_;
+    std::vector<BackendReport> backends_;
+    Job job_;
+    Progress progress_;
+    std::map<const Device*, nlohmann::ordered_json> ceilings_;
+    std::optional<RecordFile> file_;
+    std::optional<TimelineFile> trace_;
+    const Cell* traced_ = nullptr; ///< the first that finished
+    int code_ = 0;
+};
+
+Profiling::Profiling(const ProfileOptions& options)
+    : options_(options), run_(options.run), backends_(discover()), progress_(run_.quiet) {
+    auto request = run_.request;
+    if (request.devices.empty()) request.devices.emplace_back("opencl:0");
+    check_required(backends_, run_.require);
+    auto cells = plan(request, open_devices(run_, backends_, request.devices));
+    drop_repeated(cells);
+    for (const auto& cell : cells)
+        if (cell.devices.size() > 1)
+            throw InputError(
+                fmt::format("{}: a profile is of one device; name them apart, D,E", describe(cell)));
+    job_ = open_job(run_, std::move(cells));
+}
+
+/// Before cells are measured: a file that has none had better be known then.
+void Profiling::find_ceilings() {
+    for (const auto& cell : job_.cells) {
+        auto* device = cell.devices.front();
+        if (ceilings_.contains(device)) continue;
+        progress_.show(fmt::format("ceilings of {}", device->info().id));
+        ceilings_[device] = options_.ceilings.empty()
+                                ? ceilings_record(device->info(), measure_ceilings(*device))
+                                : profile::read_ceilings(options_.ceilings, device->info());
+        progress_.clear();
+    }
+}
+
+void Profiling::print(const Cell& cell, const Measurement& m, const profile::Profile& profile) const {
+    const auto& a = m.agreement;
+    const auto frames = static_cast<double>(m.breakdowns.back().frame_ns.size());
+    double device = 0;
+    for (const auto& kernel : profile.kernels) device += kernel.ns.median;
+    put("\n{}\n{:.4g} us a frame; {:.4g} us in kernels, where each has a clock around it\n\n{}answer: {}\n",
+        describe(cell), median_ns(m) * 1e-3 / frames, device * 1e-3, profile_table(profile, options_.all),
+        a.frames == 0 ? "not checked" : (a.ok() ? "right" : "WRONG"));
+}
+
+/// A cell that needs no more rounds, or has failed.
+void Profiling::end(const Outcome& outcome, const Sampling& sampling) {
+    progress_.clear();
+    const auto& cell = outcome.sampler->cell();
+    const auto& m = outcome.sampler->measurement();
+    const bool measured = outcome.failure.empty();
+    if (!measured) tell("tandem: {}: {}\n", describe(cell), outcome.failure);
+    profile::Profile profile;
+    const auto& ceilings = ceilings_.at(cell.devices.front());
+    const auto& settings = m.settings.empty() ? cell.settings : m.settings;
+    profile.ceilings = &ceilings;
+    profile.ceilings_from = options_.ceilings.empty() ? "measured" : options_.ceilings;
+    profile.limits = profile::limits_of(ceilings, static_cast<int>(settings[parameters::k]));
+    profile.facts = profile::mean_frame(m);
+    if (measured && !m.breakdowns.empty()) {
+        look_at_pairs(profile, cell, job_, m);
+        profile.kernels =
+            profile_kernels(m, profile.facts, cell.algorithm->costs(job_.scene, settings), profile.limits);
+        print(cell, m, profile);
+        if (traced_ == nullptr) traced_ = &cell;
+    }
+    const auto record = make_record(cell, job_.scene, job_.range, m, outcome, sampling);
+    const bool recorded = file_->append_or_tell(profile_record(record, profile));
+    code_ = std::max(code_, !measured || !recorded ? 3 : (m.agreement.ok() ? 0 : 1));
+}
+
+int Profiling::go() {
+    file_.emplace(run_.out);
+    trace_.emplace(run_.trace);
+    print_scene(job_.scene, job_.range);
+    find_ceilings();
+    const Interrupt interrupt;
+    References references(job_.scene, job_.range);
+    std::deque<CellSampler> samplers;
+    std::vector<CellSampler*> group;
+    for (const auto& cell : job_.cells)
+        group.push_back(&samplers.emplace_back(cell, job_.scene, job_.range, references));
+    RoundsListener listener;
+    listener.progress = [&](std::string_view text) { progress_.show(text); };
+    listener.stop = [&] { return file_->failed() || Interrupt::asked(); };
+    listener.finished = [&](const Outcome& outcome, const Sampling& sampling) { end(outcome, sampling); };
+    CheckOptions check{run_.check, true, nullptr};
+    check.progress = listener.progress;
+    const bool interrupted = sample_group(group, check, {run_.repeat, run_.noise, run_.seconds},
+                                          run_.seed ? *run_.seed : std::random_device{}(), listener);
+    if (traced_ != nullptr && *trace_ && !file_->failed()) trace_->write(trace_frame(*traced_, job_));
+    if (traced_ != nullptr) put("\n{}", profile::profile_legend());
+    if (!run_.out.empty()) put("{} records appended to {}\n", file_->appended(), run_.out);
+    return interrupted ? 3 : code_;
+}
+
+} // namespace
+
+int profile_command(const ProfileOptions& options) { return Profiling(options).go(); }
+
+} // namespace tandem
