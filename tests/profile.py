@@ -107,6 +107,11 @@ class Profile(Case):
         self.bad("no ceilings of opencl:0", "profile", *self.cell("--device", "opencl:0", "--ceilings", ceilings))
         self.bad("is no record of ceilings", "profile", *self.cell("--device", "host", "--ceilings", self.good))
 
+    def test_a_limit_of_memory_is_for_cells(self):
+        status, text, errors = tandem("profile", *self.cell("--device", "host", "--memory", "4MB"))
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertIn("answer: right", text)
+
     def test_bad_use(self):
         out = self.work / "same.json"
         self.bad("named for two outputs", "profile", *self.cell("--device", "host", "--out", out, "--trace", out))

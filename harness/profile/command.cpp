@@ -37,6 +37,15 @@ void look_at_pairs(profile::Profile& profile, const Cell& cell, const Job& job, 
     for (auto* sum : {&facts.touched, &facts.touched_rows, &facts.touched_vertices}) *sum /= frames;
 }
 
+/// Measured ones, of all of the device: its limit of memory is for cells.
+nlohmann::ordered_json measured_ceilings(Device& device) {
+    const auto limit = device.memory_limit();
+    device.set_memory_limit(Device::no_memory_limit);
+    auto record = ceilings_record(device.info(), measure_ceilings(device));
+    device.set_memory_limit(limit);
+    return record;
+}
+
 /// A profile of every cell of a job.
 class Profiling {
 public:
@@ -81,7 +90,7 @@ void Profiling::find_ceilings() {
         if (ceilings_.contains(device)) continue;
         progress_.show(fmt::format("ceilings of {}", device->info().id));
         ceilings_[device] = options_.ceilings.empty()
-                                ? ceilings_record(device->info(), measure_ceilings(*device))
+                                ? measured_ceilings(*device)
                                 : profile::read_ceilings(options_.ceilings, device->info());
         progress_.clear();
     }
