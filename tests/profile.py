@@ -219,7 +219,9 @@ cp {self.work}/raw.csv "$2"
         self.assertEqual([entry for entry, c in counters.items() if c], ["certify_pairs"])
         self.assertEqual((records[0]["counters"]["by"], records[0]["counters"]["kernels"]), ("Nsight Compute 2025.3.0.0", 3))
         words = (self.work / "arguments").read_text().split()
-        self.assertEqual(words[-2:], ["--profile", "1"])
+        self.assertEqual(words[-4:], ["--set", "submission=each", "--profile", "1"])
+        self.assertTrue(records[0]["counters"]["command"].startswith("ncu --csv "), records[0]["counters"])
+        self.assertIn("tandem run --mesh", records[0]["counters"]["command"])
         self.assertFalse({"--repeat", "--all", "--out"} & set(words))
         self.assertTrue({"--clock-control", "--profile-from-start", "run"} < set(words))
 
