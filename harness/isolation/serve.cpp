@@ -35,7 +35,7 @@ void work(LocalSampler& sampler, const IsolatedWork& asked, json& answer) {
 
 json answer_to(const json& asked) {
     auto request = request_of(asked);
-    const auto backends = discover();
+    const auto backends = open_backends(std::array{request.devices}, {});
     const auto group = open_devices(request.options, backends, std::array{request.devices}).front();
     const auto& traversal = algorithm(request.algorithm);
     const auto job = open_job(

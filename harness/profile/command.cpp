@@ -6,6 +6,7 @@
 #include "harness/interrupt.h"
 #include "harness/job.h"
 #include "harness/profile/output.h"
+#include "harness/sampling/local_sampler.h"
 #include "harness/standard_streams.h"
 #include "harness/timeline/trace_frame.h"
 #include "scenes/error.h"
@@ -70,9 +71,10 @@ private:
 };
 
 Profiling::Profiling(const ProfileOptions& options)
-    : options_(options), run_(options.run), backends_(discover()), progress_(run_.quiet) {
+    : options_(options), run_(options.run), progress_(run_.quiet) {
     auto request = run_.request;
     if (request.devices.empty()) request.devices.emplace_back("opencl:0");
+    backends_ = open_backends(request.devices, run_.require);
     check_required(backends_, run_.require);
     auto cells = plan(request, open_devices(run_, backends_, request.devices));
     drop_repeated(cells);
@@ -138,8 +140,8 @@ int Profiling::go() {
     print_scene(job_.scene, job_.range);
     find_ceilings();
     const Interrupt interrupt;
-    References references(job_.scene, job_.range);
-    std::deque<CellSampler> samplers;
+    References references(job_.scene, job_.range, checks_folder(run_));
+    std::deque<LocalSampler> samplers;
     std::vector<CellSampler*> group;
     for (const auto& cell : job_.cells)
         group.push_back(&samplers.emplace_back(cell, job_.scene, job_.range, references));
