@@ -20,27 +20,27 @@ struct RunOptions {
     std::vector<std::string> meshes; ///< --mesh: instead of a scene
     std::vector<std::string> poses;  ///< --pose "tx ty tz qw qx qy qz", in the order of the meshes
     Request request;
-    std::string frames;                     ///< "FIRST:LAST" or "N"; empty: all frames of the scene
-    double choose_seconds = 10;             ///< of replays that auto may take to choose for a cell
-    bool choose_afresh = false;             ///< auto: look for no choice that was kept
-    std::optional<std::size_t> repeat;      ///< samples of each cell; none: until they suffice
-    std::optional<double> noise;            ///< what suffices: this width of the median's interval, relative
-    double seconds = 10;                    ///< or so many seconds of a cell
-    std::optional<std::uint64_t> seed;      ///< of the order of cells in a round; none: by chance
-    std::size_t profile = 0;                ///< replay so often, with nothing else, for a profiler
-    bool dry_run = false;                   ///< list the cells and measure none
-    bool resume = false;                    ///< leave out what `out` has
-    bool isolate = false;                   ///< a process of its own for each cell's check and each round
-    double timeout = 0;                     ///< seconds of such a process; 0: no limit
-    std::string out;                        ///< append records to this file; empty: none are written
-    std::string dump_pairs, dump_contacts;  ///< CSV files of the first cell that finishes; empty: none
-    std::string trace;                      ///< timeline of a frame of the first cell that finishes; empty: none
-    std::vector<std::string> require;       ///< devices or backends whose absence is a failure
-    bool check = true;                      ///< compare answers with the reference
-    bool check_afresh = false;              ///< with what is computed now, not with what was kept
-    bool count = true;                      ///< replay once more with kernels that count their work
-    TruthAmount truth = TruthAmount::pairs; ///< compare answers with the exact truth
-    std::size_t truth_contacts = 0;         ///< of this many pairs a frame at most; 0: all
+    std::string frames;                    ///< "FIRST:LAST" or "N"; empty: all frames of the scene
+    double choose_seconds = 10;            ///< of replays that auto may take to choose for a cell
+    bool choose_afresh = false;            ///< auto: look for no choice that was kept
+    std::optional<std::size_t> repeat;     ///< samples of each cell; none: until they suffice
+    std::optional<double> noise;           ///< what suffices: this width of the median's interval, relative
+    double seconds = 10;                   ///< or so many seconds of a cell
+    std::optional<std::uint64_t> seed;     ///< of the order of cells in a round; none: by chance
+    std::size_t profile = 0;               ///< replay so often, with nothing else, for a profiler
+    bool dry_run = false;                  ///< list the cells and measure none
+    bool resume = false;                   ///< leave out what `out` has
+    bool isolate = false;                  ///< a process of its own for each cell's check and each round
+    double timeout = 0;                    ///< seconds of such a process; 0: no limit
+    std::string out;                       ///< append records to this file; empty: none are written
+    std::string dump_pairs, dump_contacts; ///< CSV files of the first cell that finishes; empty: none
+    std::string trace;                ///< timeline of a frame of the first cell that finishes; empty: none
+    std::vector<std::string> require; ///< devices or backends whose absence is a failure
+    bool check = true;                ///< compare answers with the reference
+    bool check_afresh = false;        ///< with what is computed now, not with what was kept
+    bool count = true;                ///< replay once more with kernels that count their work
+    TruthAmount truth = TruthAmount::pairs;   ///< compare answers with the exact truth
+    std::size_t truth_contacts = 0;           ///< of this many pairs a frame at most; 0: all
     Degenerate degenerate = Degenerate::flat; ///< what becomes of flawed tetrahedra
     std::optional<std::size_t> threads;       ///< of device host, as setting threads
     std::size_t memory = 0;                   ///< bytes that each device may give; 0: what it has

@@ -36,7 +36,7 @@ std::vector<std::string> long_options(const CLI::App& app) {
 }
 
 std::vector<const CLI::App*> every_command(const CLI::App& app) {
-    return app.get_subcommands([](const CLI::App*) { return true; });
+    return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }
 
 /// What may stand before any command.

@@ -25,8 +25,9 @@ std::string nearest_option(const std::string& name, const std::vector<std::strin
     return name.size() > 1 && begun != names.end() ? *begun : nearest(name, names);
 }
 
+/// Those of the help.
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-    return app.get_subcommands([](const CLI::App*) { return true; });
+    return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }
 
 /// "--algoritm=x" behind a command, or before any.
