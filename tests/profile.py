@@ -38,7 +38,7 @@ class Profile(Case):
     CELL = ("--mesh", "good", "--mesh", "good", "--algorithm", "tiled", "--set", "k=6", "--repeat", 2)
 
     def cell(self, *more):
-        words = [self.good if word == "good" else word for word in self.CELL]
+        words = [self.good if word == "good" else word for word in (self.CELL[:-2] if "--profile" in more else self.CELL)]
         return [*words, *sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")}), *more]
 
     def valid(self, path):

@@ -27,6 +27,15 @@ nlohmann::json answer_of(const ChildResult& result) {
 
 } // namespace
 
+/// This process has the GPU open as well, and leaves it alone meanwhile.
+void IsolatedSampler::leave_out_this_process(std::uint32_t first) {
+    for (auto& round : state_.measurement.conditions)
+        if (round.round >= first)
+            for (auto* reading : {&round.before, &round.after})
+                for (auto& gpu : reading->gpus)
+                    if (gpu.processes && *gpu.processes > 0) --*gpu.processes;
+}
+
 void IsolatedSampler::ask(const char* work, const CheckOptions& options, std::size_t samples) {
     const auto request = request_json(options_, *this, {work, samples, options});
     const auto answer =
@@ -34,7 +43,9 @@ void IsolatedSampler::ask(const char* work, const CheckOptions& options, std::si
     if (answer.contains("input_error")) throw InputError(answer["input_error"].get<std::string>());
     if (answer.contains("checked") && !answer["checked"].is_null()) {
         take_checked(state_, answer["checked"], cell_);
+        const auto first = state_.rounds;
         take_rounds(state_, answer["rounds"]);
+        leave_out_this_process(first);
     }
     if (answer.contains("failure")) throw DeviceError(answer["failure"].get<std::string>());
 }

@@ -22,6 +22,7 @@ private:
     void do_release() override {}
 
     void ask(const char* work, const CheckOptions& options, std::size_t samples);
+    void leave_out_this_process(std::uint32_t first);
 
     const RunOptions& options_;
 };

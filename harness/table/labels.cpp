@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <map>
 #include <set>
 
 namespace tandem {
@@ -37,20 +38,52 @@ std::string text_of(const Parts& parts, const std::string& name) {
 /// What decides which pairs are candidates, whatever the algorithm: cells that differ in it are not compared.
 constexpr std::array geometry_names{"k", "axes", "precision", "rounding", "placement"};
 
-/// Other settings tell cells of one preset apart: it says what its own are.
-bool counts_between(const Part& part, const Parts& a, const Parts& b) {
-    return !part.is_setting || std::ranges::find(geometry_names, part.name) != geometry_names.end()
-           || (a[0].text == b[0].text && a[1].text == b[1].text);
+bool is_geometry(const Part& part) {
+    return std::ranges::find(geometry_names, part.name) != geometry_names.end();
 }
 
-std::set<std::string> varying_names(const std::vector<Parts>& rows) {
+/// Among which rows a part tells one apart: settings those of one algorithm and preset, which says what its
+/// own are.
+std::string scope_of(const Part& part, const Parts& parts) {
+    return part.is_setting && !is_geometry(part) ? parts[0].text + " " + parts[1].text : "";
+}
+
+/// The texts that rows have for a part of a name within a scope; empty for a row without it.
+class Texts {
+public:
+    explicit Texts(const std::vector<Parts>& rows) {
+        for (const auto& parts : rows) {
+            for (const auto& part : parts) texts_[{scope_of(part, parts), part.name}].insert(part.text);
+            for (const auto* name : geometry_names) texts_[{"", name}].insert(text_of(parts, name));
+        }
+    }
+    bool vary(const Part& part, const Parts& parts) const {
+        return texts_.at({scope_of(part, parts), part.name}).size() > 1;
+    }
+
+private:
+    std::map<std::pair<std::string, std::string>, std::set<std::string>> texts_;
+};
+
+std::set<std::string> varying_names(const Parts& parts, const Texts& texts) {
     std::set<std::string> varying;
-    for (const auto& a : rows)
-        for (const auto& b : rows)
-            for (const auto& part : a)
-                if (counts_between(part, a, b) && text_of(b, part.name) != part.text)
-                    varying.insert(part.name);
+    for (const auto& part : parts)
+        if (texts.vary(part, parts)) varying.insert(part.name);
     return varying;
+}
+
+/// Of one setting that was swept every value is said; of several those that the preset does not have, or
+/// labels would be longer than lines.
+bool is_in_label(const Part& part, const Parts& parts, const std::set<std::string>& varying) {
+    if (part.name == "algorithm") return true;
+    if (!varying.contains(part.name)) return false;
+    if (!part.is_setting || is_geometry(part) || part.is_said) return true;
+    return std::ranges::count_if(parts,
+                                 [&](const Part& other) {
+                                     return other.is_setting && !is_geometry(other)
+                                            && varying.contains(other.name);
+                                 })
+           == 1;
 }
 
 void append_word(std::string& text, const std::string& word) {
@@ -62,15 +95,20 @@ void append_word(std::string& text, const std::string& word) {
 RowLabels row_labels(std::span<const Row> rows) {
     std::vector<Parts> all;
     for (const auto& row : rows) all.push_back(parts_of(row));
-    const auto varying = varying_names(all);
-    RowLabels labels;
-    std::set<std::string> said{"algorithm"};
+    std::set<std::string> said{"algorithm"}, varying_anywhere;
+    std::vector<std::set<std::string>> varying;
+    const Texts texts(all);
     for (const auto& parts : all) {
+        varying.push_back(varying_names(parts, texts));
+        varying_anywhere.insert(varying.back().begin(), varying.back().end());
+    }
+    RowLabels labels;
+    for (std::size_t i = 0; i < all.size(); ++i) {
         auto& label = labels.of.emplace_back();
-        for (const auto& part : parts) {
-            if (part.name == "algorithm" || varying.contains(part.name))
+        for (const auto& part : all[i]) {
+            if (is_in_label(part, all[i], varying[i]))
                 append_word(label, part.text);
-            else if (part.is_said && said.insert(part.name).second)
+            else if (!varying_anywhere.contains(part.name) && part.is_said && said.insert(part.name).second)
                 labels.common += (labels.common.empty() ? "" : ", ")
                                  + (part.name == "preset" ? "preset " + part.text : part.text);
         }
