@@ -36,7 +36,6 @@ void LocalSampler::begin_session() {
     replays_.emplace(cell_, scene_, range_);
     state_.prepare_ns = replays_->prepare_ns();
     state_.replay_ns = -1;
-    warmed_ns_ = 0;
 }
 
 bool LocalSampler::makes_contacts() const {
@@ -134,8 +133,6 @@ void LocalSampler::do_check(const CheckOptions& options) {
     const auto replay =
         replays_->timed([&](std::size_t index, const FrameResult& result) { look(index, result, options); });
     state_.replay_ns = replay.total_ns();
-    // But for the first frame, in which kernels are compiled and buffers grow.
-    warmed_ns_ = state_.replay_ns - replay.frame_ns.front();
     is_compiled_ = true;
     for (const auto* device : cell_.devices) out_.device_bytes += device->bytes_allocated();
     take_kernels();
@@ -151,7 +148,7 @@ void LocalSampler::compile() {
 /// Clocks rise, caches fill and buffers grow in the first replays of a session, and while the host did
 /// something else clocks may have fallen.
 void LocalSampler::warm_up() {
-    auto spent = warmed_ns_;
+    std::int64_t spent = 0;
     auto least = std::numeric_limits<std::int64_t>::max();
     for (int without_gain = 0; without_gain < patience && spent < longest_warming_ns;) {
         state_.replay_ns = replays_->timed([](std::size_t, const FrameResult&) {}).total_ns();

@@ -40,8 +40,7 @@ private:
     std::optional<Replays> replays_;
     ConditionReader conditions_;
     Geometry geometry_;
-    bool is_compiled_ = false;   ///< by a replay of this process
-    std::int64_t warmed_ns_ = 0; ///< that the session has replayed when warming up begins
+    bool is_compiled_ = false; ///< by a replay of this process
 };
 
 } // namespace tandem

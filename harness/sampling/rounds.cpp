@@ -90,6 +90,9 @@ bool Group::begin(Outcome& outcome) {
     return goes_on(outcome, true, [&] {
         if (!cell.state().is_checked()) cell.check(check_);
         if (cell.measurement().breakdowns.empty()) {
+            // Checking has let the device wait for the host, frame by frame: the first round had better begin
+            // as every other does.
+            if (next_samples(cell) > 0) cell.release();
             listener_.progress(fmt::format("{}: first round", name(outcome)));
             cell.round(next_samples(cell));
         }
