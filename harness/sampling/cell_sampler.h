@@ -27,8 +27,7 @@ public:
     explicit CellSampler(const Cell& cell, CellState state = {}) : cell_(cell), state_(std::move(state)) {}
     virtual ~CellSampler() = default;
 
-    /// The first session: every answer against the reference and the truth. The first round may go on with
-    /// it.
+    /// The first session: every answer against the reference and the truth.
     void check(const CheckOptions& options) { do_check(options); }
     /// A round of so many samples, which may be 0.
     void round(std::size_t samples) { do_round(samples); }
