@@ -22,6 +22,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// The first compiles what a device compiles at a first launch, sends what does not move and makes buffers
+/// grow; the second is the sequence of every later frame, and the third makes a graph of it where there are
+/// such.
+constexpr int warming_replays = 3;
+
 /// A scene with dynamics, with the settings of --dynamics over its own.
 Scene open_scene(const SimulateOptions& options) {
     if (options.scene.empty()) throw InputError("no scene; name one, see 'tandem scenes'");
@@ -109,10 +114,16 @@ void run_steps(const SimulateOptions& options, std::size_t last, Simulation& sim
 
 } // namespace
 
-ContactFinder::ContactFinder(const Cell& cell, const Scene& scene, bool timed)
-    : session_(cell.algorithm->prepare(cell.devices, scene, cell.settings)),
-      host_broad_(cell.settings[parameters::broad] != Broad::device) {
+ContactFinder::ContactFinder(const Cell& cell, const Scene& scene, const Frame& start, bool timed)
+    : host_broad_(cell.settings[parameters::broad] != Broad::device) {
+    const auto begin = Clock::now();
+    session_ = cell.algorithm->prepare(cell.devices, scene, cell.settings);
     for (auto* device : session_->devices()) device->set_clocks(timed ? Clocks::on : Clocks::off);
+    std::vector<ContactPoint> contacts;
+    for (int replay = 0; replay < warming_replays; ++replay) find(start, contacts);
+    session_->reset();
+    take();
+    warm_up_ns_ = since(begin);
 }
 
 void ContactFinder::find(const Frame& frame, std::vector<ContactPoint>& contacts) {
@@ -156,7 +167,8 @@ int simulate_command(const SimulateOptions& options) {
     totals.session = session.number();
     // A run that breaks off leaves a line that says how far it came and why it ended.
     try {
-        ContactFinder finder(cell, scene, !options.record.empty());
+        ContactFinder finder(cell, scene, simulation.frame(), !options.record.empty());
+        totals.warm_up_ns = finder.warm_up_ns();
         run_steps(options, last, simulation, finder, session, file, totals);
     } catch (const std::exception& error) {
         if (file.failed())

@@ -20,22 +20,27 @@ struct Search {
 /// time themselves.
 class ContactFinder {
 public:
-    ContactFinder(const Cell& cell, const Scene& scene, bool timed);
+    /// Warms up: prepares a session and finds the contacts of `start` a few times, so that no step is timed
+    /// that compiles or makes buffers grow to what `start` needs. Nothing of it is part of a search.
+    ContactFinder(const Cell& cell, const Scene& scene, const Frame& start, bool timed);
 
     /// A Detect; what it did is added to search() until that is taken.
     void find(const Frame& frame, std::vector<ContactPoint>& contacts);
     /// What was done since the last call: all searches of one step.
     Search take();
+    std::int64_t warm_up_ns() const { return warm_up_ns_; }
 
 private:
     std::unique_ptr<Session> session_;
     bool host_broad_;
+    std::int64_t warm_up_ns_ = 0;
     Search search_;
 };
 
 /// Sums over the steps of a run.
 struct RunTotals {
     std::size_t first = 0, steps = 0; ///< of this process, which may have gone on from a checkpoint
+    std::int64_t warm_up_ns = 0;      ///< before the first step, in no other time
     std::int64_t wall_ns = 0, initialize_ns = 0, broad_ns = 0, narrow_ns = 0;
     std::int64_t reduce_ns = 0, assemble_ns = 0, solve_ns = 0, move_ns = 0;
     std::vector<std::size_t> found, kept; ///< by step

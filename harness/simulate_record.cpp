@@ -121,6 +121,7 @@ Json run_record(const Cell& cell, const Scene& scene, const RunTotals& t, const 
                        {"reduce", t.reduce_ns}, {"assemble", t.assemble_ns}, {"solve", t.solve_ns},
                        {"move", t.move_ns}};
     json["initialize_device_ns"] = t.initialize_ns;
+    json["warm_up_ns"] = t.warm_up_ns;
     json["environment"] = record_environment();
     return json;
 }
@@ -140,7 +141,8 @@ std::string run_table(const RunTotals& t, bool timed) {
         {"solver", t.solve_ns},
         {"motion", t.move_ns},
         {"other", other}};
-    auto text = fmt::format("{} steps in {:.3f} s\n", t.steps, static_cast<double>(t.wall_ns) * 1e-9);
+    auto text = fmt::format("{} steps in {:.3f} s, after {:.3f} s of warm-up\n", t.steps,
+                            static_cast<double>(t.wall_ns) * 1e-9, static_cast<double>(t.warm_up_ns) * 1e-9);
     for (const auto& [name, ns] : std::span(rows).subspan(timed ? 0 : 1))
         text += fmt::format("  {:<36} {:>10.3f} s {:>6.2f} %\n", name, static_cast<double>(ns) * 1e-9,
                             t.wall_ns == 0 ? 0.0
