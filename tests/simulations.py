@@ -70,30 +70,27 @@ class Simulations(Case):
         self.assertEqual(runs[0]["dynamics"]["warm_start"], "1")
 
     def test_warm_up_comes_before_step_0(self):
-        """Nothing is compiled and no buffer grows in a step that the start's contacts would have had do so: with capacities of
-        1 the commands of step 0 are those of step 1, whether kernels lie in a cache or not, and also in a run that goes on."""
-        small = [word for name in ("pair_capacity", "contact_capacity") for word in ("--set", f"{name}=1")]
+        """Nothing is compiled and no buffer grows in step 0: with capacities of 1 it walks once, by the same commands whether
+        kernels lie in a cache or not. Frames stay the same, also of a run that went on, which warms up again."""
+        scene, small = "block:bodies=3", ("--set", "pair_capacity=1", "--set", "contact_capacity=1")
         cold = {name: str(self.work / "cold") for name in ("XDG_CACHE_HOME", "POCL_CACHE_DIR", "TANDEM_KERNEL_CACHE")}
-        whole = self.work / "warm-host.frames"
-        self.simulate(ARCH, "--steps", 4, "-o", whole)
-        commands = []
+        whole, first_steps = self.work / "warm-host.frames", []
+        self.simulate(scene, "--steps", 4, "-o", whole)
         for name in ("cold", "again"):
             frames, record = self.work / f"warm-{name}.frames", self.work / f"simulation-warm-{name}.jsonl"
-            run = lambda *more: tandem("simulate", ARCH, "--device", "opencl:0", "-o", frames, "--record", record, *small, *more,
-                                       environment={**cold, "POCL_EXTRA_BUILD_FLAGS": "-cl-opt-disable"})
             for more in (("--steps", 2), ("--steps", 4, "--resume")):
-                status, text, errors = run(*more)
+                status, text, errors = tandem("simulate", scene, "--device", "opencl:0", "-o", frames, "--record", record, *small, *more,
+                                              environment={**cold, "POCL_EXTRA_BUILD_FLAGS": "-cl-opt-disable"})
                 self.assertEqual((status, errors), (0, []), text)
                 self.assertRegex(text, r"2 steps in [0-9.]+ s, after [0-9.]+ s of warm-up")
             steps, runs = self.lines(record)
-            self.assertEqual(([run["first_step"] for run in runs], [run["steps"] for run in runs]), ([0, 2], [2, 2]))
+            self.assertEqual([(run["first_step"], run["steps"]) for run in runs], [(0, 2), (2, 2)])
             self.assertGreater(min(run["warm_up_ns"] for run in runs), 0)
             self.assertEqual(frames.read_bytes(), whole.read_bytes())
-            commands.append([{stage: [values[what] for what in ("launches", "waits")] for stage, values in step["stages"].items()}
-                             for step in steps])
-            self.assertEqual([own for own in commands[-1] if own != commands[0][0]], [])
-            self.assertGreater(commands[-1][0]["contact"][0], 0)
-        self.assertGreater(steps[0]["contacts_found"], 1)
+            self.assertGreater(steps[0]["contacts_found"], 1)
+            self.assertEqual(steps[0]["stages"]["traverse"]["launches"], 1)
+            first_steps.append({stage: (own["launches"], own["waits"], own["bytes"]) for stage, own in steps[0]["stages"].items()})
+        self.assertEqual(first_steps[0], first_steps[1])
 
     def test_killed_at_any_moment(self):
         whole, broken = self.work / "whole.frames", self.work / "broken.frames"
