@@ -9,6 +9,11 @@ install(TARGETS tandem EXPORT tandem-targets ARCHIVE DESTINATION ${CMAKE_INSTALL
 install(TARGETS tandem-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES scripts/completion/tandem.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME tandem)
 install(FILES scripts/completion/_tandem DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+# What reads records and exports, under names that are the project's own.
+foreach(script tables figures render convert_records)
+  string(REPLACE _ - name tandem-${script})
+  install(PROGRAMS scripts/${script} DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME ${name})
+endforeach()
 set(public_headers
   backends/device.h backends/trace.h backends/registry.h backends/host/host_device.h backends/opencl/opencl_device.h
   backends/cuda/cuda_device.h

@@ -134,7 +134,7 @@ class Accuracy(Case):
         empty = self.work / "no.jsonl"
         empty.write_text("")
         done = subprocess.run(["/usr/bin/python3", SOURCE / "scripts/figures", empty, folder], capture_output=True, text=True)
-        self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1))
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1))
         self.assertIn("tandem accuracy", done.stderr)
 
     def test_accuracy_draws(self):

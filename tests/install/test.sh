@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # test.sh BUILD_FOLDER: installs into an empty folder, builds a stranger's programs against it and runs them: on the
 # host, inside an application's OpenCL queue, and inside an application's CUDA stream, on the stub of the driver and
-# on the driver where there is one. All have to find the same pairs. Completion lies where shells look for it.
+# on the driver where there is one. All have to find the same pairs. Completion lies where shells look for it, and scripts
+# that read records beside the program.
 set -euo pipefail
 build=$(cd "$1" && pwd)
 here=$(cd "$(dirname "$0")" && pwd)
@@ -23,6 +24,27 @@ cmake --build "$work/consumer" >"$work/log" || { cat "$work/log" >&2; exit 1; }
 "$work/prefix/bin/tandem" scenes >/dev/null
 "$work/prefix/bin/tandem" completion bash | cmp - "$work/prefix/share/bash-completion/completions/tandem"
 "$work/prefix/bin/tandem" completion zsh | cmp - "$work/prefix/share/zsh/site-functions/_tandem"
+
+# Scripts beside the program, which need nothing else of the tree: what records and exports they are given, they read.
+(
+  cd "$work"
+  records=$here/../../results/cpu/walks.jsonl
+  prefix/bin/tandem-tables "$records" | grep -q '^### pile:bodies=64'
+  cp "$records" walks.jsonl
+  prefix/bin/tandem-convert-records walks.jsonl >/dev/null
+  cmp "$records" walks.jsonl
+  prefix/bin/tandem accuracy hard:touch:pairs=4,together=2 --device host --set k=8,18 --repeat 1 --truth-contacts 1 --quiet --out truth.jsonl >/dev/null
+  prefix/bin/tandem-figures truth.jsonl drawn >/dev/null
+  [ -s drawn/bars.svg ]
+  sed 's/"schema":3/"schema":2/' walks.jsonl >old.jsonl
+  status=0 && prefix/bin/tandem-tables old.jsonl 2>said || status=$?
+  [ "$status" = 2 ] && grep -q 'tandem-convert-records' said
+  if /usr/bin/python3 -c 'import numpy, PIL' 2>/dev/null; then
+    prefix/bin/tandem export plates --frames 0 --glb plates.glb >/dev/null
+    prefix/bin/tandem-render plates.glb plates --at 0 >/dev/null
+    [ -s plates-0.png ]
+  fi
+)
 
 expected=$("$work/consumer/consumer")
 echo "host: $expected"

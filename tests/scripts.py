@@ -1,0 +1,277 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""scripts.py PROGRAM SOURCE: scripts that read records and exports (tables, figures, convert_records, render): over every committed
+file, over cells of every status, and over files that are no such files; and the committed microbenchmarks."""
+import json
+import lzma
+import math
+import os
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import unittest
+
+from program import LONG, SMALL, SOURCE, Case, sets, tandem
+
+COMMITTED = sorted([*SOURCE.glob("results/*/*.jsonl"), *SOURCE.glob("results/*/*.jsonl.xz")])
+READERS = ("tables", "figures", "convert_records")
+
+
+def script(name, *arguments, address_space=None):
+    """(exit code, standard output, lines of standard error)."""
+    limit = (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space))) if address_space else None
+    done = subprocess.run(["/usr/bin/python3", SOURCE / "scripts" / name, *map(str, arguments)], capture_output=True, text=True, timeout=500,
+                          preexec_fn=limit, cwd=SOURCE)
+    return done.returncode, done.stdout, done.stderr.splitlines()
+
+
+def committed(name):
+    return [json.loads(line) for line in (SOURCE / "results" / name).read_text().splitlines()]
+
+
+def rows_of(text):
+    """Cells of every line of a Markdown table."""
+    return [[cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]] for line in text.splitlines() if line.startswith("| ")]
+
+
+class Scripts(Case):
+    def file(self, name, records):
+        path = self.work / name
+        path.write_text("".join(json.dumps(record) + "\n" for record in records))
+        return path
+
+    def said(self, name, *arguments, **options):
+        code, text, errors = script(name, *arguments, **options)
+        self.assertEqual((code, errors), (0, []), (name, arguments, text[-500:]))
+        return text
+
+    def refused(self, name, expected, *arguments, code=2):
+        status, text, errors = script(name, *arguments)
+        self.assertEqual((status, len(errors)), (code, 1), (name, arguments, errors, text))
+        self.assertTrue(errors[0].startswith(f"{name}: "), errors)
+        for part in [expected] if isinstance(expected, str) else expected:
+            self.assertIn(part, errors[0])
+
+    def table(self, *records):
+        return self.said("tables", self.file("shown.jsonl", records))
+
+    def sample(self, path):
+        """A copy of a committed file, in the short form of a few of its lines."""
+        data = lzma.open(path).read() if path.suffix == ".xz" else path.read_bytes()
+        lines = data.splitlines(keepends=True)
+        lines = lines if LONG else [*lines[:-1:-(-len(lines) // 12)], lines[-1]]
+        copy = self.work / path.name
+        copy.write_bytes(lzma.compress(b"".join(lines)) if path.suffix == ".xz" else b"".join(lines))
+        return copy, [json.loads(line) for line in lines]
+
+    def test_every_committed_file(self):
+        self.assertGreater(len(COMMITTED), 20)
+        for path in COMMITTED:
+            copy, records = self.sample(path)
+            with self.subTest(path.name):
+                text = self.said("tables", copy)
+                cells = [record for record in records if "key" in record]
+                self.assertEqual(len([row for row in rows_of(text) if "±" in "".join(row)]), len(cells))
+                for part in text.split("\n### "):
+                    labels = [tuple(row[:2]) for row in rows_of(part) if "±" in "".join(row)]
+                    self.assertEqual(len(labels), len(set(labels)), part[:200])
+                drawn = [record for record in cells if (record["error"] or {}).get("truth")]
+                if drawn:
+                    self.assertIn(f"{len(drawn)} records drawn", self.said("figures", copy, self.work / "drawn"))
+                else:
+                    self.refused("figures", "no record has errors against the truth", copy, self.work / "drawn")
+                before = copy.read_bytes()
+                self.assertIn(f"{len(records)} lines of the newest schema", self.said("convert_records", copy))
+                unpack = lzma.decompress if path.suffix == ".xz" else bytes
+                same = [json.loads(line) for line in unpack(copy.read_bytes()).splitlines()]
+                self.assertEqual(same, [json.loads(line) for line in unpack(before).splitlines()])
+                self.refused("render", "no .glb", copy, self.work / "picture")
+
+    def test_files_that_are_none(self):
+        record = committed("cpu/walks.jsonl")[0]
+        packed = lzma.compress(json.dumps(record).encode())
+        bad = {"text.jsonl": (b"no record\n", ":1 is no JSON"), "number.jsonl": (b"3\n", ":1 is no record of tandem"),
+               "list.jsonl": (b"[]\n", ":1 is no record of tandem"), "other.jsonl": (b'{"a": 1}\n', ":1 is no record of tandem"),
+               "deep.jsonl": (b"[" * 100000, ":1 is no JSON"), "bytes.jsonl": (bytes(range(256)), "is no JSON"),
+               "nan.jsonl": (json.dumps({**record, "total_ns": math.nan}).encode(), ":1 is no JSON"),
+               "torn.jsonl": (json.dumps(record).encode() + b'\n{"schema":3,"key"', ":2 is no JSON"),
+               "old.jsonl": (json.dumps({**record, "schema": 2}).encode(), [":1 is a record of schema 2, not 3", "scripts/convert_records"]),
+               "newer.jsonl": (json.dumps({**record, "schema": 9}).encode(), ":1 is a record of schema 9, not 3"),
+               "empty.jsonl": (b"", "empty, no records"), "empty.jsonl.xz": (lzma.compress(b""), "empty, no records"),
+               "half.jsonl.xz": (packed[:len(packed) // 2], "half.jsonl.xz: "), "odd.jsonl.xz": (packed[:300] + b"odd" + packed[303:], "odd.jsonl.xz: ")}
+        for name, (data, expected) in bad.items():
+            path = self.work / name
+            path.write_bytes(data)
+            for reader in ("tables", "figures"):
+                with self.subTest(f"{reader} {name}"):
+                    self.refused(reader, expected, path, *([self.work / "none"] if reader == "figures" else []))
+        for name in ("text.jsonl", "list.jsonl", "bytes.jsonl", "torn.jsonl", "empty.jsonl", "half.jsonl.xz", "odd.jsonl.xz", "deep.jsonl"):
+            with self.subTest(f"convert_records {name}"):
+                self.refused("convert_records", name, self.work / name)
+                self.assertEqual((self.work / name).read_bytes(), bad[name][0])
+        for reader in READERS:
+            more = [self.work / "none"] if reader == "figures" else []
+            self.refused(reader, ["absent.jsonl", "No such file"], self.work / "absent.jsonl", *more)
+            self.refused(reader, ["directory"], self.work, *more)
+        self.assertFalse((self.work / "none").exists())
+        for fields in ("settings", "devices", "total_ns", "stages", "environment", "frames", "sampling"):
+            for value in ({}, [], 3, "x"):
+                broken = {**record, fields: value}
+                code, _, errors = script("tables", self.file("broken.jsonl", [broken]))
+                self.assertLessEqual((code, len(errors)), (2, 1), (fields, value, errors))
+                self.assertNotIn("Traceback", "".join(errors))
+
+    def test_cells_that_failed_or_are_wrong_are_shown_and_never_ranked(self):
+        plates = {record["algorithm"] + record["preset"]: record for record in committed("h200/plates.jsonl")
+                  if record["settings"]["k"] == "8" and record["devices"][0]["id"] == "cuda:0"}
+        first, second, third = (plates[name] for name in ("chunkedresident", "chunkedpublished", "gproximityfair"))
+        fastest = {**first, "status": "wrong", "agreement": {**first["agreement"], "missing": 7, "extra": 0}}
+        lost = {**second, "status": "failed", "failure": "the device | was\nlost", "total_ns": None, "breakdown_ns": None, "stages": {}, "work": None,
+                "agreement": None, "conditions": None}
+        rows = rows_of(self.table(fastest, lost, third))
+        self.assertEqual([row[-1] for row in rows[:4]], ["notes", "WRONG: 7 missing", "failed: the device \\| was lost", ""])
+        self.assertEqual([cell for row in rows for cell in row if "**" in cell], [])
+        self.assertEqual(len(rows), 4) # no ratios
+        rows = rows_of(self.table(third, lost, first))
+        self.assertEqual(["**" in row[-2] for row in rows[:4]], [False, False, False, True])
+        self.assertEqual(rows[4][0], "gProximity / chunked")
+
+    def test_labels_have_what_differs(self):
+        def cell(device=0, commit=None, asked=None, **settings):
+            record = json.loads(json.dumps(committed("h200/tiled.jsonl")[0]))
+            record["settings"].update(settings)
+            record["asked"] = asked or {}
+            record["devices"] = [{**record["devices"][0], "id": f"cuda:{d}", "hardware": f"{d}" * 16} for d in ([device] if isinstance(device, int) else device)]
+            record["environment"]["commit"] = commit or record["environment"]["commit"]
+            return record
+        name_of = lambda *records: [tuple(row[:2]) for row in rows_of(self.table(*records))[1:len(records) + 1]]
+        plain = name_of(cell())[0]
+        self.assertEqual(plain[1], "cuda:0")
+        self.assertEqual(name_of(cell(threads="1"), cell(threads="4")), [(f"{plain[0]} threads=1", "cuda:0"), (f"{plain[0]} threads=4", "cuda:0")])
+        self.assertEqual(name_of(cell(), cell((0, 1))), [plain, (plain[0], "cuda:0+cuda:1")])
+        # Groups that a device takes otherwise are no other cell.
+        self.assertEqual(name_of(cell(0, group_size="64"), cell(1, asked={"group_size": "64"}, group_size="1")), [plain, (plain[0], "cuda:1")])
+        self.assertEqual([name for name, _ in name_of(cell(), cell(commit="a" * 40), cell(commit="a" * 40))],
+                         [f"{plain[0]} @{cell()['environment']['commit'][:7]}", f"{plain[0]} @aaaaaaa", f"{plain[0]} @aaaaaaa (2)"])
+        other = cell()
+        other["devices"][0].update(name="Another", hardware="f" * 16)
+        self.assertEqual([device for _, device in name_of(cell(), other)], ["cuda:0 NVIDIA H200", "cuda:0 Another"])
+        self.assertEqual(self.table(cell(rounding="safe"), cell(rounding="published")).count("\n### "), 2)
+        chosen = next(record for record in committed("h200/auto.jsonl") if record["chosen"])
+        self.assertIn(f"chosen by auto of {chosen['chosen']['of']}", self.table(chosen))
+
+    def test_other_kinds(self):
+        profile = self.work / "profile.jsonl"
+        status, text, errors = tandem("profile", "plates", "--frames", 60, "--algorithm", "tiled", "--set", "k=6", "--repeat", 2, "--device", "host", "--out", profile,
+                                      *sets({name: SMALL[name] for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")}))
+        self.assertEqual((status, errors), (0, []), text)
+        kernels = json.loads(profile.read_text())["kernels"]
+        steps = committed("h200/simulation-funnel.jsonl")
+        text = self.said("tables", profile, SOURCE / "results/h200/ceilings.jsonl", self.file("simulation.jsonl", [*steps, *steps[:5]]))
+        rows = {row[0]: row for row in rows_of(text)}
+        ceilings = [row[2] for row in rows_of(text) if row[0].startswith("cuda:0")]
+        for kernel in kernels:
+            self.assertEqual(rows[kernel["entry"]][1:2], [kernel["stage"]])
+            self.assertIn("±", rows[kernel["entry"]][2])
+        self.assertEqual(ceilings, ["3908"])
+        self.assertIn("150", rows[steps[-1]["scene"]["key"]])
+        self.assertIn("5 steps of a simulation that has not ended", text)
+        self.refused("figures", "no record has errors", profile, self.work / "none")
+
+    def test_long_files(self):
+        """A hundred thousand cells of one scene, each with a setting of its own, in bounded memory."""
+        record = {**committed("h200/plates.jsonl")[0], "kernels": [], "conditions": None, "kernel_times": {}, "breakdown_ns": None, "device_span_ns": None}
+        record["total_ns"] = {**record["total_ns"], "frames": [], "samples": []}
+        path, count = self.work / "long.jsonl", 100000 if LONG else 4000
+        with open(path, "w") as out:
+            for i in range(count):
+                settings = {**record["settings"], "threads": str(i)}
+                algorithm, preset = (("chunked", "resident"), ("gproximity", "fair"))[i % 2]
+                out.write(json.dumps({**record, "algorithm": algorithm, "preset": preset, "settings": settings}) + "\n")
+        text = self.said("tables", path, address_space=1 << 29)
+        self.assertEqual(text.count("threads="), count + count) # a row each; half of them as ratios, of two cells
+        self.assertIn("against the fastest chunked cell alone", text)
+        path.unlink()
+
+    def test_figures_say_what_they_lack(self):
+        records = [record for record in committed("h200/accuracy.jsonl") if record["settings"]["contact_rule"] == "opposing"][:3]
+        truth = {**records[0]["error"]["truth"], "contacts": None}
+        bare = [{**record, "error": {**record["error"], "truth": truth}} for record in records]
+        nothing = {**truth, **{name: 0 for name in ("touching", "overlapping", "missed_touching", "missed_overlapping", "candidates", "false")}, "candidate_ratio": None}
+        met = [{**record, "error": {**record["error"], "truth": nothing}} for record in records]
+        hard = [{**record, "scene": {**record["scene"], "name": "hard", "key": f"hard:touch:difficulty={i}"}} for i, record in enumerate(met)]
+        swept = [{**record, "settings": {**record["settings"], "group_size": str(32 << i), "placement": "exact" if i else "rounded"}} for i, record in enumerate(bare)]
+        folder = self.work / "lacking"
+        for name, cells, figure, expected in (("bare", bare, "pareto", "nothing to draw: no cell was asked for this"),
+                                              ("one", bare[:1], "pareto", "one cell"),
+                                              ("met", met, "bars", "nothing to draw: no pairs meet"),
+                                              ("hard", hard, "cliffs", "nothing to draw: no pairs meet"),
+                                              ("swept", swept, "bars", "group_size=64"), ("swept", swept, "pareto", "placement=exact")):
+            with self.subTest(name):
+                self.said("figures", self.file(f"{name}.jsonl", cells), folder)
+                self.assertIn(expected, (folder / f"{figure}.svg").read_text())
+        self.assertIn("group_size", (folder / "pareto.csv").read_text().splitlines()[0].split(","))
+        wrong = {**records[1], "status": "wrong"}
+        self.assertIn("1 records drawn", text := self.said("figures", self.file("wrong.jsonl", [records[0], wrong]), folder))
+        self.assertIn("1 failed, wrong or untimed left out", text)
+        self.refused("figures", "the last argument", self.file("a.jsonl", records), self.work / "a.jsonl")
+        if os.geteuid() != 0:
+            folder.chmod(0o500)
+            self.refused("figures", "cannot write", self.work / "a.jsonl", folder, code=3)
+
+    def test_pictures(self):
+        try:
+            subprocess.run(["/usr/bin/python3", "-c", "import numpy, PIL"], check=True, capture_output=True)
+        except subprocess.CalledProcessError:
+            self.skipTest("no numpy or no Pillow")
+        glb, out = self.work / "plates.glb", self.work / "picture"
+        status, text, errors = tandem("export", "plates", "--frames", "0:10", "--every", 5, "--glb", glb)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual(self.said("render", glb, out, "--at", "0,1", "--size", "64x48"), f"{out}-0.png\n{out}-1.png\n")
+        data, bad = glb.read_bytes(), self.work / "bad.glb"
+        for length, expected in ((0, "empty"), (3, "no .glb"), (4, "ends within"), (16, "ends within"), (100, "ends within"), (len(data) - 1, "ends within")):
+            bad.write_bytes(data[:length])
+            self.refused("render", expected, bad, out)
+        for name, text in (("list", "[]"), ("no nodes", "{}"), ("empty", '{"nodes": []}'), ("far", '{"nodes":[{"mesh":7}],"meshes":[]}'), ("text", "{")):
+            text = text.encode().ljust(64)
+            bad.write_bytes(data[:12] + len(text).to_bytes(4, "little") + b"JSON" + text + (4).to_bytes(4, "little") + b"BIN\0" + bytes(4))
+            with self.subTest(name):
+                self.refused("render", "bad.glb: ", bad, out)
+        self.refused("render", "No such file", self.work / "absent.glb", out)
+        self.refused("render", "cannot be written", glb, self.work / "absent/picture", code=3)
+        for option in ("--at=2", "--at=x", "--size=0x4", "--size=9", "--zoom=0", "--box=1,2", "--from=0,0,0", "--cut=x", "--unheard-of"):
+            self.refused("render", option.split("=")[0], glb, out, option)
+
+    def test_committed_microbenchmarks(self):
+        """What compare.py of Google Benchmark reads, of every benchmark as often; and nothing that names the machine."""
+        result = json.loads((SOURCE / "results/cpu/bench.json").read_text(), parse_constant=self.fail)
+        context = result["context"]
+        self.assertEqual({"host_name", "executable"} & set(context), set())
+        self.assertRegex(context["commit"], "^[0-9a-f]{40}$")
+        self.assertIs(context["dirty"], False)
+        self.assertGreater(len(context["processor"]), 3)
+        repetitions = {}
+        for one in result["benchmarks"]:
+            self.assertIn(one["run_type"], ("iteration", "aggregate"))
+            self.assertTrue({"name", "run_name", "family_index", "per_family_instance_index", "repetitions"} <= set(one), one)
+            if one["run_type"] == "aggregate":
+                self.assertIn("aggregate_name", one)
+                continue
+            self.assertIn(one["time_unit"], ("ns", "us", "ms", "s"))
+            self.assertGreater(min(one["real_time"], one["iterations"]), 0)
+            self.assertGreaterEqual(one["cpu_time"], 0)
+            repetitions.setdefault(one["name"], []).append(one["repetition_index"])
+        self.assertEqual({tuple(sorted(own)) for own in repetitions.values()}, {tuple(range(10))}) # the U test wants nine
+        self.assertGreater(len(repetitions), 50)
+        compare = shutil.which("compare.py", path="/usr/share/benchmark")
+        if compare and subprocess.run(["/usr/bin/python3", "-c", "import numpy, scipy"], capture_output=True).returncode == 0:
+            file = SOURCE / "results/cpu/bench.json"
+            done = subprocess.run(["/usr/bin/python3", compare, "--no-color", "benchmarks", file, file], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stdout, r"OVERALL_GEOMEAN +\+0.0000")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)
