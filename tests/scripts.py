@@ -203,15 +203,18 @@ class Scripts(Case):
         met = [{**record, "error": {**record["error"], "truth": nothing}} for record in records]
         hard = [{**record, "scene": {**record["scene"], "name": "hard", "key": f"hard:touch:difficulty={i}"}} for i, record in enumerate(met)]
         swept = [{**record, "settings": {**record["settings"], "group_size": str(32 << i), "placement": "exact" if i else "rounded"}} for i, record in enumerate(bare)]
+        many = [{**bare[0], "settings": {**bare[0]["settings"], "group_size": str(i)}} for i in range(205)]
         folder = self.work / "lacking"
         for name, cells, figure, expected in (("bare", bare, "pareto", "nothing to draw: no cell was asked for this"),
                                               ("one", bare[:1], "pareto", "one cell"),
                                               ("met", met, "bars", "nothing to draw: no pairs meet"),
                                               ("hard", hard, "cliffs", "nothing to draw: no pairs meet"),
-                                              ("swept", swept, "bars", "group_size=64"), ("swept", swept, "pareto", "placement=exact")):
+                                              ("swept", swept, "bars", "group_size=64"), ("swept", swept, "pareto", "placement=exact"),
+                                              ("many", many, "bars", "the first 200 of 205 configurations"), ("many", many, "pareto", "(205 values)")):
             with self.subTest(name):
                 self.said("figures", self.file(f"{name}.jsonl", cells), folder)
                 self.assertIn(expected, (folder / f"{figure}.svg").read_text())
+        self.assertRegex((folder / "pareto.svg").read_text(), "and [0-9]+ more") # than a legend has room for
         self.assertIn("group_size", (folder / "pareto.csv").read_text().splitlines()[0].split(","))
         wrong = {**records[1], "status": "wrong"}
         self.assertIn("1 records drawn", text := self.said("figures", self.file("wrong.jsonl", [records[0], wrong]), folder))
