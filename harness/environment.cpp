@@ -61,6 +61,18 @@ std::uint64_t free_memory() {
 }
 
 /// Arguments apart by blanks, in single quotes where they hold one.
+std::string without_folders(std::string_view line) {
+    std::string result;
+    while (!line.empty()) {
+        const auto end = std::min(line.find_first_of(" '=,"), line.size() - 1) + 1;
+        auto word = line.substr(0, end);
+        if (word.front() == '/') word.remove_prefix(word.rfind('/') + 1);
+        result += word;
+        line.remove_prefix(end);
+    }
+    return result;
+}
+
 std::string command_line() {
     std::ifstream file("/proc/self/cmdline", std::ios::binary);
     std::string line;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace tandem {
 
@@ -32,6 +33,9 @@ std::string sources_digest();
 
 /// As it was given, the program without its folder; empty when unknown.
 std::string command_line();
+
+/// A line without the folders of its absolute paths, which say whose machine it was.
+std::string without_folders(std::string_view line);
 
 /// Bytes that this process can still get: the least of what Linux calls available, the rest of its control
 /// group, and the rest of its address space (ulimit -v).

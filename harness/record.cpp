@@ -353,7 +353,7 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["schema"] = record_schema;
     json["key"] = key_of(cell, settings, scene, range);
     json["session"] = session_id();
-    json["command"] = known(command_line());
+    json["command"] = known(without_folders(command_line()));
     json["status"] = status_of(m, failure);
     json["failure"] = known(failure);
     json["algorithm"] = cell.algorithm->name();

@@ -137,6 +137,8 @@ void tell_left_out(const CellGroups& all) {
         tell("tandem: skipped {} impossible combination{}: {}\n", count, count == 1 ? "" : "s", why);
 }
 
+void tell_skipped(const InputError& error) { tell("tandem: skipped a cell: {}\n", error.what()); }
+
 /// A run of the command: its groups of cells, one after the other.
 class Run {
 public:
@@ -150,6 +152,7 @@ private:
     void print(const Job& job, const std::map<const Cell*, CellResult>& results) const;
     int end(int code);
     void leave_out_finished(Job& job);
+    int list_all();
     void list(const Job& job);
 
     const RunOptions& options_;
@@ -269,33 +272,44 @@ Job Run::open(const CellGroup& group, const Unfit& unfit) const {
 }
 
 int Run::go() {
+    if (options_.dry_run) return list_all();
     // A mistake in the last scene had better be known before the first is measured.
     if (all_.groups.size() > 1)
         for (const auto& group : all_.groups) open(group, leave_out);
     const Interrupt interrupt;
     int code = 0;
     for (const auto& group : all_.groups) {
-        auto job =
-            open(group, [](const InputError& error) { tell("tandem: skipped a cell: {}\n", error.what()); });
+        auto job = open(group, tell_skipped);
         open_files();
         leave_out_finished(job);
-        if (!options_.dry_run && job.cells.empty()) continue;
+        if (job.cells.empty()) continue;
         print_scene(job.scene, job.range);
-        if (options_.dry_run) {
-            list(job);
-            continue;
-        }
         choose_cells(job, options_, progress_);
         code = std::max(code, options_.profile > 0 ? profile(job, options_.profile) : measure(job));
         if (interrupted_ || file_->failed()) break;
     }
-    if (options_.profile > 0) return code;
-    if (!options_.dry_run) return end(code);
+    return options_.profile > 0 ? code : end(code);
+}
+
+/// --dry-run: what cannot be opened yet, such as a recording that is to be made, leaves the rest to be seen.
+int Run::list_all() {
+    std::size_t unopened = 0;
+    for (const auto& group : all_.groups) try {
+            auto job = open(group, tell_skipped);
+            open_files();
+            leave_out_finished(job);
+            print_scene(job.scene, job.range);
+            list(job);
+        } catch (const InputError& error) {
+            if (all_.groups.size() == 1) throw;
+            tell("tandem: {} cells cannot be listed: {}\n", group.cells.size(), error.what());
+            ++unopened;
+        }
     put("{} cells, about {:.0f} s of rounds{}{}; checks against the reference and the truth come on top\n",
         listed_, seconds_,
         unknown_ > 0 ? fmt::format(" and {} cells of which nothing is known", unknown_) : "",
         left_out_ > 0 ? fmt::format("; {} more are in {} already", left_out_, options_.out) : "");
-    return 0;
+    return unopened > 0 ? 2 : 0;
 }
 
 } // namespace

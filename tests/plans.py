@@ -93,6 +93,14 @@ class Plans(Case):
         self.assertEqual(len(self.said), 1)
         self.assertIn("skipped a cell: body 0", self.said[0])
 
+    def test_what_cannot_be_opened_yet(self):
+        path = self.plan(scenes=["to-be-made.frames", SMALL])
+        status, text, errors = tandem("run", path, "--dry-run")
+        self.assertEqual((status, len(errors)), (2, 1), errors)
+        self.assertIn("4 cells cannot be listed: ", errors[0])
+        self.assertIn("4 cells, about", text)
+        self.bad("to-be-made.frames", "run", path)
+
     def test_bad_plans(self):
         self.refused("unknown name 'algoritms'; the nearest is 'algorithms'", algoritms=["tiled"])
         self.refused(["/include/0", "unknown name 'scene'; the nearest is 'scenes'"], include=[{"scene": SMALL}])

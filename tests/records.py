@@ -64,6 +64,7 @@ class Records(Case):
                          list(itertools.product(["host", "opencl:0"], ["chunked", "gproximity"])))
         self.assertEqual(len({r["session"] for r in records}), 1)
         self.assertTrue(records[0]["command"].startswith("tandem run plates --frames 20:21 "), records[0]["command"])
+        self.assertNotIn(str(self.work), records[0]["command"])  # folders say whose machine it was
         self.assertEqual({r["status"] for r in records}, {"ok"})
         self.assertEqual(len({json.dumps(r["agreement"]["digest"]) for r in records}), 1)
         self.assertEqual(len({json.dumps(r["agreement"]["contact_digest"]) for r in records}), 1)

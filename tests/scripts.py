@@ -73,7 +73,9 @@ class Scripts(Case):
             with self.subTest(path.name):
                 text = self.said("tables", copy)
                 cells = [record for record in records if "key" in record]
-                self.assertEqual(len([row for row in rows_of(text) if "±" in "".join(row)]), len(cells))
+                rows = [row for row in rows_of(text) if "±" in "".join(row)]
+                kernels = [kernel for record in records if "profile_of" in record for kernel in record["kernels"]]
+                self.assertEqual(len(rows), len(cells) + len(kernels))
                 for part in text.split("\n### "):
                     labels = [tuple(row[:2]) for row in rows_of(part) if "±" in "".join(row)]
                     self.assertEqual(len(labels), len(set(labels)), part[:200])
@@ -163,7 +165,7 @@ class Scripts(Case):
         self.assertIn(f"chosen by auto of {chosen['chosen']['of']}", self.table(chosen))
 
     def test_other_kinds(self):
-        profile = self.work / "profile.jsonl"
+        profile = self.work / "own.jsonl"
         status, text, errors = tandem("profile", "plates", "--frames", 60, "--algorithm", "tiled", "--set", "k=6", "--repeat", 2, "--device", "host", "--out", profile,
                                       *sets({name: SMALL[name] for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")}))
         self.assertEqual((status, errors), (0, []), text)
@@ -246,6 +248,22 @@ class Scripts(Case):
         self.refused("render", "cannot be written", glb, self.work / "absent/picture", code=3)
         for option in ("--at=2", "--at=x", "--size=0x4", "--size=9", "--zoom=0", "--box=1,2", "--from=0,0,0", "--cut=x", "--unheard-of"):
             self.refused("render", option.split("=")[0], glb, out, option)
+
+    def test_the_tables_of_the_pages_are_those_of_the_records(self):
+        plan = SOURCE / "results/h200/plan.jsonl"
+        for page in ("README.md", "results/h200/README.md"):
+            copy = self.work / "page.md"
+            text = (SOURCE / page).read_text()
+            self.assertIn("<!-- answer: ", text)
+            copy.write_text(re.sub(r"(<!-- answer: [a-z ]+ -->).*?<!-- end -->", r"\1 <!-- end -->", text, flags=re.DOTALL))
+            self.assertNotEqual(copy.read_text(), text)
+            self.assertEqual(script("answer", plan, "--write", copy), (0, "", []))
+            self.assertEqual(copy.read_text(), text, page)
+        copy.write_text("<!-- answer: nothing -->\n<!-- end -->\n")
+        for arguments, said in (((plan, "--write", copy), "no table 'nothing'"), ((self.work / "none.jsonl",), "No such file"), ((copy,), "is no record")):
+            status, _, errors = script("answer", *arguments)
+            self.assertEqual((status, len(errors)), (1, 1), errors)
+            self.assertIn(said, errors[0])
 
     def test_committed_microbenchmarks(self):
         """What compare.py of Google Benchmark reads, of every benchmark as often; and nothing that names the machine."""
