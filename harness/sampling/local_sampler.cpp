@@ -12,9 +12,11 @@ namespace tandem {
 namespace {
 
 /// Warming up ends when so many replays have not been faster than the fastest before them by more than this
-/// share: one alone says little where a frame takes a tenth of a millisecond. Or when it has taken so long.
+/// share, since one alone says little where a frame takes a tenth of a millisecond, and so much time has
+/// passed; or when it has taken so long.
 constexpr double falling = 0.02;
 constexpr int patience = 3;
+constexpr std::int64_t least_warming_ns = 5'000'000;
 constexpr std::int64_t longest_warming_ns = 250'000'000;
 
 } // namespace
@@ -150,7 +152,8 @@ void LocalSampler::compile() {
 void LocalSampler::warm_up() {
     std::int64_t spent = 0;
     auto least = std::numeric_limits<std::int64_t>::max();
-    for (int without_gain = 0; without_gain < patience && spent < longest_warming_ns;) {
+    int without_gain = 0;
+    while ((without_gain < patience || spent < least_warming_ns) && spent < longest_warming_ns) {
         state_.replay_ns = replays_->timed([](std::size_t, const FrameResult&) {}).total_ns();
         spent += state_.replay_ns;
         const bool fell = static_cast<double>(state_.replay_ns) < static_cast<double>(least) * (1 - falling);
@@ -182,8 +185,9 @@ void LocalSampler::do_round(std::size_t samples) {
     if (!replays_) begin_session();
     compile();
     if (samples > 0) {
-        warm_up();
+        // Nothing stands between warming up and the samples: reading takes a third of a millisecond.
         RoundConditions conditions{state_.rounds, conditions_.read(), {}};
+        warm_up();
         for (std::size_t i = 0; i < samples; ++i) sample();
         conditions.after = conditions_.read();
         out_.conditions.push_back(std::move(conditions));
