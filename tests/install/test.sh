@@ -29,7 +29,7 @@ cmake --build "$work/consumer" >"$work/log" || { cat "$work/log" >&2; exit 1; }
 (
   cd "$work"
   records=$here/../../results/cpu/walks.jsonl
-  prefix/bin/tandem-tables "$records" | grep -q '^### pile:bodies=64'
+  prefix/bin/tandem-tables "$records" | grep '^### pile:bodies=64' >/dev/null
   cp "$records" walks.jsonl
   prefix/bin/tandem-convert-records walks.jsonl >/dev/null
   cmp "$records" walks.jsonl
@@ -58,7 +58,7 @@ same opencl "$work/consumer/embed_opencl"
 
 stubs=$build/tests/stubs
 LD_LIBRARY_PATH=$stubs/driver TANDEM_NVRTC=$stubs/nvrtc/libnvrtc.so "$work/consumer/embed_cuda"
-if "$work/prefix/bin/tandem" devices | grep -q '^cuda:0'; then
+if "$work/prefix/bin/tandem" devices | grep '^cuda:0' >/dev/null; then
   same cuda "$work/consumer/embed_cuda"
 else
   echo "cuda: no driver here, so only its stub was asked"
