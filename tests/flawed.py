@@ -90,7 +90,7 @@ class Flawed(Case):
 
         meshes = ("--mesh", slivers(self.work / "slivers.msh", 0), "--mesh", slivers(self.work / "others.msh", 5e-5))
         environment = {"OCL_ICD_VENDORS": str(self.work), "MALLOC_ARENA_MAX": "1"}
-        limited = lambda *more: tandem("run", *meshes, "--device", "host", "--algorithm", "chunked", "--repeat", 1, "--no-check", *more,
+        limited = lambda *more: tandem("run", *meshes, "--device", "host", "--algorithm", "chunked", "--repeat", 1, "--no-check", "--check-afresh", *more,
                                        environment=environment, address_space=3 << 30)
         status, _, errors = limited()
         self.assertEqual((status, len(errors)), (2, 1), errors)
@@ -98,7 +98,7 @@ class Flawed(Case):
                                     r"and \d.\d\d GiB are free; choose --truth none, fewer frames or fewer bodies")
         self.assertEqual(limited("--truth", "none")[::2], (0, []))
         frames = ("run", "hard:ties:pairs=300000,together=1000", "--device", "host", "--algorithm", "chunked", "--repeat", 1,
-                  "--no-check", "--set", "contact_rule=none")
+                  "--no-check", "--check-afresh", "--set", "contact_rule=none")
         status, _, errors = tandem(*frames, environment=environment, address_space=3 << 30)
         self.assertEqual((status, len(errors)), (2, 1), errors)
         self.assertIn("the exact truth of 300 frames like the first takes", errors[0])
