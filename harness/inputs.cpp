@@ -107,11 +107,7 @@ void check_outputs(const RunOptions& options, std::span<const Cell> cells) {
     for (const auto* path : {&options.out, &options.dump_pairs, &options.dump_contacts, &options.trace})
         if (!path->empty() && !paths.insert(std::filesystem::path(*path).lexically_normal()).second)
             throw InputError(fmt::format("{}: named for two outputs; choose another file", *path));
-    if (options.scenes.size() > 1 && !(options.dump_pairs.empty() && options.dump_contacts.empty()))
-        throw InputError("dumps are of one scene; name one");
     const bool dumps = !options.dump_pairs.empty() || !options.dump_contacts.empty();
-    if (options.scenes.size() > 1 && !options.trace.empty())
-        throw InputError("--trace is of a frame of one scene; name one");
     if (options.profile > 0 && (dumps || !options.out.empty() || !options.trace.empty()))
         throw InputError("--profile only replays frames; leave out --out, --trace and dumps");
     for (const auto& cell : cells) {

@@ -107,6 +107,7 @@ public:
     int go();
 
 private:
+    void check_one_group() const;
     Job open(const CellGroup& group, const Unfit& unfit) const;
     void open_files();
     int measure(Job& job);
@@ -138,6 +139,16 @@ Run::Run(const RunOptions& options) : options_(options), progress_(options.quiet
     open_devices(options, backends_, names);
     all_ = make_groups(plan, backends_);
     tell_left_out(all_);
+    check_one_group();
+}
+
+/// Of what is written of the first finished cell.
+void Run::check_one_group() const {
+    if (all_.groups.size() <= 1) return;
+    if (!options_.dump_pairs.empty() || !options_.dump_contacts.empty())
+        throw InputError("dumps are of one scene and one range of its frames; name one of each");
+    if (!options_.trace.empty())
+        throw InputError("--trace is of one scene and one range of its frames; name one of each");
 }
 
 /// Once nothing is wrong with what was asked for: a mistake leaves no empty files behind.
@@ -154,7 +165,9 @@ void Run::open_files() {
 
 void Run::leave_out_finished(Job& job) {
     left_out_ += std::erase_if(job.cells, [&](const Cell& cell) {
-        return cell.candidates.empty() && finished_.has(cell, job.scene, job.range);
+        if (!cell.candidates.empty() || !finished_.has(cell, job.scene, job.range)) return false;
+        unfinished_.forget(key_of(cell, cell.settings, job.scene, job.range));
+        return true;
     });
 }
 

@@ -14,6 +14,10 @@ namespace {
 /// Of its lines; those of another are as if they were not there.
 constexpr int unfinished_schema = 1;
 
+bool is_of_this_program(const nlohmann::ordered_json& line) {
+    return line.value("schema", 0) == unfinished_schema && line.value("sources", "") == sources_digest();
+}
+
 } // namespace
 
 Unfinished::Unfinished(const std::string& path, bool go_on) {
@@ -22,21 +26,30 @@ Unfinished::Unfinished(const std::string& path, bool go_on) {
     if (!go_on || !std::filesystem::exists(path_)) return;
     file_ = std::make_unique<RecordFile>(path_);
     file_->for_each([&](const nlohmann::ordered_json& line) {
-        if (line.value("schema", 0) != unfinished_schema || line.value("sources", "") != sources_digest())
-            return;
+        if (!is_of_this_program(line)) return;
         auto& lines = lines_[line.at("key").get<std::string>()];
         if (line.contains("checked")) lines.clear();
         lines.push_back(line);
     });
 }
 
-CellState Unfinished::state(const Cell& cell, const std::string& key) const {
+CellState Unfinished::state(const Cell& cell, const std::string& key) {
+    own_.insert(key);
     CellState state;
     const auto found = lines_.find(key);
     if (found == lines_.end() || !found->second.front().contains("checked")) return state;
     take_checked(state, found->second.front().at("checked"), cell);
     for (const auto& line : found->second) take_rounds(state, line.at("rounds"));
     return state;
+}
+
+std::vector<nlohmann::ordered_json> Unfinished::of_others() const {
+    std::vector<nlohmann::ordered_json> lines;
+    RecordFile(path_).for_each([&](const nlohmann::ordered_json& line) {
+        if (is_of_this_program(line) && !own_.contains(line.at("key").get<std::string>()))
+            lines.push_back(line);
+    });
+    return lines;
 }
 
 void Unfinished::append(nlohmann::ordered_json line) {
@@ -62,8 +75,21 @@ void Unfinished::keep(const std::string& key, const CellState& state, bool whole
 void Unfinished::remove() {
     if (path_.empty()) return;
     file_.reset();
-    std::error_code none; // that it is not there, or stays
-    std::filesystem::remove(path_, none);
+    if (!std::filesystem::exists(path_)) return;
+    try {
+        const auto others = of_others();
+        const auto rest = path_ + ".rest";
+        if (!others.empty()) {
+            std::filesystem::remove(rest);
+            RecordFile file(rest);
+            for (const auto& line : others) file.append(line);
+            std::filesystem::rename(rest, path_);
+        } else {
+            std::filesystem::remove(path_);
+        }
+    } catch (const std::exception& error) {
+        tell("tandem: {}; {} has rounds of cells that are measured\n", error.what(), path_);
+    }
 }
 
 } // namespace tandem

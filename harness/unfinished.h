@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace tandem {
 
@@ -23,18 +24,22 @@ public:
     Unfinished(const std::string& path, bool go_on);
 
     /// What is there of a cell, by the key of what was asked for; nothing for a cell that was not begun.
-    CellState state(const Cell& cell, const std::string& key) const;
+    CellState state(const Cell& cell, const std::string& key);
     /// The whole state, or its last round. That it cannot be written is told, and costs nothing else.
     void keep(const std::string& key, const CellState& state, bool whole);
-    /// Once all cells have a record.
+    /// A cell of this run that has a record already.
+    void forget(const std::string& key) { own_.insert(key); }
+    /// Once all cells have a record: those of other cells, as of another plan that was killed, stay.
     void remove();
 
 private:
     void append(nlohmann::ordered_json line);
+    std::vector<nlohmann::ordered_json> of_others() const;
 
     std::string path_;
     std::unique_ptr<RecordFile> file_;
     std::map<std::string, std::vector<nlohmann::ordered_json>> lines_; ///< by key, from the last check on
+    std::set<std::string> own_;                                        ///< keys of cells of this run
 };
 
 } // namespace tandem

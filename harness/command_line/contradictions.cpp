@@ -39,6 +39,7 @@ constexpr Rule rules[] = {
     {"--profile", Together::must_not, "--noise", only_replays},
     {"--profile", Together::must_not, "--seconds", only_replays},
     {"--profile", Together::must_not, "--seed", only_replays},
+    {"--profile", Together::must_not, "--isolate", only_replays},
     {"--profile", Together::must_not, "--truth=pairs", only_replays},
     {"--profile", Together::must_not, "--truth=contacts", only_replays},
     {"--dry-run", Together::must_not, "--dump-pairs", "no cell is measured whose pairs could be written"},
@@ -91,7 +92,24 @@ void refuse_idle_threads(const CLI::App& command) {
         throw InputError("--threads goes with --device host; other devices have none to set");
 }
 
+/// Whether an option of a rule is this one, whatever its value where the rule names none.
+bool is_about(std::string_view of_rule, std::string_view option) {
+    return of_rule == option || of_rule == option.substr(0, option.find('='));
+}
+
 } // namespace
+
+bool line_speaks_against(const CLI::App& command, std::string_view option) {
+    const auto gives = [&](std::string_view text) {
+        const auto* given = option_of(command, text);
+        return given != nullptr && is_given(*given, text);
+    };
+    return std::ranges::any_of(rules, [&](const Rule& rule) {
+        return rule.together == Together::must_not
+               && ((is_about(rule.option, option) && gives(rule.other))
+                   || (is_about(rule.other, option) && gives(rule.option)));
+    });
+}
 
 void refuse_contradictions(const CLI::App& command) {
     for (const auto& rule : rules) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // run, check and accuracy: cells of a scene, measured and compared.
 #include "harness/command_line/actions.h"
+#include "harness/command_line/contradictions.h"
 #include "harness/command_line/sets.h"
 #include "harness/commands.h"
 #include "harness/isolation/isolated_sampler.h"
@@ -159,22 +160,45 @@ void add_accuracy_run_options(CLI::App& app, RunOptions& options, std::vector<st
         ->description("exact contacts of at most so many pairs a frame; 1000 when left out");
 }
 
-/// The options of the plan that the line does not give: what says when a cell has enough as a whole.
-void take_measure(CLI::App& app, const PlanFile& plan) {
+/// The options of the plan that the line neither gives nor speaks against: what says when a cell has enough
+/// as a whole.
+auto measure_left(const CLI::App& app, const PlanFile& plan) {
     const auto is_given = [&](const std::string& name) { return app.count("--" + name) > 0; };
     const auto says_enough = [](const std::string& name) {
         return name == "repeat" || name == "noise" || name == "seconds";
     };
     const bool enough_is_given = is_given("repeat") || is_given("noise") || is_given("seconds");
-    for (const auto& [name, value] : plan.measure) {
-        if (is_given(name) || (says_enough(name) && enough_is_given)) continue;
+    auto left = plan.measure;
+    std::erase_if(left, [&](const auto& one) {
+        const auto& [name, value] = one;
+        return is_given(name) || (says_enough(name) && enough_is_given)
+               || line_speaks_against(app, "--" + name + (value.empty() ? "" : "=" + value));
+    });
+    return left;
+}
+
+void take_measure(CLI::App& app, const PlanFile& plan) {
+    for (const auto& [name, value] : measure_left(app, plan)) {
         auto* option = app.get_option("--" + name);
         option->add_result(value.empty() ? option->get_flag_value(name, "") : value);
         option->run_callback();
     }
 }
 
-/// A plan among the scenes, which stands by itself.
+/// Lets options that go with others find those that the plan gives; the cells have them from the plan itself.
+void show_request(CLI::App& app, const PlanFile& plan) {
+    const bool gives_algorithms = app.count("--algorithm") > 0, gives_devices = app.count("--device") > 0;
+    for (const auto& product : plan.products) {
+        if (!gives_algorithms)
+            for (const auto& name : product.request.algorithms)
+                app.get_option("--algorithm")->add_result(name);
+        if (!gives_devices)
+            for (const auto& name : product.request.devices) app.get_option("--device")->add_result(name);
+    }
+}
+
+/// A plan among the scenes, which stands by itself. Contradictions on the line are told before those within
+/// the plan, or between both.
 void take_plan(CLI::App& app, RunOptions& options) {
     const auto found = std::ranges::find_if(options.scenes, is_plan);
     if (found == options.scenes.end()) return;
@@ -183,9 +207,14 @@ void take_plan(CLI::App& app, RunOptions& options) {
         throw InputError(fmt::format("{}: is a plan and names its scenes; give no others beside it", path));
     options.plan = read_plan(path);
     options.scenes.clear();
+    show_request(app, *options.plan);
+    refuse_contradictions(app);
     try {
         take_measure(app, *options.plan);
+        refuse_contradictions(app);
     } catch (const CLI::ParseError& error) {
+        throw InputError(fmt::format("{}: /measure: {}", path, error.what()));
+    } catch (const InputError& error) {
         throw InputError(fmt::format("{}: /measure: {}", path, error.what()));
     }
 }
@@ -224,9 +253,9 @@ Action add_run(CLI::App& app) {
     app.add_flag("!--no-count", options.count, "leave out the replay that counts work");
     app.add_flag("!--no-check", options.check, "do not compare with the reference");
     add_check_afresh(app, options);
-    return [given, line = &app] {
+    app.callback([given, line = &app] { take_plan(*line, given->options); });
+    return [given] {
         given->options.request.sets = sets_of(given->sets, given->options);
-        take_plan(*line, given->options);
         return run_command(given->options);
     };
 }

@@ -3,25 +3,22 @@
 #include "harness/sampling/cell_state.h"
 
 #include "harness/accuracy/answer_errors_json.h"
-#include "harness/optional_json.h"
 
 namespace tandem {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Digest, count, a, b)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StageSample, device_ns, host_ns, launches, waits, bytes)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KernelSample, device_ns, launches)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TimedReplay, round, frame_ns)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(InstrumentedReplay, round, frame_ns, span_ns, stages, kernels)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ProcessorCondition, cores, quota, own, others, governor, mhz, throttled,
-                                   pressure)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(GpuCondition, sm_mhz, sm_limit_mhz, memory_mhz, memory_limit_mhz,
-                                   temperature_c, power_w, power_limit_w, throttle, busy_percent, processes)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Condition, processor, gpus)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RoundConditions, round, before, after)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Agreement, frames, missing, extra, contact_frames_wrong, digest,
-                                   contact_digest)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KernelFacts, entry, defines, compile_ms, registers, local_bytes,
-                                   spill_bytes, max_group_size)
+TANDEM_FIELDS(Digest, count, a, b)
+TANDEM_FIELDS(StageSample, device_ns, host_ns, launches, waits, bytes)
+TANDEM_FIELDS(KernelFacts, entry, defines, compile_ms, registers, local_bytes, spill_bytes, max_group_size,
+              occupancy)
+TANDEM_FIELDS(KernelSample, device_ns, launches, stage, groups, group_size, facts)
+TANDEM_FIELDS(TimedReplay, round, frame_ns)
+TANDEM_FIELDS(InstrumentedReplay, round, frame_ns, span_ns, stages, kernels)
+TANDEM_FIELDS(ProcessorCondition, cores, quota, own, others, governor, mhz, throttled, pressure)
+TANDEM_FIELDS(GpuCondition, sm_mhz, sm_limit_mhz, memory_mhz, memory_limit_mhz, temperature_c, power_w,
+              power_limit_w, throttle, busy_percent, processes)
+TANDEM_FIELDS(Condition, processor, gpus)
+TANDEM_FIELDS(RoundConditions, round, before, after)
+TANDEM_FIELDS(Agreement, frames, missing, extra, contact_frames_wrong, digest, contact_digest)
 
 namespace {
 
@@ -54,71 +51,73 @@ std::map<std::string_view, std::uint64_t> counted(const json& work, const Traver
     return counts;
 }
 
+/// What checking and counting gave, field by field: `each(name, value)`. Settings and counts stand apart, for
+/// they are read by the names of the algorithm.
+template<class State, class Each>
+void each_checked(State& state, const Each& each) {
+    auto& m = state.measurement;
+    each("body_pairs", m.body_pairs);
+    each("candidate_pairs", m.candidate_pairs);
+    each("contacts", m.contacts);
+    each("degenerate", m.degenerate);
+    each("rejected", m.rejected);
+    each("undecided_by_filter", m.undecided_by_filter);
+    each("undecided_by_double", m.undecided_by_double);
+    each("retries", m.retries);
+    each("batches", m.batches);
+    each("errors", m.errors);
+    each("kernels", m.kernels);
+    each("first_prepare_ns", m.prepare_ns);
+    each("device_bytes", m.device_bytes);
+    each("digests", state.digests);
+    each("counted", state.counted);
+}
+
+/// What a round changes beside what it adds.
+template<class State, class Each>
+void each_of_round(State& state, const Each& each) {
+    auto& m = state.measurement;
+    each("continued", m.continued);
+    each("submissions", m.submissions);
+    each("agreement", m.agreement);
+    each("replay_ns", state.replay_ns);
+    each("prepare_ns", state.prepare_ns);
+    each("spent_ns", state.spent_ns);
+    each("rounds", state.rounds);
+}
+
+auto write_to(json& to) {
+    return [&to](const char* name, const auto& value) { to[name] = value; };
+}
+
+auto read_from(const json& from) {
+    return [&from](const char* name, auto& value) { from.at(name).get_to(value); };
+}
+
 } // namespace
 
 json checked_json(const CellState& state) {
     const auto& m = state.measurement;
-    return {{"settings", m.settings.texts()},
-            {"body_pairs", m.body_pairs},
-            {"candidate_pairs", m.candidate_pairs},
-            {"contacts", m.contacts},
-            {"degenerate", m.degenerate},
-            {"rejected", m.rejected},
-            {"undecided_by_filter", m.undecided_by_filter},
-            {"undecided_by_double", m.undecided_by_double},
-            {"retries", m.retries},
-            {"batches", m.batches},
-            {"submissions", m.submissions},
-            {"work", named(m.work)},
-            {"agreement", m.agreement},
-            {"errors", m.errors},
-            {"kernels", m.kernels},
-            {"first_prepare_ns", m.prepare_ns},
-            {"device_bytes", m.device_bytes},
-            {"digests", state.digests},
-            {"replay_ns", state.replay_ns},
-            {"prepare_ns", state.prepare_ns},
-            {"counted", state.counted}};
+    json to{{"settings", m.settings.texts()}, {"work", named(m.work)}};
+    each_checked(state, write_to(to));
+    return to;
 }
 
 json rounds_json(const CellState& state, std::uint32_t first) {
     const auto& m = state.measurement;
-    return {{"samples", from_round(m.samples, first)},
+    json to{{"samples", from_round(m.samples, first)},
             {"breakdowns", from_round(m.breakdowns, first)},
-            {"conditions", from_round(m.conditions, first)},
-            {"continued", m.continued},
-            {"submissions", m.submissions},
-            {"agreement", m.agreement},
-            {"replay_ns", state.replay_ns},
-            {"prepare_ns", state.prepare_ns},
-            {"spent_ns", state.spent_ns},
-            {"rounds", state.rounds}};
+            {"conditions", from_round(m.conditions, first)}};
+    each_of_round(state, write_to(to));
+    return to;
 }
 
 void take_checked(CellState& state, const json& from, const Cell& cell) {
     auto& m = state.measurement;
     m.settings = resolve(cell.algorithm->parameters(), preset(*cell.algorithm, cell.preset).values,
                          from.at("settings").get<SettingTexts>(), cell.algorithm->name());
-    from.at("body_pairs").get_to(m.body_pairs);
-    from.at("candidate_pairs").get_to(m.candidate_pairs);
-    from.at("contacts").get_to(m.contacts);
-    from.at("degenerate").get_to(m.degenerate);
-    from.at("rejected").get_to(m.rejected);
-    from.at("undecided_by_filter").get_to(m.undecided_by_filter);
-    from.at("undecided_by_double").get_to(m.undecided_by_double);
-    from.at("retries").get_to(m.retries);
-    from.at("batches").get_to(m.batches);
-    from.at("submissions").get_to(m.submissions);
     m.work = counted(from.at("work"), *cell.algorithm);
-    from.at("agreement").get_to(m.agreement);
-    from.at("errors").get_to(m.errors);
-    from.at("kernels").get_to(m.kernels);
-    from.at("first_prepare_ns").get_to(m.prepare_ns);
-    from.at("device_bytes").get_to(m.device_bytes);
-    from.at("digests").get_to(state.digests);
-    from.at("replay_ns").get_to(state.replay_ns);
-    from.at("prepare_ns").get_to(state.prepare_ns);
-    from.at("counted").get_to(state.counted);
+    each_checked(state, read_from(from));
 }
 
 void take_rounds(CellState& state, const json& from) {
@@ -126,13 +125,7 @@ void take_rounds(CellState& state, const json& from) {
     append(m.samples, from.at("samples"));
     append(m.breakdowns, from.at("breakdowns"));
     append(m.conditions, from.at("conditions"));
-    from.at("continued").get_to(m.continued);
-    from.at("submissions").get_to(m.submissions);
-    from.at("agreement").get_to(m.agreement);
-    from.at("replay_ns").get_to(state.replay_ns);
-    from.at("prepare_ns").get_to(state.prepare_ns);
-    from.at("spent_ns").get_to(state.spent_ns);
-    from.at("rounds").get_to(state.rounds);
+    each_of_round(state, read_from(from));
 }
 
 } // namespace tandem

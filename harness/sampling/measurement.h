@@ -34,10 +34,10 @@ std::int64_t since(std::chrono::steady_clock::time_point begin);
 struct KernelSample {
     std::int64_t device_ns = 0; ///< those that were not measured count as 0
     std::uint64_t launches = 0;
-    Stage stage = Stage::write;   ///< of the last launch, as all that follows
+    Stage stage = Stage::write;   ///< of the last launch, as group_size
     std::uint64_t groups = 0;     ///< of the largest launch
     std::uint32_t group_size = 0; ///< work-items
-    KernelFacts facts{};
+    KernelFacts facts{};          ///< of the first launch
 };
 
 /// A replay in which nothing but the span of each frame was timed: a sample.

@@ -27,13 +27,14 @@ std::int64_t device_span(const Trace& trace) {
 void add_kernels(const Trace& trace, std::map<std::string, KernelSample>& kernels) {
     for (const auto& event : trace.events) {
         if (event.command != Command::launch) continue;
-        auto& kernel = kernels[event.label];
+        const auto [found, is_first] = kernels.try_emplace(event.label);
+        auto& kernel = found->second;
+        if (is_first && event.kernel != nullptr) kernel.facts = *event.kernel;
         kernel.device_ns += std::max<std::int64_t>(event.device_ns, 0);
         ++kernel.launches;
         kernel.stage = event.stage;
         kernel.groups = std::max(kernel.groups, event.groups);
         kernel.group_size = event.group_size;
-        if (event.kernel != nullptr) kernel.facts = *event.kernel;
     }
 }
 
@@ -41,8 +42,10 @@ void add_kernels(const Trace& trace, std::map<std::string, KernelSample>& kernel
 
 Replays::Replays(const Cell& cell, const Scene& scene, const FrameRange& range)
     : cell_(cell), range_(range), name_(describe(cell)) {
-    for (auto frame = range.first; frame <= range.last; ++frame)
-        frame_names_.push_back(fmt::format("frame {}", frame));
+    frame_names_.resize(range.frames.size());
+    if (ranges::available())
+        for (std::size_t i = 0; i < frame_names_.size(); ++i)
+            frame_names_[i] = fmt::format("frame {}", range.first + i);
     for (auto* device : cell.devices) device->set_clocks(Clocks::off);
     const auto begin = Clock::now();
     session_ = cell.algorithm->prepare(cell.devices, scene, cell.settings);

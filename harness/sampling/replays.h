@@ -52,7 +52,7 @@ private:
     const Cell& cell_;
     const FrameRange& range_;
     std::string name_;                     ///< of the cell, for profilers
-    std::vector<std::string> frame_names_; ///< of its frames
+    std::vector<std::string> frame_names_; ///< of its frames; empty texts where no profiler looks
     std::unique_ptr<Session> session_;
     std::int64_t prepare_ns_ = 0;
 };

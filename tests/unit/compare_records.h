@@ -50,7 +50,8 @@ inline nlohmann::json record(const std::string& key, const std::vector<double>& 
 class TemporaryFile {
 public:
     explicit TemporaryFile(const std::string& text) {
-        std::string name = (std::filesystem::temp_directory_path() / "tandem-compare-XXXXXX").string();
+        auto name =
+            (std::filesystem::temp_directory_path() / "tandem-compare-").string() + std::string(6, 'X');
         close(mkstemp(name.data()));
         path_ = name;
         std::ofstream(path_) << text;
