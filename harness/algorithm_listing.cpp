@@ -2,8 +2,8 @@
 // tandem algorithms: all of them in short, or those that are named at length.
 #include "algorithms/traversal.h"
 #include "harness/commands.h"
-#include "harness/compare/columns.h"
 #include "harness/standard_streams.h"
+#include "harness/text_lines.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -110,7 +110,7 @@ Json algorithm_json(const Traversal& traversal, bool peer) {
 }
 
 /// Text in lines that fit a terminal, those after the first below the column `indent`.
-void put_lines(const std::string& text, std::size_t indent) { put("{}", compare::paragraph(text, indent)); }
+void put_lines(const std::string& text, std::size_t indent) { put("{}", paragraph(text, indent)); }
 
 void print_heading(const Traversal& traversal, bool peer) {
     put_lines(fmt::format("{}{}: {}", traversal.name(),

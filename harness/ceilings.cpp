@@ -3,7 +3,7 @@
 
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/sources.h"
-#include "harness/record.h"
+#include "harness/record/record.h"
 #include "harness/statistics.h"
 
 #include <algorithm>

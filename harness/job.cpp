@@ -6,7 +6,7 @@
 #include "harness/inputs.h"
 #include "harness/isolation/isolated_sampler.h"
 #include "harness/key.h"
-#include "harness/record.h"
+#include "harness/record/record.h"
 #include "harness/sampling/local_sampler.h"
 #include "harness/standard_streams.h"
 #include "scenes/error.h"

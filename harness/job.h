@@ -4,7 +4,7 @@
 #include "harness/commands.h"
 #include "harness/journal.h"
 #include "harness/progress.h"
-#include "harness/record.h"
+#include "harness/record/record.h"
 #include "harness/sampling/rounds.h"
 #include "harness/unfinished.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/record.h"
+#include "harness/record/record.h"
 #include "harness/simulate.h"
 #include "harness/simulate_session.h"
 #include "harness/statistics.h"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "harness/compare/columns.h"
+#include "harness/text_lines.h"
 #include "harness/compare/compare.h"
 
 namespace tandem::compare {

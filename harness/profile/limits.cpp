@@ -2,7 +2,7 @@
 #include "harness/profile/limits.h"
 
 #include "harness/ceilings.h"
-#include "harness/record.h"
+#include "harness/record/record.h"
 #include "scenes/error.h"
 
 #include <algorithm>

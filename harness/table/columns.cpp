@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/table/columns.h"
 
+#include "harness/text_lines.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <span>
@@ -9,30 +11,16 @@ namespace tandem {
 
 namespace {
 
-constexpr std::size_t line_width = 100;
 constexpr std::size_t longest_label = 44;
 constexpr std::size_t gap = 2;
 
-/// Characters, not bytes: heads and texts have ± and ≈.
-std::size_t characters(const std::string& text) {
-    // A colour's escape has no width.
-    std::size_t count = 0;
-    bool escape = false;
-    for (const char c : text) {
-        if (c == '\033') escape = true;
-        if (!escape && (static_cast<unsigned char>(c) & 0xc0u) != 0x80u) ++count;
-        if (escape && c == 'm') escape = false;
-    }
-    return count;
-}
-
 std::string right(const std::string& text, std::size_t width) {
-    return std::string(width - std::min(width, characters(text)), ' ') + text;
+    return std::string(width - std::min(width, width_of(text)), ' ') + text;
 }
 
 std::size_t width_of_column(const Column& column) {
-    std::size_t width = characters(column.head);
-    for (const auto& text : column.texts) width = std::max(width, characters(text));
+    std::size_t width = width_of(column.head);
+    for (const auto& text : column.texts) width = std::max(width, width_of(text));
     return width;
 }
 
@@ -66,7 +54,7 @@ std::string in_columns(const std::vector<std::string>& labels, const std::string
     for (const auto& column : columns) {
         if (std::ranges::all_of(column.texts, [](const auto& t) { return t.empty(); })) continue;
         const auto own = gap + width_of_column(column);
-        if (!together.empty() && width + own > line_width) {
+        if (!together.empty() && width + own > line_columns) {
             text += block(labels, head, label_width, together) + "\n";
             together.clear();
             width = label_width;

@@ -11,6 +11,11 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
+TEST(TextLines, ColoursHaveNoWidth) {
+    EXPECT_EQ(width_of("\033[1m1.0 \u00b1 0.1\033[0m ms"), 12u);
+    EXPECT_EQ(wrap("one two  three", 7), (std::vector<std::string>{"one two", "three"}));
+}
+
 TEST(CompareReport, SaysWhatChangedInALineOfWords) {
     Records before;
     Records after;

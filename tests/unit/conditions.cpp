@@ -5,7 +5,7 @@
 #include "backends/hardware.h"
 #include "backends/host/host_device.h"
 #include "harness/control_group.h"
-#include "harness/record.h"
+#include "harness/record/record.h"
 #include "tests/support/folder.h"
 
 #include <filesystem>

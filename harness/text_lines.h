@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Text in lines of a terminal. A character is a code point of UTF-8 and one column wide; escapes of colours
+// have no width.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tandem {
+
+constexpr std::size_t line_columns = 100;
+
+/// Characters of a text.
+std::size_t width_of(std::string_view text);
+
+/// Lines of at most `width` characters, broken at spaces, and inside words that are longer. At least one
+/// line.
+std::vector<std::string> wrap(std::string_view text, std::size_t width);
+
+/// wrap() to a line's columns; lines after the first begin with `indent` spaces. Each line ends.
+std::string paragraph(std::string_view text, std::size_t indent);
+
+/// A text in one line: control characters become spaces, and what is longer than `most` bytes is cut.
+std::string one_line(std::string text, std::size_t most);
+
+} // namespace tandem
