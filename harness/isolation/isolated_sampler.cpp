@@ -27,9 +27,8 @@ nlohmann::json answer_of(const ChildResult& result) {
 
 } // namespace
 
-/// This process has the GPU open as well, and leaves it alone meanwhile.
-void IsolatedSampler::leave_out_this_process(std::uint32_t first) {
-    for (auto& round : state_.measurement.conditions)
+void leave_out_this_process(std::span<RoundConditions> rounds, std::uint32_t first) {
+    for (auto& round : rounds)
         if (round.round >= first)
             for (auto* reading : {&round.before, &round.after})
                 for (auto& gpu : reading->gpus)
@@ -45,7 +44,7 @@ void IsolatedSampler::ask(const char* work, const CheckOptions& options, std::si
         take_checked(state_, answer["checked"], cell_);
         const auto first = state_.rounds;
         take_rounds(state_, answer["rounds"]);
-        leave_out_this_process(first);
+        leave_out_this_process(state_.measurement.conditions, first);
     }
     if (answer.contains("failure")) throw DeviceError(answer["failure"].get<std::string>());
 }

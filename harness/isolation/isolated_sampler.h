@@ -4,6 +4,8 @@
 #include "harness/commands.h"
 #include "harness/sampling/cell_sampler.h"
 
+#include <span>
+
 namespace tandem {
 
 /// A cell of which the check and every round is done by a process of its own: what a crash, an error that
@@ -22,10 +24,13 @@ private:
     void do_release() override {}
 
     void ask(const char* work, const CheckOptions& options, std::size_t samples);
-    void leave_out_this_process(std::uint32_t first);
 
     const RunOptions& options_;
 };
+
+/// Of rounds from number `first` on that another process took: this one has the GPU open as well, and leaves
+/// it alone meanwhile, so that it is none of those that compute on it.
+void leave_out_this_process(std::span<RoundConditions> rounds, std::uint32_t first);
 
 /// What the process does: reads what is asked for from standard input and writes the answer to standard
 /// output, both a JSON object. Returns the exit code.

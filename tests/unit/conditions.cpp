@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the machine was like, from trees of files in place of /proc and /sys.
 #include "harness/conditions.h"
+#include "harness/isolation/isolated_sampler.h"
 
 #include "backends/hardware.h"
 #include "backends/host/host_device.h"
@@ -320,6 +321,22 @@ TEST(ConditionsJson, ReadingsStandTogether) {
     EXPECT_FALSE(three["gpus"][0]["throttled"][2].get<std::string>().empty());
     EXPECT_TRUE(three["gpus"][0]["power_w"].is_null());
     EXPECT_EQ(conditions_json(std::vector{unknown, unknown})["gpus"].dump(), "[null]");
+}
+
+TEST(ConditionsOfAnotherProcess, LeaveThisOneOut) {
+    const auto of = [](std::optional<unsigned> processes) {
+        Condition condition;
+        condition.gpus.resize(1);
+        condition.gpus[0].processes = processes;
+        return condition;
+    };
+    std::vector<RoundConditions> rounds{{2, of(3), of(3)}, {3, of(1), of(0)}, {4, of({}), of(2)}};
+    leave_out_this_process(rounds, 3);
+    std::vector<std::optional<unsigned>> left;
+    for (const auto& round : rounds)
+        for (const auto* condition : {&round.before, &round.after})
+            left.push_back(condition->gpus[0].processes);
+    EXPECT_EQ(left, (std::vector<std::optional<unsigned>>{3, 3, 0, 0, {}, 1}));
 }
 
 } // namespace

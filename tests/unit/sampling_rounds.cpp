@@ -84,6 +84,17 @@ TEST_F(SamplingRounds, NoSamplesAreAnswersAndOneBreakdown) {
     }
 }
 
+/// The clocks of a GPU take longer to rise than a few replays of a small scene.
+TEST_F(SamplingRounds, WarmUpForFiveMilliseconds) {
+    const auto pair = crowd(5, 2, 1.0);
+    const auto range = make_frames(pair, 0, 0);
+    References references(pair, range);
+    LocalSampler sampler(cells_.front(), pair, range, references);
+    sampler.check(check_);
+    sampler.round(1);
+    EXPECT_GE(sampler.state().spent_ns, 5'000'000);
+}
+
 /// Every round has every cell once, and the order is not the same in all of them; equal seeds, equal orders.
 TEST_F(SamplingRounds, TakeTurnsInADrawnOrder) {
     sample({.repeat = 6}, 7);
