@@ -107,7 +107,7 @@ class Isolation(Case):
     def test_rounds_outlive_a_kill(self):
         """A cell that was killed in its third round goes on with the fourth, without another check."""
         out, left = self.work / "rounds.jsonl", self.work / "rounds.jsonl.unfinished"
-        arguments = ("plates:count=2", "--frames", "0:40", "--device", "host", "--algorithm", "chunked,tiled", "--repeat", 8, "--truth", "none", "--out", out)
+        arguments = ("plates:count=2", "--frames", "0:8", "--device", "host", "--algorithm", "chunked,tiled", "--repeat", 8, "--truth", "none", "--out", out)
         process = self.start(*arguments)
         wait_for(lambda: left.exists() and len(left.read_text().splitlines()) >= 5)
         process.kill()
@@ -138,7 +138,7 @@ class Isolation(Case):
         for _ in range(60 if LONG else 15):
             process = self.start(path, "--out", out, "--resume", *(["--isolate"] if chance.random() < 0.3 else []))
             try:
-                process.wait(timeout=chance.expovariate(0.2 if LONG else 4))
+                process.wait(timeout=chance.expovariate(0.2 if LONG else 10))
             except subprocess.TimeoutExpired:
                 process.kill()
                 kills += 1

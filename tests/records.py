@@ -122,6 +122,9 @@ class Records(Case):
         tandem("run", "--mesh", flat, "--mesh", self.good, "--device", "opencl:0", "--algorithm", "gproximity", "--truth", "contacts",
                "--out", out)
         record = self.records(out)[0]
+        for name in ("stages", "kernel_times"):  # maps by names, every entry of which has the same fields
+            record[name] = {key: record[name][key] for key in sorted(record[name])[-2:]}
+        record["kernels"] = record["kernels"][:1]
         maps, nullable = {"settings", "defines", "counters", "kernel_times"}, {"chosen", "failure", "agreement", "commit", "hardware", "device_span_ns",
                                                    "session", "command",
                                                    "registers", "local_bytes", "spill_bytes", "missed_upper95", "candidate_ratio", "decisions",

@@ -2,6 +2,10 @@
 # SPDX-License-Identifier: MIT
 """scripts.py PROGRAM SOURCE: scripts that read records and exports (tables, figures, convert_records, render): over every committed
 file, over cells of every status, and over files that are no such files; and the committed microbenchmarks."""
+import contextlib
+import importlib.machinery
+import importlib.util
+import io
 import json
 import lzma
 import math
@@ -15,12 +19,31 @@ import unittest
 
 from program import LONG, SMALL, SOURCE, Case, sets, tandem
 
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(SOURCE / "scripts"))
 COMMITTED = sorted([*SOURCE.glob("results/*/*.jsonl"), *SOURCE.glob("results/*/*.jsonl.xz")])
 READERS = ("tables", "figures", "convert_records")
 
 
+def loaded(name, scripts={}):
+    """The script as a module, once: starting a Python and reading its libraries takes longer than most files."""
+    if name not in scripts:
+        loader = importlib.machinery.SourceFileLoader(f"script_{name}", str(SOURCE / "scripts" / name))
+        scripts[name] = importlib.util.module_from_spec(importlib.util.spec_from_loader(loader.name, loader))
+        loader.exec_module(scripts[name])
+    return scripts[name]
+
+
 def script(name, *arguments, address_space=None):
-    """(exit code, standard output, lines of standard error)."""
+    """(exit code, standard output, lines of standard error): in this process unless with so many bytes of address space."""
+    if not address_space and name != "render":
+        with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as errors:
+            try:
+                code = loaded(name).main([str(argument) for argument in arguments]) or 0
+            except SystemExit as end:  # with a text, which Python prints, or with a code
+                code = 1 if isinstance(end.code, str) else end.code
+                errors.write(end.code if isinstance(end.code, str) else "")
+        return code, out.getvalue(), errors.getvalue().splitlines()
     limit = (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space))) if address_space else None
     done = subprocess.run(["/usr/bin/python3", SOURCE / "scripts" / name, *map(str, arguments)], capture_output=True, text=True, timeout=500,
                           preexec_fn=limit, cwd=SOURCE)

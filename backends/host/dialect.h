@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -58,7 +59,7 @@ template<class Real>
 }
 
 struct HostBuffer : Buffer::Impl {
-    std::vector<std::byte> storage;
+    std::unique_ptr<std::byte[]> storage;
     std::byte* data = nullptr;
 };
 

@@ -9,7 +9,6 @@
 #include <new>
 #include <optional>
 #include <set>
-#include <stdexcept>
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -61,6 +60,7 @@ DeviceInfo describe(int level) {
     if (level != 0) info.compiler += fmt::format(", lanes for x86-64-v{}", level);
     info.global_bytes = physical_memory();
     info.max_allocation = info.global_bytes / 2;
+    info.allocates_late = true;
     info.local_bytes = 1u << 20;
     info.compute_units = static_cast<std::uint32_t>(tbb::info::default_concurrency());
     return info;
@@ -78,13 +78,12 @@ private:
     std::shared_ptr<Buffer::Impl> do_allocate(std::size_t bytes) override {
         auto buffer = std::make_shared<HostBuffer>();
         try {
-            buffer->storage.resize(bytes);
+            // Without values: rooms are larger than what most frames fill, and pages come at first use.
+            buffer->storage = std::make_unique_for_overwrite<std::byte[]>(bytes);
         } catch (const std::bad_alloc&) {
             refuse(bytes);
-        } catch (const std::length_error&) {
-            refuse(bytes);
         }
-        buffer->data = buffer->storage.data();
+        buffer->data = buffer->storage.get();
         return buffer;
     }
 
