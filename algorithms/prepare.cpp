@@ -54,6 +54,8 @@ FrameResult Session::run(const Frame& frame, std::span<const BodyPair> body_pair
     return do_run(frame, body_pairs);
 }
 
+void Traversal::do_fit(Settings&, const DeviceInfo&) const {}
+
 Steps Traversal::build(const Ground& ground) const { return do_build(ground); }
 
 Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info) const {
@@ -68,6 +70,7 @@ Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info) con
     if (settings[tandem::parameters::broad] == Broad::device && is_published(settings))
         throw InputError("setting broad=device does not go with residency=published, whose bounds are the "
                          "host's; choose broad=sphere");
+    do_fit(fitting, info);
     do_check(fitting, info);
     return fitting;
 }

@@ -104,6 +104,8 @@ public:
     Steps build(const Ground& ground) const;
 
 private:
+    /// Decides what its own settings leave to the device.
+    virtual void do_fit(Settings& settings, const DeviceInfo& info) const;
     /// Throws InputError when the algorithm's own settings do not fit.
     virtual void do_check(const Settings& settings, const DeviceInfo& info) const = 0;
     virtual Steps do_build(const Ground& ground) const = 0;

@@ -56,7 +56,8 @@ enum class Builder {
 /// Directions that the leaves of a hierarchy of tiles have bounds along.
 enum class Slabs {
     three, ///< the first three of the geometry's; the others are decided from vertices
-    all
+    all,
+    usual ///< one of the above, by device and k: no kernel sees it
 };
 
 /// What a candidate pair is in a device's memory (answer/pairs.clh).

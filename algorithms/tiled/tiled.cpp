@@ -78,6 +78,16 @@ public:
     std::span<const Counter> counters() const override { return all_counters; }
 
 private:
+    /// Up to k = 12 bounds along all directions took 2 to 12 % off whole frames of plates, funnel, glasses
+    /// and jacks on an H200; with k = 18 8 to 11 % off plates and jacks, and made funnel and glasses 8 and 3
+    /// % slower, where most of a frame is refit. On a processor they take longer everywhere (results/h200,
+    /// results/cpu).
+    void do_fit(Settings& settings, const DeviceInfo& info) const override {
+        if (settings[tandem::parameters::slabs] != Slabs::usual) return;
+        const bool all = info.is_gpu && settings[tandem::parameters::k] <= 12;
+        settings.set(tandem::parameters::slabs(all ? Slabs::all : Slabs::three));
+    }
+
     void do_check(const Settings& settings, const DeviceInfo& info) const override {
         const auto group_size = static_cast<std::uint32_t>(settings[tandem::parameters::group_size]);
         const auto smallest = fitting_shape(settings, info, {group_size, 1}).group_size;
