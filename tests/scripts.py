@@ -35,8 +35,9 @@ def loaded(name, scripts={}):
 
 
 def script(name, *arguments, address_space=None):
-    """(exit code, standard output, lines of standard error): in this process unless with so many bytes of address space."""
-    if not address_space and name != "render":
+    """(exit code, standard output, lines of standard error): in this process unless with so many bytes of address space, or of a Python
+    other than the scripts' own, which need not have their libraries."""
+    if not address_space and name != "render" and os.path.realpath(sys.executable) == os.path.realpath("/usr/bin/python3"):
         with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as errors:
             try:
                 code = loaded(name).main([str(argument) for argument in arguments]) or 0
