@@ -163,6 +163,10 @@ public:
     Device& operator=(const Device&) = delete;
 
     virtual const DeviceInfo& info() const = 0;
+    /// By what device times are taken: "CUPTI 13.0 activity records", "CUDA events" and, where these stand in
+    /// for something better, why. Certain once clocks have been on: a library that only they need is opened
+    /// then. It may change while they are on, after a failure.
+    virtual std::string clock() const = 0;
 
     /// Memory of at least `bytes` bytes, their values unknown. Throws OutOfMemory that says how much was
     /// asked for, what is in use and how much there is.
@@ -216,7 +220,9 @@ public:
     /// where clocks are off.
     Trace finish();
 
-    /// Waits, drops what was recorded since the last finish(), then switches clocks on or off.
+    /// Waits, drops what was recorded since the last finish(), then switches clocks on or off. On CUDA the
+    /// last device to switch them off detaches a profiling library from the driver: no other thread may be in
+    /// a call of the driver then (cuda/activity.h).
     void set_clocks(Clocks clocks);
     Clocks clocks() const { return clocks_; }
 

@@ -2,6 +2,7 @@
 #include "backends/cuda/cuda_device.h"
 
 #include "backends/cuda/command.h"
+#include "backends/cuda/command_clock.h"
 #include "backends/cuda/current_context.h"
 #include "backends/cuda/driver.h"
 #include "backends/cuda/graphs.h"
@@ -69,6 +70,7 @@ public:
     ~CudaDevice() override;
 
     const DeviceInfo& info() const override { return info_; }
+    std::string clock() const override { return clock_ ? clock_->name() : expected_clock(driver()); }
 
 private:
     std::shared_ptr<Buffer::Impl> do_allocate(std::size_t bytes) override;
@@ -83,7 +85,7 @@ private:
     void do_finish() override;
     bool do_begin_collecting() override;
     void do_end_collecting() override;
-    void do_set_clocks(Clocks clocks) override { timed_ = clocks == Clocks::on; }
+    void do_set_clocks(Clocks clocks) override;
     void do_profile(bool on) override;
     std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) override;
 
@@ -119,10 +121,9 @@ private:
     double occupancy(Function function, const Defines& defines) const;
     const LoadedModule& module(const KernelSource& source, const Defines& defines);
     const Driver& driver() const { return libraries_->driver; }
-    /// Runs `submit` between two events when timestamps are on; the ticket.
+    /// Runs `submit` under the clock when clocks are on; the ticket.
     template<class Submit>
     std::uint64_t timed(const Submit& submit);
-    EventHandle next_event();
 
     std::shared_ptr<Libraries> libraries_;
     PrimaryContext primary_; ///< outlives everything below that frees memory in it
@@ -131,15 +132,12 @@ private:
     Context context_ = nullptr;
     Stream stream_ = nullptr;
     bool owned_ = true;
+    std::unique_ptr<CommandClock> clock_; ///< since clocks were on for the first time
     bool timed_ = false;
     int capability_ = 0;
     int threads_of_unit_ = 0; ///< that a multiprocessor holds at once
     std::map<std::string, LoadedModule> modules_;
     Staging staging_{page_locked(libraries_->driver), most_staged};
-    std::vector<EventHandle>
-        events_; ///< begin and end of each command since the last reading, then spare ones
-    std::size_t events_used_ = 0;
-    std::size_t events_read_ = 0;
     bool in_one_ = false;                                ///< within as_one
     bool collects_ = false;                              ///< the same, and commands are kept back
     std::vector<Command> collected_;                     ///< kept back
@@ -171,7 +169,7 @@ CudaDevice::~CudaDevice() {
     driver().cuStreamSynchronize(stream_);
     graphs_.drop();
     staging_.drop();
-    for (auto* event : events_) driver().cuEventDestroy_v2(event);
+    clock_.reset();
     for (const auto& [key, loaded] : modules_) driver().cuModuleUnload(loaded.module);
     if (owned_) driver().cuStreamDestroy_v2(stream_);
 }
@@ -219,31 +217,31 @@ void CudaDevice::fail(Result result, std::string_view call, std::string_view wha
     throw DeviceError(text);
 }
 
-EventHandle CudaDevice::next_event() {
-    if (events_used_ == events_.size()) {
-        EventHandle event = nullptr;
-        check(driver().cuEventCreate(&event, 0), "cuEventCreate", "timing a command");
-        events_.push_back(event);
-    }
-    return events_[events_used_++];
-}
-
 template<class Submit>
 std::uint64_t CudaDevice::timed(const Submit& submit) {
     if (!timed_) {
         submit();
         return 0;
     }
-    const auto used = events_used_;
+    const auto check_clock = [&](CommandClock::Refusal refusal) {
+        check(refusal.code, refusal.call, "timing a command");
+    };
+    check_clock(clock_->begin());
     try {
-        check(driver().cuEventRecord(next_event(), stream_), "cuEventRecord", "timing a command");
         submit();
-        check(driver().cuEventRecord(next_event(), stream_), "cuEventRecord", "timing a command");
+        check_clock(clock_->end());
     } catch (...) {
-        events_used_ = used; // events come in pairs
+        clock_->drop();
         throw;
     }
-    return events_used_ / 2;
+    return clock_->ticket();
+}
+
+void CudaDevice::do_set_clocks(Clocks clocks) {
+    const Scope scope(*this);
+    if (timed_) clock_->stop();
+    timed_ = clocks == Clocks::on;
+    if (timed_) clock_ = started_clock(std::move(clock_), driver(), stream_);
 }
 
 template<class What>
@@ -477,22 +475,14 @@ void CudaDevice::check_launch(std::string_view entry, Grid grid, std::size_t arg
 void CudaDevice::do_finish() {
     const Scope scope(*this);
     wait("waiting");
+    if (timed_) clock_->collect();
 }
 
 std::pair<std::int64_t, std::int64_t> CudaDevice::do_interval(std::uint64_t ticket) {
     const Scope scope(*this);
-    float begin = 0;
-    float length = 0;
-    auto* const first = events_.at(2 * ticket - 2);
-    auto* const last = events_.at(2 * ticket - 1);
-    const bool known = driver().cuEventElapsedTime(&begin, events_.front(), first) == 0
-                       && driver().cuEventElapsedTime(&length, first, last) == 0 && length >= 0;
-    if (++events_read_ == events_used_ / 2) events_used_ = events_read_ = 0;
-    if (!known) return {-1, -1};
-    const auto nanoseconds = [](float ms) {
-        return static_cast<std::int64_t>(static_cast<double>(ms) * 1e6);
-    };
-    return {nanoseconds(begin), nanoseconds(length)};
+    const auto interval = clock_->interval(ticket);
+    if (clock_->spent()) clock_ = started_clock(std::move(clock_), driver(), stream_);
+    return interval;
 }
 
 } // namespace

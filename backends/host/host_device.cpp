@@ -71,6 +71,7 @@ public:
     explicit HostDevice(int level) : level_(level) {}
 
     const DeviceInfo& info() const override { return info_; }
+    std::string clock() const override { return "steady clock"; }
 
 private:
     using Clock = std::chrono::steady_clock;

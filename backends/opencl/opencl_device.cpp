@@ -129,6 +129,7 @@ public:
     ~OpenclDevice() override;
 
     const DeviceInfo& info() const override { return info_; }
+    std::string clock() const override { return "OpenCL profiling"; }
 
 private:
     std::shared_ptr<Buffer::Impl> do_allocate(std::size_t bytes) override;

@@ -4,6 +4,9 @@
 
 #include <type_traits>
 
+template<class T>
+inline constexpr bool is_call = std::is_pointer_v<T>&& std::is_function_v<std::remove_pointer_t<T>>;
+
 /// A class that only pointers name is the same or none.
 template<class Ours, class Theirs>
 constexpr bool same_class() {
@@ -12,6 +15,9 @@ constexpr bool same_class() {
     else
         return sizeof(Ours) == sizeof(Theirs) && alignof(Ours) == alignof(Theirs);
 }
+
+template<class... Ours, class OurReturn, class... Theirs, class Return>
+constexpr bool callable_as(OurReturn (*)(Ours...), Return (*)(Theirs...));
 
 /// Whether one type can stand for the other in a call: our int for their enumerations, our pointer to bytes
 /// for theirs to a structure; an enumeration for another, a structure for another of its size; everything
@@ -22,6 +28,8 @@ constexpr bool stands_for() {
         return (std::is_same_v<Ours, int> || std::is_enum_v<Ours>)&&sizeof(Theirs) == sizeof(Ours);
     else if constexpr (std::is_class_v<Theirs> && std::is_class_v<Ours>)
         return same_class<Ours, Theirs>();
+    else if constexpr (is_call<Theirs> && is_call<Ours>)
+        return callable_as(Ours{}, Theirs{});
     else if constexpr (std::is_pointer_v<Theirs> && std::is_pointer_v<Ours>)
         return std::is_same_v<
                    std::remove_cv_t<std::remove_pointer_t<Ours>>,
@@ -30,10 +38,10 @@ constexpr bool stands_for() {
         return std::is_same_v<std::remove_cv_t<Ours>, std::remove_cv_t<Theirs>>;
 }
 
-template<class... Ours, class Return, class... Theirs>
-constexpr bool callable_as(int (*)(Ours...), Return (*)(Theirs...)) {
+template<class... Ours, class OurReturn, class... Theirs, class Return>
+constexpr bool callable_as(OurReturn (*)(Ours...), Return (*)(Theirs...)) {
     if constexpr (sizeof...(Ours) != sizeof...(Theirs))
         return false;
     else
-        return stands_for<int, Return>() && (stands_for<Ours, Theirs>() && ...);
+        return stands_for<OurReturn, Return>() && (stands_for<Ours, Theirs>() && ...);
 }

@@ -44,6 +44,12 @@ Work captured;            ///< since a capture began
 unsigned long graphs = 0; ///< that live
 unsigned long graph_launches = 0, commands_in_graphs = 0;
 unsigned long profiler_starts = 0, profiler_stops = 0;
+unsigned long event_records = 0;
+void (*watcher)(int) = nullptr;
+
+void watched(int kind) {
+    if (watcher != nullptr && !capturing) watcher(kind);
+}
 
 /// At once, or whenever the graph is launched that is being captured.
 template<class Command>
@@ -195,16 +201,19 @@ Result cuMemFreeHost(void* memory) {
 }
 Result cuMemcpyHtoDAsync_v2(DevicePointer to, const void* from, std::size_t bytes, Stream stream) {
     if (const auto code = in_memory(to, bytes); code != 0) return code;
+    watched(1);
     run([=] { std::memcpy(reinterpret_cast<void*>(to), from, bytes); });
     return on(stream);
 }
 Result cuMemcpyDtoHAsync_v2(void* to, DevicePointer from, std::size_t bytes, Stream stream) {
     if (const auto code = in_memory(from, bytes); code != 0) return code;
+    watched(1);
     run([=] { std::memcpy(to, reinterpret_cast<const void*>(from), bytes); });
     return on(stream);
 }
 Result cuMemsetD8Async(DevicePointer to, unsigned char value, std::size_t bytes, Stream stream) {
     if (const auto code = in_memory(to, bytes); code != 0) return code;
+    watched(2);
     run([=] { std::memset(reinterpret_cast<void*>(to), value, bytes); });
     return on(stream);
 }
@@ -226,7 +235,10 @@ Result cuEventCreate(EventHandle* event, unsigned) {
     return current() != nullptr ? make(event) : invalid_context;
 }
 Result cuEventDestroy_v2(EventHandle) { return in_context(); }
-Result cuEventRecord(EventHandle, Stream stream) { return on(stream); }
+Result cuEventRecord(EventHandle, Stream stream) {
+    ++event_records;
+    return on(stream);
+}
 Result cuEventElapsedTime(float* ms, EventHandle, EventHandle) {
     *ms = 0.001f;
     return in_context();
@@ -287,6 +299,7 @@ Result cuProfilerStop() {
 }
 Result cuLaunchKernel(Function, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned,
                       Stream stream, void**, void**) {
+    watched(10);
     run([] { launched = true; });
     const auto code = on(stream);
     return code != 0 ? code : static_cast<Result>(number("STUB_LAUNCH", 0));
@@ -298,6 +311,8 @@ unsigned long stub_calls(Stream stream, Context context) {
     return found == calls.end() ? 0 : found->second;
 }
 unsigned long stub_waits() { return waits; }
+unsigned long stub_event_records() { return event_records; }
+void stub_watch(void (*by)(int)) { watcher = by; }
 unsigned long stub_profiler_starts() { return profiler_starts; }
 unsigned long stub_profiler_stops() { return profiler_stops; }
 unsigned long stub_graphs() { return graphs; }

@@ -17,6 +17,11 @@ unsigned long stub_waits();
 unsigned long stub_graphs();
 unsigned long stub_graph_launches();
 unsigned long stub_commands_in_graphs();
+/// How often an event was recorded.
+unsigned long stub_event_records();
+/// From here on `watcher` is called at every command that a stream is told, with its kind as CUPTI numbers it
+/// (1 copy, 2 clear, 10 kernel); null: no longer.
+void stub_watch(void (*watcher)(int kind));
 /// How often a profiler was told to begin and to end.
 unsigned long stub_profiler_starts();
 unsigned long stub_profiler_stops();

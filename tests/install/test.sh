@@ -57,7 +57,7 @@ same() { # same NAME PROGRAM: runs it, and each of its lines has to be the host'
 same opencl "$work/consumer/embed_opencl"
 
 stubs=$build/tests/stubs
-LD_LIBRARY_PATH=$stubs/driver TANDEM_NVRTC=$stubs/nvrtc/libnvrtc.so "$work/consumer/embed_cuda"
+LD_LIBRARY_PATH=$stubs/driver TANDEM_CUPTI= TANDEM_NVRTC=$stubs/nvrtc/libnvrtc.so "$work/consumer/embed_cuda"
 if "$work/prefix/bin/tandem" devices | grep '^cuda:0' >/dev/null; then
   same cuda "$work/consumer/embed_cuda"
 else

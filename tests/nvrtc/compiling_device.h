@@ -24,6 +24,7 @@ public:
     /// Every (file, defines) asked for, and the entries of each.
     const std::map<std::pair<std::string, Defines>, std::set<std::string>>& asked() const { return asked_; }
     const DeviceInfo& info() const override { return info_; }
+    std::string clock() const override { return "none"; }
 
 private:
     struct Nothing : Buffer::Impl {};

@@ -30,10 +30,10 @@ class Opening(unittest.TestCase):
     def tandem(self, *arguments, opencl=True, cuda=True):
         """With traps for what is true: exit code, negative for a signal, standard output and error."""
         environment = {**os.environ, "LD_LIBRARY_PATH": str(self.work / "cuda" if cuda else STUBS / "driver")}
-        for name in ("TANDEM_NVML", "TANDEM_NVRTC"):
+        for name in ("TANDEM_CUPTI", "TANDEM_NVML", "TANDEM_NVRTC"):
             environment.pop(name, None)
         if not cuda:
-            environment.update(TANDEM_NVRTC=str(STUBS / "nvrtc/libnvrtc.so"), TANDEM_NVML="/nonexistent")
+            environment.update(TANDEM_NVRTC=str(STUBS / "nvrtc/libnvrtc.so"), TANDEM_CUPTI="", TANDEM_NVML="/nonexistent")
         if opencl:
             environment["OCL_ICD_VENDORS"] = f"{self.work}/icd/"
         done = subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, env=environment, timeout=300)
