@@ -196,8 +196,8 @@ std::size_t cached_bytes(const DeviceInfo& info) {
 
 Ceilings measure_ceilings(Device& device) { return Bench(device).run(); }
 
-nlohmann::ordered_json ceilings_record(const DeviceInfo& info, const Ceilings& ceilings) {
-    nlohmann::ordered_json json{{"schema", 1}, {"device", record_device(info)}};
+nlohmann::ordered_json ceilings_record(const Device& device, const Ceilings& ceilings) {
+    nlohmann::ordered_json json{{"schema", 1}, {"device", record_timed_device(device)}};
     for (const auto& row : rows) {
         const auto& samples = ceilings.*row.samples;
         json[row.name] = samples.empty()

@@ -30,8 +30,8 @@ std::size_t cached_bytes(const DeviceInfo& info);
 /// Measures a device; takes a second or so. May throw DeviceError.
 Ceilings measure_ceilings(Device& device);
 
-/// One record of results/ceilings.schema.json.
-nlohmann::ordered_json ceilings_record(const DeviceInfo& info, const Ceilings& ceilings);
+/// One record of results/ceilings.schema.json, of a device that they were measured of.
+nlohmann::ordered_json ceilings_record(const Device& device, const Ceilings& ceilings);
 
 /// The medians as lines of text.
 std::string ceilings_table(const DeviceInfo& info, const Ceilings& ceilings);

@@ -28,7 +28,19 @@ std::string same_as(const std::vector<BackendReport>& backends, const DeviceInfo
     return {};
 }
 
-Json device_json(const DeviceInfo& info, const std::string& same, const GpuCondition& now) {
+/// Certain once clocks have been on.
+std::string clock_of(Device& device) {
+    try {
+        device.set_clocks(Clocks::on);
+        device.set_clocks(Clocks::off);
+    } catch (const DeviceError&) {
+        // The device is listed all the same; measuring says what it lacks.
+    }
+    return device.clock();
+}
+
+Json device_json(const DeviceInfo& info, const std::string& clock, const std::string& same,
+                 const GpuCondition& now) {
     return {{"id", info.id},
             {"name", info.name},
             {"driver", info.driver},
@@ -37,14 +49,16 @@ Json device_json(const DeviceInfo& info, const std::string& same, const GpuCondi
             {"memory_bytes", info.global_bytes},
             {"local_bytes", info.local_bytes},
             {"double", info.has_double},
+            {"clock", clock},
             {"hardware", info.hardware.empty() ? Json(nullptr) : Json(info.hardware)},
             {"same_as", same.empty() ? Json(nullptr) : Json(same)},
             {"now", gpu_condition_json(now)}};
 }
 
-void print_device(const DeviceInfo& info, const std::string& same, const GpuCondition& now) {
-    put("{:<10} {} ({}), {} compute units, {:.1f} GB, {}{}\n", info.id, info.name, info.driver,
-        info.compute_units, static_cast<double>(info.global_bytes) * 1e-9, info.compiler,
+void print_device(const DeviceInfo& info, const std::string& clock, const std::string& same,
+                  const GpuCondition& now) {
+    put("{:<10} {} ({}), {} compute units, {:.1f} GB, {}; times by {}{}\n", info.id, info.name, info.driver,
+        info.compute_units, static_cast<double>(info.global_bytes) * 1e-9, info.compiler, clock,
         same.empty() ? "" : fmt::format("; the same GPU as {}", same));
     if (const auto text = gpu_condition_text(now); !text.empty()) put("           now: {}\n", text);
 }
@@ -60,7 +74,7 @@ int measure_devices(const DevicesOptions& options) {
     for (const auto& group : chosen)
         for (auto* device : group) {
             const auto ceilings = measure_ceilings(*device);
-            records.push_back(ceilings_record(device->info(), ceilings));
+            records.push_back(ceilings_record(*device, ceilings));
             if (!file.failed()) file.append_or_tell(records.back());
             if (!options.json) put("{}", ceilings_table(device->info(), ceilings));
         }
@@ -152,8 +166,9 @@ int devices_command(const DevicesOptions& options) {
             const auto& info = device->info();
             const auto same = same_as(backends, info);
             const auto now = GpuGauge(info).read();
-            entry["devices"].push_back(device_json(info, same, now));
-            if (!json) print_device(info, same, now);
+            const auto clock = clock_of(*device);
+            entry["devices"].push_back(device_json(info, clock, same, now));
+            if (!json) print_device(info, clock, same, now);
         }
         if (!json && !backend.reason.empty()) put("{}\n", backend.reason);
         all.push_back(entry);

@@ -42,7 +42,7 @@ void look_at_pairs(profile::Profile& profile, const Cell& cell, const Job& job, 
 nlohmann::ordered_json measured_ceilings(Device& device) {
     const auto limit = device.memory_limit();
     device.set_memory_limit(Device::no_memory_limit);
-    auto record = ceilings_record(device.info(), measure_ceilings(device));
+    auto record = ceilings_record(device, measure_ceilings(device));
     device.set_memory_limit(limit);
     return record;
 }

@@ -8,6 +8,8 @@
 #include "harness/record/parts.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <set>
 
 namespace tandem {
 
@@ -67,9 +69,15 @@ Json record_device(const DeviceInfo& info) {
             {"memory_bytes", info.global_bytes}};
 }
 
+Json record_timed_device(const Device& device) {
+    auto json = record_device(device.info());
+    json["clock"] = device.clock();
+    return json;
+}
+
 Json record_devices(const DeviceGroup& devices) {
     Json json = Json::array();
-    for (const auto* device : devices) json.push_back(record_device(device->info()));
+    for (const auto* device : devices) json.push_back(record_timed_device(*device));
     return json;
 }
 
@@ -141,6 +149,19 @@ std::string status_of(const Measurement& m, const std::string& failure) {
     return m.agreement.ok() ? "ok" : "wrong";
 }
 
+/// A breakdown may be another process's, of an isolated cell or of the run that is continued, and its clock
+/// another than this one's.
+Json devices_json(const Measurement& m, const Cell& cell) {
+    auto json = record_devices(cell.devices);
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        std::set<std::string> clocks;
+        for (const auto& replay : m.breakdowns)
+            if (i < replay.clocks.size()) clocks.insert(replay.clocks[i]);
+        if (!clocks.empty()) json[i]["clock"] = fmt::format("{}", fmt::join(clocks, "; "));
+    }
+    return json;
+}
+
 } // namespace
 
 Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, const Measurement& m,
@@ -162,7 +183,7 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["chosen"] = cell.chosen ? choice_json(*cell.chosen) : Json();
     json["scene"] = record_scene(scene);
     json["frames"] = {{"first", range.first}, {"last", range.last}};
-    json["devices"] = record_devices(cell.devices);
+    json["devices"] = devices_json(m, cell);
     const bool measured = failure.empty();
     json["sampling"] = record_parts::sampling_json(m, cell, outcome, sampling);
     json["conditions"] = record_parts::conditions_json(m);

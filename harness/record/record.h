@@ -19,6 +19,8 @@ nlohmann::ordered_json make_record(const Cell& cell, const Scene& scene, const F
 /// The parts of a record that say of what, where and with what it was made.
 nlohmann::ordered_json record_scene(const Scene& scene);
 nlohmann::ordered_json record_device(const DeviceInfo& info);
+/// With what takes its times, certain once clocks have been on.
+nlohmann::ordered_json record_timed_device(const Device& device);
 nlohmann::ordered_json record_devices(const DeviceGroup& devices);
 nlohmann::ordered_json record_environment();
 

@@ -12,7 +12,7 @@ TANDEM_FIELDS(KernelFacts, entry, defines, compile_ms, registers, local_bytes, s
               occupancy)
 TANDEM_FIELDS(KernelSample, device_ns, launches, stage, groups, group_size, facts)
 TANDEM_FIELDS(TimedReplay, round, frame_ns)
-TANDEM_FIELDS(InstrumentedReplay, round, frame_ns, span_ns, stages, kernels)
+TANDEM_FIELDS(InstrumentedReplay, round, frame_ns, span_ns, stages, kernels, clocks)
 TANDEM_FIELDS(ProcessorCondition, cores, quota, own, others, governor, mhz, throttled, pressure)
 TANDEM_FIELDS(GpuCondition, sm_mhz, sm_limit_mhz, memory_mhz, memory_limit_mhz, temperature_c, power_w,
               power_limit_w, throttle, busy_percent, processes)

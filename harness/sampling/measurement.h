@@ -56,6 +56,7 @@ struct InstrumentedReplay {
     std::vector<std::int64_t> span_ns;                ///< by frame, first begin to last end; -1: not known
     std::vector<StageSamples> stages;                 ///< by frame
     std::map<std::string, KernelSample> kernels = {}; ///< by entry point
+    std::vector<std::string> clocks = {};             ///< by device: what took its times
 
     /// Sums over the frames.
     StageSamples totals() const;

@@ -86,7 +86,10 @@ InstrumentedReplay Replays::instrumented() {
         }
         replay.span_ns.push_back(span);
     }
-    for (auto* device : cell_.devices) device->set_clocks(Clocks::off);
+    for (auto* device : cell_.devices) {
+        replay.clocks.push_back(device->clock());
+        device->set_clocks(Clocks::off);
+    }
     return replay;
 }
 

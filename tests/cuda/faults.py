@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""faults.py PROGRAM FOLDER NVML: what the program says when CUDA is absent, old, broken or failing, with the stubs of FOLDER
-and that of NVML, a file."""
+"""faults.py PROGRAM FOLDER NVML CUPTI: what the program says when CUDA is absent, old, broken or failing, with the stubs of
+FOLDER and those of NVML and CUPTI, two files."""
 import json
 import os
 import pathlib
@@ -11,16 +11,18 @@ import sys
 import tempfile
 import unittest
 
-if len(sys.argv) != 4:
+if len(sys.argv) != 5:
     sys.exit(__doc__)
-PROGRAM, FOLDER, NVML = (pathlib.Path(a).resolve() for a in sys.argv[1:])
+PROGRAM, FOLDER, NVML, CUPTI = (pathlib.Path(a).resolve() for a in sys.argv[1:])
 RUN = ("run", "pile:bodies=4,frames=1", "--repeat", "1", "--algorithm", "chunked")
 
 
 def tandem(*arguments, driver="driver", nvrtc=FOLDER / "nvrtc/libnvrtc.so", **variables):
     environment = {**os.environ, "LD_LIBRARY_PATH": str(FOLDER / driver), **{k: str(v) for k, v in variables.items()}}
     environment.pop("TANDEM_NVRTC", None)
-    environment.setdefault("TANDEM_NVML", "/nonexistent")
+    for name in ("TANDEM_NVML", "TANDEM_CUPTI"):
+        if name not in variables:
+            environment[name] = "/nonexistent"
     if nvrtc:
         environment["TANDEM_NVRTC"] = str(nvrtc)
     done = subprocess.run([str(PROGRAM), *arguments], capture_output=True, text=True, env=environment, timeout=300)
@@ -58,6 +60,26 @@ class Faults(unittest.TestCase):
         for without in ({"TANDEM_NVML": "/nonexistent"}, {**options, "STUB_NVML_INIT": 9}):
             self.assertNotIn("now:", tandem("devices", **without)[1])
             self.assertEqual(now(**without), [None, None])
+
+    def test_what_takes_the_times(self):
+        def clocks(**options):
+            """By 'tandem devices', by its --json, and by a record."""
+            listed = [d["clock"] for e in json.loads(tandem("devices", "--json", **options)[1]) for d in e["devices"] if d["id"] == "cuda:0"]
+            self.assertIn(f"; times by {listed[0]}", tandem("devices", **options)[1])
+            with tempfile.TemporaryDirectory() as folder:
+                out = pathlib.Path(folder) / "out.jsonl"
+                self.assertEqual(tandem(*RUN, "--device", "host,cuda:0", "--out", str(out), **options)[0], 1)
+                records = [json.loads(line) for line in out.read_text().splitlines()]
+            self.assertEqual(records[0]["devices"][0]["clock"], "steady clock")
+            kernels = [d for k in records[1]["kernel_times"].values() for d in k["device_ns"]["samples"]] if "clock" in records[1]["devices"][0] else []
+            self.assertTrue(kernels)
+            self.assertNotIn("CUPTI", records[1]["key"])
+            return listed[0], records[1]["devices"][0]["clock"]
+
+        self.assertEqual(clocks(TANDEM_CUPTI=CUPTI), 2 * ("CUPTI 13.0 activity records",))
+        self.assertEqual(clocks(), 2 * ("CUDA events",))
+        self.assertEqual(clocks(TANDEM_CUPTI=CUPTI, STUB_CUPTI_FAILS="cuptiActivityEnable"),
+                         2 * ("CUDA events (CUPTI: cuptiActivityEnable failed with 35)",))
 
     def test_no_driver(self):
         if subprocess.run("ldconfig -p | grep -q libcuda.so.1", shell=True).returncode == 0:
