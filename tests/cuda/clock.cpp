@@ -188,6 +188,8 @@ TEST_F(CuptiClock, ACommandThatIsRefusedHasNoTime) {
     }
     work.clear();
     EXPECT_THAT(work.times(), ElementsAre(std::pair(0, 100 + first), std::pair(2000, 102 + first)));
+    EXPECT_EQ(entry_of_cupti<unsigned long()>("stub_cupti_pushed")(), 0u);
+    EXPECT_EQ(work.all(), expected(5, first + 3));
     device->set_clocks(Clocks::off);
 }
 

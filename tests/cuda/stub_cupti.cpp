@@ -161,4 +161,5 @@ CuptiResult cuptiActivityPopExternalCorrelationId(CuptiExternal, std::uint64_t*)
 unsigned long stub_cupti_calls() { return calls; }
 unsigned long stub_cupti_enabled() { return enabled.size(); }
 bool stub_cupti_attached() { return attached; }
+unsigned long stub_cupti_pushed() { return ids.size(); }
 }

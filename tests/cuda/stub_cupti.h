@@ -9,4 +9,6 @@ unsigned long stub_cupti_calls();
 unsigned long stub_cupti_enabled();
 /// Whether it has a subscriber or has not been finalized since it had one.
 bool stub_cupti_attached();
+/// Ids of a caller's own that were pushed and not popped.
+unsigned long stub_cupti_pushed();
 }
