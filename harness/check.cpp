@@ -20,7 +20,7 @@ namespace {
 int check_cells(const Job& job, const RunOptions& options, RecordFile& file, const Progress& progress,
                 const std::function<void(const Cell&, const Measurement&)>& print) {
     References references(job.scene, job.range);
-    Truths truths(job.scene, job.range.frames, options.truth, options.truth_contacts);
+    Truths truths(job.scene, job.range, options.truth, options.truth_contacts);
     Measuring measuring;
     measuring.check.truths = options.truth == TruthAmount::none ? nullptr : &truths;
     measuring.enough.repeat = 0;
@@ -65,8 +65,8 @@ int check_family(const Job& job, const RunOptions& options, RecordFile& file, co
         meeting = m.errors->pairs;
         (m.settings[parameters::rounding] == Rounding::safe ? safe : others) += m.errors->missed();
     });
-    const auto& flaws = job.range.flaws;
-    put("{:<26} {:>6} {:>9} {:>11} {:>7} {:>9} {:>6} {:>10}{}\n", job.scene.name, job.range.frames.size(),
+    const auto& flaws = job.range.flaws();
+    put("{:<26} {:>6} {:>9} {:>11} {:>7} {:>9} {:>6} {:>10}{}\n", job.scene.name, job.range.size(),
         meeting.touching + meeting.missed_touching, meeting.overlapping + meeting.missed_overlapping, safe,
         others, job.cells.size(), wrong,
         flaws.any() && flaws.handling == Degenerate::skip

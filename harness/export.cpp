@@ -55,7 +55,7 @@ public:
 
     /// Coordinates are checked frame by frame: export opens them one at a time, however many there are.
     std::vector<ContactPoint> of(const Frame& frame) {
-        check_coordinates(cell_, scene_, {0, 0, {frame}});
+        check_coordinates(cell_, scene_, frame);
         return session_->run(frame).download_contacts();
     }
 

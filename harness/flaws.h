@@ -3,7 +3,6 @@
 
 #include "scenes/scene.h"
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +31,9 @@ struct FlawedBody {
     std::vector<std::uint32_t> first; ///< in that frame, ascending, the first few
 };
 
+/// Tetrahedra of a body, and bodies in a message, that are named.
+inline constexpr std::size_t most_named_flaws = 4;
+
 /// The flawed tetrahedra of a range of frames.
 struct Flaws {
     Degenerate handling = Degenerate::flat;
@@ -40,13 +42,6 @@ struct Flaws {
 
     bool any() const { return degenerate + non_finite > 0; }
 };
-
-/// Finds them in all frames, on all cores, and does with them what is asked for; frame i of the span has
-/// number first + i. Volumes are decided exactly (oracle/volume.h) for the coordinates that are given: those
-/// of the mesh for a rigid body, whose poses change no volume, those of the frame for a deformable one. With
-/// skip the frames list them in `skipped`, and coordinates that are not finite are replaced by finite ones of
-/// the same body, which nothing looks at. Throws InputError for what is refused.
-Flaws handle_flaws(const Scene& scene, std::size_t first, std::span<Frame> frames, Degenerate handling);
 
 /// "3 of zero volume and 1 not finite in 2 of 5 bodies: body 0 tetrahedron 7, 9 in frame 0; body 4
 /// tetrahedron 1, ... in frame 3", with the first few.

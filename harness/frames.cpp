@@ -3,9 +3,23 @@
 
 #include "scenes/error.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace tandem {
+
+namespace {
+
+/// Of any frame of the scene, without lists of skipped tetrahedra.
+std::uint64_t bytes_of_frame(const Scene& scene) {
+    constexpr std::uint64_t lists = sizeof(Frame::deformed[0]) + sizeof(Frame::skipped[0]);
+    auto bytes = sizeof(Frame) + scene.bodies.size() * (sizeof(Pose) + lists);
+    for (const auto& body : scene.bodies)
+        if (body.deformable) bytes += scene.meshes[body.mesh].vertices.size() * sizeof(Eigen::Vector3d);
+    return bytes;
+}
+
+} // namespace
 
 void check_frames(const Scene& scene, std::size_t first, std::size_t last) {
     if (first <= last && last < scene.frame_count) return;
@@ -19,11 +33,51 @@ void check_frames(const Scene& scene, std::size_t first, std::size_t last) {
     throw InputError(fmt::format("{}; scene {} has frames 0:{}", wanted, scene.name, scene.frame_count - 1));
 }
 
-FrameRange make_frames(const Scene& scene, std::size_t first, std::size_t last) {
+FrameRange::FrameRange(const Scene& scene, std::size_t first, std::size_t last, Degenerate handling,
+                       std::uint64_t budget)
+    : scene_(scene), first_(first), last_(last) {
     check_frames(scene, first, last);
-    FrameRange range{first, last, {}};
-    for (auto i = first; i <= last; ++i) range.frames.push_back(scene.frame(i));
-    return range;
+    const auto bytes = bytes_of_frame(scene);
+    FlawSearch search(scene, first);
+    auto frames = look_through(search, std::clamp<std::uint64_t>(budget / bytes, 1, size()));
+    flaws_ = search.flaws(handling);
+    auto all_bytes = bytes * size();
+    if (handling == Degenerate::skip && flaws_.any()) {
+        all_bytes += (flaws_.degenerate + flaws_.non_finite) * sizeof(Frame::skipped[0][0]);
+        left_out_.emplace(std::move(search));
+    }
+    if (all_bytes > budget) return;
+    held_ = std::move(frames);
+    if (left_out_)
+        for (auto& frame : held_) left_out_->leave_out(*frame);
+}
+
+/// Every frame, `most` at a time, which are searched on all cores together; returns the last of them.
+FrameRange::Frames FrameRange::look_through(FlawSearch& search, std::size_t most) const {
+    Frames frames;
+    for (std::size_t begin = 0; begin < size(); begin += most) {
+        frames.clear(); // before the next take memory
+        for (auto i = begin; i < std::min(size(), begin + most); ++i)
+            frames.push_back(std::make_shared<Frame>(scene_.frame(first_ + i)));
+        search.add(frames);
+    }
+    return frames;
+}
+
+std::shared_ptr<Frame> FrameRange::made(std::size_t index) const {
+    auto frame = std::make_shared<Frame>(scene_.frame(first_ + index));
+    if (left_out_) left_out_->leave_out(*frame);
+    return frame;
+}
+
+std::shared_ptr<const Frame> FrameRange::frame(std::size_t index) const {
+    if (!held_.empty()) return held_.at(index);
+    const std::lock_guard lock(mutex_);
+    if (recent_ && recent_index_ == index) return recent_;
+    recent_.reset(); // before the next takes memory
+    recent_ = made(index);
+    recent_index_ = index;
+    return recent_;
 }
 
 } // namespace tandem

@@ -60,7 +60,7 @@ Scene open_scene(const RunOptions& options) {
 
 FrameRange open_frames(const RunOptions& options, const Scene& scene) {
     const auto [first, last] = named_frames(options.frames, scene);
-    return make_frames(scene, first, last);
+    return {scene, first, last, options.degenerate};
 }
 
 std::pair<std::size_t, std::size_t> named_frames(const std::string& frames, const Scene& scene) {
@@ -97,9 +97,12 @@ void check_required(const std::vector<BackendReport>& backends, const std::vecto
     }
 }
 
+void check_coordinates(const Cell& cell, const Scene& scene, const Frame& frame) {
+    check_range(scene, frame, geometry_of(cell.settings).precision);
+}
+
 void check_coordinates(const Cell& cell, const Scene& scene, const FrameRange& range) {
-    const auto precision = geometry_of(cell.settings).precision;
-    for (const auto& frame : range.frames) check_range(scene, frame, precision);
+    for (std::size_t i = 0; i < range.size(); ++i) check_coordinates(cell, scene, *range.frame(i));
 }
 
 void check_outputs(const RunOptions& options, std::span<const Cell> cells) {

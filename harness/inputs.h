@@ -9,7 +9,8 @@ namespace tandem {
 /// The scene that the options name: a kind, a description, or mesh files with poses. Throws InputError.
 Scene open_scene(const RunOptions& options);
 
-/// The frames that the options name; throws InputError when the scene has no such frames.
+/// The frames that the options name, their flaws handled as they say. Throws InputError when the scene has no
+/// such frames or they are refused. The scene must outlive them, in its place.
 FrameRange open_frames(const RunOptions& options, const Scene& scene);
 
 /// The first and the last frame of "FIRST:LAST" or "N", all when empty; throws InputError as open_frames.
@@ -23,6 +24,7 @@ std::vector<DeviceGroup> open_devices(const RunOptions& options, const std::vect
 void check_required(const std::vector<BackendReport>& backends, const std::vector<std::string>& require);
 
 /// Refuses coordinates that the precision of the cell cannot hold, before anything is measured.
+void check_coordinates(const Cell& cell, const Scene& scene, const Frame& frame);
 void check_coordinates(const Cell& cell, const Scene& scene, const FrameRange& range);
 
 /// Refuses dumps that no cell can give, and two outputs in one file.

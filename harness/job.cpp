@@ -37,19 +37,16 @@ void fit_coordinates(Job& job, const Unfit& unfit) {
 } // namespace
 
 Job open_job(const RunOptions& options, std::vector<Cell> cells, const Unfit& unfit) {
-    return open_job(open_scene(options), options, std::move(cells), unfit);
+    return Job(open_scene(options), options, std::move(cells), unfit);
 }
 
-Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells, const Unfit& unfit) {
-    Job job;
-    job.options = options;
-    job.scene = std::move(scene);
-    job.range = open_frames(options, job.scene);
-    job.range.flaws = handle_flaws(job.scene, job.range.first, job.range.frames, options.degenerate);
-    job.cells = std::move(cells);
-    check_outputs(options, job.cells);
-    fit_coordinates(job, unfit);
-    return job;
+Job::Job(Scene scene_, const RunOptions& options_, std::vector<Cell> cells_, const Unfit& unfit)
+    : options(options_),
+      scene(std::move(scene_)),
+      range(open_frames(options, scene)),
+      cells(std::move(cells_)) {
+    check_outputs(options, cells);
+    fit_coordinates(*this, unfit);
 }
 
 namespace {
@@ -118,14 +115,14 @@ std::filesystem::path checks_folder(const RunOptions& options) {
 
 void print_scene(const Scene& scene, const FrameRange& range) {
     put("scene {}: {} bodies, {} vertices, {} tetrahedra, frames {}:{}, digest {:016x}\n", scene.key,
-        scene.bodies.size(), vertex_count(scene), tetrahedron_count(scene), range.first, range.last,
+        scene.bodies.size(), vertex_count(scene), tetrahedron_count(scene), range.first(), range.last(),
         scene.digest);
     std::size_t inverted = 0;
     for (const auto& mesh : scene.meshes) inverted += mesh.inverted;
     if (inverted > 0) put("its meshes have {} inverted tetrahedra; they are kept\n", inverted);
-    if (range.flaws.any())
-        put("tetrahedra {}; they {}\n", describe(range.flaws, scene),
-            range.flaws.handling == Degenerate::skip ? "take no part" : "take part as flat sets");
+    if (range.flaws().any())
+        put("tetrahedra {}; they {}\n", describe(range.flaws(), scene),
+            range.flaws().handling == Degenerate::skip ? "take no part" : "take part as flat sets");
 }
 
 bool misses_against_its_promise(const Measurement& m) {

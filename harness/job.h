@@ -10,18 +10,23 @@
 
 namespace tandem {
 
-/// What is measured: a scene's frames and cells; the devices belong to whoever found them.
+/// What is measured: a scene's frames and cells; the devices belong to whoever found them. It stays in its
+/// place, since its frames are made of its scene.
 struct Job {
+    /// Opens the frames and handles their flaws; throws InputError when they, the outputs or the cells do not
+    /// fit each other; cells that the scene does not fit are `unfit`.
+    Job(Scene scene_, const RunOptions& options_, std::vector<Cell> cells_, const Unfit& unfit = refuse);
+    Job(const Job&) = delete;
+    Job& operator=(const Job&) = delete;
+
     RunOptions options; ///< with this scene and its frames
     Scene scene;
     FrameRange range;
     std::vector<Cell> cells;
 };
 
-/// Opens the scene and its frames and handles their flaws; throws InputError when they, the outputs or the
-/// cells do not fit each other; cells that the scene does not fit are `unfit`.
+/// Of the scene that the options name, which it opens; throws as the job's constructor.
 Job open_job(const RunOptions& options, std::vector<Cell> cells, const Unfit& unfit = refuse);
-Job open_job(Scene scene, const RunOptions& options, std::vector<Cell> cells, const Unfit& unfit = refuse);
 
 /// How the cells of a job are measured.
 struct Measuring {

@@ -48,8 +48,8 @@ std::string with_settings(const std::string& before_settings, const SettingTexts
 
 std::string key_of(const Cell& cell, const Settings& settings, const Scene& scene, const FrameRange& range) {
     return with_settings(fmt::format("{}|{}|{}@{:016x}|{}:{}{}", cell.algorithm->name(),
-                                     models_of(cell.devices), scene.key, scene.digest, range.first,
-                                     range.last, handling_key(range.flaws)),
+                                     models_of(cell.devices), scene.key, scene.digest, range.first(),
+                                     range.last(), handling_key(range.flaws())),
                          settings.texts());
 }
 

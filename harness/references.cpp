@@ -29,7 +29,7 @@ std::string References::question(const Key& key) const {
     const auto& [geometry, contacts, index] = key;
     return fmt::format(
         "frame {:016x}, k {} {}, precision {}, rounding {}, placement {}, rule {}, decision {}",
-        digest_of(range_.frames[index]), geometry.k, geometry.coordinate_axes,
+        digest_of(*range_.frame(index)), geometry.k, geometry.coordinate_axes,
         static_cast<int>(geometry.precision), static_cast<int>(geometry.rounding),
         static_cast<int>(geometry.placement), static_cast<int>(contacts.rule),
         static_cast<int>(contacts.decision));
@@ -41,7 +41,7 @@ const ReferenceAnswer& References::answer(const Geometry& geometry, const Contac
     if (last_ && last_->first == key) return last_->second;
     last_.reset(); // before the next takes memory
     last_.emplace(
-        key, reference(scene_, range_.frames[index], geometry, true, reference_method(scene_), contacts));
+        key, reference(scene_, *range_.frame(index), geometry, true, reference_method(scene_), contacts));
     return last_->second;
 }
 

@@ -30,10 +30,10 @@ namespace {
 void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts) {
     if (!pairs && !contacts) return;
     const auto session = cell.algorithm->prepare(cell.devices, job.scene, cell.settings);
-    for (std::size_t i = 0; i < job.range.frames.size(); ++i) {
-        const auto result = session->run(job.range.frames[i]);
-        if (pairs) pairs.pairs(job.range.first + i, result.download());
-        if (contacts) contacts.contacts(job.range.first + i, result.download_contacts());
+    for (std::size_t i = 0; i < job.range.size(); ++i) {
+        const auto result = session->run(*job.range.frame(i));
+        if (pairs) pairs.pairs(job.range.first() + i, result.download());
+        if (contacts) contacts.contacts(job.range.first() + i, result.download_contacts());
     }
 }
 
@@ -48,7 +48,7 @@ int profile(const Job& job, std::size_t times) {
         for (std::size_t i = 0; i < times; ++i) replay();
         for (auto* device : cell.devices) device->profile(false);
         put("{}: replayed frames {}:{} {} times; nothing measured or recorded\n", describe(cell),
-            job.range.first, job.range.last, times);
+            job.range.first(), job.range.last(), times);
     }
     return 0;
 }
@@ -183,8 +183,7 @@ void Run::list(const Job& job) {
 }
 
 int Run::measure(Job& job) {
-    Truths truths(job.scene, job.range.frames, options_.truth, options_.truth_contacts,
-                  checks_folder(options_));
+    Truths truths(job.scene, job.range, options_.truth, options_.truth_contacts, checks_folder(options_));
     auto measuring = measuring_of(options_, options_.truth == TruthAmount::none ? nullptr : &truths);
     measuring.unfinished = &unfinished_;
     measuring.stop = Interrupt::asked;

@@ -153,7 +153,7 @@ int simulate_command(const SimulateOptions& options) {
     const auto backends = open_backends(request.devices, options.require);
     check_required(backends, options.require);
     const auto cell = only_cell(request, backends);
-    check_coordinates(cell, scene, {0, 0, {scene.frame(0)}});
+    check_coordinates(cell, scene, scene.frame(0));
     Simulation simulation(scene);
     // Before a recording is made, which a second try would find there.
     RecordFile file(options.record);

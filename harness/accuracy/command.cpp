@@ -135,11 +135,11 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
     auto own = options;
     auto scene = open_scene(own);
     if (own.frames.empty()) own.frames = middle_frames(scene);
-    const auto job = open_job(std::move(scene), own, cells);
+    const Job job(std::move(scene), own, cells);
     print_scene(job.scene, job.range);
     const auto kept = checks_folder(options);
     References references(job.scene, job.range, kept);
-    Truths truths(job.scene, job.range.frames, TruthAmount::contacts, options.truth_contacts, kept);
+    Truths truths(job.scene, job.range, TruthAmount::contacts, options.truth_contacts, kept);
     const Progress progress(options.quiet);
     Measuring measuring;
     measuring.check = {options.check, false, &truths};

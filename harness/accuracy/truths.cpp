@@ -27,10 +27,10 @@ void check_room(const FrameTruth& first, std::size_t frames) {
 
 } // namespace
 
-Truths::Truths(const Scene& scene, std::span<const Frame> frames, TruthAmount amount,
-               std::size_t most_contacts, const std::filesystem::path& folder)
+Truths::Truths(const Scene& scene, const FrameRange& range, TruthAmount amount, std::size_t most_contacts,
+               const std::filesystem::path& folder)
     : scene_(scene),
-      frames_(frames),
+      range_(range),
       amount_(amount),
       most_contacts_(most_contacts),
       kept_(folder, fmt::format("truths of {} {:016x}", scene.key, scene.digest)) {}
@@ -39,16 +39,16 @@ Truths::Truths(const Scene& scene, std::span<const Frame> frames, TruthAmount am
 const FrameTruth& Truths::truth_of(const Place& place, const Report& report) {
     if (const auto found = truths_.find(place); found != truths_.end()) return found->second;
     const auto& [positions, index] = place;
-    auto truth = frame_truth(scene_, frames_[index], positions, report, free_memory());
-    if (index == 0) check_room(truth, frames_.size());
+    auto truth = frame_truth(scene_, *range_.frame(index), positions, report, free_memory());
+    if (index == 0) check_room(truth, range_.size());
     return truths_.emplace(place, std::move(truth)).first->second;
 }
 
 const ContactTruths& Truths::contact_truths_of(const Place& place, const Report& report) {
     if (const auto found = contact_truths_.find(place); found != contact_truths_.end()) return found->second;
     const auto& [positions, index] = place;
-    auto truths =
-        contact_truths(scene_, frames_[index], positions.precision, truth_of(place, report), most_contacts_);
+    auto truths = contact_truths(scene_, *range_.frame(index), positions.precision, truth_of(place, report),
+                                 most_contacts_);
     return contact_truths_.emplace(place, std::move(truths)).first->second;
 }
 
@@ -76,10 +76,10 @@ std::string Truths::question(Precision precision, const Place& place, const Fram
     const auto& c = answer.contacts;
     return fmt::format("frame {:016x}{}, precision {}, positions {} {}, amount {} {}, pairs {} {:x} {:x}, "
                        "contacts {} {} {:x} {:x}",
-                       digest_of(frames_[index]), index == 0 ? " first" : "", static_cast<int>(precision),
-                       static_cast<int>(positions.precision), static_cast<int>(positions.placement),
-                       static_cast<int>(amount_), most_contacts_, p.count, p.a, p.b, answer.makes_contacts,
-                       c.count, c.a, c.b);
+                       digest_of(*range_.frame(index)), index == 0 ? " first" : "",
+                       static_cast<int>(precision), static_cast<int>(positions.precision),
+                       static_cast<int>(positions.placement), static_cast<int>(amount_), most_contacts_,
+                       p.count, p.a, p.b, answer.makes_contacts, c.count, c.a, c.b);
 }
 
 /// Kept by the caller only when nothing has thrown: a download may fail, and the next cell asks again.
@@ -95,7 +95,7 @@ AnswerErrors Truths::errors_of(Precision precision, const Place& place, const Fr
     errors.invalid_tetrahedra = truth.invalid.size();
     if (amount_ == TruthAmount::contacts && index == 0) {
         if (!drifts_.contains(precision))
-            drifts_.emplace(precision, vertex_drift(scene_, frames_[index], precision));
+            drifts_.emplace(precision, vertex_drift(scene_, *range_.frame(index), precision));
         errors.drift = drifts_.at(precision);
     }
     if (!answer.makes_contacts) return errors;

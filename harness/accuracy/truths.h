@@ -3,6 +3,7 @@
 
 #include "algorithms/traversal.h"
 #include "harness/accuracy/answer_errors.h"
+#include "harness/frames.h"
 #include "harness/kept_values.h"
 
 #include <map>
@@ -32,15 +33,15 @@ struct FrameAnswer {
 /// with that of the vertices they are made from, in the cell's precision.
 class Truths {
 public:
-    /// `scene` and `frames` must outlive it. `most_contacts`: of this many pairs of a frame at most the exact
+    /// `scene` and `range` must outlive it. `most_contacts`: of this many pairs of a frame at most the exact
     /// contact is found, 0 for all.
     /// Errors are kept in the folder from one run of the program to the next; nowhere when it is empty.
-    Truths(const Scene& scene, std::span<const Frame> frames, TruthAmount amount, std::size_t most_contacts,
+    Truths(const Scene& scene, const FrameRange& range, TruthAmount amount, std::size_t most_contacts,
            const std::filesystem::path& folder = {});
 
     TruthAmount amount() const { return amount_; }
 
-    /// Errors of a cell's answer of frame number `index` of the span. Of its geometry the precision and the
+    /// Errors of a cell's answer of frame number `index` of the range. Of its geometry the precision and the
     /// truth count. Throws InputError when there is too little
     /// memory for the truth of that frame, or, with the first, of as many like it.
     const AnswerErrors& errors(const Geometry& geometry, std::size_t index, const FrameAnswer& answer,
@@ -56,7 +57,7 @@ private:
                            const Report& report);
 
     const Scene& scene_;
-    std::span<const Frame> frames_;
+    const FrameRange& range_;
     TruthAmount amount_;
     std::size_t most_contacts_;
     KeptValues kept_;

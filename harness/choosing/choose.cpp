@@ -119,12 +119,12 @@ std::uint64_t pairs_of_a_frame(const Cell& cell, Trials& trials, std::size_t fra
 
 void choose(Cell& cell, const Scene& scene, const FrameRange& range, const ChoosingOptions& options) {
     if (cell.candidates.empty()) return;
-    const auto frames = std::span(range.frames).first(std::min(range.frames.size(), most_choosing_frames));
+    const auto frames = std::min(range.size(), most_choosing_frames);
     const ChoiceCache cache(options.folder, program_version());
     const auto undecided = cell; // sessions refer to its candidates
     options.progress(fmt::format("auto: {} candidates", undecided.candidates.size()));
-    Trials trials(undecided.candidates, scene, frames);
-    const auto question = question_of(undecided, scene, pairs_of_a_frame(undecided, trials, frames.size()));
+    Trials trials(undecided.candidates, scene, range, frames);
+    const auto question = question_of(undecided, scene, pairs_of_a_frame(undecided, trials, frames));
     std::string warning;
     auto choice = options.afresh ? std::nullopt : cache.find(question, warning);
     if (choice && settle(cell, *choice)) {
@@ -133,8 +133,8 @@ void choose(Cell& cell, const Scene& scene, const FrameRange& range, const Choos
         cell.chosen = std::make_shared<const Choice>(kept);
     } else if ((choice = compare(undecided, trials, options))) {
         choice->scene = scene.key;
-        choice->first = range.first;
-        choice->last = range.first + frames.size() - 1;
+        choice->first = range.first();
+        choice->last = range.first() + frames - 1;
         settle(cell, *choice);
     }
     options.progress("");

@@ -22,9 +22,11 @@ bool is_crowded(const Device& device) {
 
 } // namespace
 
-Trials::Trials(std::span<const Cell> candidates, const Scene& scene, std::span<const Frame> frames)
+Trials::Trials(std::span<const Cell> candidates, const Scene& scene, const FrameRange& range,
+               std::size_t frames)
     : candidates_(candidates),
       scene_(scene),
+      range_(range),
       frames_(frames),
       sessions_(candidates.size()),
       failures_(candidates.size()) {
@@ -59,10 +61,11 @@ std::int64_t Trials::run(std::size_t candidate) {
     session.reset();
     std::int64_t sum = 0;
     std::uint64_t pairs = 0;
-    for (const auto& frame : frames_) {
+    for (std::size_t i = 0; i < frames_; ++i) {
+        const auto frame = range_.frame(i);
         for (auto* device : candidates_[candidate].devices) device->finish();
         const auto begin = Clock::now();
-        const auto result = session.run(frame);
+        const auto result = session.run(*frame);
         sum += since(begin);
         pairs += result.count;
     }

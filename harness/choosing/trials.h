@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "harness/frames.h"
 #include "harness/plans/cells.h"
 
 #include <optional>
@@ -13,8 +14,8 @@ namespace tandem {
 /// are prepared again.
 class Trials {
 public:
-    /// All must outlive this.
-    Trials(std::span<const Cell> candidates, const Scene& scene, std::span<const Frame> frames);
+    /// The first `frames` frames of the range. All must outlive this.
+    Trials(std::span<const Cell> candidates, const Scene& scene, const FrameRange& range, std::size_t frames);
 
     /// Makes the candidate's session, unless it is there, and replays the frames once: kernels compile and
     /// buffers grow. False when it failed, now or before.
@@ -41,7 +42,8 @@ private:
 
     std::span<const Cell> candidates_;
     const Scene& scene_;
-    std::span<const Frame> frames_;
+    const FrameRange& range_;
+    std::size_t frames_;
     std::vector<std::unique_ptr<Session>> sessions_;
     std::vector<std::string> failures_;
     std::optional<std::uint64_t> pairs_;

@@ -42,7 +42,7 @@ json answer_to(const json& asked) {
         request.options, {make_cell(traversal, preset(traversal, request.preset), request.settings, group)});
     const auto kept = checks_folder(request.options);
     References references(job.scene, job.range, kept);
-    Truths truths(job.scene, job.range.frames, request.options.truth, request.options.truth_contacts, kept);
+    Truths truths(job.scene, job.range, request.options.truth, request.options.truth_contacts, kept);
     if (request.options.truth != TruthAmount::none) request.work.check.truths = &truths;
     CellState state;
     if (!asked.at("checked").is_null()) take_checked(state, asked["checked"], job.cells.front());

@@ -34,7 +34,7 @@ void look_at_pairs(profile::Profile& profile, const Cell& cell, const Job& job, 
     replays.timed([&](std::size_t, const FrameResult& result) {
         add_touched(facts, job.scene, m.settings, result.download());
     });
-    const auto frames = static_cast<double>(job.range.frames.size());
+    const auto frames = static_cast<double>(job.range.size());
     for (auto* sum : {&facts.touched, &facts.touched_rows, &facts.touched_vertices}) *sum /= frames;
 }
 
@@ -61,7 +61,7 @@ private:
     const ProfileOptions& options_;
     const RunOptions& run_;
     std::vector<BackendReport> backends_;
-    Job job_;
+    std::optional<Job> job_;
     Progress progress_;
     std::map<const Device*, nlohmann::ordered_json> ceilings_;
     std::optional<RecordFile> file_;
@@ -82,12 +82,12 @@ Profiling::Profiling(const ProfileOptions& options)
         if (cell.devices.size() > 1)
             throw InputError(
                 fmt::format("{}: a profile is of one device; name them apart, D,E", describe(cell)));
-    job_ = open_job(run_, std::move(cells));
+    job_.emplace(open_scene(run_), run_, std::move(cells));
 }
 
 /// Before cells are measured: a file that has none had better be known then.
 void Profiling::find_ceilings() {
-    for (const auto& cell : job_.cells) {
+    for (const auto& cell : job_->cells) {
         auto* device = cell.devices.front();
         if (ceilings_.contains(device)) continue;
         progress_.show(fmt::format("ceilings of {}", device->info().id));
@@ -123,13 +123,13 @@ void Profiling::end(const Outcome& outcome, const Sampling& sampling) {
     profile.limits = profile::limits_of(ceilings, static_cast<int>(settings[parameters::k]));
     profile.facts = profile::mean_frame(m);
     if (measured && !m.breakdowns.empty()) {
-        look_at_pairs(profile, cell, job_, m);
+        look_at_pairs(profile, cell, *job_, m);
         profile.kernels =
-            profile_kernels(m, profile.facts, cell.algorithm->costs(job_.scene, settings), profile.limits);
+            profile_kernels(m, profile.facts, cell.algorithm->costs(job_->scene, settings), profile.limits);
         print(cell, m, profile);
         if (traced_ == nullptr) traced_ = &cell;
     }
-    const auto record = make_record(cell, job_.scene, job_.range, m, outcome, sampling);
+    const auto record = make_record(cell, job_->scene, job_->range, m, outcome, sampling);
     const bool recorded = file_->append_or_tell(profile_record(record, profile));
     code_ = std::max(code_, !measured || !recorded ? 3 : (m.agreement.ok() ? 0 : 1));
 }
@@ -137,14 +137,14 @@ void Profiling::end(const Outcome& outcome, const Sampling& sampling) {
 int Profiling::go() {
     file_.emplace(run_.out);
     trace_.emplace(run_.trace);
-    print_scene(job_.scene, job_.range);
+    print_scene(job_->scene, job_->range);
     find_ceilings();
     const Interrupt interrupt;
-    References references(job_.scene, job_.range, checks_folder(run_));
+    References references(job_->scene, job_->range, checks_folder(run_));
     std::deque<LocalSampler> samplers;
     std::vector<CellSampler*> group;
-    for (const auto& cell : job_.cells)
-        group.push_back(&samplers.emplace_back(cell, job_.scene, job_.range, references));
+    for (const auto& cell : job_->cells)
+        group.push_back(&samplers.emplace_back(cell, job_->scene, job_->range, references));
     RoundsListener listener;
     listener.progress = [&](std::string_view text) { progress_.show(text); };
     listener.stop = [&] { return file_->failed() || Interrupt::asked(); };
@@ -153,7 +153,7 @@ int Profiling::go() {
     check.progress = listener.progress;
     const bool interrupted = sample_group(group, check, {run_.repeat, run_.noise, run_.seconds},
                                           run_.seed ? *run_.seed : std::random_device{}(), listener);
-    if (traced_ != nullptr && *trace_ && !file_->failed()) trace_->write(trace_frame(*traced_, job_));
+    if (traced_ != nullptr && *trace_ && !file_->failed()) trace_->write(trace_frame(*traced_, *job_));
     if (traced_ != nullptr) put("\n{}", profile::profile_legend());
     if (!run_.out.empty()) put("{} records appended to {}\n", file_->appended(), run_.out);
     return interrupted ? 3 : code_;

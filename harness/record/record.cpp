@@ -182,7 +182,7 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["asked"] = asked_json(cell.settings.texts(), settings.texts());
     json["chosen"] = cell.chosen ? choice_json(*cell.chosen) : Json();
     json["scene"] = record_scene(scene);
-    json["frames"] = {{"first", range.first}, {"last", range.last}};
+    json["frames"] = {{"first", range.first()}, {"last", range.last()}};
     json["devices"] = devices_json(m, cell);
     const bool measured = failure.empty();
     json["sampling"] = record_parts::sampling_json(m, cell, outcome, sampling);
@@ -193,7 +193,7 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["preparation"] =
         measured ? Json{{"host_ns", m.prepare_ns}, {"device_bytes", m.device_bytes}} : Json();
     json["agreement"] = agreement_json(m, scene);
-    json["error"] = measured ? record_parts::error_json(m, range.flaws) : Json();
+    json["error"] = measured ? record_parts::error_json(m, range.flaws()) : Json();
     json["environment"] = record_environment();
     return json;
 }

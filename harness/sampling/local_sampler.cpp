@@ -101,7 +101,7 @@ void LocalSampler::add_counts(const FrameResult& result) {
 
 /// At one answer of the checking replay.
 void LocalSampler::look(std::size_t index, const FrameResult& result, const CheckOptions& options) {
-    const auto frame = fmt::format("frame {} of {}", index + 1, range_.frames.size());
+    const auto frame = fmt::format("frame {} of {}", index + 1, range_.size());
     options.progress(fmt::format("{}: checking {}", name_, frame));
     // output=count makes no digest: its count stands for it, and for the whole where it is right.
     const bool counted = out_.settings[parameters::output] == Output::count;

@@ -42,10 +42,10 @@ void add_kernels(const Trace& trace, std::map<std::string, KernelSample>& kernel
 
 Replays::Replays(const Cell& cell, const Scene& scene, const FrameRange& range)
     : cell_(cell), range_(range), name_(describe(cell)) {
-    frame_names_.resize(range.frames.size());
+    frame_names_.resize(range.size());
     if (ranges::available())
         for (std::size_t i = 0; i < frame_names_.size(); ++i)
-            frame_names_[i] = fmt::format("frame {}", range.first + i);
+            frame_names_[i] = fmt::format("frame {}", range.first() + i);
     for (auto* device : cell.devices) device->set_clocks(Clocks::off);
     const auto begin = Clock::now();
     session_ = cell.algorithm->prepare(cell.devices, scene, cell.settings);
@@ -68,11 +68,12 @@ InstrumentedReplay Replays::instrumented() {
     for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
     const ranges::Range cell(name_.c_str());
     InstrumentedReplay replay;
-    for (std::size_t i = 0; i < range_.frames.size(); ++i) {
-        const ranges::Range frame(frame_names_[i].c_str());
+    for (std::size_t i = 0; i < range_.size(); ++i) {
+        const auto frame = range_.frame(i);
+        const ranges::Range stretch(frame_names_[i].c_str());
         wait();
         const auto begin = Clock::now();
-        const auto result = session_->run(range_.frames[i]);
+        const auto result = session_->run(*frame);
         replay.frame_ns.push_back(since(begin));
         auto& sum = replay.stages.emplace_back();
         std::int64_t span = 0; // the longest of the devices, -1 when one does not tell
@@ -96,10 +97,12 @@ InstrumentedReplay Replays::instrumented() {
 std::vector<Trace> Replays::traced(std::size_t index) {
     const ranges::Range cell(name_.c_str());
     session_->reset();
-    for (std::size_t i = 0; i <= index; ++i) session_->run(range_.frames[i]);
+    for (std::size_t i = 0; i < index; ++i) session_->run(*range_.frame(i));
+    const auto frame = range_.frame(index);
+    session_->run(*frame);
     for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
-    const ranges::Range frame(frame_names_[index].c_str());
-    const auto result = session_->run(range_.frames[index]);
+    const ranges::Range stretch(frame_names_[index].c_str());
+    const auto result = session_->run(*frame);
     std::vector<Trace> traces;
     for (auto* device : cell_.devices) traces.push_back(device->finish());
     for (auto* device : cell_.devices) device->set_clocks(Clocks::off);
@@ -110,8 +113,8 @@ std::map<std::string_view, std::uint64_t> Replays::counted() {
     std::map<std::string_view, std::uint64_t> work;
     session_->reset();
     session_->count_work(true);
-    for (const auto& frame : range_.frames) {
-        const auto result = session_->run(frame);
+    for (std::size_t i = 0; i < range_.size(); ++i) {
+        const auto result = session_->run(*range_.frame(i));
         for (const auto& counter : cell_.algorithm->counters()) {
             const auto found = result.work.find(counter.name);
             if (found == result.work.end()) continue;

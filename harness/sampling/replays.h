@@ -18,17 +18,20 @@ public:
     const Settings& settings() const { return session_->settings(); }
 
     /// Runs every frame, with nothing but its span timed, and hands each result to `look` outside of that
-    /// span.
+    /// span. So is a frame made that the range does not hold: neither the span nor the profiler's range of
+    /// the frame has that, but that of the cell has, as it has `look`. Where frames are made the session's
+    /// data is colder in caches, and the devices were idle for longer, than where they are held.
     template<class Look>
     TimedReplay timed(const Look& look) {
         const ranges::Range cell(name_.c_str());
         session_->reset();
         TimedReplay replay;
-        for (std::size_t i = 0; i < range_.frames.size(); ++i) {
-            const ranges::Range frame(frame_names_[i].c_str());
+        for (std::size_t i = 0; i < range_.size(); ++i) {
+            const auto frame = range_.frame(i);
+            const ranges::Range stretch(frame_names_[i].c_str());
             wait();
             const auto begin = std::chrono::steady_clock::now();
-            const auto result = session_->run(range_.frames[i]);
+            const auto result = session_->run(*frame);
             replay.frame_ns.push_back(since(begin));
             look(i, result);
         }

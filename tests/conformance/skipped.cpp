@@ -2,7 +2,7 @@
 // Tetrahedra that a frame skips: in no pair of any algorithm, in no bound, and back in the next frame.
 #include "algorithms/published/published_frame.h"
 #include "tests/support/prepared_trees.h"
-#include "harness/flaws.h"
+#include "harness/frames.h"
 #include "harness/oracle/frame_truth.h"
 #include "tests/support/cells.h"
 #include "tests/support/flawed.h"
@@ -212,15 +212,18 @@ TEST_P(Skipping, BodiesWithoutTheirNearPartsAreNoBodyPairs) {
 
 /// What is not finite and what is flat, through the door that the commands use, against the truth.
 TEST_P(Skipping, AgreesWithTheTruth) {
-    const auto scene = boxes_scene(3, 4);
-    std::vector<Frame> frames{scene.frame(0), scene.frame(1)};
-    const auto& mesh = scene.meshes[1];
+    const auto whole = boxes_scene(3, 4);
+    std::vector<Frame> frames{whole.frame(0), whole.frame(1)};
+    const auto& mesh = whole.meshes[1];
     make_flat(mesh, frames[0].deformed[2], 40);
     frames[1].deformed[2][mesh.tetrahedra[80][1]].z() = std::numeric_limits<double>::quiet_NaN();
-    const auto flaws = handle_flaws(scene, 0, frames, Degenerate::skip);
-    EXPECT_GT(flaws.degenerate, 0u);
-    EXPECT_GT(flaws.non_finite, 0u);
-    for (const auto& frame : frames) {
+    const auto scene = with_frames(whole, frames);
+    const FrameRange range(scene, 0, 1, Degenerate::skip);
+    EXPECT_GT(range.flaws().degenerate, 0u);
+    EXPECT_GT(range.flaws().non_finite, 0u);
+    for (std::size_t i = 0; i < range.size(); ++i) {
+        const auto held = range.frame(i);
+        const auto& frame = *held;
         const auto truth = frame_truth(scene, frame, Precision::fp32);
         EXPECT_GT(truth.overlapping.size(), 100u);
         EXPECT_TRUE(truth.invalid.empty());

@@ -33,6 +33,13 @@ inline Scene boxes_scene(std::uint32_t cells, std::size_t frames) {
     return scene;
 }
 
+/// The scene with these frames, the first of which has number `first`.
+inline Scene with_frames(Scene scene, std::vector<Frame> frames, std::size_t first = 0) {
+    scene.frame_count = first + frames.size();
+    scene.frame = [frames = std::move(frames), first](std::size_t index) { return frames.at(index - first); };
+    return scene;
+}
+
 /// Puts a corner of the tetrahedron onto another of its corners, so that it and perhaps others are flat.
 inline void make_flat(const Mesh& mesh, std::vector<Eigen::Vector3d>& vertices, std::uint32_t tetrahedron) {
     const auto& t = mesh.tetrahedra[tetrahedron];

@@ -93,8 +93,8 @@ const Pair the_pair{0, 0, 1, 0};
 /// What `contacts` and candidates get for the two tetrahedra.
 AnswerErrors errors_of(double x, std::vector<Pair> pairs, std::vector<ContactPoint> contacts) {
     const auto scene = two_units(x);
-    const std::vector<Frame> frames{scene.frame(0)};
-    Truths truths(scene, frames, TruthAmount::contacts, 0);
+    const FrameRange range(scene, 0, 0);
+    Truths truths(scene, range, TruthAmount::contacts, 0);
     FrameAnswer answer;
     answer.makes_contacts = true;
     answer.download = [&] { return pairs; };
@@ -142,8 +142,8 @@ TEST(Accuracy, PairsAreJudgedByTheTruthThatTheirBoundsAreFor) {
     const Geometry vertices, poses{.placement = Placement::exact};
     for (const double gap : {0x1p-30, -0x1p-30}) {
         const auto scene = two_units(1 + gap);
-        const std::vector<Frame> frames{scene.frame(0)};
-        Truths truths(scene, frames, TruthAmount::contacts, 0);
+        const FrameRange range(scene, 0, 0);
+        Truths truths(scene, range, TruthAmount::contacts, 0);
         FrameAnswer answer;
         answer.makes_contacts = true;
         answer.download = [] { return std::vector<Pair>{the_pair}; };
@@ -168,8 +168,8 @@ TEST(Accuracy, PairsAreJudgedByTheTruthThatTheirBoundsAreFor) {
 TEST(Accuracy, PairsWhoseVolumeRoundsToZeroAreCountedApart) {
     auto scene = two_units(0.75e-120);
     for (auto& v : scene.meshes[0].vertices) v *= 1e-120;
-    const std::vector<Frame> frames{scene.frame(0)};
-    Truths truths(scene, frames, TruthAmount::contacts, 0);
+    const FrameRange range(scene, 0, 0);
+    Truths truths(scene, range, TruthAmount::contacts, 0);
     FrameAnswer answer;
     answer.makes_contacts = true;
     answer.download = [] { return std::vector<Pair>{the_pair}; };
@@ -221,8 +221,8 @@ TEST(Accuracy, NumbersThatAreNotFiniteAreCountedAndInNoSample) {
 
 TEST(Accuracy, EqualAnswersAreComparedOnceAndASampleSaysSo) {
     const auto scene = crowd(3, 9, 1.2);
-    const std::vector<Frame> frames{scene.frame(0)};
-    const auto truth = frame_truth(scene, frames[0], Precision::fp32);
+    const FrameRange range(scene, 0, 0);
+    const auto truth = frame_truth(scene, scene.frame(0), Precision::fp32);
     ASSERT_GT(truth.overlapping.size(), 20u);
     int downloads = 0;
     FrameAnswer answer;
@@ -233,7 +233,7 @@ TEST(Accuracy, EqualAnswersAreComparedOnceAndASampleSaysSo) {
         return truth.overlapping;
     };
     answer.download_contacts = [] { return std::vector<ContactPoint>{}; };
-    Truths truths(scene, frames, TruthAmount::contacts, 10);
+    Truths truths(scene, range, TruthAmount::contacts, 10);
     const auto first = truths.errors(Geometry{}, 0, answer);
     truths.errors(Geometry{}, 0, answer);
     EXPECT_EQ(downloads, 1);
@@ -247,11 +247,11 @@ TEST(Accuracy, EqualAnswersAreComparedOnceAndASampleSaysSo) {
 
 TEST(Accuracy, AnAnswerThatCouldNotBeReadIsAskedForAgain) {
     const auto scene = crowd(3, 9, 1.2);
-    const std::vector<Frame> frames{scene.frame(0)};
-    const auto truth = frame_truth(scene, frames[0], Precision::fp32);
+    const FrameRange range(scene, 0, 0);
+    const auto truth = frame_truth(scene, scene.frame(0), Precision::fp32);
     FrameAnswer answer;
     answer.download = []() -> std::vector<Pair> { throw DeviceError("lost"); };
-    Truths truths(scene, frames, TruthAmount::pairs, 0);
+    Truths truths(scene, range, TruthAmount::pairs, 0);
     EXPECT_THROW(truths.errors(Geometry{}, 0, answer), DeviceError);
     answer.download = [&] { return truth.overlapping; };
     EXPECT_EQ(truths.errors(Geometry{}, 0, answer).pairs.overlapping, truth.overlapping.size());

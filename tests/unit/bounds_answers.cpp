@@ -49,7 +49,7 @@ Measurement measured(const Scene& scene, References& references, const FrameRang
 
 TEST(BoundsAnswers, SafeAndNearestAgreeWithoutCornersAndEveryCellWithItsOwnReference) {
     const auto scene = far_crowd(81, 3000);
-    const auto range = make_frames(scene, 0, 1);
+    const FrameRange range(scene, 0, 1);
     References references(scene, range);
     for (const int k : sanitized() ? std::vector{8, 18} : std::vector{8, 12, 18}) {
         std::map<std::string, Digest> digests;

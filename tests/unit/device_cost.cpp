@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What the Device contract costs who embeds it: nothing kept from one frame to the next.
+#include "tests/support/heap.h"
 #include "tests/unit/device_support.h"
-
-#include <malloc.h>
 
 namespace tandem {
 namespace {
 
-/// Bytes of the heap in use; 0 under a sanitizer, whose heap is its own.
-std::size_t heap() {
-    const auto use = mallinfo2();
-    return use.uordblks + use.hblkhd;
-}
+using testing_support::heap;
 
 class Frames {
 public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Flawed tetrahedra of frames: counted, named, refused or skipped.
-#include "harness/flaws.h"
+#include "harness/frames.h"
 #include "scenes/error.h"
 #include "tests/support/flawed.h"
 
@@ -14,9 +14,10 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-std::string refusal(const Scene& scene, std::vector<Frame> frames, Degenerate handling) {
+std::string refusal(const Scene& whole, const std::vector<Frame>& frames, Degenerate handling) {
+    const auto scene = with_frames(whole, frames, 20);
     try {
-        handle_flaws(scene, 20, frames, handling);
+        FrameRange(scene, 20, 19 + frames.size(), handling);
     } catch (const InputError& error) {
         return error.what();
     }
@@ -39,12 +40,12 @@ std::vector<std::uint32_t> flat_ones(const Mesh& mesh, const std::vector<Eigen::
 }
 
 TEST(Flaws, OfRigidBodiesAreThoseOfTheirMeshInEveryFrame) {
-    const auto scene = scene_with_flat_mesh();
-    const auto flat = flat_ones(scene.meshes[0], scene.meshes[0].vertices);
+    const auto whole = scene_with_flat_mesh();
+    const auto flat = flat_ones(whole.meshes[0], whole.meshes[0].vertices);
     ASSERT_GE(flat.size(), 2u);
-    std::vector<Frame> frames{scene.frame(0), scene.frame(1)};
-    const auto before = frames[0].deformed;
-    const auto flaws = handle_flaws(scene, 20, frames, Degenerate::flat);
+    const auto scene = with_frames(whole, {whole.frame(0), whole.frame(1)}, 20);
+    const FrameRange range(scene, 20, 21);
+    const auto& flaws = range.flaws();
     EXPECT_EQ(flaws.degenerate, 4 * flat.size());
     EXPECT_EQ(flaws.non_finite, 0u);
     ASSERT_EQ(flaws.bodies.size(), 2u);
@@ -52,58 +53,67 @@ TEST(Flaws, OfRigidBodiesAreThoseOfTheirMeshInEveryFrame) {
     EXPECT_EQ(flaws.bodies[1].degenerate, 2 * flat.size());
     EXPECT_EQ(flaws.bodies[1].frame, 20u);
     EXPECT_EQ(flaws.bodies[1].first.front(), flat.front());
-    EXPECT_THAT(frames[0].skipped, IsEmpty());
-    EXPECT_EQ(frames[0].deformed, before);
-    handle_flaws(scene, 20, frames, Degenerate::skip);
-    EXPECT_THAT(frames[1].skipped, ElementsAre(flat, flat, IsEmpty()));
+    EXPECT_THAT(range.frame(0)->skipped, IsEmpty());
+    EXPECT_EQ(range.frame(0)->deformed, whole.frame(0).deformed);
+    for (const auto budget : {std::uint64_t{0}, frame_budget}) {
+        const FrameRange skipping(scene, 20, 21, Degenerate::skip, budget);
+        EXPECT_THAT(skipping.frame(1)->skipped, ElementsAre(flat, flat, IsEmpty()));
+    }
 }
 
 TEST(Flaws, OfDeformableBodiesAreThoseOfEachFrame) {
-    const auto scene = boxes_scene(3, 2);
-    std::vector<Frame> frames{scene.frame(0), scene.frame(1), scene.frame(2)};
-    const auto& mesh = scene.meshes[1];
+    const auto whole = boxes_scene(3, 2);
+    std::vector<Frame> frames{whole.frame(0), whole.frame(1), whole.frame(2)};
+    const auto& mesh = whole.meshes[1];
     make_flat(mesh, frames[1].deformed[2], 7);
     const auto flat = flat_ones(mesh, frames[1].deformed[2]);
     const auto corner = mesh.tetrahedra[11][2];
     frames[2].deformed[2][corner].y() = -std::numeric_limits<double>::infinity();
     const auto bad = around(mesh, corner);
-    const auto flaws = handle_flaws(scene, 0, frames, Degenerate::skip);
-    EXPECT_EQ(flaws.degenerate, flat.size());
-    EXPECT_EQ(flaws.non_finite, bad.size());
-    ASSERT_EQ(flaws.bodies.size(), 1u);
-    EXPECT_EQ(flaws.bodies[0].body, 2u);
-    EXPECT_EQ(flaws.bodies[0].frame, 1u);
-    EXPECT_EQ(flaws.bodies[0].first.front(), flat.front());
-    EXPECT_THAT(frames[0].skipped, IsEmpty());
-    EXPECT_THAT(frames[1].skipped, ElementsAre(IsEmpty(), IsEmpty(), flat));
-    EXPECT_THAT(frames[2].skipped, ElementsAre(IsEmpty(), IsEmpty(), bad));
-    for (const auto& v : frames[2].deformed[2]) EXPECT_TRUE(v.allFinite());
+    const auto scene = with_frames(whole, frames);
+    for (const auto budget : {std::uint64_t{0}, frame_budget}) {
+        const FrameRange range(scene, 0, 2, Degenerate::skip, budget);
+        const auto& flaws = range.flaws();
+        EXPECT_EQ(flaws.degenerate, flat.size());
+        EXPECT_EQ(flaws.non_finite, bad.size());
+        ASSERT_EQ(flaws.bodies.size(), 1u);
+        EXPECT_EQ(flaws.bodies[0].body, 2u);
+        EXPECT_EQ(flaws.bodies[0].frame, 1u);
+        EXPECT_EQ(flaws.bodies[0].first.front(), flat.front());
+        EXPECT_THAT(range.frame(0)->skipped, IsEmpty());
+        EXPECT_THAT(range.frame(1)->skipped, ElementsAre(IsEmpty(), IsEmpty(), flat));
+        EXPECT_THAT(range.frame(2)->skipped, ElementsAre(IsEmpty(), IsEmpty(), bad));
+        EXPECT_TRUE(std::ranges::all_of(range.frame(2)->deformed[2], [](auto& v) { return v.allFinite(); }));
+    }
 }
 
 /// More than one stretch, found on several cores: still in order.
 TEST(Flaws, OfLargeMeshesAreInOrder) {
-    const auto scene = boxes_scene(12, 1); // 10368 tetrahedra
-    std::vector<Frame> frames{scene.frame(0)};
-    const auto& mesh = scene.meshes[1];
+    const auto whole = boxes_scene(12, 1); // 10368 tetrahedra
+    std::vector<Frame> frames{whole.frame(0)};
+    const auto& mesh = whole.meshes[1];
     for (const std::uint32_t t : {9000u, 4095u, 4096u, 17u}) make_flat(mesh, frames[0].deformed[2], t);
     const auto flat = flat_ones(mesh, frames[0].deformed[2]);
-    const auto flaws = handle_flaws(scene, 0, frames, Degenerate::skip);
-    EXPECT_EQ(flaws.degenerate, flat.size());
-    EXPECT_EQ(frames[0].skipped[2], flat);
-    EXPECT_EQ(flaws.bodies[0].first, std::vector<std::uint32_t>(flat.begin(), flat.begin() + 4));
+    const auto scene = with_frames(whole, frames);
+    const FrameRange range(scene, 0, 0, Degenerate::skip);
+    EXPECT_EQ(range.flaws().degenerate, flat.size());
+    EXPECT_EQ(range.frame(0)->skipped[2], flat);
+    EXPECT_EQ(range.flaws().bodies[0].first, std::vector<std::uint32_t>(flat.begin(), flat.begin() + 4));
 }
 
 TEST(Flaws, APoseThatIsNotFiniteLeavesOutTheBody) {
-    const auto scene = boxes_scene(2, 1);
-    std::vector<Frame> frames{scene.frame(0)};
+    const auto whole = boxes_scene(2, 1);
+    std::vector<Frame> frames{whole.frame(0)};
     frames[0].poses[1].rotation.x() = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_THAT(refusal(scene, frames, Degenerate::flat),
+    EXPECT_THAT(refusal(whole, frames, Degenerate::flat),
                 HasSubstr("48 not finite in 1 of 3 bodies: body 1 tetrahedron 0, 1, 2, 3, ... in frame 20"));
-    const auto flaws = handle_flaws(scene, 0, frames, Degenerate::skip);
-    EXPECT_EQ(flaws.non_finite, scene.meshes[0].tetrahedra.size());
-    ASSERT_EQ(frames[0].skipped.size(), 3u);
-    EXPECT_EQ(frames[0].skipped[1].size(), scene.meshes[0].tetrahedra.size());
-    EXPECT_TRUE(frames[0].poses[1].rotation.coeffs().allFinite());
+    const auto scene = with_frames(whole, frames);
+    const FrameRange range(scene, 0, 0, Degenerate::skip);
+    EXPECT_EQ(range.flaws().non_finite, scene.meshes[0].tetrahedra.size());
+    const auto frame = range.frame(0);
+    ASSERT_EQ(frame->skipped.size(), 3u);
+    EXPECT_EQ(frame->skipped[1].size(), scene.meshes[0].tetrahedra.size());
+    EXPECT_TRUE(frame->poses[1].rotation.coeffs().allFinite());
 }
 
 TEST(Flaws, RefusalsSayWhatAndWhere) {

@@ -22,18 +22,24 @@ const std::vector<SettingTexts> ways{{},
                                      {{"balance", "serial"}},
                                      {{"schedule", "item"}}};
 
-FrameRange skipping_frames(const Scene& scene) {
-    auto range = make_frames(scene, 0, 1);
-    range.frames[1].skipped.resize(scene.bodies.size());
-    range.frames[1].skipped[2] = {0};
-    return range;
+/// A crowd whose second frame skips a tetrahedron.
+Scene skipping_crowd() {
+    auto scene = crowd(7, 5, 1.0);
+    scene.frame = [whole = scene.frame, bodies = scene.bodies.size()](std::size_t i) {
+        auto frame = whole(i);
+        if (i == 0) return frame;
+        frame.skipped.resize(bodies);
+        frame.skipped[2] = {0};
+        return frame;
+    };
+    return scene;
 }
 
 /// Of every algorithm, preset and way on the host: what `visit` is given the costs and launched kernels of.
 template<class Visit>
 void for_cells(const Visit& visit) {
-    const auto scene = crowd(7, 5, 1.0);
-    const auto range = skipping_frames(scene);
+    const auto scene = skipping_crowd();
+    const FrameRange range(scene, 0, 1);
     for (const auto* traversal : algorithms())
         for (const auto& preset : traversal->presets())
             for (auto given : ways) {
@@ -154,7 +160,7 @@ TEST(ProfileCosts, WhatCandidatePairsTouch) {
 /// Boxes tested above tetrahedra are some of all, and tiles of tetrahedra take 32 tests at least.
 TEST(ProfileCosts, TiledCountsItsTilesApart) {
     const auto scene = make_scene("plates");
-    const auto range = make_frames(scene, 60, 60);
+    const FrameRange range(scene, 60, 60);
     const auto& tiled = algorithm("tiled");
     const auto cell = make_cell(tiled, tiled.presets().front(), {}, {&device("host")});
     Replays replays(cell, scene, range);

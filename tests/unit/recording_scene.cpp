@@ -52,7 +52,7 @@ TEST_F(RecordingScene, HasTheRecordedFrames) {
     EXPECT_EQ(scene.time(3), 0.75);
     EXPECT_FALSE(scene.dynamics);
     EXPECT_EQ(failure_of([&] { scene.frame(5); }), file_ + ": there is no frame 5; frames 0:4 are whole");
-    EXPECT_EQ(failure_of([&] { make_frames(scene, 3, 5); }),
+    EXPECT_EQ(failure_of([&] { FrameRange(scene, 3, 5); }),
               "frames 3:5 are impossible; " + file_ + ": there is no frame 5; frames 0:4 are whole");
 }
 
@@ -105,13 +105,13 @@ TEST_F(RecordingScene, NotOfARecording) {
 TEST_F(RecordingScene, ASceneThatIsSimulatedSaysSo) {
     auto scene = make_scene("pile:bodies=3,frames=1");
     scene.dynamics = std::make_shared<const Dynamics>();
-    EXPECT_EQ(failure_of([&] { make_frames(scene, 0, 4); }),
+    EXPECT_EQ(failure_of([&] { FrameRange(scene, 0, 4); }),
               "frames 0:4 are impossible; scene pile moves by simulation and has its start only, frame 0: "
               "record it "
               "with 'tandem simulate pile -o FILE.frames' and name FILE.frames");
-    EXPECT_EQ(failure_of([&] { make_frames(scene, 4, 2); }),
+    EXPECT_EQ(failure_of([&] { FrameRange(scene, 4, 2); }),
               "frames 4:2 are impossible; scene pile has frames 0:0");
-    EXPECT_EQ(make_frames(scene, 0, 0).frames.size(), 1u);
+    EXPECT_EQ(FrameRange(scene, 0, 0).size(), 1u);
 }
 
 } // namespace

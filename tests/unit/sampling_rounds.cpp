@@ -48,7 +48,7 @@ protected:
     }
 
     Scene scene_ = crowd(5, 6, 1.0);
-    FrameRange range_ = make_frames(scene_, 0, 1);
+    FrameRange range_{scene_, 0, 1};
     References references_{scene_, range_};
     std::deque<Cell> cells_;
     std::deque<LocalSampler> samplers_;
@@ -87,7 +87,7 @@ TEST_F(SamplingRounds, NoSamplesAreAnswersAndOneBreakdown) {
 /// The clocks of a GPU take longer to rise than a few replays of a small scene.
 TEST_F(SamplingRounds, WarmUpForFiveMilliseconds) {
     const auto pair = crowd(5, 2, 1.0);
-    const auto range = make_frames(pair, 0, 0);
+    const FrameRange range(pair, 0, 0);
     References references(pair, range);
     LocalSampler sampler(cells_.front(), pair, range, references);
     sampler.check(check_);

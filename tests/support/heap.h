@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <malloc.h>
+
+namespace tandem::testing_support {
+
+/// Bytes of the heap in use; 0 under a sanitizer, whose heap is its own.
+inline std::size_t heap() {
+    const auto use = mallinfo2();
+    return use.uordblks + use.hblkhd;
+}
+
+} // namespace tandem::testing_support
