@@ -109,9 +109,15 @@ class Profile(Case):
         self.assertIn("answer: not checked", text)
         record = json.loads(out.read_text())
         measured = json.loads(ceilings.read_text())
-        self.assertEqual(record["ceilings"]["launch_s"], measured["launch_timed_s"]["median"])
+        self.assertEqual(record["ceilings"]["launch_s"], min(measured["launch_timed_s"]["samples"]))
         self.assertEqual((record["ceilings"]["from"], record["ceilings"]["date"]), (str(ceilings), measured["environment"]["date"]))
         self.bad("no ceilings of opencl:0", "profile", *self.cell("--device", "opencl:0", "--ceilings", ceilings))
+        measured["device"]["clock"] = "CUPTI 13.0 activity records"
+        ceilings.write_text(json.dumps(measured) + "\n")
+        self.bad("were timed by CUPTI 13.0 activity records, kernels are now by steady clock", "profile", *self.cell("--device", "host", "--ceilings", ceilings))
+        measured["launch_timed_s"] = None # nothing that a clock has taken
+        ceilings.write_text(json.dumps(measured) + "\n")
+        self.assertEqual(tandem("profile", *self.cell("--device", "host", "--ceilings", ceilings, "--no-check"))[0], 0)
         self.bad("is no record of ceilings", "profile", *self.cell("--device", "host", "--ceilings", self.good))
 
     def test_a_limit_of_memory_is_for_cells(self):

@@ -91,9 +91,13 @@ void Profiling::find_ceilings() {
         auto* device = cell.devices.front();
         if (ceilings_.contains(device)) continue;
         progress_.show(fmt::format("ceilings of {}", device->info().id));
-        ceilings_[device] = options_.ceilings.empty()
-                                ? measured_ceilings(*device)
-                                : profile::read_ceilings(options_.ceilings, device->info());
+        auto& ceilings = ceilings_[device];
+        if (options_.ceilings.empty()) {
+            ceilings = measured_ceilings(*device);
+        } else {
+            ceilings = profile::read_ceilings(options_.ceilings, device->info());
+            profile::check_clock(options_.ceilings, ceilings, *device);
+        }
         progress_.clear();
     }
 }

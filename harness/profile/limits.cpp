@@ -84,4 +84,16 @@ nlohmann::ordered_json read_ceilings(const std::string& path, const DeviceInfo& 
     return last;
 }
 
+void check_clock(const std::string& path, const nlohmann::ordered_json& ceilings, Device& device) {
+    if (median_at(ceilings, "launch_timed_s") == 0) return;
+    device.set_clocks(Clocks::on); // what takes the times is certain then
+    device.set_clocks(Clocks::off);
+    const auto then = ceilings.at("device").value("clock", "a clock that is not known");
+    const auto kind = [](const std::string& clock) { return clock.substr(0, clock.find(' ')); };
+    if (kind(then) != kind(device.clock()))
+        throw InputError(fmt::format("{}: launches on {} were timed by {}, kernels are now by {}; leave "
+                                     "--ceilings out to measure them",
+                                     path, device.info().id, then, device.clock()));
+}
+
 } // namespace tandem::profile

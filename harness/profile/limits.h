@@ -26,4 +26,8 @@ Limits limits_of(const nlohmann::ordered_json& ceilings, int k);
 /// file cannot be read.
 nlohmann::ordered_json read_ceilings(const std::string& path, const DeviceInfo& info);
 
+/// Throws InputError where launches of the record, which was read from `path`, were timed by another kind of
+/// clock (CUPTI, events) than `device` has now: what a launch of nothing takes is mostly the clock's own.
+void check_clock(const std::string& path, const nlohmann::ordered_json& ceilings, Device& device);
+
 } // namespace tandem::profile
