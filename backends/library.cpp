@@ -18,6 +18,14 @@ Library::Library(std::span<const std::string> names) {
     throw DeviceError(fmt::format("looked for {}", fmt::join(names, ", ")));
 }
 
+std::optional<Library> library_if_any(std::span<const std::string> names) {
+    try {
+        return Library(names);
+    } catch (const DeviceError&) {
+        return std::nullopt;
+    }
+}
+
 void* Library::find(const char* symbol) const { return dlsym(handle_, symbol); }
 
 } // namespace tandem

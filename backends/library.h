@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -20,5 +21,8 @@ private:
     std::string name_;
     void* handle_ = nullptr;
 };
+
+/// The first of `names` that there is; nothing where there is none.
+std::optional<Library> library_if_any(std::span<const std::string> names);
 
 } // namespace tandem

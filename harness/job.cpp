@@ -40,11 +40,11 @@ Job open_job(const RunOptions& options, std::vector<Cell> cells, const Unfit& un
     return Job(open_scene(options), options, std::move(cells), unfit);
 }
 
-Job::Job(Scene scene_, const RunOptions& options_, std::vector<Cell> cells_, const Unfit& unfit)
-    : options(options_),
-      scene(std::move(scene_)),
+Job::Job(Scene opened, const RunOptions& given, std::vector<Cell> planned, const Unfit& unfit)
+    : options(given),
+      scene(std::move(opened)),
       range(open_frames(options, scene)),
-      cells(std::move(cells_)) {
+      cells(std::move(planned)) {
     check_outputs(options, cells);
     fit_coordinates(*this, unfit);
 }

@@ -15,7 +15,7 @@ namespace tandem {
 struct Job {
     /// Opens the frames and handles their flaws; throws InputError when they, the outputs or the cells do not
     /// fit each other; cells that the scene does not fit are `unfit`.
-    Job(Scene scene_, const RunOptions& options_, std::vector<Cell> cells_, const Unfit& unfit = refuse);
+    Job(Scene opened, const RunOptions& given, std::vector<Cell> planned, const Unfit& unfit = refuse);
     Job(const Job&) = delete;
     Job& operator=(const Job&) = delete;
 

@@ -80,8 +80,8 @@ public:
 private:
     /// Up to k = 12 bounds along all directions took 2 to 12 % off whole frames of plates, funnel, glasses
     /// and jacks on an H200; with k = 18 8 to 11 % off plates and jacks, and made funnel and glasses 8 and 3
-    /// % slower, where most of a frame is refit. On a processor they take longer everywhere (results/h200,
-    /// results/cpu).
+    /// % slower, where most of a frame is refit (results/h200/slabs.jsonl). Two cores of a processor, on
+    /// which refit counts for more, took up to 2.3 times as long with them (not recorded).
     void do_fit(Settings& settings, const DeviceInfo& info) const override {
         if (settings[tandem::parameters::slabs] != Slabs::usual) return;
         const bool all = info.is_gpu && settings[tandem::parameters::k] <= 12;

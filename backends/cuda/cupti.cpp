@@ -16,14 +16,6 @@ namespace {
 /// (pytorch/kineto, pull request 1264), and tandem's frames are graphs.
 constexpr std::uint32_t first_usable = 24;
 
-std::optional<Library> find_cupti(std::span<const std::string> names) {
-    try {
-        return Library(names);
-    } catch (const DeviceError&) {
-        return std::nullopt;
-    }
-}
-
 /// Since 13.0 a version is 130001 for the second release of 13.0; before it counted on by one.
 std::string cupti_version_text(std::uint32_t version) {
     return version < 100000 ? fmt::format("API {}", version)
@@ -33,7 +25,7 @@ std::string cupti_version_text(std::uint32_t version) {
 } // namespace
 
 std::unique_ptr<const Cupti> open_cupti(std::span<const std::string> names) {
-    const auto library = find_cupti(names); // which stays loaded
+    const auto library = library_if_any(names); // which stays loaded
     if (!library) return nullptr;
     auto cupti = std::make_unique<Cupti>();
     const auto load = [&](auto*& entry, const char* name) {

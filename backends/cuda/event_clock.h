@@ -7,7 +7,7 @@
 
 namespace tandem::cuda {
 
-/// By an event before and one after each command. What the two take is in the time of the command, about 2 us
+/// By an event before and one after each command. What the two take is in the time of the command, 2 to 4 us
 /// of a short one.
 class EventClock : public CommandClock {
 public:

@@ -23,18 +23,10 @@ std::optional<double> watts(std::optional<unsigned> milliwatts) {
     return *milliwatts / 1000.0;
 }
 
-std::optional<Library> open_nvml(std::span<const std::string> names) {
-    try {
-        return Library(names);
-    } catch (const DeviceError&) {
-        return std::nullopt;
-    }
-}
-
 } // namespace
 
 Nvml::Nvml(std::span<const std::string> names) {
-    const auto library = open_nvml(names); // which stays loaded
+    const auto library = library_if_any(names); // which stays loaded
     if (!library) return;
     const auto load = [&](auto*& entry, const char* name) {
         entry = reinterpret_cast<std::remove_reference_t<decltype(entry)>>(library->find(name));
