@@ -3,6 +3,7 @@
 
 #include "harness/environment.h"
 #include "harness/key.h"
+#include "harness/record/record.h"
 #include "scenes/error.h"
 
 #include <fmt/format.h>
