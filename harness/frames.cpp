@@ -12,7 +12,8 @@ namespace {
 
 /// Of any frame of the scene, without lists of skipped tetrahedra.
 std::uint64_t bytes_of_frame(const Scene& scene) {
-    constexpr std::uint64_t lists = sizeof(Frame::deformed[0]) + sizeof(Frame::skipped[0]);
+    constexpr std::uint64_t lists =
+        sizeof(decltype(Frame::deformed)::value_type) + sizeof(decltype(Frame::skipped)::value_type);
     auto bytes = sizeof(Frame) + scene.bodies.size() * (sizeof(Pose) + lists);
     for (const auto& body : scene.bodies)
         if (body.deformable) bytes += scene.meshes[body.mesh].vertices.size() * sizeof(Eigen::Vector3d);

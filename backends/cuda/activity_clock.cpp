@@ -7,7 +7,7 @@ namespace tandem::cuda {
 
 ActivityClock::~ActivityClock() {
     for (auto id = spans_.size(); id < ids_.size(); ++id) records_.take(ids_[id]);
-    stop();
+    ActivityClock::stop();
 }
 
 bool ActivityClock::start() {

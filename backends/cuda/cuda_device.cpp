@@ -427,7 +427,8 @@ double CudaDevice::occupancy(Function function, const Defines& defines) const {
     const int threads = std::stoi(group_size->second);
     int groups = 0;
     if (driver().cuOccupancyMaxActiveBlocksPerMultiprocessor(&groups, function, threads, 0) != 0) return -1;
-    return static_cast<double>(groups) * ((threads + warp - 1) / warp * warp) / threads_of_unit_;
+    const int held = (threads + warp - 1) / warp * warp;
+    return static_cast<double>(groups) * held / threads_of_unit_;
 }
 
 /// What was submitted before is finished first, so that a profiler counts what comes between the two calls.
