@@ -19,7 +19,7 @@ namespace {
 nlohmann::json answer_of(const ChildResult& result) {
     auto text = result.output;
     while (text.ends_with('\n')) text.pop_back();
-    const auto json = nlohmann::json::parse(text.substr(text.rfind('\n') + 1), nullptr, false);
+    auto json = nlohmann::json::parse(text.substr(text.rfind('\n') + 1), nullptr, false);
     if (json.is_object()) return json;
     throw DeviceError(
         fmt::format("its process {}", result.failure.empty() ? "ended without an answer" : result.failure));
