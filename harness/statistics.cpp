@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <random>
 
 namespace tandem {
@@ -33,6 +34,32 @@ std::vector<double> bootstrap_medians(const std::vector<double>& samples) {
     return medians;
 }
 
+/// The probability that a variable of Student's distribution lies within tan(angle) sqrt(freedom) of 0
+/// (Abramowitz and Stegun 1964, 26.7.3 and 26.7.4).
+double within(double angle, std::size_t freedom) {
+    const double cosine = std::cos(angle);
+    const bool odd = freedom % 2 == 1;
+    double term = odd ? cosine : 1;
+    double sum = freedom == 1 ? 0 : term;
+    for (std::size_t i = odd ? 3 : 2; i < freedom; i += 2) {
+        const auto n = static_cast<double>(i);
+        term *= cosine * cosine * (n - 1) / n;
+        sum += term;
+    }
+    return odd ? 2 * std::numbers::inv_pi * (angle + std::sin(angle) * sum) : std::sin(angle) * sum;
+}
+
+/// t with 97.5 % of Student's distribution below it.
+double student_quantile(std::size_t freedom) {
+    double low = 0;
+    double high = std::numbers::pi / 2;
+    for (int halving = 0; halving < 60; ++halving) {
+        const double middle = (low + high) / 2;
+        (within(middle, freedom) < 0.95 ? low : high) = middle;
+    }
+    return std::tan(low) * std::sqrt(static_cast<double>(freedom));
+}
+
 Summary summary_of(std::vector<double> sorted) {
     std::sort(sorted.begin(), sorted.end());
     Summary summary{quantile(sorted, 0.5), quantile(sorted, 0.25), quantile(sorted, 0.75), sorted.front(),
@@ -40,12 +67,20 @@ Summary summary_of(std::vector<double> sorted) {
     // Every resample has the same median.
     if (sorted.front() == sorted.back()) return summary;
     const auto medians = bootstrap_medians(sorted);
-    summary.low = quantile(medians, 0.025);
-    summary.high = quantile(medians, 0.975);
+    const auto tail = interval_tail(sorted.size());
+    summary.low = quantile(medians, tail);
+    summary.high = quantile(medians, 1 - tail);
     return summary;
 }
 
 } // namespace
+
+double interval_tail(std::size_t values) {
+    if (values < 2) return 0;
+    const auto n = static_cast<double>(values);
+    const double width = std::sqrt(n / (n - 1)) * student_quantile(values - 1);
+    return std::erfc(width / std::numbers::sqrt2) / 2;
+}
 
 double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -19,9 +20,16 @@ double median(const std::vector<Whole>& values) {
     return median(std::vector<double>(values.begin(), values.end()));
 }
 
+/// The share of resamples below, and of those above, an interval that holds what was estimated from so many
+/// values in 95 % of cases. Between 2.5 % of each, percentiles of ten values hold 92 % (pairs of equal cells,
+/// 1,000): resamples spread less than samples do. Expanded percentiles, Hesterberg 2015, "What Teachers
+/// Should Know About the Bootstrap", 4.3: Phi(-sqrt(n / (n - 1)) t(0.975; n - 1)). 0 of fewer than two
+/// values.
+double interval_tail(std::size_t values);
+
 /// Order statistics of samples. Quartiles interpolate linearly between order statistics (Hyndman and Fan
 /// 1996, definition 7); low..high is the 95 % percentile-bootstrap interval of the median (Efron 1979; 1,000
-/// resamples from a fixed seed, so that a record can be recomputed).
+/// resamples from a fixed seed, so that a record can be recomputed), expanded as interval_tail says.
 struct Summary {
     double median = 0, q1 = 0, q3 = 0, low = 0, high = 0;
 };

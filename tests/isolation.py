@@ -138,13 +138,13 @@ class Isolation(Case):
         for _ in range(60 if LONG else 15):
             process = self.start(path, "--out", out, "--resume", *(["--isolate"] if chance.random() < 0.3 else []))
             try:
-                process.wait(timeout=chance.expovariate(0.2 if LONG else 10))
+                process.wait(timeout=chance.expovariate(1 if LONG else 10))
             except subprocess.TimeoutExpired:
                 process.kill()
                 kills += 1
             self.end(process)
             self.records(out) if out.exists() else None
-        self.assertGreater(kills, 5)
+        self.assertGreater(kills, 40 if LONG else 5)
         status, text, errors = tandem("run", path, "--out", out, "--resume")
         self.assertEqual(status, 0, (text, errors))
         records = self.records(out)

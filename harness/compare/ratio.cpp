@@ -34,14 +34,15 @@ double deviation(std::span<const double> values) {
     return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
-/// From the logarithm of the ratio, and what draws it anew.
+/// From the logarithm of the ratio of so many values, and what draws it anew.
 template<class Draw>
-Ratio bootstrap(double log_ratio, Draw draw) {
+Ratio bootstrap(double log_ratio, std::size_t values, Draw draw) {
     Generator random(bootstrap_seed);
     std::vector<double> logs(resamples);
     for (auto& log : logs) log = draw(random);
     std::sort(logs.begin(), logs.end());
-    return {std::exp(log_ratio), std::exp(quantile(logs, 0.025)), std::exp(quantile(logs, 0.975)),
+    const auto tail = interval_tail(values);
+    return {std::exp(log_ratio), std::exp(quantile(logs, tail)), std::exp(quantile(logs, 1 - tail)),
             logs.front() == logs.back() ? 0 : deviation(logs)};
 }
 
@@ -49,7 +50,7 @@ Ratio bootstrap(double log_ratio, Draw draw) {
 
 Ratio paired_ratio(std::span<const double> log_ratios) {
     std::vector<double> drawn;
-    return bootstrap(median({log_ratios.begin(), log_ratios.end()}),
+    return bootstrap(median({log_ratios.begin(), log_ratios.end()}), log_ratios.size(),
                      [&](Generator& random) { return resampled_median(random, log_ratios, drawn); });
 }
 
@@ -57,7 +58,7 @@ Ratio unpaired_ratio(std::span<const double> before, std::span<const double> aft
     std::vector<double> drawn;
     const auto log_ratio =
         std::log(median({after.begin(), after.end()})) - std::log(median({before.begin(), before.end()}));
-    return bootstrap(log_ratio, [&](Generator& random) {
+    return bootstrap(log_ratio, std::min(before.size(), after.size()), [&](Generator& random) {
         const auto old_median = resampled_median(random, before, drawn);
         return std::log(resampled_median(random, after, drawn)) - std::log(old_median);
     });

@@ -7,7 +7,8 @@
 namespace tandem::compare {
 
 /// New time over old time; above 1 is slower. low..high is its 95 % percentile-bootstrap interval (Efron
-/// 1979; 1,000 resamples from a fixed seed, so that every machine gives the same figures), `log_error` the
+/// 1979; 1,000 resamples from a fixed seed, so that every machine gives the same figures), expanded as
+/// interval_tail says for the side of fewer values, `log_error` the
 /// standard error of its natural logarithm from the same resamples. One value a side, or values that are all
 /// equal, have an error of 0.
 struct Ratio {

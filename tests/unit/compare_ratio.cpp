@@ -51,8 +51,7 @@ double coverage(Draw draw) {
     return static_cast<double>(held) / times;
 }
 
-// Intervals of medians by percentiles hold 92 to 97 % for so few values; 3 standard errors of 1,000 draws are
-// 2 %.
+// 3 standard errors of 1,000 draws are 2 %; unpaired medians of so few values are held more often.
 TEST(CompareRatio, IntervalsHoldTheTruth) {
     Noise noise(4);
     for (const std::size_t rounds : {10, 25}) {
@@ -61,14 +60,14 @@ TEST(CompareRatio, IntervalsHoldTheTruth) {
             for (auto& time : after) time *= 1.1;
             return unpaired_ratio(noise.times(rounds, 0.03), after);
         });
-        EXPECT_GT(unpaired, 0.92) << rounds;
-        EXPECT_LT(unpaired, 0.99) << rounds;
+        EXPECT_GT(unpaired, 0.94) << rounds;
+        EXPECT_LT(unpaired, 0.995) << rounds;
         const double paired = coverage([&] {
             auto logs = noise.normal(rounds, 0.03);
             for (auto& log : logs) log += std::log(1.1);
             return paired_ratio(logs);
         });
-        EXPECT_GT(paired, 0.90) << rounds;
+        EXPECT_GT(paired, 0.94) << rounds;
         EXPECT_LT(paired, 0.99) << rounds;
     }
 }

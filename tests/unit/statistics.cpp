@@ -34,6 +34,17 @@ TEST(Statistics, IntervalHoldsTheMedianAndRepeats) {
     EXPECT_EQ(summarise(samples).low, s.low);
 }
 
+// As SciPy has them: norm.cdf(-sqrt(n / (n - 1)) * t.ppf(0.975, n - 1)).
+TEST(Statistics, IntervalsOfFewValuesLeaveOutLess) {
+    EXPECT_EQ(interval_tail(1), 0);
+    EXPECT_NEAR(interval_tail(2), 0, 1e-30);
+    EXPECT_NEAR(interval_tail(3), 6.834137304562962e-08, 1e-14);
+    EXPECT_NEAR(interval_tail(5), 0.0009541005518824723, 1e-9);
+    EXPECT_NEAR(interval_tail(10), 0.008550639025807874, 1e-9);
+    EXPECT_NEAR(interval_tail(18), 0.01496625446574617, 1e-9);
+    EXPECT_NEAR(interval_tail(1001), 0.02480450117520623, 1e-9);
+}
+
 TEST(Statistics, OneSample) {
     const std::vector<std::int64_t> samples{7};
     const auto s = summarise(samples);
