@@ -54,11 +54,11 @@ FrameResult Session::run(const Frame& frame, std::span<const BodyPair> body_pair
     return do_run(frame, body_pairs);
 }
 
-void Traversal::do_fit(Settings&, const DeviceInfo&) const {}
+void Traversal::do_fit(Settings&, const DeviceInfo&, const Scene*) const {}
 
 Steps Traversal::build(const Ground& ground) const { return do_build(ground); }
 
-Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info) const {
+Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info, const Scene* scene) const {
     check_arithmetic(settings, info);
     auto fitting = settings;
     const auto wanted = settings[tandem::parameters::group_size];
@@ -70,7 +70,7 @@ Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info) con
     if (settings[tandem::parameters::broad] == Broad::device && is_published(settings))
         throw InputError("setting broad=device does not go with residency=published, whose bounds are the "
                          "host's; choose broad=sphere");
-    do_fit(fitting, info);
+    do_fit(fitting, info, scene);
     do_check(fitting, info);
     return fitting;
 }
@@ -90,7 +90,7 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
     if (scene.bodies.empty()) throw InputError(fmt::format("scene {} has no bodies", scene.name));
     check(devices, settings);
     std::vector<Settings> fitting;
-    for (const auto* device : devices) fitting.push_back(fitted(settings, device->info()));
+    for (const auto* device : devices) fitting.push_back(fitted(settings, device->info(), &scene));
     if (devices.size() > 1) return split_session(*this, devices, scene, std::move(fitting));
     auto& device = *devices.front();
     return is_published(settings) ? published_session(*this, device, scene, fitting.front())

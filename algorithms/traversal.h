@@ -84,9 +84,10 @@ public:
     /// What its walks count.
     virtual std::span<const Counter> counters() const = 0;
 
-    /// The settings as a device takes them: groups have one work-item where it knows no larger ones. Throws
-    /// InputError when resolved settings do not fit each other or the device.
-    Settings fitted(const Settings& settings, const DeviceInfo& info) const;
+    /// The settings as a device takes them: groups have one work-item where it knows no larger ones. `scene`:
+    /// the session's; without one, what depends on it stays as it is. Throws InputError when resolved
+    /// settings do not fit each other or the device.
+    Settings fitted(const Settings& settings, const DeviceInfo& info, const Scene* scene = nullptr) const;
     /// Throws InputError when resolved settings do not fit each other or one of the devices, or when there
     /// are several and the algorithm cannot split a frame with these settings.
     void check(std::span<Device* const> devices, const Settings& settings) const;
@@ -104,8 +105,8 @@ public:
     Steps build(const Ground& ground) const;
 
 private:
-    /// Decides what its own settings leave to the device.
-    virtual void do_fit(Settings& settings, const DeviceInfo& info) const;
+    /// Decides what its own settings leave to the device and the scene, which may be null.
+    virtual void do_fit(Settings& settings, const DeviceInfo& info, const Scene* scene) const;
     /// Throws InputError when the algorithm's own settings do not fit.
     virtual void do_check(const Settings& settings, const DeviceInfo& info) const = 0;
     virtual Steps do_build(const Ground& ground) const = 0;

@@ -47,7 +47,7 @@ std::uint32_t concurrency_of(const Settings& settings) {
 // Leaves of tiles have all of k = 6 with either choice of slabs; this one has the host's fastest kernels.
 EmbreeTrees::EmbreeTrees(const Ground& ground)
     : device_(ground.device),
-      tiles_(ground.bodies, Slabs::three, ground.shape.group_size),
+      tiles_(ground.bodies, Slabs::three, ground.shape.group_size, 1),
       embree_(rtcNewDevice(nullptr)),
       trees_(ground.bodies.count()),
       arena_(static_cast<int>(concurrency_of(ground.settings))),

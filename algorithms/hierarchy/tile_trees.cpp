@@ -13,9 +13,8 @@ namespace tandem {
 namespace {
 
 constexpr std::uint32_t lanes = TileShapes::lanes;
-constexpr std::uint32_t count_shift = 8;      ///< TILE_COUNT_SHIFT
-constexpr std::uint32_t nothing = 0xffffffff; ///< NO_TILE, NO_BODY
-constexpr std::uint32_t few_bodies = 32, most_begins = 4;
+constexpr std::uint32_t count_shift = 8;         ///< TILE_COUNT_SHIFT
+constexpr std::uint32_t nothing = 0xffffffff;    ///< NO_TILE, NO_BODY
 constexpr std::uint64_t most_tiles = 1ull << 27; ///< so that a word numbers their boxes
 
 std::uint32_t in_tiles(std::uint32_t boxes) { return (boxes + lanes - 1) / lanes; }
@@ -29,10 +28,11 @@ std::uint32_t levels_over(std::uint32_t items) {
 
 } // namespace
 
-TileTrees::TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size, std::uint32_t units_at_once)
+TileTrees::TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size, std::uint64_t most_seeds,
+                     std::uint32_t units_at_once)
     : bodies_(bodies), device_(bodies.device()), slabs_(slabs), group_size_(group_size), shapes_(bodies) {
     lay_out();
-    choose_begins();
+    choose_beginnings(most_seeds);
     plan_refit(units_at_once);
     tile_table_ = uploaded(device_, bytes_of(tile_rows()), "tiles");
     tops_ = uploaded(device_, bytes_of(top_tiles()), "top tiles");
@@ -87,30 +87,35 @@ void TileTrees::lay_out() {
     for (const auto& first : first_tiles_) is_top_[first.size() - 1] = true;
 }
 
-/// All trees have to end at one level: a body that begins above another could not be tested with it.
-void TileTrees::choose_begins() {
-    if (bodies_.count() > few_bodies || levels() < 2) return;
-    std::uint32_t most = 1;
-    for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
-        if (levels_of(body) != levels()) return;
-        most = std::max(most, boxes_of(body, levels() - 1));
+/// The lowest level that every body has, and at which the pairs of their tiles are few enough to be tested
+/// without what the levels above would tell of them.
+void TileTrees::choose_beginnings(std::uint64_t most_seeds) {
+    const std::uint64_t pairs = std::uint64_t{bodies_.count()} * (bodies_.count() - 1) / 2;
+    for (std::uint32_t level = 0; level + 1 < levels(); ++level) {
+        std::uint64_t tiles = 1;
+        for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
+            if (levels_of(body) <= level) return;
+            tiles = std::max<std::uint64_t>(tiles, boxes_of(body, level + 1));
+        }
+        if (pairs > most_seeds / (tiles * tiles)) continue;
+        beginnings_ = {level, static_cast<std::uint32_t>(tiles)};
+        return;
     }
-    if (most <= most_begins) most_begins_ = std::bit_ceil(most);
 }
 
 std::uint32_t TileTrees::begins(std::uint32_t level) const {
-    if (most_begins_ > 1) return level + 2 == levels() ? most_begins_ : 0;
+    if (beginnings_) return level == beginnings_->level ? beginnings_->tiles : 0;
     return is_top_[level] ? 1 : 0;
 }
 
 std::vector<std::uint32_t> TileTrees::top_tiles() const {
     std::vector<std::uint32_t> tops;
     for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
-        const auto& first = first_tiles_[body];
-        const auto level = first.size() - (most_begins_ > 1 ? 2 : 1);
-        const auto tiles = most_begins_ > 1 ? boxes_of(body, levels() - 1) : 1;
-        for (std::uint32_t tile = 0; tile < most_begins_; ++tile)
-            tops.push_back(tile < tiles ? first[level] + tile : nothing);
+        const auto top = Beginnings{levels_of(body) - 1, 1};
+        const auto& [level, most] = beginnings_.value_or(top);
+        const auto tiles = boxes_of(body, level + 1);
+        for (std::uint32_t tile = 0; tile < most; ++tile)
+            tops.push_back(tile < tiles ? first_tile(body, level) + tile : nothing);
     }
     return tops;
 }

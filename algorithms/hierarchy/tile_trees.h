@@ -5,6 +5,8 @@
 #include "algorithms/hierarchy/hierarchy.h"
 #include "algorithms/hierarchy/tile_shapes.h"
 
+#include <optional>
+
 namespace tandem {
 
 /// Trees of tiles over every body's tetrahedra (tiles.clh): 32 boxes a tile, from which a level is made and
@@ -13,11 +15,13 @@ class TileTrees final : public Hierarchy {
 public:
     /// `slabs`: what leaves have bounds along. `bodies`, of Sharing::by_mesh, must outlive this. Throws
     /// OutOfMemory when the tiles do not fit, DeviceError when there are too many to number.
-    /// `units_at_once`: so many groups of a refit the device runs side by side, at least; no bound depends on
-    /// it.
-    TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size, std::uint32_t units_at_once);
-    TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size)
-        : TileTrees(bodies, slabs, group_size, bodies.device().info().compute_units) {}
+    /// `most_seeds`: bodies begin below their tops where that makes no more pairs of tiles in all.
+    /// `units_at_once`: so many groups of a refit the device runs side by side, at least. No bound depends on
+    /// either.
+    TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size, std::uint64_t most_seeds,
+              std::uint32_t units_at_once);
+    TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size, std::uint64_t most_seeds)
+        : TileTrees(bodies, slabs, group_size, most_seeds, bodies.device().info().compute_units) {}
 
     const Bodies& bodies() const { return bodies_; }
     /// Of the highest body's tree.
@@ -30,8 +34,8 @@ public:
     }
     /// Levels that are walked: where few bodies have few tiles below their tops, as many tiles are where they
     /// begin, for a level tells less there than its launch takes.
-    std::uint32_t walked_levels() const { return levels() - (most_begins_ > 1 ? 1 : 0); }
-    /// With how many tiles a body begins at that level, a power of two; 0: no body does.
+    std::uint32_t walked_levels() const { return beginnings_ ? beginnings_->level + 1 : levels(); }
+    /// With how many tiles a body begins at that level; 0: no body does.
     std::uint32_t begins(std::uint32_t level) const;
     /// The first tile of level 1: how many there are of level 0.
     std::uint32_t first_upper() const { return level_first_.size() > 1 ? level_first_[1] : tile_count_; }
@@ -68,7 +72,7 @@ private:
     std::size_t do_bytes() const override;
 
     void lay_out();
-    void choose_begins();
+    void choose_beginnings(std::uint64_t most_seeds);
     std::vector<std::uint32_t> top_tiles() const;
     std::vector<Tile> tile_rows() const;
     void plan_refit(std::uint32_t units_at_once);
@@ -87,7 +91,11 @@ private:
     TileShapes shapes_;
     std::vector<std::uint32_t> level_first_; ///< the first tile of each level
     std::vector<bool> is_top_;               ///< by level: whether the tree of some body ends there
-    std::uint32_t most_begins_ = 1;          ///< a power of two
+    /// Where all bodies begin when that is below some tops: with so many tiles each, or fewer.
+    struct Beginnings {
+        std::uint32_t level = 0, tiles = 1;
+    };
+    std::optional<Beginnings> beginnings_;
     std::vector<std::vector<std::uint32_t>> first_tiles_; ///< by body: its first tile of each of its levels
     std::uint32_t tile_count_ = 0;
     std::vector<Step> steps_;

@@ -56,13 +56,13 @@ inline constexpr auto builder =
                      "the paper; sah: cut by the surface area heuristic into runs of 32, 32^2, ..."}
         .with_alternatives({Builder::morton, Builder::sah});
 inline constexpr auto slabs =
-    Setting<Slabs>{
-        "slabs",
-        Slabs::usual,
-        {{"three", Slabs::three}, {"all", Slabs::all}, {"usual", Slabs::usual}},
-        "SLABS",
-        "directions that leaves have bounds along: three of the k/2, with the others decided from "
-        "the vertices of pairs that pass, or all; usual: all on GPUs up to k = 12, three elsewhere"}
+    Setting<Slabs>{"slabs",
+                   Slabs::usual,
+                   {{"three", Slabs::three}, {"all", Slabs::all}, {"usual", Slabs::usual}},
+                   "SLABS",
+                   "directions that leaves have bounds along: three of the k/2, with the others decided from "
+                   "the vertices of pairs that pass, or all; usual: all on GPUs up to k = 12 or 2^21 "
+                   "tetrahedra, three elsewhere"}
         .with_alternatives({Slabs::three, Slabs::all});
 
 inline constexpr Setting<ContactRule> contact_rule{

@@ -26,7 +26,7 @@ typedef struct {
 
 DEVICE ulong turn_count(const Turns* turns) { return turns->own + turns->listed; }
 
-// Body pairs begin with `begins` squared pairs of tiles each, a power of two; 0: not in this launch.
+// Body pairs begin with `begins` squared pairs of tiles each; 0: not in this launch.
 DEVICE ulong own_pairs(uint begins, uint pair_room, GLOBAL const uint* status) {
     return begins == 0u ? 0u : (ulong)begins * begins * body_pair_count(pair_room, status);
 }
@@ -57,22 +57,43 @@ typedef struct {
     int is_any;
 } TilePair;
 
+// Whether the roots of two tiles overlap.
+DEVICE int roots_overlap(GLOBAL const real* roots, uint a, uint b) {
+    GLOBAL const real* root_a = root_of(roots, a);
+    GLOBAL const real* root_b = root_of(roots, b);
+    uint apart = 0;
+    UNROLL for (uint d = 0; d < (uint)DIRECTIONS; ++d) apart |=
+        (uint)APART(root_a[d], root_a[DIRECTIONS + d], root_b[d], root_b[DIRECTIONS + d]);
+    return apart == 0u;
+}
+
+// The pair of tiles of a turn that a body pair begins with. Of several, most are apart, which nothing above
+// has told; the only one of a body pair is known to overlap, as far as volumes tell.
+DEVICE TilePair first_tile_pair(ulong turn, GLOBAL const uint* pairs, GLOBAL const uint* tops, uint begins,
+                                GLOBAL const real* roots) {
+    TilePair pair = {0u, 0u, 0};
+    const ulong each = (ulong)begins * begins;
+    const uint body_pair = (uint)(turn / each);
+    const uint tile_pair = (uint)(turn - body_pair * each);
+    const uint a = tops[(ulong)body_a_of(pairs, body_pair) * begins + tile_pair / begins];
+    const uint b = tops[(ulong)body_b_of(pairs, body_pair) * begins + tile_pair % begins];
+    if (a == NO_TILE || b == NO_TILE) return pair;
+    if (begins > 1u && !roots_overlap(roots, a, b)) return pair;
+    pair.is_any = 1;
+    pair.a = a;
+    pair.b = b;
+    return pair;
+}
+
 // `tops`: `begins` tiles a body, NO_TILE where it has fewer.
 DEVICE TilePair tile_pair_at(const Turns* turns, GLOBAL const uint* pairs, GLOBAL const uint* tops,
-                             uint begins, GLOBAL const uint* list) {
+                             uint begins, GLOBAL const real* roots, GLOBAL const uint* list) {
     TilePair pair = {0u, 0u, 0};
     if (turns->next >= turn_count(turns)) return pair;
-    pair.is_any = 1;
     if (turns->next < turns->own) {
-        const uint bits = 31u - COUNT_LEADING_ZEROS(begins);
-        const uint body_pair = (uint)(turns->next >> (2u * bits));
-        const uint turn = (uint)turns->next;
-        const uint a = tops[((ulong)body_a_of(pairs, body_pair) << bits) + (turn >> bits & (begins - 1u))];
-        const uint b = tops[((ulong)body_b_of(pairs, body_pair) << bits) + (turn & (begins - 1u))];
-        pair.is_any = a != NO_TILE && b != NO_TILE;
-        pair.a = pair.is_any ? a : 0u;
-        pair.b = pair.is_any ? b : 0u;
+        pair = first_tile_pair(turns->next, pairs, tops, begins, roots);
     } else {
+        pair.is_any = 1;
         GLOBAL const uint* row = list + (turns->next - turns->own) * TILE_PAIR_WORDS;
         pair.a = row[0];
         pair.b = row[1];
@@ -157,7 +178,7 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
     Turns turns = first_turn(own_pairs(begins, pair_room, status), tile_pair_count(status, level, capacity));
     LANE_BARRIER;
     do { // once at least, as loops with barriers have to
-        const TilePair pair = tile_pair_at(&turns, pairs, tops, begins, list);
+        const TilePair pair = tile_pair_at(&turns, pairs, tops, begins, roots, list);
         const Tile a = tile_at(tiles, pair.a);
         const Tile b = tile_at(tiles, pair.b);
         const int highest = a.level > b.level ? a.level == level : b.level == level;
@@ -272,7 +293,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
     uint box_of = 0xffffffffu; // the tile whose boxes these are
     LANE_BARRIER;
     do { // once at least, as loops with barriers have to
-        const TilePair pair = tile_pair_at(&turns, pairs, tops, begins, list);
+        const TilePair pair = tile_pair_at(&turns, pairs, tops, begins, roots, list);
         const Tile a = tile_at(tiles, pair.a);
         const Tile b = tile_at(tiles, pair.b);
         const int tested = pair.is_any && a.level == 0u && b.level == 0u; // others begin in another launch

@@ -12,7 +12,8 @@ namespace tandem {
 
 namespace {
 
-constexpr std::array<const Parameter*, 2> own{&parameters::slabs, &tiled_parameters::tile_pair_capacity};
+constexpr std::array<const Parameter*, 3> own{&parameters::slabs, &tiled_parameters::tile_pair_capacity,
+                                              &tiled_parameters::most_seeds};
 
 const std::vector<Preset> all_presets{
     {"resident",
@@ -78,13 +79,21 @@ public:
     std::span<const Counter> counters() const override { return all_counters; }
 
 private:
-    /// Up to k = 12 bounds along all directions took 2 to 12 % off whole frames of plates, funnel, glasses
-    /// and jacks on an H200; with k = 18 8 to 11 % off plates and jacks, and made funnel and glasses 8 and 3
-    /// % slower, where most of a frame is refit (results/h200/slabs.jsonl). Two cores of a processor, on
-    /// which refit counts for more, took up to 2.3 times as long with them (not recorded).
-    void do_fit(Settings& settings, const DeviceInfo& info) const override {
+    /// What a scene of more tetrahedra than that gains in the walk by bounds along all directions it loses in
+    /// the refit. Measured on an H200 (results/h200/README.md): with k = 14, 18 and 26 they took 2 to 13 %
+    /// off whole frames of plates and jacks of up to 1.2 M tetrahedra, made no difference to the colosseum,
+    /// and made funnel and glasses of 4.7 M and more 8 and 3 % slower (k = 18); up to k = 12 they took 2 to
+    /// 12 % off these as well. Two cores of a processor, on which refit counts for more, took up to 2.3 times
+    /// as long with them (not recorded).
+    static constexpr std::size_t most_with_all_slabs = std::size_t{1} << 21;
+
+    void do_fit(Settings& settings, const DeviceInfo& info, const Scene* scene) const override {
+        if (settings[tiled_parameters::most_seeds] == 0)
+            settings.set(tiled_parameters::most_seeds(info.is_gpu ? 16384 : 256));
         if (settings[tandem::parameters::slabs] != Slabs::usual) return;
-        const bool all = info.is_gpu && settings[tandem::parameters::k] <= 12;
+        const bool asks_scene = info.is_gpu && settings[tandem::parameters::k] > 12;
+        if (asks_scene && scene == nullptr) return;
+        const bool all = asks_scene ? tetrahedron_count(*scene) <= most_with_all_slabs : info.is_gpu;
         settings.set(tandem::parameters::slabs(all ? Slabs::all : Slabs::three));
     }
 
@@ -122,8 +131,9 @@ private:
 
     Steps do_build(const Ground& ground) const override {
         const auto shape = fitting_shape(ground.settings, ground.device.info(), ground.shape);
-        auto trees = std::make_unique<TileTrees>(ground.bodies, ground.settings[tandem::parameters::slabs],
-                                                 shape.group_size);
+        auto trees = std::make_unique<TileTrees>(
+            ground.bodies, ground.settings[tandem::parameters::slabs], shape.group_size,
+            static_cast<std::uint64_t>(ground.settings[tiled_parameters::most_seeds]));
         auto walker = std::make_unique<TiledWalker>(*trees, ground, shape);
         return {std::move(trees), std::move(walker)};
     }

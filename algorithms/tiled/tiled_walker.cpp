@@ -35,8 +35,12 @@ void TiledWalker::do_compile(const WalkBuild& build) {
 Grid TiledWalker::grid(std::uint32_t level) {
     auto& [pairs, groups] = expected_[level];
     const auto teams = std::max(1u, shape_.group_size / TileShapes::lanes);
-    return {pairs ? groups.enough_for((*pairs + teams - 1) / teams, shape_.groups) : shape_.groups,
-            shape_.group_size};
+    if (!pairs) return {shape_.groups, shape_.group_size};
+    const auto wanted = (*pairs + teams - 1) / teams;
+    // Groups that look at roots only, most of which are apart, are soon gone.
+    const auto most =
+        trees_.begins(level) > 1 ? std::max<std::uint64_t>(shape_.groups, wanted) : shape_.groups;
+    return {groups.enough_for(wanted, static_cast<std::uint32_t>(most)), shape_.group_size};
 }
 
 bool TiledWalker::do_grow(const Status& status) {

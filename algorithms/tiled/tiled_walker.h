@@ -14,6 +14,10 @@ namespace tiled_parameters {
 inline constexpr Setting<std::int64_t> tile_pair_capacity{"tile_pair_capacity", 262144,
                                                           Range{1, parameters::word_limit}, "",
                                                           "pairs of tiles a level has room for at first"};
+/// What 0 stands for is measured: results/h200/README.md.
+inline constexpr Setting<std::int64_t> most_seeds{"most_seeds", 0, Range{0, std::int64_t{1} << 24}, "",
+                                                  "bodies begin as far below their tops as that makes no "
+                                                  "more pairs of tiles; 0: 16384 on GPUs, 256 elsewhere"};
 } // namespace tiled_parameters
 
 /// Beside those of every walk.
@@ -21,7 +25,8 @@ namespace tiled_counters {
 inline constexpr Counter upper_tests{"upper_tests", "boxes",
                                      "of the node pairs tested those above tetrahedra"};
 inline constexpr Counter leaf_tile_pairs{"leaf_tile_pairs", "pairs of tiles",
-                                         "pairs of tiles of tetrahedra that were tested"};
+                                         "pairs of tiles of tetrahedra that were tested, by their roots at "
+                                         "least"};
 } // namespace tiled_counters
 
 /// Pairs of tiles, a launch a level from the highest of any body down to candidate pairs.

@@ -50,6 +50,7 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
                            of("builder", {"morton", "sah"}),
                            of("slabs", {"three", "all"}),
                            of("tile_pair_capacity", {"1", "65536"}),
+                           of("most_seeds", {"1", "256", "16384"}),
                            of("root_test", {"yes", "no"}),
                            of("schedule", {"group", "item"}),
                            of("descent", {"larger", "both"}),

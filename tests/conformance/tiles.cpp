@@ -43,7 +43,7 @@ protected:
         PreparedTrees chunks(on, scene, geometry, 4096, group_size, Bodies::Sharing::by_mesh);
         chunks.update(frame);
         Bodies bodies(on, scene, geometry, Bodies::Sharing::by_mesh);
-        TileTrees tiles(bodies, slabs, group_size, units_at_once);
+        TileTrees tiles(bodies, slabs, group_size, 1, units_at_once);
         bodies.update(frame);
         tiles.refit(frame);
         const auto k = static_cast<std::size_t>(geometry.k), half = k / 2;
@@ -163,7 +163,8 @@ TEST_P(Tiles, AFrameWithMuchMoreThanTheLast) {
     }
 }
 
-/// Few bodies of few tiles below their tops begin with these; many, or of unlike heights, with their tops.
+/// Few bodies of few tiles below their tops begin with these; many, or one without such tiles, with their
+/// tops.
 TEST_P(Tiles, FewBodiesBeginBelowTheirTops) {
     const auto scene_of = [](const std::vector<std::size_t>& counts, std::size_t bodies) {
         Random random(9);
@@ -189,27 +190,42 @@ TEST_P(Tiles, FewBodiesBeginBelowTheirTops) {
     struct Case {
         std::vector<std::size_t> counts;
         std::size_t bodies;
-        std::uint32_t levels, walked, begins;
+        std::uint32_t most_seeds, levels, walked, begins;
     };
     const std::array devices{&on};
     const auto& traversal = algorithm("tiled");
-    for (const auto& [counts, count, levels, walked, begins] :
-         {Case{{64}, 3, 2, 1, 2}, Case{{40, 96, 128}, 4, 2, 1, 4}, Case{{1100, 2100}, 2, 3, 2, 4},
-          Case{{129}, 3, 2, 2, 1}, Case{{64, 20}, 4, 2, 2, 1}, Case{{40}, 33, 2, 2, 1}}) {
-        SCOPED_TRACE(fmt::format("{} bodies of {} tetrahedra and more", count, counts.front()));
+    for (const auto& [counts, count, most_seeds, levels, walked, begins] :
+         {Case{{64}, 3, 12, 2, 1, 2}, Case{{64}, 3, 11, 2, 2, 1}, Case{{40, 96, 128}, 4, 96, 2, 1, 4},
+          Case{{1100, 2100}, 2, 256, 3, 2, 3}, Case{{1100, 2100}, 2, 16384, 3, 1, 66},
+          Case{{129}, 3, 256, 2, 1, 5}, Case{{64, 20}, 4, 256, 2, 1, 2}, Case{{1100, 20}, 2, 256, 3, 3, 1},
+          Case{{40}, 33, 256, 2, 2, 1}}) {
+        SCOPED_TRACE(
+            fmt::format("{} bodies of {} tetrahedra and more, {} seeds", count, counts.front(), most_seeds));
         const auto scene = scene_of(counts, count);
         const Bodies bodies(on, scene, {}, Bodies::Sharing::by_mesh);
-        const TileTrees trees(bodies, Slabs::three, group_size);
+        const TileTrees trees(bodies, Slabs::three, group_size, most_seeds);
         EXPECT_EQ(trees.levels(), levels);
         EXPECT_EQ(trees.walked_levels(), walked);
         EXPECT_EQ(trees.begins(walked - 1), begins);
         const auto right = reference(scene, scene.frame(0), {}, true, Method::brute_force);
         ASSERT_GT(right.digest.count, 0u);
+        const auto session_by = [&](const std::string& broad) {
+            return traversal.prepare(devices, scene,
+                                     resolve(traversal.parameters(), {},
+                                             {{"broad", broad}, {"most_seeds", std::to_string(most_seeds)}},
+                                             "tiled"));
+        };
         for (const std::string broad : {"device", "sphere"}) {
-            const auto session = traversal.prepare(
-                devices, scene, resolve(traversal.parameters(), {}, {{"broad", broad}}, "tiled"));
+            const auto session = session_by(broad);
             for (int i = 0; i < 2; ++i) EXPECT_EQ(session->run(scene.frame(0)).download(), right.pairs);
         }
+        if (begins < 8) continue;
+        // Of so many beginnings those whose roots are apart are not tested.
+        const auto session = session_by("sphere");
+        session->count_work(true);
+        const auto seeds = session->run(scene.frame(0)).work.at("seeds");
+        EXPECT_GT(seeds, 0u);
+        EXPECT_LT(seeds, std::uint64_t{begins} * begins * 3 / 4);
     }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/traversal.h"
-#include "algorithms/traversal.h"
 #include "scenes/error.h"
 
 #include <gmock/gmock.h>
@@ -88,6 +87,45 @@ TEST(Settings, DecisionsWithCertaintyNeedDouble) {
         }),
         HasSubstr("choose one of opposing, published, sat, clip, restricted, vertex, consistent, growth, "
                   "none"));
+}
+
+/// What tiled leaves to the device and the scene: one of a GPU with more than six directions asks both.
+TEST(Settings, TiledFitsDeviceAndScene) {
+    const auto& tiled = algorithm("tiled");
+    DeviceInfo gpu;
+    gpu.id = "cuda:9";
+    gpu.max_group_size = 1024;
+    gpu.local_bytes = 49152;
+    gpu.has_double = gpu.is_gpu = true;
+    auto processor = gpu;
+    processor.is_gpu = false;
+    const auto scene_of = [](std::size_t tetrahedra) {
+        Scene scene;
+        scene.meshes.resize(1);
+        scene.meshes[0].tetrahedra.resize(tetrahedra / 4);
+        scene.bodies.assign(4, {.mesh = 0});
+        return scene;
+    };
+    const auto small = scene_of(1u << 21), large = scene_of((1u << 21) + 4);
+    const auto fitted = [&](const DeviceInfo& info, const Scene* scene, const SettingTexts& given) {
+        return tiled.fitted(resolve(tiled.parameters(), {}, given, "tiled"), info, scene);
+    };
+    const auto slabs = [&](const DeviceInfo& info, const Scene* scene, const SettingTexts& given) {
+        return fitted(info, scene, given).text("slabs");
+    };
+    EXPECT_EQ(slabs(gpu, &small, {}), "all");
+    EXPECT_EQ(slabs(gpu, &large, {}), "three");
+    EXPECT_EQ(slabs(gpu, nullptr, {}), "usual");
+    EXPECT_EQ(slabs(gpu, &large, {{"k", "12"}}), "all");
+    EXPECT_EQ(slabs(gpu, nullptr, {{"k", "12"}}), "all");
+    EXPECT_EQ(slabs(gpu, &small, {{"slabs", "three"}}), "three");
+    EXPECT_EQ(slabs(gpu, &large, {{"slabs", "all"}}), "all");
+    for (const auto* scene : {&small, &large})
+        for (const std::string k : {"8", "18"}) EXPECT_EQ(slabs(processor, scene, {{"k", k}}), "three");
+    EXPECT_EQ(slabs(processor, nullptr, {}), "three");
+    EXPECT_EQ(fitted(gpu, nullptr, {}).text("most_seeds"), "16384");
+    EXPECT_EQ(fitted(processor, nullptr, {}).text("most_seeds"), "256");
+    EXPECT_EQ(fitted(gpu, &small, {{"most_seeds", "7"}}).text("most_seeds"), "7");
 }
 
 /// 48 KiB, as a CUDA device gives a kernel: what its compiler would refuse is said beforehand.
