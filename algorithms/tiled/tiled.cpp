@@ -80,8 +80,8 @@ public:
 
 private:
     /// What a scene of more tetrahedra than that gains in the walk by bounds along all directions it loses in
-    /// the refit. Measured on an H200 (results/h200/README.md): with k = 14, 18 and 26 they took 2 to 13 %
-    /// off whole frames of plates and jacks of up to 1.2 M tetrahedra, made no difference to the colosseum,
+    /// the refit. Measured on an H200 (results/h200/README.md): with k = 14, 18 and 26 they took 2 to 12 %
+    /// off whole frames of plates and jacks of up to 1.9 M tetrahedra, made no difference to the colosseum,
     /// and made funnel and glasses of 4.7 M and more 8 and 3 % slower (k = 18); up to k = 12 they took 2 to
     /// 12 % off these as well. Two cores of a processor, on which refit counts for more, took up to 2.3 times
     /// as long with them (not recorded).
