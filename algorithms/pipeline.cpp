@@ -71,7 +71,7 @@ std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* con
     std::vector<const Parameter*> all(geometry.begin(), geometry.end());
     all.insert(all.end(), {&parameters::builder, &parameters::contact_rule, &parameters::decision,
                            &parameters::broad, &parameters::body_pair_capacity});
-    if (published) all.push_back(&parameters::residency);
+    if (published) all.insert(all.end(), {&parameters::residency, &parameters::convert});
     all.insert(all.end(), {&parameters::submission, &parameters::output, &parameters::pair_layout,
                            &parameters::group_size, &parameters::work_items, &parameters::threads,
                            &parameters::pair_capacity, &parameters::contact_capacity});

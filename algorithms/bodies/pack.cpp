@@ -20,11 +20,7 @@ void append(std::vector<std::byte>& out, const Numbers& numbers) {
 }
 
 template<class Real>
-void append_vertices(std::vector<std::byte>& out, const OrderedMesh& mesh,
-                     const std::vector<Eigen::Vector3d>& vertices) {
-    const auto at = out.size();
-    out.resize(at + mesh.vertices.size() * 4 * sizeof(Real));
-    auto* const target = out.data() + at;
+void write_rows(std::byte* target, const OrderedMesh& mesh, const std::vector<Eigen::Vector3d>& vertices) {
     // In the order in which they lie in memory, where a new frame's vertices may not be in a cache yet; what
     // is written fits into one.
     for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -38,12 +34,19 @@ void append_vertices(std::vector<std::byte>& out, const OrderedMesh& mesh,
 
 } // namespace
 
+void write_vertices(std::byte* out, const Geometry& geometry, const OrderedMesh& mesh,
+                    const std::vector<Eigen::Vector3d>& vertices) {
+    if (geometry.precision == Precision::fp64)
+        write_rows<double>(out, mesh, vertices);
+    else
+        write_rows<float>(out, mesh, vertices);
+}
+
 void pack_vertices(std::vector<std::byte>& out, const Geometry& geometry, const OrderedMesh& mesh,
                    const std::vector<Eigen::Vector3d>& vertices) {
-    if (geometry.precision == Precision::fp64)
-        append_vertices<double>(out, mesh, vertices);
-    else
-        append_vertices<float>(out, mesh, vertices);
+    const auto at = out.size();
+    out.resize(at + mesh.vertices.size() * 4 * real_bytes(geometry));
+    write_vertices(out.data() + at, geometry, mesh, vertices);
 }
 
 /// The order of operations is part of the answer: the reference has the same (harness/world_vertices.cpp).

@@ -15,6 +15,10 @@ namespace tandem {
 void pack_vertices(std::vector<std::byte>& out, const Geometry& geometry, const OrderedMesh& mesh,
                    const std::vector<Eigen::Vector3d>& vertices);
 
+/// The same rows to `out`, which has room for them.
+void write_vertices(std::byte* out, const Geometry& geometry, const OrderedMesh& mesh,
+                    const std::vector<Eigen::Vector3d>& vertices);
+
 /// Appends 12 reals a pose: the rows of the rotation matrix, each followed by its component of the
 /// translation. The quaternion is normalised and the matrix made in double, then rounded once. With placement
 /// = exact 4 more: `drift`, the body's drift_bound, and padding.

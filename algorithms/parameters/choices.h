@@ -41,6 +41,12 @@ enum class Residency {
     published ///< as the paper's code: everything converted, uploaded and read back in every frame
 };
 
+/// Who converts a frame's bodies where the host does in every frame.
+enum class Conversion {
+    serial,  ///< one thread
+    parallel ///< all that setting threads allows
+};
+
 /// How a frame's commands get to the device.
 enum class Submission {
     one, ///< together, where the device knows how and the frame before had the same commands

@@ -108,6 +108,14 @@ inline constexpr Setting<Residency> residency{
     {{"resident", Residency::resident}, {"published", Residency::published}},
     "",
     "published: convert, upload and read back everything in every frame, as the paper's code"};
+inline constexpr Setting<Conversion> convert{
+    "convert",
+    Conversion::serial,
+    {{"serial", Conversion::serial}, {"parallel", Conversion::parallel}},
+    "",
+    "residency=published: who converts bodies to the device's arrays and trees back and forth: one thread, "
+    "as in "
+    "the paper's tables, or as many as setting threads allows, as its OpenMP did"};
 inline constexpr Setting<Submission> submission{
     "submission",
     Submission::one,

@@ -1,30 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/published/published_frame.h"
 
-#include "algorithms/bodies/pack.h"
 #include "algorithms/sources.h"
-
-#include <limits>
 
 namespace tandem {
 
-namespace {
-
-/// Nodes that hold nothing, as many as fill `bytes`.
-template<class Real>
-std::vector<std::byte> empty_nodes(std::size_t bytes, int k) {
-    std::vector<Real> values(bytes / sizeof(Real), std::numeric_limits<Real>::max());
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (i % static_cast<std::size_t>(k) >= static_cast<std::size_t>(k) / 2)
-            values[i] = std::numeric_limits<Real>::lowest();
-    const auto all = bytes_of(values);
-    return {all.begin(), all.end()};
-}
-
-} // namespace
-
-PublishedFrame::PublishedFrame(const Bodies& bodies, Hierarchy& hierarchy, LaunchShape shape)
-    : bodies_(bodies), hierarchy_(hierarchy), device_(bodies.device()), group_size_(shape.group_size) {
+PublishedFrame::PublishedFrame(const Bodies& bodies, Hierarchy& hierarchy, LaunchShape shape,
+                               Conversion conversion, std::uint32_t threads)
+    : bodies_(bodies),
+      hierarchy_(hierarchy),
+      device_(bodies.device()),
+      converter_(bodies, conversion, threads),
+      group_size_(shape.group_size) {
     transform_kernel_ = device_.compile(kernel_source("algorithms/published/transform.cl"),
                                         "transform_vertices", row_defines(bodies.geometry(), group_size_));
     local_vertices_ =
@@ -32,27 +19,9 @@ PublishedFrame::PublishedFrame(const Bodies& bodies, Hierarchy& hierarchy, Launc
     vertex_bodies_ = device_.allocate(bodies.vertex_total() * 4, "vertex bodies");
 }
 
-PublishedFrame::Converted PublishedFrame::convert(const Frame& frame) const {
+Converted PublishedFrame::convert(const Frame& frame) {
     const HostWork work(device_, Stage::preprocess, "convert bodies");
-    const auto& scene = bodies_.scene();
-    const auto& geometry = bodies_.geometry();
-    Converted converted;
-    for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) {
-        const auto& mesh = bodies_.mesh(body);
-        const bool deformable = scene.bodies[body].deformable;
-        converted.rigid = converted.rigid || !deformable;
-        pack_vertices(converted.vertices, geometry, mesh,
-                      deformable ? frame.deformed[body] : scene.meshes[scene.bodies[body].mesh].vertices);
-        converted.vertex_bodies.insert(converted.vertex_bodies.end(), mesh.vertices.size(), body);
-        converted.tetrahedra.insert(converted.tetrahedra.end(), mesh.tetrahedra.begin(),
-                                    mesh.tetrahedra.end());
-        converted.boundary.insert(converted.boundary.end(), mesh.boundary.begin(), mesh.boundary.end());
-    }
-    converted.poses = bodies_.packed_poses(frame);
-    const auto bytes = hierarchy_.nodes().bytes();
-    converted.nodes = geometry.precision == Precision::fp64 ? empty_nodes<double>(bytes, geometry.k)
-                                                            : empty_nodes<float>(bytes, geometry.k);
-    return converted;
+    return converter_.convert(frame, hierarchy_.nodes().bytes());
 }
 
 void PublishedFrame::upload(const Buffer& to, std::span<const std::byte> bytes) {
@@ -60,7 +29,7 @@ void PublishedFrame::upload(const Buffer& to, std::span<const std::byte> bytes) 
     device_.upload(to, bytes, 0, true);
 }
 
-void PublishedFrame::download(const Buffer& from, std::vector<std::byte>& bytes) {
+void PublishedFrame::download(const Buffer& from, std::span<std::byte> bytes) {
     const StageScope scope(device_, Stage::read);
     device_.download(from, bytes);
 }
@@ -70,8 +39,8 @@ void PublishedFrame::transform(Converted& converted) {
     if (converted.rigid || bodies_.geometry().placement == Placement::exact)
         upload(bodies_.poses(), converted.poses);
     if (!converted.rigid) return;
-    upload(local_vertices_, converted.vertices);
-    upload(vertex_bodies_, bytes_of(converted.vertex_bodies));
+    upload(local_vertices_, std::span(converted.vertices));
+    upload(vertex_bodies_, std::as_bytes(std::span(converted.vertex_bodies)));
     {
         const StageScope scope(device_, Stage::transform);
         const auto count = static_cast<std::uint32_t>(bodies_.vertex_total());
@@ -84,34 +53,34 @@ void PublishedFrame::transform(Converted& converted) {
 }
 
 void PublishedFrame::refit(const Frame& frame, Converted& converted) {
-    upload(hierarchy_.nodes(), converted.nodes);
+    upload(hierarchy_.nodes(), std::span(converted.nodes));
     hierarchy_.refit(frame, true);
     download(hierarchy_.nodes(), converted.nodes);
     // Two copies of all nodes: the release kept its trees on the host and flattened them anew for the
     // traversal.
-    std::vector<std::byte> host_trees;
+    Converted::Array<std::byte> host_trees;
     {
         const HostWork work(device_, Stage::postprocess, "store trees");
-        host_trees = converted.nodes;
+        host_trees = converter_.copy(converted.nodes);
     }
     {
         const HostWork work(device_, Stage::preprocess, "flatten trees");
-        converted.nodes = host_trees;
+        converted.nodes = converter_.copy(host_trees);
     }
-    upload(hierarchy_.nodes(), converted.nodes);
+    upload(hierarchy_.nodes(), std::span(converted.nodes));
 }
 
 /// In the order of the release: transform, refit, traversal, each with all its inputs uploaded again.
 void PublishedFrame::update(const Frame& frame) {
     auto converted = convert(frame);
     transform(converted);
-    upload(bodies_.vertices(), converted.vertices);
-    upload(bodies_.tetrahedra(), bytes_of(converted.tetrahedra));
+    upload(bodies_.vertices(), std::span(converted.vertices));
+    upload(bodies_.tetrahedra(), std::as_bytes(std::span(converted.tetrahedra)));
     upload(bodies_.row_table(), bodies_.packed_rows());
     refit(frame, converted);
-    upload(bodies_.tetrahedra(), bytes_of(converted.tetrahedra));
-    upload(bodies_.boundary(), bytes_of(converted.boundary));
-    upload(bodies_.vertices(), converted.vertices);
+    upload(bodies_.tetrahedra(), std::as_bytes(std::span(converted.tetrahedra)));
+    upload(bodies_.boundary(), std::as_bytes(std::span(converted.boundary)));
+    upload(bodies_.vertices(), std::span(converted.vertices));
 }
 
 } // namespace tandem

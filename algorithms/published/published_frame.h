@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/bodies/bodies.h"
 #include "algorithms/hierarchy/hierarchy.h"
+#include "algorithms/published/conversion.h"
 #include "algorithms/traversal.h"
 
 namespace tandem {
@@ -13,29 +13,23 @@ namespace tandem {
 /// kinder than the original.
 class PublishedFrame {
 public:
-    /// `bodies` share nothing. Both must outlive this.
-    PublishedFrame(const Bodies& bodies, Hierarchy& hierarchy, LaunchShape shape);
+    /// `bodies` share nothing. Both must outlive this. `conversion`, `threads`: of a Converter.
+    PublishedFrame(const Bodies& bodies, Hierarchy& hierarchy, LaunchShape shape,
+                   Conversion conversion = Conversion::serial, std::uint32_t threads = 0);
 
     void update(const Frame& frame);
 
 private:
-    /// A frame's bodies, converted.
-    struct Converted {
-        std::vector<std::byte> vertices, poses, nodes;
-        std::vector<std::uint32_t> tetrahedra, vertex_bodies;
-        std::vector<std::uint8_t> boundary;
-        bool rigid = false; ///< some body is: there is a transform
-    };
-
-    Converted convert(const Frame& frame) const;
+    Converted convert(const Frame& frame);
     void transform(Converted& converted);
     void refit(const Frame& frame, Converted& converted);
     void upload(const Buffer& to, std::span<const std::byte> bytes);
-    void download(const Buffer& from, std::vector<std::byte>& bytes);
+    void download(const Buffer& from, std::span<std::byte> bytes);
 
     const Bodies& bodies_;
     Hierarchy& hierarchy_;
     Device& device_;
+    Converter converter_;
     std::uint32_t group_size_;
     Kernel transform_kernel_;
     Buffer local_vertices_, vertex_bodies_; ///< vertices before the transform, and whose they are

@@ -53,7 +53,8 @@ class PublishedSession final : public Session {
 public:
     PublishedSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted)
         : steps_(traversal, device, scene, std::move(fitted)),
-          frame_(*steps_.bodies, *steps_.steps.hierarchy, steps_.shape),
+          frame_(*steps_.bodies, *steps_.steps.hierarchy, steps_.shape, steps_.settings[parameters::convert],
+                 static_cast<std::uint32_t>(steps_.settings[parameters::threads])),
           devices_{&device} {}
 
 private:

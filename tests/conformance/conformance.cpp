@@ -37,6 +37,7 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
                                                 ? std::vector<std::string>{"1", "8", "32", "64", "256"}
                                                 : std::vector<std::string>{"1", "8", "32", "64"}),
                            of("residency", {"resident", "published"}),
+                           of("convert", {"serial", "parallel"}),
                            of("work_items", {"64", "2048"}),
                            of("broad", {"sphere", "device"}),
                            of("body_pair_capacity", {"1", "65536"}),

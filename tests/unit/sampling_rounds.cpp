@@ -2,6 +2,7 @@
 // Rounds of a group of cells: how many samples, in what order, when they suffice, and what a failure costs.
 #include "harness/sampling/rounds.h"
 
+#include "backends/host/host_device.h"
 #include "harness/sampling/local_sampler.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
@@ -52,6 +53,7 @@ protected:
         return sample_group(group, check_, enough, seed, listener);
     }
 
+    std::unique_ptr<Device> other_ = host::make_device();
     Scene scene_ = crowd(5, 6, 1.0);
     FrameRange range_{scene_, 0, 1};
     References references_{scene_, range_};
@@ -136,11 +138,9 @@ TEST_F(SamplingRounds, AreTenAtLeastAndAsManyAsTheIntervalNeeds) {
 }
 
 TEST_F(SamplingRounds, AFailureCostsItsOwnCell) {
-    auto& short_of_memory = device("opencl:0");
-    short_of_memory.set_memory_limit(1024);
-    add({{"k", "8"}}, short_of_memory);
+    other_->set_memory_limit(1024);
+    add({{"k", "8"}}, *other_);
     sample({.repeat = 2});
-    short_of_memory.set_memory_limit(Device::no_memory_limit);
     ASSERT_EQ(outcomes_.size(), 4u);
     std::size_t failed = 0;
     for (const auto& outcome : outcomes_) {
