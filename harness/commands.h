@@ -91,7 +91,9 @@ struct ExportOptions {
     std::vector<std::string> meshes, poses; ///< as of RunOptions
     std::string frames;                     ///< "FIRST:LAST" or "N"; empty: all
     std::size_t every = 1;                  ///< leave out frames between every so many
-    std::string vtu, glb;                   ///< a folder and a file; one of them at least
+    std::string vtu, glb;                   ///< a folder and a file
+    bool to_csv = false;                    ///< `scene` is a file of records; then nothing else is given
+    std::string csv;                        ///< a file; empty: standard output
     bool contacts = false;                  ///< beside the .vtu, found on `device`
     std::string device = "host";
 };

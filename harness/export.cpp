@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/hierarchy/order.h"
+#include "harness/dumps.h"
 #include "harness/inputs.h"
+#include "harness/table/records_csv.h"
 #include "harness/standard_streams.h"
 #include "scenes/error.h"
 #include "scenes/export/glb.h"
@@ -98,11 +100,30 @@ std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
     return found;
 }
 
+int export_csv(const ExportOptions& options) {
+    if (!options.vtu.empty() || !options.glb.empty() || !options.meshes.empty() || !options.poses.empty()
+        || !options.frames.empty())
+        throw InputError(
+            "--csv makes a table of a file of records; --vtu, --glb, --mesh, --pose and --frames are of "
+            "scenes, so leave them out");
+    if (options.scene.empty()) throw InputError("--csv: no file of records; name it before --csv");
+    const auto table = records_as_csv(options.scene);
+    if (options.csv.empty()) {
+        put_text(table.text);
+        return 0;
+    }
+    const DumpFile file(options.csv, table.text);
+    put("{}: {} records of {}\n", options.csv, table.records, options.scene);
+    return 0;
+}
+
 } // namespace
 
 int export_command(const ExportOptions& options) {
+    if (options.to_csv) return export_csv(options);
     if (options.vtu.empty() && options.glb.empty())
-        throw InputError("nothing to export to; give --vtu FOLDER, --glb FILE or both");
+        throw InputError(
+            "nothing to export to; give --vtu FOLDER, --glb FILE or both, or --csv for a file of records");
     const auto scene = open_scene(options);
     const auto [first, last] = named_frames(options.frames, scene);
     std::vector<std::size_t> frames;

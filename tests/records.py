@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """records.py PROGRAM SOURCE: what the program records: one line a cell, appended, and schemas that can fail."""
+import csv
 import itertools
 import json
 import os
@@ -198,6 +199,68 @@ class Records(Case):
         records = self.records(out)
         self.assertEqual([r["status"] for r in records], ["ok", "failed", "ok"])
         self.assertIn("34359738360", records[1]["failure"])
+
+    def test_records_become_a_table(self):
+        out, table = self.work / "table.jsonl", self.work / "table.csv"
+        status, text, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "tiled,chunked", "--device", "host",
+                                      "--set", "k=8,18", "--repeat", 3, "--out", out)
+        self.assertEqual(status, 0, (text, errors))
+        records = [json.loads(line) for line in out.read_text().splitlines()]
+        failed = json.loads(json.dumps(records[0]))
+        failed.update(status="failed", failure='out of "memory",\nby 3 bytes', work=None, total_ns=None, preparation=None, error=None)
+        with open(out, "a") as file:
+            file.write(json.dumps(failed) + "\n")
+        status, text, errors = tandem("export", out, "--csv", table)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertIn(f"{table}: 5 records of {out}", text)
+        printed = tandem("export", out, "--csv")
+        self.assertEqual((printed[0], printed[1], printed[2]), (0, table.read_text(), []))
+        with open(table, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 5)
+        for row, record in zip(rows, records):
+            for name in ("status", "algorithm", "preset", "session", "key"):
+                self.assertEqual(row[name], record[name])
+            self.assertEqual((row["failure"], row["device"], row["commit"]), ("", "host", record["environment"]["commit"]))
+            frames = record["frames"]["last"] - record["frames"]["first"] + 1
+            for name, value in (("ms", "median"), ("ms_low", "low"), ("ms_high", "high")):
+                self.assertAlmostEqual(float(row[name]), record["total_ns"][value] / frames / 1e6, delta=1e-8 * float(row[name]))
+            self.assertEqual(int(row["samples"]), 3)
+            self.assertEqual(int(row["candidate_pairs"]), sum(record["work"]["candidate_pairs"]))
+            self.assertEqual(int(row["contacts"]), sum(record["work"]["contacts"]))
+            self.assertEqual(int(row["launches"]), sum(stage["launches"] for stage in record["stages"].values()))
+            truth = record["error"]["truth"]
+            self.assertEqual(int(row["pairs_missed"]), truth["missed_touching"] + truth["missed_overlapping"])
+            for name, value in record["settings"].items():
+                self.assertEqual(row[f"set_{name}"], str(value))
+            for name, value in record["work"]["counters"].items():
+                self.assertEqual(row[f"count_{name}"], "" if value is None else str(value))
+            for name, stage in record["stages"].items():
+                on_device = stage["device_ns"]["median"] if stage["device_ns"] else 0
+                median = on_device or stage["host_ns"]["median"]
+                self.assertAlmostEqual(float(row[f"stage_{name}_ms"]), median / frames / 1e6, delta=1e-8)
+        # A setting of the other algorithm is no value of this one.
+        self.assertEqual({row["set_most_seeds"] for row in rows if row["algorithm"] == "chunked"}, {""})
+        self.assertEqual((rows[4]["status"], rows[4]["failure"], rows[4]["ms"]), ("failed", failed["failure"], ""))
+        with open(out, "a") as file:
+            file.write(json.dumps(records[0])[:100])
+        status, text, errors = tandem("export", out, "--csv")
+        self.assertEqual((status, text), (0, table.read_text()))
+        self.assertEqual(len(errors), 1)
+        self.assertIn(f"{out}:6: the last line has no end", errors[0])
+
+    def test_no_table_of_what_is_no_record(self):
+        other, empty = self.work / "other.jsonl", self.work / "empty.jsonl"
+        other.write_text('{"schema":3}\n')
+        empty.write_text("")
+        self.bad(f"{other}:1: is no record of a cell", "export", other, "--csv")
+        self.bad(f"{empty}: has no record", "export", empty, "--csv")
+        self.bad("cannot be read", "export", self.work / "none.jsonl", "--csv")
+        self.bad("is a folder", "export", self.work, "--csv")
+        self.bad("no file of records", "export", "--csv")
+        self.bad("--csv makes a table of a file of records", "export", other, "--csv", "--glb", self.work / "x.glb")
+        old = SOURCE / "results/h200/plates.jsonl"
+        self.bad("cannot be written", "export", old, "--csv", self.work / "none" / "x.csv")
 
     def test_any_file_name_can_be_recorded(self):
         path = os.path.join(os.fsencode(self.work), b"na\xffme.msh")

@@ -56,7 +56,9 @@ Action add_simulate(CLI::App& app) {
 Action add_export(CLI::App& app) {
     auto given = std::make_shared<ExportOptions>();
     auto& options = *given;
-    app.add_option("scene", options.scene, "NAME, NAME:par=value,..., a scene description or a recording");
+    app.add_option(
+        "scene", options.scene,
+        "NAME, NAME:par=value,..., a scene description or a recording; with --csv a file of records");
     app.add_option("--mesh", options.meshes, "a scene of mesh files instead")->expected(1)->take_all();
     app.add_option("--pose", options.poses, "\"tx ty tz qw qx qy qz\", one per --mesh, in order")
         ->expected(1)
@@ -69,7 +71,14 @@ Action add_export(CLI::App& app) {
     auto* contacts = app.add_flag("--contacts", options.contacts, "contacts of every frame beside the .vtu");
     app.add_option("--device", options.device, "the device that finds them; host when left out")
         ->needs(contacts);
-    return [given] { return export_command(*given); };
+    const auto* csv =
+        app.add_option("--csv", options.csv,
+                       "records as comma-separated values: into this file, or printed when none is named")
+            ->expected(0, 1);
+    return [given, csv] {
+        given->to_csv = csv->count() > 0;
+        return export_command(*given);
+    };
 }
 
 Action add_devices(CLI::App& app) {
