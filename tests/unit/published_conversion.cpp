@@ -3,7 +3,7 @@
 // several.
 #include "algorithms/bodies/pack.h"
 #include "algorithms/published/conversion.h"
-#include "tests/support/devices.h"
+#include "tests/support/cells.h"
 #include "tests/support/scenes.h"
 
 #include <cstring>
