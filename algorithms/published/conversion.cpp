@@ -2,10 +2,12 @@
 #include "algorithms/published/conversion.h"
 
 #include "algorithms/bodies/pack.h"
+#include "backends/host/fork_join.h"
 
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <tbb/blocked_range.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
@@ -31,10 +33,17 @@ Converter::Converter(const Bodies& bodies, Conversion conversion, std::uint32_t 
 }
 
 void Converter::each(std::size_t count, const std::function<void(std::size_t)>& part) {
-    if (arena_ && count >= least_for_threads)
-        arena_->execute([&] { tbb::parallel_for(std::size_t{0}, count, part); });
-    else
+    if (!arena_ || count < least_for_threads) {
         for (std::size_t i = 0; i < count; ++i) part(i);
+        return;
+    }
+    using Parts = tbb::blocked_range<std::size_t>;
+    host::ForkJoin edges;
+    const auto work = [&](const Parts& parts) {
+        const host::ForkJoin::Part own(edges);
+        for (auto i = parts.begin(); i != parts.end(); ++i) part(i);
+    };
+    arena_->execute([&] { tbb::parallel_for(Parts(0, count), host::HandedWork(work)); });
 }
 
 /// A body's place in every array is its row's.

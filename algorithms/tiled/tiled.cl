@@ -62,8 +62,13 @@ DEVICE int roots_overlap(GLOBAL const real* roots, uint a, uint b) {
     GLOBAL const real* root_a = root_of(roots, a);
     GLOBAL const real* root_b = root_of(roots, b);
     uint apart = 0;
-    UNROLL for (uint d = 0; d < (uint)DIRECTIONS; ++d) apart |=
-        (uint)APART(root_a[d], root_a[DIRECTIONS + d], root_b[d], root_b[DIRECTIONS + d]);
+    // Three at a time: all at once took registers that the walk has better use for.
+    NO_UNROLL for (uint first = 0; first < (uint)DIRECTIONS; first += 3u) {
+        UNROLL for (uint i = 0; i < 3u; ++i) {
+            const uint d = first + i < (uint)DIRECTIONS ? first + i : first;
+            apart |= (uint)APART(root_a[d], root_a[DIRECTIONS + d], root_b[d], root_b[DIRECTIONS + d]);
+        }
+    }
     return apart == 0u;
 }
 
@@ -72,9 +77,10 @@ DEVICE int roots_overlap(GLOBAL const real* roots, uint a, uint b) {
 DEVICE TilePair first_tile_pair(ulong turn, GLOBAL const uint* pairs, GLOBAL const uint* tops, uint begins,
                                 GLOBAL const real* roots) {
     TilePair pair = {0u, 0u, 0};
-    const ulong each = (ulong)begins * begins;
-    const uint body_pair = (uint)(turn / each);
-    const uint tile_pair = (uint)(turn - body_pair * each);
+    // Of so few bodies as begin with several tiles there are not 2^32 pairs of tiles.
+    const uint each = begins * begins;
+    const uint body_pair = begins > 1u ? (uint)turn / each : (uint)turn;
+    const uint tile_pair = begins > 1u ? (uint)turn % each : 0u;
     const uint a = tops[(ulong)body_a_of(pairs, body_pair) * begins + tile_pair / begins];
     const uint b = tops[(ulong)body_b_of(pairs, body_pair) * begins + tile_pair % begins];
     if (a == NO_TILE || b == NO_TILE) return pair;

@@ -3,6 +3,7 @@
 
 #include "algorithms/sources.h"
 #include "algorithms/tiled/tile_pairs.clh"
+#include "scenes/error.h"
 
 namespace tandem {
 
@@ -114,6 +115,11 @@ void TiledWalker::launch_leaves(const WalkTask& task) {
 }
 
 void TiledWalker::do_launch(const WalkTask& task) {
+    const std::uint64_t begins = trees_.begins(trees_.walked_levels() - 1);
+    if (begins > 1 && begins * begins * task.on_host.size() > 0xffffffffu) // tiled.cl counts them in a word
+        throw InputError(
+            "more than 2^32 pairs of tiles to begin with, of body pairs given more than once; lower "
+            "most_seeds");
     const StageScope scope(trees_.bodies().device(), Stage::traverse);
     for (auto level = trees_.walked_levels(); --level > 0;) launch_upper(task, level);
     launch_leaves(task);

@@ -39,6 +39,33 @@ private:
 #endif
 
     char fork_ = 0, join_ = 0;
+
+    template<class Work>
+    friend class HandedWork;
+};
+
+/// What a parallel loop does, as oneTBB's tasks carry it from thread to thread: a copy is made by one and
+/// read by another, in order, which ThreadSanitizer has to be told as well. `work` must outlive the loop.
+template<class Work>
+class HandedWork {
+public:
+    explicit HandedWork(const Work& work) : work_(&work) { ForkJoin::release(&edge_); }
+    HandedWork(const HandedWork& other) : work_(other.received()) { ForkJoin::release(&edge_); }
+    HandedWork& operator=(const HandedWork&) = delete;
+
+    template<class Range>
+    void operator()(const Range& range) const {
+        (*received())(range);
+    }
+
+private:
+    const Work* received() const {
+        ForkJoin::acquire(&edge_);
+        return work_;
+    }
+
+    const Work* work_;
+    mutable char edge_ = 0;
 };
 
 } // namespace tandem::host

@@ -122,12 +122,11 @@ private:
             const auto begun = run_alone(impl, grid.groups, arguments);
             if (begun == grid.groups) return;
             ForkJoin edges;
-            arena_.execute([&] {
-                tbb::parallel_for(Groups(begun, grid.groups), [&](const Groups& groups) {
-                    const ForkJoin::Part part(edges);
-                    run_groups(impl, grid.groups, groups, arguments, true);
-                });
-            });
+            const auto work = [&](const Groups& groups) {
+                const ForkJoin::Part part(edges);
+                run_groups(impl, grid.groups, groups, arguments, true);
+            };
+            arena_.execute([&] { tbb::parallel_for(Groups(begun, grid.groups), HandedWork(work)); });
         });
     }
 
