@@ -114,8 +114,7 @@ inline constexpr Setting<Conversion> convert{
     {{"serial", Conversion::serial}, {"parallel", Conversion::parallel}},
     "",
     "residency=published: who converts bodies to the device's arrays and trees back and forth: one thread, "
-    "as in "
-    "the paper's tables, or as many as setting threads allows, as its OpenMP did"};
+    "as in the paper's tables, or as many as setting threads allows, as its OpenMP did"};
 inline constexpr Setting<Submission> submission{
     "submission",
     Submission::one,

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "harness/compare/cells.h"
+#include "harness/compare/each_line.h"
 #include "scenes/error.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <fstream>
 
 namespace tandem::compare {
 
@@ -26,25 +24,6 @@ std::pair<std::string, std::string> split_commit(const std::string& file, const 
             fmt::format("{}: commit {} is asked for as well; name one commit, behind the @ or by its option",
                         file, commit));
     return {file.substr(0, at), file.substr(at + 1)};
-}
-
-/// Every line with an end as a record; whether one without an end followed.
-std::pair<std::vector<RecordedCell>, bool> read_lines(const std::string& path) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored))
-        throw InputError(fmt::format("{}: is a folder; name a file of records", path));
-    std::ifstream in(path, std::ios::binary);
-    if (!in)
-        throw InputError(
-            fmt::format("{}: cannot be read ({}); name a file of records", path, std::strerror(errno)));
-    std::vector<RecordedCell> records;
-    std::string text;
-    while (std::getline(in, text)) {
-        if (in.eof()) return {std::move(records), true};
-        records.push_back(read_cell(text, path, records.size() + 1));
-    }
-    if (in.bad()) throw InputError(fmt::format("{}: reading failed; name another file", path));
-    return {std::move(records), false};
 }
 
 std::vector<std::string> commits_of(const std::vector<RecordedCell>& records) {
@@ -95,11 +74,12 @@ RecordedCells read_cells(const std::string& file, const std::string& commit) {
     RecordedCells result;
     const auto [path, start] = split_commit(file, commit);
     result.path = path;
-    auto [records, torn] = read_lines(path);
-    result.torn = torn;
+    std::vector<RecordedCell> records;
+    result.torn = each_line(
+        path, [&](auto& text, std::size_t line) { records.push_back(read_cell(text, path, line)); });
     if (records.empty())
         throw InputError(fmt::format("{}: {}; name a file of records", path,
-                                     torn ? "its only line has no end" : "is empty"));
+                                     result.torn ? "its only line has no end" : "is empty"));
     if (!start.empty()) {
         result.commit = whole_commit(path, start, records);
         std::erase_if(records, [&](const auto& record) { return record.commit != result.commit; });

@@ -2,15 +2,12 @@
 #include "harness/table/records_csv.h"
 
 #include "harness/compare/cells.h"
+#include "harness/compare/each_line.h"
 #include "harness/standard_streams.h"
 #include "scenes/error.h"
 
 #include <array>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -73,7 +70,10 @@ std::string sum_of(const Json& numbers) {
     return std::to_string(sum);
 }
 
-/// A record's fields by column.
+/// The table's texts of one record, by column.
+using Fields = std::map<std::string, std::string, std::less<>>;
+
+/// Makes them of the record.
 class RecordFields {
 public:
     explicit RecordFields(Json record) : record_(std::move(record)) {
@@ -83,14 +83,14 @@ public:
         add_times();
         add_answer();
         for (const auto& [name, value] : at(record_, {"settings"}).items())
-            fields["set_" + name] = text_of(value);
+            fields_["set_" + name] = text_of(value);
     }
 
-    std::map<std::string, std::string, std::less<>> fields;
+    Fields fields() && { return std::move(fields_); }
 
 private:
     void add(const char* column, std::initializer_list<const char*> path) {
-        fields[column] = text_of(at(record_, path));
+        fields_[column] = text_of(at(record_, path));
     }
 
     std::string milliseconds(const Json& ns) const {
@@ -101,9 +101,9 @@ private:
         for (const auto* name : {"status", "failure", "algorithm", "preset", "session", "key"})
             add(name, {name});
         const auto& devices = record_.at("devices");
-        fields["device"] = of_devices(devices, "id");
-        fields["device_name"] = of_devices(devices, "name");
-        fields["driver"] = of_devices(devices, "driver");
+        fields_["device"] = of_devices(devices, "id");
+        fields_["device_name"] = of_devices(devices, "name");
+        fields_["driver"] = of_devices(devices, "driver");
         add("scene", {"scene", "key"});
         add("scene_digest", {"scene", "digest"});
         add("bodies", {"scene", "bodies"});
@@ -115,73 +115,68 @@ private:
 
     void add_times() {
         const auto& total = at(record_, {"total_ns"});
-        fields["ms"] = milliseconds(at(total, {"median"}));
-        fields["ms_low"] = milliseconds(at(total, {"low"}));
-        fields["ms_high"] = milliseconds(at(total, {"high"}));
+        fields_["ms"] = milliseconds(at(total, {"median"}));
+        fields_["ms_low"] = milliseconds(at(total, {"low"}));
+        fields_["ms_high"] = milliseconds(at(total, {"high"}));
         const auto& samples = at(total, {"samples"});
-        if (samples.is_array()) fields["samples"] = std::to_string(samples.size());
+        if (samples.is_array()) fields_["samples"] = std::to_string(samples.size());
         add("rounds", {"sampling", "rounds"});
         add("converged", {"sampling", "converged"});
         const auto& disturbed = at(record_, {"conditions", "disturbed"});
-        if (disturbed.is_array()) fields["disturbed"] = disturbed.empty() ? "false" : "true";
-        fields["device_span_ms"] = milliseconds(at(record_, {"device_span_ns", "median"}));
+        if (disturbed.is_array()) fields_["disturbed"] = disturbed.empty() ? "false" : "true";
+        fields_["device_span_ms"] = milliseconds(at(record_, {"device_span_ns", "median"}));
         std::uint64_t launches = 0;
         std::uint64_t waits = 0;
         for (const auto& [name, stage] : at(record_, {"stages"}).items()) {
             const auto& on_device = at(stage, {"device_ns", "median"});
             const bool has_device = on_device.is_number() && on_device.get<double>() > 0;
-            fields["stage_" + name + "_ms"] =
+            fields_["stage_" + name + "_ms"] =
                 milliseconds(has_device ? on_device : at(stage, {"host_ns", "median"}));
             launches += stage.value("launches", std::uint64_t{0});
             waits += stage.value("waits", std::uint64_t{0});
         }
         if (!at(record_, {"stages"}).is_object()) return;
-        fields["launches"] = std::to_string(launches);
-        fields["waits"] = std::to_string(waits);
+        fields_["launches"] = std::to_string(launches);
+        fields_["waits"] = std::to_string(waits);
     }
 
     void add_answer() {
-        fields["candidate_pairs"] = sum_of(at(record_, {"work", "candidate_pairs"}));
-        fields["contacts"] = sum_of(at(record_, {"work", "contacts"}));
+        fields_["candidate_pairs"] = sum_of(at(record_, {"work", "candidate_pairs"}));
+        fields_["contacts"] = sum_of(at(record_, {"work", "contacts"}));
         for (const auto* name : {"missing", "extra", "contact_frames_wrong"}) add(name, {"agreement", name});
         const auto& truth = at(record_, {"error", "truth"});
         if (truth.is_object())
-            fields["pairs_missed"] = std::to_string(truth.at("missed_touching").get<std::uint64_t>()
-                                                    + truth.at("missed_overlapping").get<std::uint64_t>());
+            fields_["pairs_missed"] = std::to_string(truth.at("missed_touching").get<std::uint64_t>()
+                                                     + truth.at("missed_overlapping").get<std::uint64_t>());
         add("device_bytes", {"preparation", "device_bytes"});
         for (const auto& [name, value] : at(record_, {"work", "counters"}).items())
-            fields["count_" + name] = text_of(value);
+            fields_["count_" + name] = text_of(value);
     }
 
     Json record_;
+    Fields fields_;
     double frames_ = 1;
 };
 
-std::vector<RecordFields> read_rows(const std::string& path) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored))
-        throw InputError(fmt::format("{}: is a folder; name a file of records", path));
-    std::ifstream in(path, std::ios::binary);
-    if (!in)
-        throw InputError(
-            fmt::format("{}: cannot be read ({}); name a file of records", path, std::strerror(errno)));
-    std::vector<RecordFields> rows;
-    std::string line;
-    for (std::size_t number = 1; std::getline(in, line); ++number) {
-        if (in.eof()) {
-            tell("{}:{}: the last line has no end, being cut off or still written: it is ignored\n", path,
-                 number);
-            break;
-        }
-        compare::read_cell(line, path, number); // says what else it is
-        try {
-            rows.emplace_back(Json::parse(line));
-        } catch (const Json::exception&) {
-            throw InputError(fmt::format("{}:{}: a record that lacks fields of its schema; give files that "
-                                         "'tandem run --out' wrote",
-                                         path, number));
-        }
+/// Fields of the record in a line, by column.
+Fields fields_of(const std::string& text, const std::string& path, std::size_t line) {
+    compare::read_cell(text, path, line); // says what else it is
+    try {
+        return RecordFields(Json::parse(text)).fields();
+    } catch (const Json::exception&) {
+        throw InputError(fmt::format("{}:{}: a record that lacks fields of its schema; give files that "
+                                     "'tandem run --out' wrote",
+                                     path, line));
     }
+}
+
+std::vector<Fields> read_rows(const std::string& path) {
+    std::vector<Fields> rows;
+    const bool torn = compare::each_line(
+        path, [&](auto& text, std::size_t line) { rows.push_back(fields_of(text, path, line)); });
+    if (torn)
+        tell("{}:{}: the last line has no end, being cut off or still written: it is ignored\n", path,
+             rows.size() + 1);
     if (rows.empty()) throw InputError(fmt::format("{}: has no record; name a file of records", path));
     return rows;
 }
@@ -194,7 +189,7 @@ CsvTable records_as_csv(const std::string& path) {
     for (const std::string_view group : {"stage_", "count_", "set_"}) {
         std::set<std::string> names;
         for (const auto& row : rows)
-            for (const auto& [name, value] : row.fields)
+            for (const auto& [name, value] : row)
                 if (name.starts_with(group)) names.insert(name);
         columns.insert(columns.end(), names.begin(), names.end());
     }
@@ -209,8 +204,8 @@ CsvTable records_as_csv(const std::string& path) {
     add_line([](const std::string& column) { return column; });
     for (const auto& row : rows)
         add_line([&](const std::string& column) {
-            const auto found = row.fields.find(column);
-            return found == row.fields.end() ? std::string() : found->second;
+            const auto found = row.find(column);
+            return found == row.end() ? std::string() : found->second;
         });
     return {std::move(table), rows.size()};
 }
