@@ -229,6 +229,27 @@ TEST_P(Tiles, FewBodiesBeginBelowTheirTops) {
     }
 }
 
+/// Body pairs given so often that the pairs of tiles they begin with could not be told by a word are refused,
+/// and the session goes on.
+TEST_P(Tiles, MoreBeginningsThanAWord) {
+    std::vector<Eigen::Vector3d> places;
+    for (int i = 0; i < 66 * 32; ++i) places.push_back({static_cast<double>(i), 0, 0});
+    Scene scene;
+    scene.meshes = {tetrahedra_at(places, 0.5)};
+    scene.bodies = {{.mesh = 0}, {.mesh = 0}};
+    Frame frame;
+    frame.poses.resize(2);
+    frame.deformed.resize(2);
+    scene.frame = [frame](std::size_t) { return frame; };
+    const auto& traversal = algorithm("tiled");
+    const std::array devices{&on};
+    const auto session = traversal.prepare(
+        devices, scene, resolve(traversal.parameters(), {}, {{"most_seeds", "16384"}}, "tiled"));
+    const std::vector<BodyPair> most(0xffffffffu / (66 * 66) + 1, BodyPair{0, 1});
+    EXPECT_THROW(session->run(frame, most), InputError);
+    EXPECT_EQ(session->run(frame, std::span(most).first(1)).count, places.size());
+}
+
 INSTANTIATE_TEST_SUITE_P(Devices, Tiles, testing::ValuesIn(device_names()),
                          [](const auto& name) { return device_label(name.param); });
 
