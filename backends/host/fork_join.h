@@ -44,13 +44,14 @@ private:
     friend class HandedWork;
 };
 
-/// What a parallel loop does, as oneTBB's tasks carry it from thread to thread: a copy is made by one and
-/// read by another, in order, which ThreadSanitizer has to be told as well. `work` must outlive the loop.
+/// What a parallel loop does, as oneTBB's tasks carry it from thread to thread: a copy is made by one, read
+/// by another, and its memory taken for the next by a third, in order, which ThreadSanitizer has to be told
+/// as well. `work` must outlive the loop.
 template<class Work>
 class HandedWork {
 public:
-    explicit HandedWork(const Work& work) : work_(&work) { ForkJoin::release(&edge_); }
-    HandedWork(const HandedWork& other) : work_(other.received()) { ForkJoin::release(&edge_); }
+    explicit HandedWork(const Work& work) : work_(&work) { ForkJoin::release(place_.edge()); }
+    HandedWork(const HandedWork& other) : work_(other.received()) { ForkJoin::release(place_.edge()); }
     HandedWork& operator=(const HandedWork&) = delete;
 
     template<class Range>
@@ -59,13 +60,27 @@ public:
     }
 
 private:
+    /// The memory of a copy: taken before anything is written there, given up after everything is read.
+    class Place {
+    public:
+        Place() { ForkJoin::acquire(edge()); }
+        Place(const Place&) = delete;
+        Place& operator=(const Place&) = delete;
+        ~Place() { ForkJoin::release(edge()); }
+
+        char* edge() const { return &edge_; }
+
+    private:
+        mutable char edge_; // an address: never written
+    };
+
     const Work* received() const {
-        ForkJoin::acquire(&edge_);
+        ForkJoin::acquire(place_.edge());
         return work_;
     }
 
+    Place place_;
     const Work* work_;
-    mutable char edge_ = 0;
 };
 
 } // namespace tandem::host
