@@ -27,6 +27,7 @@ TiledWalker::TiledWalker(const TileTrees& trees, const Ground& ground, LaunchSha
 void TiledWalker::do_compile(const WalkBuild& build) {
     auto defines = trees_.defines(shape_.group_size);
     build.add_to(defines);
+    defines["SEVERAL_TOPS"] = trees_.begins(trees_.walked_levels() - 1) > 1 ? "1" : "0";
     auto& device = trees_.bodies().device();
     const auto& source = kernel_source("algorithms/tiled/tiled.cl");
     upper_kernel_ = device.compile(source, "walk_upper_tiles", defines);

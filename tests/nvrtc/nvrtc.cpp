@@ -116,6 +116,8 @@ Programs defaults() {
     for (const auto* traversal : algorithms())
         for (const std::string precision : {"float", "double"})
             prepare(device, *traversal, traversal->presets().front().values, {{"precision", precision}});
+    for (const std::string most_seeds : {"1", "16384"}) // from tops, and from below them
+        prepare(device, algorithm("tiled"), {}, {{"most_seeds", most_seeds}});
     for (const auto precision : {Precision::fp32, Precision::fp64}) prepare_list(device, precision);
     return device.asked();
 }
