@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: MIT
+"""Short names of cells: what tells them apart."""
+import pandas
+
+NAMES = ("algorithm", "preset", "device", "device_name", "scene", "first_frame", "last_frame")
+
+
+def _texts(cells, name):
+    column = cells[name]
+    words = column.astype(str).where(column.notna(), "")
+    if not name.startswith("set_"):
+        return words
+    return words.where(words == "", name.removeprefix("set_") + "=" + words)
+
+
+def labels(cells, without=()):
+    """A text for each row of `cells` (of Records.cells): names and then settings, each where it tells rows apart that are not told
+    apart yet; columns `without` are left out. Rows that nothing tells apart have equal texts."""
+    settings = [name for name in cells.columns if name.startswith("set_")]
+    parts = pandas.Series("", index=cells.index)
+    groups = pandas.Series(0, index=cells.index)
+    for name in (*NAMES, *settings):
+        if name in without:
+            continue
+        texts = _texts(cells, name)
+        if not (texts.groupby(groups).nunique() > 1).any():
+            continue
+        parts = (parts + " " + texts).str.strip()
+        groups = pandas.Series(list(zip(groups, texts)), index=cells.index).factorize()[0]
+        groups = pandas.Series(groups, index=cells.index)
+    return parts.where(parts != "", cells["algorithm"].astype(str))

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: MIT
+"""Figures of records: one message each, said in its title; the winner named, the rest pale, intervals drawn."""
+import textwrap
+import warnings
+
+import matplotlib.pyplot as plt
+
+from .labels import labels
+
+WINNER, PALE, INK = "#0b5394", "#9aa5b1", "#333333"
+# Wong 2011, "Points of view: Color blindness", Nature Methods 8: told apart by everyone.
+COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#000000")
+GROUP = ["scene", "first_frame", "last_frame", "device_name"]
+STAGE_ORDER = ("broad", "refit", "seed", "traverse", "balance", "contact", "preprocess", "postprocess", "read", "write")
+
+
+def _rankable(cells):
+    """Cells that are right and have times; the others are told of, never drawn."""
+    good = cells[(cells["status"] == "ok") & cells["ms"].notna()]
+    if len(good) < len(cells):
+        warnings.warn(f"{len(cells) - len(good)} of {len(cells)} cells failed, were wrong or have no times: not drawn", stacklevel=3)
+    if good.empty:
+        raise ValueError("no cell that is right has times; nothing can be drawn")
+    return good
+
+
+def _of_one_group(cells):
+    groups = cells[GROUP].drop_duplicates()
+    if len(groups) > 1:
+        raise ValueError(f"{len(groups)} combinations of scene, frames and device; choose one with records.of(...)")
+    first = cells.iloc[0]
+    return f"{str(first['scene']).split(':')[0]}, frames {first['first_frame']}:{first['last_frame']}, {first['device_name']}"
+
+
+def _axes(ax, height):
+    return ax if ax is not None else plt.subplots(figsize=(6.4, height), layout="constrained")[1]
+
+
+def _title(ax, text, width=62):
+    ax.set_title("\n".join(textwrap.wrap(text, width)), loc="left", fontsize=10, color=INK)
+
+
+BESIDE_NAMES = 40  # width of a title over axes that leave room for names of cells
+
+
+def _and(words):
+    words = list(words)
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def _figures(value):
+    return f"{value:.3g}"
+
+
+def plot_cells(records, ax=None):
+    """Times of the cells of one scene, its frames and one device, fastest first, with 95 % intervals. The title says who wins and
+    by how much, or who is not told apart. Returns the axes. Raises ValueError where cells are of several."""
+    cells = _rankable(records.cells).sort_values("ms")
+    where = _of_one_group(cells)
+    names = labels(cells, without=GROUP)
+    ax = _axes(ax, 1.2 + 0.28 * len(cells))
+    ties = cells["ms_low"] <= cells["ms_high"].iloc[0]
+    for row, (cell, name, tie) in enumerate(zip(cells.itertuples(), names, ties)):
+        colour = WINNER if tie else PALE
+        ax.plot([cell.ms_low, cell.ms_high], [row, row], color=colour, linewidth=2, solid_capstyle="butt")
+        ax.plot(cell.ms, row, "o", color=colour, markersize=5)
+        ax.annotate(_figures(cell.ms), (cell.ms_high, row), xytext=(6, 0), textcoords="offset points", va="center", fontsize=8,
+                    color=colour if tie else INK)
+    ax.set_yticks(range(len(cells)), names, fontsize=8)
+    for tick, tie in zip(ax.get_yticklabels(), ties):
+        tick.set_fontweight("bold" if tie else "normal")
+    ax.invert_yaxis()
+    ax.set_xscale("log" if cells["ms"].iloc[-1] > 20 * cells["ms"].iloc[0] else "linear")
+    if ax.get_xscale() == "linear":
+        ax.set_xlim(left=0)
+    ax.margins(x=0.12)
+    ax.set_xlabel("milliseconds a frame, median and 95 % interval", fontsize=8)
+    first = _and(names[ties]) if ties.sum() < 4 else f"{ties.sum()} cells"
+    if ties.sum() > 1:
+        message = f"{first} are not told apart"
+    elif len(cells) > 1:
+        message = f"{first} is the fastest, the next takes {_figures(cells['ms'].iloc[1] / cells['ms'].iloc[0])} times as long"
+    else:
+        message = first
+    _title(ax, f"{where}: {message}", BESIDE_NAMES)
+    ax.spines[["top", "right"]].set_visible(False)
+    return ax
+
+
+def plot_sweep(records, setting, ax=None):
+    """Times over the values of a setting ("seed_threshold"), a line for each of the others, with 95 % intervals; the least one is
+    named, or those that are not told apart from it. Words stand in order of their appearance. Returns the axes. Raises ValueError for a setting that no cell has."""
+    column = "set_" + setting.removeprefix("set_")
+    if column not in records.cells or records.cells[column].isna().all():
+        known = ", ".join(name.removeprefix("set_") for name in records.cells if name.startswith("set_"))
+        raise ValueError(f"{setting}: no such setting in these records; there are {known}")
+    cells = _rankable(records.cells[records.cells[column].notna()])
+    where = _of_one_group(cells)
+    ax = _axes(ax, 3.6)
+    values = cells[column]
+    numbers = values.dtype.kind in "if" or str(values.dtype) == "Int64"
+    places = values.astype(float) if numbers else values.astype(str).map({word: i for i, word in enumerate(values.astype(str).unique())})
+    best = cells["ms"].idxmin()
+    names = labels(cells, without=(*GROUP, column))
+    for colour, (name, line) in zip(COLOURS * 9, cells.groupby(names, sort=False)):
+        line = line.assign(place=places[line.index]).sort_values("place")
+        ax.fill_between(line["place"], line["ms_low"], line["ms_high"], color=colour, alpha=0.2, linewidth=0)
+        ax.plot(line["place"], line["ms"], "o-", color=colour, markersize=4, linewidth=1.2, label=name)
+    ax.annotate(f"{cells.at[best, column]}: {_figures(cells.at[best, 'ms'])}", (places[best], cells.at[best, "ms"]), xytext=(0, -14),
+                textcoords="offset points", ha="center", fontsize=8, fontweight="bold", color=INK)
+    if numbers and places.max() > 100 * max(places[places > 0].min(), 1e-300):
+        ax.set_xscale("symlog", linthresh=places[places > 0].min())
+    if not numbers:
+        ax.set_xticks(range(places.max() + 1), values.astype(str).unique())
+    ax.set_xlabel(column.removeprefix("set_"), fontsize=8)
+    ax.set_ylabel("milliseconds a frame", fontsize=8)
+    ax.set_ylim(bottom=0)
+    if len(ax.lines) > 1:
+        ax.legend(fontsize=7, frameon=False)
+    ties = cells[(names == names[best]) & (cells["ms_low"] <= cells.at[best, "ms_high"])].sort_values("ms")[column].astype(str)
+    says = "is the fastest value tried" if len(ties) == 1 else "are not told apart, and the fastest values tried"
+    _title(ax, f"{where}: {column.removeprefix('set_')} = {_and(ties)} {says}")
+    ax.spines[["top", "right"]].set_visible(False)
+    return ax
+
+
+def plot_stages(records, ax=None):
+    """What the frames of each cell are made of: stages side by side, on the device, on the host where they have no time there.
+    Cells are of one scene and device, fastest first. Returns the axes."""
+    cells = _rankable(records.cells).sort_values("ms")
+    where = _of_one_group(cells)
+    columns = [f"stage_{name}_ms" for name in STAGE_ORDER if f"stage_{name}_ms" in cells]
+    columns += sorted(name for name in cells if name.startswith("stage_") and name not in columns)
+    stages = cells[columns].fillna(0)
+    stages = stages.loc[:, (stages.div(stages.sum(axis=1), axis=0) > 0.01).any()]  # what can be seen
+    ax = _axes(ax, 1.4 + 0.28 * len(cells))
+    left = stages.iloc[:, 0] * 0
+    for colour, name in zip((*COLOURS, "#999999", "#66507a"), stages):
+        ax.barh(range(len(cells)), stages[name], left=left, color=colour, label=name.removeprefix("stage_").removesuffix("_ms"), height=0.7)
+        left = left + stages[name]
+    ax.set_yticks(range(len(cells)), labels(cells, without=GROUP), fontsize=8)
+    ax.invert_yaxis()
+    ax.set_xlabel("milliseconds a frame", fontsize=8)
+    ax.legend(fontsize=7, frameon=False, ncols=4, loc="upper left", bbox_to_anchor=(0, -0.12 - 1 / (1 + len(cells))))
+    largest = stages.iloc[0].idxmax()
+    share = stages.iloc[0][largest] / stages.iloc[0].sum()
+    _title(ax, f"{where}: {largest.removeprefix('stage_').removesuffix('_ms')} has {100 * share:.0f} % of the fastest frame's stages", BESIDE_NAMES)
+    ax.spines[["top", "right"]].set_visible(False)
+    return ax
+
+
+def plot_frames(records, what="ms", ax=None):
+    """A curve over frames for each cell of one scene and device: "ms", "body_pairs", "candidate_pairs" or "contacts". Returns the
+    axes."""
+    known = ("ms", "body_pairs", "candidate_pairs", "contacts")
+    if what not in known:
+        raise ValueError(f"{what}: no such column; there are {', '.join(known)}")
+    cells = _rankable(records.cells).sort_values("ms")
+    where = _of_one_group(cells)
+    names = labels(cells, without=GROUP)
+    ax = _axes(ax, 3.6)
+    curves = records.frames[records.frames["cell"].isin(cells.index)]
+    for colour, cell in zip(COLOURS * 9, cells.index):
+        curve = curves[curves["cell"] == cell]
+        ax.plot(curve["frame"], curve[what].astype(float), color=colour, linewidth=1.2, label=names[cell])
+    ax.set_xlabel("frame", fontsize=8)
+    words = {"ms": "milliseconds"}.get(what, what.replace("_", " "))
+    ax.set_ylabel(words, fontsize=8)
+    ax.set_ylim(bottom=0)
+    if len(cells) > 1:
+        ax.legend(fontsize=7, frameon=False)
+    top = curves.loc[curves[what].astype(float).idxmax()]
+    _title(ax, f"{where}: most {words} in frame {int(top['frame'])}, {_figures(float(top[what]))}")
+    ax.spines[["top", "right"]].set_visible(False)
+    return ax

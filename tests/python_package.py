@@ -1,0 +1,289 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""python_package.py PROGRAM SOURCE: the Python package, from its wheel alone: what it reads is what tandem export --csv says of
+the committed records, what it compares what tandem compare says; figures name who wins; the notebook runs; bad files are one line."""
+import csv
+import io
+import json
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import warnings
+import zipfile
+
+import matplotlib
+import pandas
+
+from program import PROGRAM, SOURCE
+
+matplotlib.use("agg")
+H200 = SOURCE / "results/h200"
+
+
+def setUpModule():
+    """Builds the wheel of a copy of what the package is made of, and imports from there."""
+    global tandem, FOLDER
+    FOLDER = tempfile.TemporaryDirectory(prefix="tandem-package")
+    copy = pathlib.Path(FOLDER.name) / "source"
+    shutil.copytree(SOURCE / "python", copy / "python", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "LICENSE", "CITATION.cff"):
+        shutil.copy(SOURCE / name, copy)
+    done = subprocess.run([sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", FOLDER.name], cwd=copy, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    wheel, = pathlib.Path(FOLDER.name).glob("*.whl")
+    unpacked = pathlib.Path(FOLDER.name) / "unpacked"
+    zipfile.ZipFile(wheel).extractall(unpacked)
+    sys.path.insert(0, str(unpacked))
+    import tandem
+    assert pathlib.Path(tandem.__file__).is_relative_to(unpacked)
+
+
+def tearDownModule():
+    FOLDER.cleanup()
+
+
+def text_of(value):
+    """As the table of export --csv has it."""
+    if pandas.isna(value):
+        return ""
+    return str(value).lower() if str(value) in ("True", "False") else str(value)
+
+
+class Reading(unittest.TestCase):
+    def test_cells_are_the_table_of_export(self):
+        for path in sorted([*H200.glob("*.jsonl"), *(SOURCE / "results/cpu").glob("*.jsonl")]):
+            done = subprocess.run([PROGRAM, "export", path, "--csv"], capture_output=True, text=True)
+            if done.returncode != 0:  # no records of cells
+                with self.assertRaises(tandem.RecordError, msg=path.name):
+                    tandem.read(path)
+                continue
+            with self.subTest(path.name):
+                cells = tandem.read(path).cells
+                rows = list(csv.reader(io.StringIO(done.stdout)))
+                self.assertEqual([*rows[0], "file"], list(cells.columns))
+                self.assertEqual(len(rows) - 1, len(cells))
+                for name, *texts in zip(*rows):
+                    for here, there in zip(cells[name], texts):
+                        if name in ("ms", "ms_low", "ms_high") or name.endswith("_ms"):
+                            self.assertEqual(there, "" if math.isnan(here) else f"{here:.9g}", name)
+                        elif name == "date":
+                            self.assertEqual(there, here.strftime("%Y-%m-%dT%H:%M:%SZ"))
+                        elif there != text_of(here):  # 1e+06 is 1000000.0
+                            self.assertEqual(float(there), float(here), name)
+
+    def test_other_frames_are_of_the_same_records(self):
+        path = H200 / "plan.jsonl"
+        records = tandem.read(str(path))
+        with open(path) as file:
+            raw = [json.loads(line) for line in file]
+        cell = next(i for i, record in enumerate(raw) if record["algorithm"] == "gproximity" and record["preset"] == "fair")
+        record, frames = raw[cell], raw[cell]["frames"]["last"] - raw[cell]["frames"]["first"] + 1
+        mine = records.of([cell])
+        self.assertEqual(list(mine.cells.index), [cell])
+        self.assertEqual([round(ms * frames * 1e6) for ms in mine.samples["ms"]], record["total_ns"]["samples"])
+        self.assertEqual(list(mine.samples["round"]), record["total_ns"]["rounds"])
+        self.assertEqual(set(mine.stages["stage"]), set(record["stages"]))
+        balance = mine.stages[mine.stages["stage"] == "balance"].iloc[0]
+        self.assertAlmostEqual(balance["device_ms"], record["stages"]["balance"]["device_ns"]["median"] / frames / 1e6)
+        self.assertEqual(balance["launches"], record["stages"]["balance"]["launches"])
+        self.assertEqual(set(mine.kernels["kernel"]), {kernel["entry"] for kernel in record["kernels"]} | set(record["kernel_times"]))
+        self.assertEqual(list(mine.frames["candidate_pairs"]), record["work"]["candidate_pairs"])
+        self.assertEqual(len(records.cells), len(raw))
+        self.assertGreater(records.frames["ms"].min(), 0)
+
+    def test_several_files_and_packed_ones(self):
+        one, other = H200 / "seeds.jsonl", H200 / "accuracy-hard.jsonl.xz"
+        cells = tandem.read([one, other]).cells
+        self.assertEqual(list(cells["file"].unique()), [str(one), str(other)])
+        self.assertEqual(len(cells), len(tandem.read(one).cells) + len(tandem.read(other).cells))
+
+    def test_bad_files_are_one_line(self):
+        good = (H200 / "seeds.jsonl").read_text().splitlines()[0]
+        without = json.dumps({name: value for name, value in json.loads(good).items() if name != "frames"})
+        for text, words in ((f"{good}\nnot json\n", ":2: is not JSON"), ("[1]\n", ":1: is no record of a cell"), ("[" * 100000 + "\n", ":1: is not JSON"),
+                            (good.replace('"schema":3', '"schema":1', 1) + "\n", "scripts/convert_records"),
+                            (good.replace('"schema":3', '"schema":9', 1) + "\n", "schema 9"), (f"{without}\n", "lacks fields"), ("", "has no record")):
+            with tempfile.NamedTemporaryFile("w", suffix=".jsonl") as file:
+                file.write(text)
+                file.flush()
+                for function in (tandem.read, lambda name: tandem.compare(name, name)):
+                    with self.assertRaises(tandem.RecordError) as caught:
+                        function(file.name)
+                    self.assertIn(words, str(caught.exception))
+                    self.assertTrue(str(caught.exception).startswith(file.name))
+                    self.assertNotIn("\n", str(caught.exception))
+        for name in ("/nowhere/run.jsonl", "/"):
+            with self.assertRaisesRegex(tandem.RecordError, "cannot be read"):
+                tandem.read(name)
+        with self.assertRaises(tandem.RecordError):
+            tandem.read([])
+
+    def test_a_torn_line_is_warned_of(self):
+        good = (H200 / "seeds.jsonl").read_text().splitlines()[0]
+        with tempfile.NamedTemporaryFile("w", suffix=".jsonl") as file:
+            file.write(good + "\n" + good[:100])
+            file.flush()
+            with self.assertWarnsRegex(UserWarning, ":2: the last line has no end"):
+                self.assertEqual(len(tandem.read(file.name).cells), 1)
+
+
+class Comparing(unittest.TestCase):
+    def expect_same(self, old, new):
+        done = subprocess.run([PROGRAM, "compare", old, new, "--format", "json"], capture_output=True, text=True)
+        said = json.loads(done.stdout)
+        mine = tandem.compare(old, new)
+        self.assertEqual(mine.changed, said["changed"])
+        self.assertEqual(len(mine.cells), len(said["cells"]))
+        for cell in said["cells"]:
+            row = mine.cells.loc[cell["key"]]
+            self.assertEqual(row["verdict"], cell["verdict"])
+            self.assertEqual(row["paired"], cell["paired"])
+            for name in ("ratio", "low", "high", "p", "p_holm", "least_effect"):
+                there = (cell["times"] or {}).get(name)
+                if there is None:
+                    self.assertTrue(math.isnan(row[name]), name)
+                else:
+                    self.assertAlmostEqual(row[name] / there if there else row[name] + 1, 1, delta=1e-9, msg=name)
+        return mine
+
+    def changed(self, lines, change):
+        file = tempfile.NamedTemporaryFile("w", suffix=".jsonl", delete=False)
+        self.addCleanup(os.unlink, file.name)
+        with file:
+            for i, line in enumerate(lines):
+                record = json.loads(line)
+                change(i, record)
+                file.write(json.dumps(record) + "\n")
+        return file.name
+
+    def test_says_what_the_program_says(self):
+        seeds = f"{H200}/seeds.jsonl"
+        self.expect_same(f"{seeds}@4594fb1", f"{seeds}@8c7a169")
+        lines = pathlib.Path(seeds).read_text().splitlines()[:14]
+        old = self.changed(lines, lambda i, record: None)
+
+        def slower(i, record):  # the same session: rounds are pairs
+            total = record["total_ns"]
+            total["samples"] = [int(ns * (1 + 0.004 * (j % 7))) for j, ns in enumerate(total["samples"])]
+            if i == 3:
+                record["work"]["digest"]["a"] = "0" * 16
+            if i == 4:  # too few
+                total["samples"], total["rounds"] = total["samples"][:3], total["rounds"][:3]
+            if i == 5:
+                record["session"] = "another"
+            if i == 6:
+                record["status"] = "failed"
+        mine = self.expect_same(old, self.changed(lines, slower))
+        self.assertLessEqual({"another_answer", "too_few", "slower"}, set(mine.cells["verdict"]))
+        self.assertEqual(len(mine.only_old), 1)
+        self.assertEqual(len(mine.left_out), 1)
+
+    def test_ties_and_large_numbers(self):
+        """Rounded times tie; more pairs than are counted exactly are approximated."""
+        lines = (H200 / "seeds.jsonl").read_text().splitlines()[:3]
+
+        def of(count, step, session):
+            def change(i, record):
+                total = record["total_ns"]
+                total["samples"] = [100000 + step * ((j * (i + 3)) % 11) for j in range(count)]
+                total["rounds"] = list(range(count))
+                record["session"] = session
+            return self.changed(lines, change)
+        for count in (8, 30, 120):
+            for session in ("one", "other"):
+                self.expect_same(of(count, 100, "one"), of(count, 130, session))
+
+    def test_nothing_in_common(self):
+        with self.assertRaisesRegex(tandem.RecordError, "no cell is in both"):
+            tandem.compare(H200 / "seeds.jsonl", H200 / "thresholds.jsonl")
+        with self.assertRaisesRegex(tandem.RecordError, "no record of commit abc"):
+            tandem.compare(f"{H200}/seeds.jsonl@abc", H200 / "seeds.jsonl")
+
+
+class Drawing(unittest.TestCase):
+    def setUp(self):
+        records = tandem.read(H200 / "plan.jsonl")
+        cells = records.cells
+        self.all = records
+        self.plates = records.of(cells["scene"].str.startswith("plates") & (cells["set_k"] == 18))
+
+    def tearDown(self):
+        matplotlib.pyplot.close("all")
+
+    def test_cells_are_all_there_and_the_first_is_named(self):
+        axes = tandem.plot_cells(self.plates)
+        names = [text.get_text() for text in axes.get_yticklabels()]
+        self.assertEqual(len(names), len(self.plates.cells))
+        self.assertEqual(len(set(names)), len(names), "told apart")
+        title = " ".join(axes.get_title("left").split())
+        self.assertIn(f"{names[0]} is the fastest, the next takes", title)
+        self.assertTrue(names[0].startswith("tiled"), names)
+
+    def test_those_not_told_apart_are_said_to_be(self):
+        cells = self.plates.cells.copy()
+        cells["ms_high"] = cells["ms"].max()
+        records = tandem.Records(cells, self.plates.samples, self.plates.stages, self.plates.kernels, self.plates.frames)
+        self.assertIn("not told apart", " ".join(tandem.plot_cells(records).get_title("left").split()))
+
+    def test_what_is_wrong_is_never_drawn(self):
+        cells = self.plates.cells.copy()
+        first = cells["ms"].idxmin()
+        cells["status"] = cells["status"].astype(str)
+        cells.loc[first, "status"] = "wrong"
+        records = tandem.Records(cells, self.plates.samples, self.plates.stages, self.plates.kernels, self.plates.frames)
+        for draw in (tandem.plot_cells, tandem.plot_stages, tandem.plot_frames, lambda r: tandem.plot_sweep(r, "slabs")):
+            with self.assertWarnsRegex(UserWarning, "1 of .* cells failed, were wrong"):
+                draw(records)
+        with warnings.catch_warnings(), self.assertRaisesRegex(ValueError, "nothing can be drawn"):
+            warnings.simplefilter("ignore")
+            tandem.plot_cells(records.of([first]))
+
+    def test_stages_and_frames_have_what_is_recorded(self):
+        axes = tandem.plot_stages(self.plates)
+        drawn = sum(patch.get_width() for patch in axes.patches)
+        stages = self.plates.cells.filter(like="stage_").fillna(0).to_numpy().sum()
+        self.assertAlmostEqual(drawn / stages, 1, delta=0.01)
+        axes = tandem.plot_frames(self.plates, "contacts")
+        self.assertEqual(len(axes.lines), len(self.plates.cells))
+        self.assertEqual(list(axes.lines[0].get_xdata()), list(range(20, 122)))
+
+    def test_sweeps_name_the_best_value(self):
+        records = tandem.read(H200 / "thresholds.jsonl")
+        axes = tandem.plot_sweep(records, "seed_threshold")
+        best = records.cells.loc[records.cells["ms"].idxmin(), "set_seed_threshold"]
+        self.assertIn(str(best), axes.get_title("left"))
+        self.assertEqual(sum(len(line.get_xdata()) for line in axes.lines), len(records.cells))
+
+    def test_what_cannot_be_drawn(self):
+        with self.assertRaisesRegex(ValueError, "no such setting in these records; there are .*seed_threshold"):
+            tandem.plot_sweep(self.plates, "seed_treshold")
+        with self.assertRaisesRegex(ValueError, "combinations of scene, frames and device"):
+            tandem.plot_cells(self.all)
+        with self.assertRaisesRegex(ValueError, "no such column"):
+            tandem.plot_frames(self.plates, "pairs")
+
+
+class Notebook(unittest.TestCase):
+    def test_runs(self):
+        notebook = json.loads((SOURCE / "python/example.ipynb").read_text())
+        cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+        self.assertGreater(len(cells), 5)
+        names = {}
+        before = os.getcwd()
+        os.chdir(SOURCE / "python")
+        try:
+            for number, cell in enumerate(cells):
+                exec(compile(cell, f"cell {number}", "exec"), names)  # pylint: disable=exec-used
+        finally:
+            os.chdir(before)
+            matplotlib.pyplot.close("all")
+        self.assertEqual(names["tandem"].__version__, tandem.__version__)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
