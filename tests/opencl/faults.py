@@ -38,12 +38,15 @@ class Faults(unittest.TestCase):
         for call in range(1, calls, EACH):
             with self.subTest(call=call):
                 status, errors = run(self.folder, SHIM_CALL=call)
-                if (status, errors) == (0, []): # a buffer that grows asked again for just what is needed, or one of
-                    survived += 1 # the contact stage's two lists for half
+                if (status, errors) == (0, []):
+                    survived += 1
                     continue
                 self.assertEqual((status, len(errors)), (3, 1), errors)
                 self.assertRegex(errors[0], "^tandem: opencl:0.*(failed with code -5, out of resources|does not compile)")
-        self.assertLessEqual(survived, 3)
+        # A buffer that grows is asked for again for just what is needed; the contact stage's two lists, and the one that
+        # pairs are downloaded through, for half.
+        self.assertLessEqual(survived, 4)
+        self.assertEqual(survived, 4 if EACH == 1 else survived)
         # The last is the wait of the device's end: the work is done, and what may be read still is not freed.
         self.assertEqual(run(self.folder, SHIM_CALL=calls), (0, []))
 
