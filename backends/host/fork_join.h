@@ -31,11 +31,11 @@ public:
 
 private:
 #if defined(__SANITIZE_THREAD__)
-    static void acquire(char* edge) { __tsan_acquire(edge); }
-    static void release(char* edge) { __tsan_release(edge); }
+    static void acquire(void* edge) { __tsan_acquire(edge); }
+    static void release(void* edge) { __tsan_release(edge); }
 #else
-    static void acquire(char*) {}
-    static void release(char*) {}
+    static void acquire(void*) {}
+    static void release(void*) {}
 #endif
 
     char fork_ = 0, join_ = 0;
@@ -60,7 +60,8 @@ public:
     }
 
 private:
-    /// The memory of a copy: taken before anything is written there, given up after everything is read.
+    /// The memory of a copy: taken before anything is written there, given up after everything is read. Its
+    /// address is all there is of it.
     class Place {
     public:
         Place() { ForkJoin::acquire(edge()); }
@@ -68,10 +69,7 @@ private:
         Place& operator=(const Place&) = delete;
         ~Place() { ForkJoin::release(edge()); }
 
-        char* edge() const { return &edge_; }
-
-    private:
-        mutable char edge_; // an address: never written
+        void* edge() const { return const_cast<Place*>(this); }
     };
 
     const Work* received() const {

@@ -75,8 +75,9 @@ RecordedCells read_cells(const std::string& file, const std::string& commit) {
     const auto [path, start] = split_commit(file, commit);
     result.path = path;
     std::vector<RecordedCell> records;
-    result.torn = each_line(
-        path, [&](auto& text, std::size_t line) { records.push_back(read_cell(text, path, line)); });
+    result.torn = each_line(path, [&](const std::string& text, std::size_t line) {
+        records.push_back(read_cell(text, result.path, line));
+    });
     if (records.empty())
         throw InputError(fmt::format("{}: {}; name a file of records", path,
                                      result.torn ? "its only line has no end" : "is empty"));

@@ -209,7 +209,7 @@ TEST_P(Tiles, FewBodiesBeginBelowTheirTops) {
         EXPECT_EQ(trees.begins(walked - 1), begins);
         const auto right = reference(scene, scene.frame(0), {}, true, Method::brute_force);
         ASSERT_GT(right.digest.count, 0u);
-        const auto session_by = [&](const std::string& broad) {
+        const auto session_by = [&, most_seeds = most_seeds](const std::string& broad) {
             return traversal.prepare(devices, scene,
                                      resolve(traversal.parameters(), {},
                                              {{"broad", broad}, {"most_seeds", std::to_string(most_seeds)}},
@@ -232,8 +232,8 @@ TEST_P(Tiles, FewBodiesBeginBelowTheirTops) {
 /// Body pairs given so often that the pairs of tiles they begin with could not be told by a word are refused,
 /// and the session goes on.
 TEST_P(Tiles, MoreBeginningsThanAWord) {
-    std::vector<Eigen::Vector3d> places;
-    for (int i = 0; i < 66 * 32; ++i) places.push_back({static_cast<double>(i), 0, 0});
+    std::vector<Eigen::Vector3d> places(66 * 32, Eigen::Vector3d::Zero());
+    for (std::size_t i = 0; i < places.size(); ++i) places[i].x() = static_cast<double>(i);
     Scene scene;
     scene.meshes = {tetrahedra_at(places, 0.5)};
     scene.bodies = {{.mesh = 0}, {.mesh = 0}};

@@ -185,7 +185,7 @@ TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
     if (!can_compile(programs)) return;
     for (const auto& [key, names] : programs) {
         const auto& [file, defines] = key;
-        const auto is = [&](const std::string& name, const std::string& value) {
+        const auto is = [&defines = defines](const std::string& name, const std::string& value) {
             return defines.contains(name) && defines.at(name) == value;
         };
         const bool budgeted = !is("PRECISION", "64") && !is("COUNT_WORK", "1");
