@@ -203,6 +203,8 @@ class Comparing(unittest.TestCase):
             tandem.compare(H200 / "seeds.jsonl", H200 / "thresholds.jsonl")
         with self.assertRaisesRegex(tandem.RecordError, "no record of commit abc"):
             tandem.compare(f"{H200}/seeds.jsonl@abc", H200 / "seeds.jsonl")
+        with self.assertRaisesRegex(tandem.RecordError, "no commit behind the @"):
+            tandem.compare(f"{H200}/seeds.jsonl@", H200 / "seeds.jsonl")
 
 
 class Drawing(unittest.TestCase):

@@ -117,7 +117,7 @@ void TiledWalker::launch_leaves(const WalkTask& task) {
 
 void TiledWalker::do_launch(const WalkTask& task) {
     const std::uint64_t begins = trees_.begins(trees_.walked_levels() - 1);
-    if (begins > 1 && begins * begins * task.on_host.size() > 0xffffffffu) // tiled.cl counts them in a word
+    if (begins > 1 && begins * begins * task.on_host.size() > 0xffffffffu) // a word to turns.clh
         throw InputError(
             "more than 2^32 pairs of tiles to begin with, of body pairs given more than once; lower "
             "most_seeds");

@@ -84,6 +84,8 @@ def _split(file):
     if os.path.exists(name) or "@" not in name:
         return name, ""
     path, _, commit = name.rpartition("@")
+    if not commit:
+        raise lines.RecordError(f"{name}: no such file, and no commit behind the @; give FILE@COMMIT")
     return path, commit
 
 

@@ -2,6 +2,7 @@
 """Files of records as frames."""
 import dataclasses
 import os
+import statistics
 
 import pandas
 
@@ -138,9 +139,8 @@ class _Cell:
         work = self.record.get("work") or {}
         rows = []
         for i in range(self.count):
-            times = sorted(replay[i] for replay in replays if i < len(replay))
-            middle = len(times) // 2
-            median = None if not times else times[middle] if len(times) % 2 else (times[middle - 1] + times[middle]) / 2
+            times = [replay[i] for replay in replays if i < len(replay)]
+            median = statistics.median(times) if times else None
             rows.append({"cell": self.number, "frame": self.record["frames"]["first"] + i, "ms": None if median is None else median / 1e6}
                         | {name: work[name][i] if isinstance(work.get(name), list) and i < len(work[name]) else None
                            for name in ("body_pairs", "candidate_pairs", "contacts")})
@@ -149,12 +149,14 @@ class _Cell:
 
 def _typed(column):
     """Settings: whole numbers, numbers, or words, as all values are that there are."""
-    for kind in ("Int64", "float64"):
-        try:
-            return column.astype(kind) if kind == "float64" else pandas.to_numeric(column).astype(kind)
-        except (ValueError, TypeError):
-            continue
-    return column.astype("category")
+    try:
+        numbers = pandas.to_numeric(column)
+    except (ValueError, TypeError):
+        return column.astype("category")
+    try:
+        return numbers.astype("Int64")
+    except (ValueError, TypeError):
+        return numbers.astype("float64")
 
 
 def _cells(rows):
