@@ -2,8 +2,8 @@
 #include "scenes/mesh.h"
 
 #include "scenes/error.h"
+#include "scenes/faces.h"
 
-#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -18,31 +18,6 @@ double determinant(const Mesh& mesh, const Tetrahedron& t) {
     const Eigen::Vector3d c = mesh.vertices[t[3]] - mesh.vertices[t[0]];
     return (a.x() * (b.y() * c.z() - b.z() * c.y()) - a.y() * (b.x() * c.z() - b.z() * c.x()))
            + a.z() * (b.x() * c.y() - b.y() * c.x());
-}
-
-/// A face with its vertices sorted, and where it came from.
-struct Face {
-    std::array<std::uint32_t, 3> vertices;
-    std::uint32_t tetrahedron;
-    std::uint32_t corner; ///< the one opposite
-};
-
-/// So that faces of the same vertices lie side by side, without a hash of them.
-std::vector<Face> sorted_faces(const Mesh& mesh) {
-    std::vector<Face> faces;
-    faces.reserve(mesh.tetrahedra.size() * 4);
-    for (std::uint32_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-        for (std::uint32_t corner = 0; corner < 4; ++corner) {
-            Face face{{}, t, corner};
-            for (std::uint32_t i = 0, n = 0; i < 4; ++i)
-                if (i != corner) face.vertices[n++] = mesh.tetrahedra[t][i];
-            std::sort(face.vertices.begin(), face.vertices.end());
-            faces.push_back(face);
-        }
-    }
-    std::sort(faces.begin(), faces.end(),
-              [](const Face& a, const Face& b) { return a.vertices < b.vertices; });
-    return faces;
 }
 
 /// A face that stands alone is on the boundary.

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/hierarchy/order.h"
 
+#include "algorithms/hierarchy/breadth_order.h"
+#include "algorithms/hierarchy/median_order.h"
 #include "algorithms/hierarchy/sah_order.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 
 namespace tandem {
 
@@ -28,17 +32,15 @@ Eigen::Vector3d centroid(const Mesh& mesh, const Tetrahedron& t) {
 }
 
 std::uint32_t cell(double offset, double scale) {
-    // The scale is finite and the offset non-negative, so that only the upper end needs clamping.
-    return static_cast<std::uint32_t>(std::min(offset * scale, static_cast<double>(lattice)));
+    // The scale is finite and the offset non-negative or, between infinities, no number.
+    const double place = offset * scale;
+    if (place >= static_cast<double>(lattice)) return lattice;
+    return place > 0 ? static_cast<std::uint32_t>(place) : 0;
 }
 
-} // namespace
-
-std::uint64_t morton_code(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-    return spread(x) << 2 | spread(y) << 1 | spread(z);
-}
-
-std::vector<std::uint32_t> morton_order(const std::vector<Eigen::Vector3d>& points) {
+/// Points by the code of their cell.
+template<class Code>
+std::vector<std::uint32_t> curve_order(const std::vector<Eigen::Vector3d>& points, Code code) {
     const auto count = points.size();
     Eigen::Vector3d lower = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
     Eigen::Vector3d upper = -lower;
@@ -52,7 +54,7 @@ std::vector<std::uint32_t> morton_order(const std::vector<Eigen::Vector3d>& poin
     std::vector<std::uint64_t> codes(count);
     std::transform(points.begin(), points.end(), codes.begin(), [&](const Eigen::Vector3d& c) {
         const Eigen::Vector3d offset = c - lower;
-        return morton_code(cell(offset.x(), scale), cell(offset.y(), scale), cell(offset.z(), scale));
+        return code(cell(offset.x(), scale), cell(offset.y(), scale), cell(offset.z(), scale));
     });
     std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
@@ -60,16 +62,69 @@ std::vector<std::uint32_t> morton_order(const std::vector<Eigen::Vector3d>& poin
     return order;
 }
 
-std::vector<std::uint32_t> morton_order(const Mesh& mesh) {
-    std::vector<Eigen::Vector3d> centroids(mesh.tetrahedra.size());
-    std::transform(mesh.tetrahedra.begin(), mesh.tetrahedra.end(), centroids.begin(),
+/// The order of a mesh that a builder makes.
+std::vector<std::uint32_t> order_of(const Mesh& mesh, Builder builder) {
+    switch (builder) {
+    case Builder::morton:
+        return morton_order(mesh);
+    case Builder::sah:
+        return sah_order(mesh);
+    case Builder::breadth:
+        return breadth_order(mesh);
+    case Builder::hilbert:
+        return hilbert_order(mesh);
+    case Builder::median:
+        return median_order(mesh);
+    }
+    throw std::invalid_argument("a builder that is none");
+}
+
+} // namespace
+
+std::uint64_t morton_code(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    return spread(x) << 2 | spread(y) << 1 | spread(z);
+}
+
+std::uint64_t hilbert_code(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    std::array<std::uint32_t, 3> axes{x, y, z};
+    // From the whole cube down: the octant of a bit says how the curve within is turned and mirrored.
+    for (std::uint32_t bit = (lattice + 1) / 2; bit > 1; bit /= 2) {
+        const auto below = bit - 1;
+        for (auto& axis : axes) {
+            const auto swapped = (axis & bit) != 0 ? 0 : (axes[0] ^ axis) & below;
+            axes[0] ^= (axis & bit) != 0 ? below : swapped;
+            axis ^= swapped;
+        }
+    }
+    // Octants are passed in the order of a Gray code, whose number is the exclusive or of the bits above.
+    axes[1] ^= axes[0];
+    axes[2] ^= axes[1];
+    std::uint32_t flipped = 0;
+    for (std::uint32_t bit = (lattice + 1) / 2; bit > 1; bit /= 2)
+        if ((axes[2] & bit) != 0) flipped ^= bit - 1;
+    return morton_code(axes[0] ^ flipped, axes[1] ^ flipped, axes[2] ^ flipped);
+}
+
+std::vector<Eigen::Vector3d> centroids(const Mesh& mesh) {
+    std::vector<Eigen::Vector3d> result(mesh.tetrahedra.size());
+    std::transform(mesh.tetrahedra.begin(), mesh.tetrahedra.end(), result.begin(),
                    [&](const auto& t) { return centroid(mesh, t); });
-    return morton_order(centroids);
+    return result;
+}
+
+std::vector<std::uint32_t> morton_order(const std::vector<Eigen::Vector3d>& points) {
+    return curve_order(points, morton_code);
+}
+
+std::vector<std::uint32_t> morton_order(const Mesh& mesh) { return morton_order(centroids(mesh)); }
+
+std::vector<std::uint32_t> hilbert_order(const Mesh& mesh) {
+    return curve_order(centroids(mesh), hilbert_code);
 }
 
 OrderedMesh ordered(const Mesh& mesh, Builder builder) {
     OrderedMesh result;
-    result.ids = builder == Builder::sah ? sah_order(mesh) : morton_order(mesh);
+    result.ids = order_of(mesh, builder);
     result.numbers.assign(mesh.vertices.size(), OrderedMesh::unused);
     for (const auto id : result.ids) {
         result.boundary.push_back(mesh.boundary[id]);

@@ -55,8 +55,11 @@ enum class Submission {
 
 /// In which order a body's tetrahedra stand, and so which of them share a node.
 enum class Builder {
-    morton, ///< along the Z-curve, as the paper
-    sah     ///< cut by the surface area heuristic into runs of 32, 32^2, ...
+    morton,  ///< along the Z-curve, as the paper
+    sah,     ///< cut by the surface area heuristic into runs of 32, 32^2, ...
+    breadth, ///< breadth-first from face to face, which the paper tried first
+    hilbert, ///< along Hilbert's curve
+    median   ///< halved along the longest axis, at such runs
 };
 
 /// Directions that the leaves of a hierarchy of tiles have bounds along.

@@ -50,10 +50,16 @@ inline constexpr Setting<Placement> placement{
 inline constexpr auto builder =
     Setting<Builder>{"builder",
                      Builder::morton,
-                     {{"morton", Builder::morton}, {"sah", Builder::sah}},
+                     {{"morton", Builder::morton},
+                      {"sah", Builder::sah},
+                      {"breadth", Builder::breadth},
+                      {"hilbert", Builder::hilbert},
+                      {"median", Builder::median}},
                      "",
                      "order of a body's tetrahedra, from which trees are made: morton: along the Z-curve, as "
-                     "the paper; sah: cut by the surface area heuristic into runs of 32, 32^2, ..."}
+                     "the paper; sah: cut by the surface area heuristic into runs of 32, 32^2, ...; breadth: "
+                     "breadth-first from face to face, which the paper tried first; hilbert: along Hilbert's "
+                     "curve; median: halved along the longest axis, at such runs"}
         .with_alternatives({Builder::morton, Builder::sah});
 inline constexpr auto slabs =
     Setting<Slabs>{"slabs",

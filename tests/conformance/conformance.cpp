@@ -48,7 +48,7 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
                            of("seed_threshold", {"0", "1", "40", "1e7"}),
                            of("seed_target", {"1000", "1048576"}),
                            of("seed_capacity", {"1", "65536"}),
-                           of("builder", {"morton", "sah"}),
+                           of("builder", {"morton", "sah", "breadth", "hilbert", "median"}),
                            of("slabs", {"three", "all"}),
                            of("tile_pair_capacity", {"1", "65536"}),
                            of("most_seeds", {"1", "256", "16384"}),

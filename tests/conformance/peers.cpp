@@ -119,8 +119,9 @@ TEST_F(Embree, FindsTheSamePairsWithEverySetting) {
     };
     auto rounding = of("rounding", {"safe", "nearest", "published"});
     rounding.push_back({{"rounding", "safe"}, {"placement", "exact"}});
-    for (const auto& given : pairwise({rounding, of("broad", {"sphere", "tight", "device"}),
-                                       of("threads", {"1", "2", "5"}), of("builder", {"morton", "sah"})})) {
+    for (const auto& given :
+         pairwise({rounding, of("broad", {"sphere", "tight", "device"}), of("threads", {"1", "2", "5"}),
+                   of("builder", {"morton", "sah", "breadth", "hilbert", "median"})})) {
         SCOPED_TRACE(text(given));
         EXPECT_GT(expect_same(crowd(17, 12, 0.9), given), 1000u);
     }
