@@ -5,6 +5,7 @@
 #include "harness/flaws.h"
 #include "harness/plans/plan_file.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -94,6 +95,10 @@ struct ExportOptions {
     std::string vtu, glb;                   ///< a folder and a file
     bool to_csv = false;                    ///< `scene` is a file of records; then nothing else is given
     std::string csv;                        ///< a file; empty: standard output
+    std::string chunks;                     ///< a file of the meshes' chunks
+    std::string builder = "morton";         ///< their order; as of the setting
+    std::uint64_t chunk_bytes = 8000;       ///< their size by equations 1 to 3, with `k`
+    std::string k = "8";                    ///< as of the setting
     bool contacts = false;                  ///< beside the .vtu, found on `device`
     std::string device = "host";
 };

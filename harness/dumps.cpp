@@ -63,4 +63,21 @@ void DumpFile::contacts(std::size_t frame, std::span<const ContactPoint> contact
     write_pieces(text, 1);
 }
 
+void DumpFile::chunks(std::size_t number, const Mesh& mesh, std::span<const std::uint32_t> order,
+                      std::uint32_t leaves) {
+    std::string text;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const auto chunk = i / leaves;
+        fmt::format_to(std::back_inserter(text), "{},{},{},{},{}", number, order[i], i, chunk,
+                       chunk / leaves);
+        for (const auto vertex : mesh.tetrahedra[order[i]]) {
+            const auto& at = mesh.vertices[vertex];
+            fmt::format_to(std::back_inserter(text), ",{},{},{}", at.x(), at.y(), at.z());
+        }
+        text += '\n';
+        write_pieces(text, piece_bytes);
+    }
+    write_pieces(text, 1);
+}
+
 } // namespace tandem

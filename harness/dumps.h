@@ -20,6 +20,10 @@ public:
     /// that read back as the same numbers. Throws OutputError when the file cannot take them.
     void pairs(std::size_t frame, std::span<const Pair> pairs);
     void contacts(std::size_t frame, std::span<const ContactPoint> contacts);
+    /// The tetrahedra of a scene's mesh, in its own coordinates, in an order (position -> tetrahedron) of
+    /// which `leaves` after one another are a chunk, and as many chunks a super chunk.
+    void chunks(std::size_t number, const Mesh& mesh, std::span<const std::uint32_t> order,
+                std::uint32_t leaves);
 
 private:
     struct Close {
@@ -35,5 +39,8 @@ private:
 inline constexpr std::string_view pairs_header = "frame,body_a,tet_a,body_b,tet_b\n";
 inline constexpr std::string_view contacts_header =
     "frame,body_a,tet_a,body_b,tet_b,px,py,pz,nx,ny,nz,depth\n";
+
+inline constexpr std::string_view chunks_header =
+    "mesh,tetrahedron,position,chunk,super_chunk,x0,y0,z0,x1,y1,z1,x2,y2,z2,x3,y3,z3\n";
 
 } // namespace tandem

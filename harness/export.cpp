@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "algorithms/hierarchy/levels.h"
 #include "algorithms/hierarchy/order.h"
+#include "algorithms/parameters/table.h"
 #include "harness/dumps.h"
 #include "harness/inputs.h"
 #include "harness/table/records_csv.h"
@@ -100,6 +102,24 @@ std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
     return found;
 }
 
+/// Meshes do not move: frames have no part in it.
+void export_chunks(const ExportOptions& options, const Scene& scene) {
+    const auto builder = static_cast<Builder>(parameters::builder.parse(options.builder));
+    const auto k = static_cast<int>(parameters::k.parse(options.k));
+    const auto leaves = leaves_of_chunk_bytes(options.chunk_bytes, k);
+    DumpFile file(options.chunks, chunks_header);
+    std::size_t tetrahedra = 0, chunks = 0;
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+        const auto order = ordered(scene.meshes[i], builder).ids;
+        file.chunks(i, scene.meshes[i], order, leaves);
+        tetrahedra += order.size();
+        chunks += chunk_levels(static_cast<std::uint32_t>(order.size()), leaves).front().chunks;
+    }
+    put("{}: {} mesh{}, {} tetrahedra in {} chunks of up to {}, builder={}, of {}\n", options.chunks,
+        scene.meshes.size(), scene.meshes.size() == 1 ? "" : "es", tetrahedra, chunks, leaves,
+        options.builder, scene.key);
+}
+
 int export_csv(const ExportOptions& options) {
     if (!options.vtu.empty() || !options.glb.empty() || !options.meshes.empty() || !options.poses.empty()
         || !options.frames.empty())
@@ -121,13 +141,20 @@ int export_csv(const ExportOptions& options) {
 
 int export_command(const ExportOptions& options) {
     if (options.to_csv) return export_csv(options);
-    if (options.vtu.empty() && options.glb.empty())
+    const bool moves = !options.vtu.empty() || !options.glb.empty();
+    if (!moves && options.chunks.empty())
+        throw InputError("nothing to export to; give --vtu FOLDER, --glb FILE, --chunks FILE or several, or "
+                         "--csv for a file of records");
+    if (!moves && (!options.frames.empty() || options.every != 1))
         throw InputError(
-            "nothing to export to; give --vtu FOLDER, --glb FILE or both, or --csv for a file of records");
+            "--frames and --every go with --vtu FOLDER or --glb FILE; chunks are the same in every frame");
+    if (!options.chunks.empty() && options.chunks == options.glb)
+        throw InputError(fmt::format("--chunks and --glb name one file, {}; name two", options.glb));
     const auto scene = open_scene(options);
     const auto [first, last] = named_frames(options.frames, scene);
     std::vector<std::size_t> frames;
     for (auto i = first; i <= last; i += options.every) frames.push_back(i);
+    if (!options.chunks.empty()) export_chunks(options, scene);
     const auto told = fmt::format("{} of frames {}:{} of {}", frames.size(), first, last, scene.key);
     if (!options.glb.empty()) {
         write_glb(options.glb, scene, frames);

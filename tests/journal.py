@@ -110,7 +110,7 @@ class Journal(Case):
                     ("algorithms", "--json"), ("run", *self.cell("--repeat", 1, "--out")), ("check", *self.cell("--preset", "resident", "--out")),
                     ("accuracy", *self.cell()[:-3], "--set", "k=6", "--out"),
                     ("simulate", "block", "--steps", 2, "--device", "host", "--quiet", "--record"),
-                    ("export", "block", "--frames", 0, "--glb")]
+                    ("export", "block", "--frames", 0, "--glb"), ("export", "block", "--chunks")]
         reader, broken = os.pipe()
         os.close(reader)
         with open("/dev/full", "w") as full:
@@ -118,7 +118,7 @@ class Journal(Case):
                                   ("broken", {"stdout": broken})):
                 for number, command in enumerate(commands):
                     out = self.work / f"{name}{number}"
-                    writes = command[-1] in ("--out", "--record", "--glb")
+                    writes = command[-1] in ("--out", "--record", "--glb", "--chunks")
                     status, _, errors = run(*command, *([out] if writes else []), **streams)
                     errors = [line for line in errors if line.strip() and not line.rstrip().endswith("generated.")]
                     self.assertEqual((status, len(errors)), (3, 1), (name, command, errors))

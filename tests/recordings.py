@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """recordings.py PROGRAM SOURCE: recordings and exports as a user meets them. The recordings are written here, by what
 scenes/recording/README.md says of their bytes."""
+import csv
 import math
 import os
 import re
@@ -11,7 +12,7 @@ import unittest
 import xml.etree.ElementTree
 import zlib
 
-from program import SOURCE, Case, tandem
+from program import SOURCE, Case, bar, gmsh, tandem
 
 PILE = "pile:bodies=4,frames=30"
 
@@ -142,6 +143,61 @@ class Recordings(Case):
         self.assertEqual((status, errors), (0, []), text)
         self.assertEqual(sorted(os.listdir(folder)), ["bodies.pvd", *(f"bodies_00000{i}.vtu" for i in (1, 4, 7))])
         self.assertIn("3 of frames 1:8 of plates", text)
+
+    def chunks(self, *arguments):
+        """What the program says and the rows of the file."""
+        table = self.work / "chunks.csv"
+        status, text, errors = tandem("export", *arguments, "--chunks", table)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual(text.splitlines()[0].partition(": ")[0], str(table))
+        with open(table, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(",".join(rows[0]), "mesh,tetrahedron,position,chunk,super_chunk," + ",".join(f"{x}{i}" for i in range(4) for x in "xyz"))
+        return text, [{name: (float if name[0] in "xyz" else int)(value) for name, value in row.items()} for row in rows]
+
+    def test_export_of_chunks(self):
+        points, tets = bar(40, (0.1, 1e-9, -1e7))
+        other = gmsh(self.work / "bar.msh", points, tets)
+        names, orders = [f"{x}{i}" for i in range(4) for x in "xyz"], set()
+        for builder in ("morton", "sah", "breadth", "hilbert", "median"):
+            text, rows = self.chunks("--mesh", self.good, "--mesh", other, "--builder", builder)
+            self.assertIn(f": 2 meshes, {24 + len(tets)} tetrahedra in {1 + 8} chunks of up to 32, builder={builder}, of meshes:", text)
+            self.assertEqual([row["mesh"] for row in rows], [0] * 24 + [1] * len(tets))
+            rows = rows[24:]
+            self.assertEqual([row["position"] for row in rows], list(range(240)))
+            self.assertEqual([(row["chunk"], row["super_chunk"]) for row in rows], [(i // 32, 0) for i in range(240)])
+            self.assertEqual(sorted(row["tetrahedron"] for row in rows), list(range(240)))
+            for row in rows:
+                self.assertEqual([row[name] for name in names], [x for v in tets[row["tetrahedron"]] for x in points[v]])
+            orders.add(tuple(row["tetrahedron"] for row in rows))
+        self.assertEqual(len(orders), 5)
+        # L of the paper's equations 1 to 3: 500 / 96, / 2 is too few, and at least 2; 1000 / 48, / 2 = 10, 8, L = 4.
+        for arguments, leaves in ((("--k", 18, "--chunk-bytes", 500), 2), (("--k", 6, "--chunk-bytes", 1000), 4), (("--k", 18), 16)):
+            text, rows = self.chunks("--mesh", other, *arguments)
+            self.assertIn(f": 1 mesh, 240 tetrahedra in {240 // leaves} chunks of up to {leaves}, builder=morton, of meshes:bar", text)
+            self.assertEqual([(row["chunk"], row["super_chunk"]) for row in rows], [(i // leaves, i // leaves**2) for i in range(240)])
+
+    def test_export_of_chunks_beside_frames(self):
+        glb, folder = self.work / "beside.glb", self.work / "beside"
+        text, rows = self.chunks(self.file("beside.frames", self.whole), "--frames", 3, "--glb", glb)
+        self.assertTrue(glb.stat().st_size > 1000 and f"{glb}: 1 of frames 3:3" in text, text)
+        jack = self.chunks("--mesh", SOURCE / "scenes/meshes/jack.ele", "--vtu", folder)[1]
+        self.assertEqual(sorted(os.listdir(folder)), ["bodies.pvd", "bodies_000000.vtu"])
+        # Bodies of one mesh have it once, where no pose moves it.
+        self.assertEqual([row["tetrahedron"] for row in rows if row["mesh"] == 0], [row["tetrahedron"] for row in jack])
+
+    def test_bad_chunks(self):
+        table = self.work / "bad.csv"
+        for said, *arguments in (("setting builder=zebra is impossible", "--builder", "zebra"), ("setting k=7 is impossible", "--k", 7),
+                                 ("--chunk-bytes", "--chunk-bytes", 0), ("--chunk-bytes", "--chunk-bytes", "much"),
+                                 ("--frames and --every go with --vtu", "--frames", 0), ("--frames and --every go with --vtu", "--every", 2),
+                                 ("name one file", "--glb", table), ("--chunks does not go with --csv", "--csv", self.work / "x.csv"),
+                                 ("frames 3:900", "--frames", "3:900", "--glb", self.work / "x.glb")):
+            self.bad(said, "export", "plates", "--chunks", table, *arguments)
+        for option, value in (("--builder", "sah"), ("--chunk-bytes", 100), ("--k", 18)):
+            self.bad(f"{option} goes with --chunks FILE", "export", "plates", "--glb", self.work / "x.glb", option, value)
+        self.bad("cannot be written", "export", "plates", "--chunks", self.work / "no/x.csv")
+        self.assertFalse(table.exists() or (self.work / "x.glb").exists())
 
     def test_bad_exports(self):
         self.bad("--every", "export", "plates", "--every", 0, "--glb", self.work / "x.glb")

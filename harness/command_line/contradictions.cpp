@@ -24,6 +24,7 @@ struct Rule {
 };
 
 constexpr std::string_view only_replays = "a profile only replays frames, and nothing is measured";
+constexpr std::string_view only_chunks = "nothing else that is exported is made of it";
 constexpr std::string_view only_auto = "nothing else has a choice to make";
 
 constexpr Rule rules[] = {
@@ -49,6 +50,10 @@ constexpr Rule rules[] = {
     {"--resume", Together::must, "-o FILE", "that recording is what it goes on with"},
     {"--checkpoint", Together::must, "-o FILE", "checkpoints are kept beside a recording"},
     {"--contacts", Together::must, "--vtu FOLDER", "a .glb has surfaces only"},
+    {"--chunks", Together::must_not, "--csv", "a file of records has no chunks"},
+    {"--builder", Together::must, "--chunks FILE", only_chunks},
+    {"--chunk-bytes", Together::must, "--chunks FILE", only_chunks},
+    {"--k", Together::must, "--chunks FILE", only_chunks},
 };
 
 /// Null where the command has no such option.

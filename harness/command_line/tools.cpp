@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // simulate and export, and what lists devices, scenes and algorithms.
+#include "algorithms/parameters/table.h"
 #include "harness/command_line/actions.h"
 #include "harness/command_line/sets.h"
 #include "harness/commands.h"
@@ -53,6 +54,31 @@ Action add_simulate(CLI::App& app) {
     };
 }
 
+namespace {
+
+/// Words of a setting as they stand in help and completion: "morton|sah".
+std::string choices_of(const Parameter& parameter) {
+    std::string text;
+    for (const auto& word : parameter.choices()) text.append(text.empty() ? "" : "|").append(word.text);
+    return text;
+}
+
+/// A file of the meshes' chunks, and what they are made by.
+void add_chunk_options(CLI::App& app, ExportOptions& options) {
+    app.add_option(
+        "--chunks", options.chunks,
+        "into this file as comma-separated values: the chunks of every mesh, a line a tetrahedron");
+    app.add_option("--builder", options.builder, "order that chunks are cut of; morton when left out")
+        ->option_text(choices_of(parameters::builder));
+    app.add_option("--chunk-bytes", options.chunk_bytes,
+                   "memory of a pair of chunks in the paper's equation (1); 8000 when left out")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 30));
+    app.add_option("--k", options.k, "planes of the k-DOPs in it; 8 when left out")
+        ->option_text(choices_of(parameters::k));
+}
+
+} // namespace
+
 Action add_export(CLI::App& app) {
     auto given = std::make_shared<ExportOptions>();
     auto& options = *given;
@@ -68,6 +94,7 @@ Action add_export(CLI::App& app) {
         ->check(CLI::Range(1, 1000000));
     app.add_option("--vtu", options.vtu, "into this folder for ParaView: tetrahedra of every frame");
     app.add_option("--glb", options.glb, "into this file for viewers: surfaces, moved by an animation");
+    add_chunk_options(app, options);
     auto* contacts = app.add_flag("--contacts", options.contacts, "contacts of every frame beside the .vtu");
     app.add_option("--device", options.device, "the device that finds them; host when left out")
         ->needs(contacts);
