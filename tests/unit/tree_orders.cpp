@@ -129,6 +129,15 @@ TEST(Orders, TiesKeepInputOrder) {
         EXPECT_EQ(ordered(mesh, builder).ids, counted(3000)) << static_cast<int>(builder);
 }
 
+TEST(Orders, HaveAPlaceForWhatIsNoNumber) {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(morton_order(Places{{5, 0, 0}, {none, 0, 0}, {0, 0, 0}}), (Order{1, 2, 0}));
+    const AxisOrders axes({{none, 1, 0}, {1, none, 0}, {-1, 2, 0}}); // here for zero
+    EXPECT_EQ(axes.along(0), (Order{2, 0, 1}));
+    EXPECT_EQ(axes.along(1), (Order{1, 0, 2}));
+    EXPECT_EQ(axes.along(2), (Order{0, 1, 2}));
+}
+
 TEST(Hilbert, GoesFromFaceToFace) {
     for (const int side : {2, 4, 8}) {
         const auto mesh = shuffled(tetrahedra_at(grid(side)), 7);
