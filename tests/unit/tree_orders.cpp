@@ -257,10 +257,10 @@ TEST(Median, LeavesRunsWhole) {
     for (const std::size_t count : {2u, 3u, 31u, 32u, 33u, 96u, 1000u, 1025u, 40000u}) {
         EXPECT_EQ(median_order(axis_of(count)), counted(count)) << count; // any cut of a line leaves the line
     }
-    // Three heaps of 32, mixed: no cut parts one.
-    Places heaps;
-    for (int i = 0; i < 96; ++i) heaps.emplace_back(1000 * (i % 3), i / 3 % 8, i / 24);
-    const auto order = median_order(tetrahedra_at(heaps));
+    // Three rows of 32, mixed: no cut parts one. At 48 a cut would, and the next one lie across two of them.
+    Places rows;
+    for (int i = 0; i < 96; ++i) rows.emplace_back(i % 3 == 0 ? 0 : 1500 + 100 * (i % 3), 50 * (i / 3), 0);
+    const auto order = median_order(tetrahedra_at(rows));
     for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i] % 3, i / 32) << i;
 }
 
