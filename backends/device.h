@@ -41,12 +41,15 @@ struct DeviceInfo {
     std::string compiler; ///< what compiles kernels
     std::string hardware; ///< PCI address or UUID; empty when unknown
     bool is_gpu = false;
-    std::uint32_t compute_units = 1;  ///< what runs work-groups side by side: multiprocessors, cores
-    std::uint32_t max_group_size = 1; ///< work-items; a kernel may take fewer
-    std::uint64_t global_bytes = 0;   ///< device memory in all, whoever uses it
-    std::uint64_t max_allocation = 0; ///< the most that one buffer holds
-    std::uint64_t local_bytes = 0;    ///< memory of a work-group
-    bool allocates_late = false;      ///< memory is taken at first use, so that allocate() has to count
+    std::uint32_t compute_units = 1;    ///< what runs work-groups side by side: multiprocessors, cores
+    std::uint32_t max_group_size = 1;   ///< work-items; a kernel may take fewer
+    std::uint32_t cores = 0;            ///< that add and multiply in float at once, in all; 0: unknown
+    std::uint32_t clock_mhz = 0;        ///< at most; 0: unknown
+    std::uint64_t peak_bytes_per_s = 0; ///< of memory, by its clock and width; 0: unknown
+    std::uint64_t global_bytes = 0;     ///< device memory in all, whoever uses it
+    std::uint64_t max_allocation = 0;   ///< the most that one buffer holds
+    std::uint64_t local_bytes = 0;      ///< memory of a work-group
+    bool allocates_late = false;        ///< memory is taken at first use, so that allocate() has to count
     bool has_double = true;
     bool has_directed_rounding = false; ///< kernels can add rounding down and up
     bool stages_pinned = false;         ///< uploads that do not block go through page-locked memory

@@ -188,6 +188,21 @@ constexpr Row rows[] = {
     {"overlap_tests_k18_per_s", "overlap tests from registers, k = 18", &Ceilings::overlaps18, 1e-9, "G/s"},
 };
 
+/// 0 is unknown.
+nlohmann::ordered_json known(std::uint64_t number) {
+    return number == 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(number);
+}
+
+nlohmann::ordered_json told_json(const DeviceInfo& info) {
+    nlohmann::ordered_json json{{"cores", known(info.cores)},
+                                {"clock_mhz", known(info.clock_mhz)},
+                                {"local_bytes", known(info.local_bytes)},
+                                {"peak_bytes_per_s", known(info.peak_bytes_per_s)},
+                                {"peak_flops", nullptr}};
+    if (info.cores != 0 && info.clock_mhz != 0) json["peak_flops"] = 2e6 * info.cores * info.clock_mhz;
+    return json;
+}
+
 } // namespace
 
 std::size_t cached_bytes(const DeviceInfo& info) {
@@ -204,6 +219,7 @@ nlohmann::ordered_json ceilings_record(const Device& device, const Ceilings& cei
                              ? nlohmann::ordered_json()
                              : nlohmann::ordered_json{{"median", median(samples)}, {"samples", samples}};
     }
+    json["told"] = told_json(device.info());
     json["environment"] = record_environment();
     return json;
 }

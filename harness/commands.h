@@ -117,6 +117,18 @@ struct SimulateOptions {
     bool quiet = false;
 };
 
+/// Options of `tandem paper`.
+struct PaperOptions {
+    std::string folder;              ///< -o: tables, figures, records
+    std::string device = "opencl:0"; ///< one
+    std::string size = "small";      ///< or full
+    std::string steps;               ///< "FIRST:LAST" or "N", from 1; empty: all
+    bool again = false;              ///< these steps, also where they are done
+    bool dry_run = false;            ///< list the steps
+    bool measure_only = false;       ///< draw nothing
+    bool draw_only = false;          ///< what the folder has; measure nothing
+};
+
 /// Each returns the exit code: 0 ok, 1 a check failed, 3 a device failed. Bad use throws InputError.
 int run_command(const RunOptions& options);
 int check_command(const RunOptions& options);
@@ -125,6 +137,7 @@ int profile_command(const ProfileOptions& options);
 int compare_command(const CompareOptions& options); ///< 1: something changed
 int simulate_command(const SimulateOptions& options);
 int export_command(const ExportOptions& options);
+int paper_command(const PaperOptions& options);
 int devices_command(const DevicesOptions& options);
 int scenes_command(bool json);
 int algorithms_command(const AlgorithmsOptions& options);

@@ -20,6 +20,15 @@ namespace tandem::cuda {
 
 namespace {
 
+/// Additions and multiplications in float that a multiprocessor does in a clock, by compute capability (CUDA
+/// C++ Programming Guide 8 and 12, "Arithmetic Instructions"); 0: not known here.
+std::uint32_t float_cores(int capability) {
+    if (capability < 30) return capability == 21 ? 48 : 32;
+    if (capability < 50) return 192;
+    if (capability == 60 || (capability >= 70 && capability <= 80)) return 64;
+    return capability <= 129 ? 128 : 0;
+}
+
 struct CudaBuffer : Buffer::Impl {
     const Driver* driver = nullptr;
     Context context = nullptr;
@@ -91,6 +100,7 @@ private:
 
     void describe();
     int attribute(DeviceAttribute what) const;
+    void describe_peaks();
     /// `what` is text or a callable that makes it, called on failure only.
     template<class What>
     void check(Result result, std::string_view call, const What& what) const {
@@ -181,6 +191,19 @@ int CudaDevice::attribute(DeviceAttribute what) const {
     return value;
 }
 
+void CudaDevice::describe_peaks() {
+    // None of these is needed to work: what the driver does not tell is unknown.
+    const auto told = [&](DeviceAttribute what) {
+        int value = 0;
+        return driver().cuDeviceGetAttribute(&value, what, handle_) == 0 ? std::max(value, 0) : 0;
+    };
+    info_.cores = float_cores(capability_) * info_.compute_units;
+    info_.clock_mhz = static_cast<std::uint32_t>(told(clock_rate_khz)) / 1000;
+    // Data on both edges of the clock.
+    info_.peak_bytes_per_s = std::uint64_t{2000} * static_cast<std::uint64_t>(told(memory_clock_rate_khz))
+                             * (static_cast<std::uint64_t>(told(memory_bus_bits)) / 8);
+}
+
 void CudaDevice::describe() {
     std::array<char, 256> text{};
     driver().cuDeviceGetName(text.data(), static_cast<int>(text.size()), handle_);
@@ -197,6 +220,7 @@ void CudaDevice::describe() {
     info_.compute_units = static_cast<std::uint32_t>(attribute(multiprocessor_count));
     info_.max_group_size = static_cast<std::uint32_t>(attribute(max_threads_per_block));
     info_.local_bytes = static_cast<std::uint64_t>(attribute(max_shared_per_block));
+    describe_peaks();
     threads_of_unit_ = attribute(max_threads_per_multiprocessor);
     std::size_t memory = 0;
     check(driver().cuDeviceTotalMem_v2(&memory, handle_), "cuDeviceTotalMem",

@@ -35,7 +35,10 @@ using GraphExec = CUgraphExec_st*;
 enum DeviceAttribute : int {
     max_threads_per_block = 1,
     max_shared_per_block = 8,
+    clock_rate_khz = 13,
     multiprocessor_count = 16,
+    memory_clock_rate_khz = 36,
+    memory_bus_bits = 37,
     max_threads_per_multiprocessor = 39,
     capability_major = 75,
     capability_minor = 76

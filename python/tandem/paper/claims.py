@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: MIT
+"""The paper's claims and what our records say of each."""
+import dataclasses
+import json
+import statistics
+
+import scipy.stats
+
+from .figures import device_seconds, fit
+from .folder import SCENES
+from .pictures import chunks_of
+from .tables import data_path, pick, scene_factors, shares
+
+AGREES, DIFFERS, UNTESTED = "agrees", "differs", "cannot be tested here"
+
+
+@dataclasses.dataclass
+class Claim:
+    where: str  # of the paper
+    says: str
+    verdict: str
+    ours: str  # our numbers, or why there are none
+    records: str = ""
+
+
+def span(values, unit=""):
+    values = list(values)
+    text = f"{min(values):.3g}" if len(values) == 1 else f"{min(values):.3g} to {max(values):.3g}"
+    return text + unit
+
+
+def judged(good):
+    return AGREES if good else DIFFERS
+
+
+def of_factors(folder):
+    """Rows of Table 4 by data path."""
+    rows = [row for scene in SCENES for row in scene_factors(folder, scene)]
+    return [row for row in rows if row["data_path"] == "published"], [row for row in rows if row["data_path"] == "resident"]
+
+
+def narrow_claims(folder):
+    published, resident = of_factors(folder)
+    says = "Chunked takes 6 to 133 times less narrow-phase time than gProximity"
+    if not published:
+        return [Claim("Table 4", says, UNTESTED, "no pair of cells has ended well")]
+    places = " ".join(row["records"] for row in published)
+    claims = [Claim("Table 4", says + ", as published", judged(min(row["narrow"] for row in published) >= 6),
+                    "; ".join(f"{row['scene']} {row['narrow']:.3g} ({row['against']})" for row in published), places)]
+    if resident:
+        claims.append(Claim("Table 4", "the same with everything resident, which neither the paper nor its release does",
+                            judged(min(row["frame"] for row in resident) >= 6), "whole frames: " + "; ".join(f"{row['scene']} {row['frame']:.3g}" for row in resident),
+                            " ".join(row["records"] for row in resident)))
+    counted = [row["launches_as_theirs"] for row in published]
+    claims.append(Claim("Table 4", "up to three orders of magnitude fewer launches (2.1 to 1748 times)", judged(max(counted) >= 100),
+                        f"{span(counted)} times, counted as the release counts; the paper's largest are where its GPUs took 26 to 30 body pairs a batch", places))
+    return claims
+
+
+def write_claim(folder):
+    ways = [way for way in (pick(folder.ways(f"cells-{scene}"), "gproximity", "published") for scene in SCENES) if way]
+    says = "gProximity's bottleneck is writing to the device"
+    if not ways:
+        return Claim("Figures 7 and 8", says, UNTESTED, "no cell of gProximity published has ended well")
+    part = {way.scene: way.stage("write") / way.total() for way in ways}
+    array = folder.ways("array")
+    whole = f"; with the release's whole array on plates {100 * array[0].stage('write') / array[0].total():.0f} %" if array else ""
+    return Claim("Figures 7 and 8", says, judged(statistics.median(part.values()) > 0.5),
+                 "share of write: " + ", ".join(f"{scene} {100 * value:.0f} %" for scene, value in part.items()) + " with a capped queue array" + whole,
+                 " ".join(way.places[0] for way in ways))
+
+
+def kernel_claim(folder):
+    rows = []
+    for scene in SCENES:
+        ways = folder.ways(f"cells-{scene}")
+        own, other = pick(ways, "chunked", "published"), pick(ways, "gproximity", "published")
+        if own and other:
+            kernels = lambda way: sum(way.stage(name, "device_ns") for name in ("transform", "refit", "traverse", "balance", "contact"))
+            rows.append((scene, kernels(other) / kernels(own), own.places[0]))
+    says = "pure kernel times are on par with those of approaches that balance (0.5 to 3.8 in Table 5)"
+    if not rows:
+        return Claim("Section 5", says, UNTESTED, "no pair of published cells has ended well")
+    return Claim("Section 5", says, judged(all(0.5 <= value <= 3.8 for _, value, _ in rows)), "gProximity / chunked: " + ", ".join(f"{s} {v:.2g}" for s, v, _ in rows),
+                 " ".join(place for *_, place in rows))
+
+
+def digest_of(record):
+    """Of all its pairs, as text; None where they were not compared."""
+    digest = (record.get("agreement") or {}).get("digest")
+    return json.dumps(digest) if digest else None
+
+
+def same_pairs_claim(folder):
+    groups = {}
+    for scene in SCENES:
+        for way in folder.ways(f"cells-{scene}"):
+            for record in way.records:
+                own = record["settings"]
+                bounds = (record["scene"]["digest"], record["frames"]["first"], *(own.get(name) for name in ("k", "axes", "precision", "rounding")))
+                groups.setdefault(bounds, set()).add(digest_of(record))
+    says = "both algorithms find exactly the same pairs of tetrahedra"
+    groups = {bounds: digests - {None} for bounds, digests in groups.items()}
+    if not any(groups.values()):
+        return Claim("Section 4", says, UNTESTED, "no record has a digest")
+    return Claim("Section 4", says, judged(all(len(digests) < 2 for digests in groups.values()) and not folder.wrong()),
+                 f"equal digests in {sum(len(d) == 1 for d in groups.values())} of {len(groups)} groups of frames and bounds, tiled's as well")
+
+
+def share_claims(folder):
+    runs = {run.scene: run for run in folder.simulations("sim-")}
+    claims = []
+    for scenes, says, good in ((("funnel", "glasses"), "collision detection takes 70 to 80 % of complex scenes", lambda own: own >= 60),
+                               (("colosseum",), "and less than the solver for the colosseum", lambda own: own < 50)):
+        own = {scene: sum(shares(runs[scene]).values()) - shares(runs[scene])["solver_percent"] for scene in scenes if scene in runs}
+        if not own:
+            claims.append(Claim("Table 3", says, UNTESTED, "no such simulation has ended well"))
+            continue
+        claims.append(Claim("Table 3", says, judged(all(good(value) for value in own.values())),
+                            ", ".join(f"{scene} {value:.0f} %" for scene, value in own.items()) + ", resident on " + next(iter(runs.values())).run["devices"][0]["id"],
+                            " ".join(runs[scene].place for scene in own)))
+    return claims
+
+
+def simulation_claims(folder):
+    runs = [*folder.simulations("sim-")]
+    if not runs:
+        return [Claim("Section 4", "what is said of whole simulations", UNTESTED, "no simulation has ended well")]
+    places = " ".join(run.place for run in runs)
+    moved = {run.scene: 100 * (run.stage("read", "device_ns") + run.stage("write", "device_ns")) / run.host("step") for run in runs}
+    claims = [Claim("Table 6", "transfers are never more than 5 to 7 % of the time", judged(max(moved.values()) <= 7),
+                    ", ".join(f"{scene} {value:.2g} %" for scene, value in moved.items()) + ", resident", places)]
+    published = [run for run in folder.simulations("serial-")]
+    if published:
+        own = {run.scene: 100 * (run.stage("read", "device_ns") + run.stage("write", "device_ns")) / run.host("step") for run in published}
+        claims.append(Claim("Table 6", "the same with the published data path", judged(max(own.values()) <= 7), ", ".join(f"{s} {v:.2g} %" for s, v in own.items()),
+                            " ".join(run.place for run in published)))
+        part = {run.scene: (run.stage("preprocess"), max((run.stage(name), name) for name in ("traverse", "contact", "refit", "read", "write", "postprocess"))) for run in published}
+        claims.append(Claim("Figures 10 and 11", "pre-processing is the largest cost of finding contacts", judged(all(pre > other for pre, (other, _) in part.values())),
+                            ", ".join(f"{scene}: preprocess {pre:.3g} s, {name} {other:.3g} s" for scene, (pre, (other, name)) in part.items()) + ", published data path",
+                            " ".join(run.place for run in published)))
+    over = {run.scene: run.stage("traverse") / run.stage("contact") for run in runs if run.stage("contact")}
+    claims.append(Claim("Table 7", "traversal takes about ten times as long as making contacts", judged(all(5 <= value <= 20 for value in over.values())),
+                        ", ".join(f"{scene} {value:.2g} times" for scene, value in over.items()), places))
+    return claims + scaling_claims(runs, places)
+
+
+def scaling_claims(runs, places):
+    fitted = {run: fit(run.curve("contacts_found"), device_seconds(run)) for run in runs}
+    fitted = {run: values for run, values in fitted.items() if values}
+    claims = []
+    if fitted:
+        rank = {run: scipy.stats.spearmanr(run.curve("contacts_found"), device_seconds(run)).statistic for run in fitted}
+        claims.append(Claim("Figures 9 to 11", "device times grow with the number of contacts", judged(all(value > 0.7 for value in rank.values())),
+                            "where contacts change fourfold: " + ", ".join(f"{run.scene} rank correlation {rank[run]:.2f}, exponent {values[0]:.2g}" for run, values in fitted.items()), places))
+    steady = {run.scene: statistics.quantiles(run.curve("stage:refit"), n=10) for run in runs}
+    claims.append(Claim("Figures 9 to 11", "transform and refit do not depend on contacts", judged(all(deciles[8] <= 2 * deciles[0] for deciles in steady.values())),
+                        "ninth over first decile of refit: " + ", ".join(f"{scene} {deciles[8] / deciles[0]:.2g}" for scene, deciles in steady.items()), places))
+    return claims
+
+
+def order_claim(folder):
+    breadth, morton = chunks_of(folder, "breadth"), chunks_of(folder, "morton")
+    says = "chunks of breadth-first order overlap much, those of Z-order are fat and apart"
+    if breadth is None or morton is None:
+        return Claim("Figure 5", says, UNTESTED, "chunks have not been exported")
+    times = []
+    for way in folder.ways("chunk-study"):
+        if way.settings.get("builder") == "breadth":
+            pair = next((w for w in folder.ways("chunk-study") if {**w.settings, "builder": ""} == {**way.settings, "builder": ""} and w.settings["builder"] == "morton"), None)
+            times += [way.total() / pair.total()] if pair else []
+    slower = f"; a frame takes {span(times)} times as long with it (median {statistics.median(times):.3g})" if times else ""
+    return Claim("Figure 5", says, judged(breadth.overlap() > 1.2 * morton.overlap()),
+                 f"overlap of boxes over the mesh's box: {breadth.overlap():.3g} breadth-first, {morton.overlap():.3g} Z-order; shortest over longest side "
+                 f"{breadth.fatness():.2g} and {morton.fatness():.2g}{slower}", "chunks-breadth.csv chunks-morton.csv")
+
+
+def threshold_claim(folder):
+    ways = {int(way.settings["seed_threshold"]): way for way in folder.ways("thresholds") if way.preset == "published"}
+    says = "traversal gets slower where the seed threshold goes from 10^3 to 10^4 (glasses)"
+    if not {1000, 10000} <= set(ways):
+        return Claim("Figure 13", says, UNTESTED, "the sweep has not ended well")
+    step = ways[10000].stage("traverse") / ways[1000].stage("traverse")
+    return Claim("Figure 13", says, judged(step > 1.1), f"traversal {step:.3g} times as long, as published", " ".join(ways[t].places[0] for t in (1000, 10000)))
+
+
+def cpu_claim(folder):
+    rows = []
+    for serial in folder.simulations("serial-"):
+        parallel, host, device = (folder.simulation(f"{kind}-{serial.scene}") for kind in ("parallel", "host", "sim"))
+        if not parallel or not host or not device:
+            continue
+        steps = len(serial.steps)
+        seconds = [sum(run.curve("host:step")[:steps]) for run in (host, serial, parallel, device)]
+        rows.append((serial.scene, steps, seconds, serial.place, parallel.place))
+    says = "with serial conversion the GPU's simulator is as fast as the CPU's, with parallel conversion 20 % faster"
+    if not rows:
+        return Claim("Section 5", says, UNTESTED, "the simulations have not ended well")
+    good = all(0.75 <= host / serial <= 1.33 and host / parallel >= 1.1 for _, _, (host, serial, parallel, _), *_ in rows)
+    return Claim("Section 5", says, judged(good),
+                 "; ".join(f"{scene}, {steps} steps: host {t[0]:.3g} s, published {t[1]:.3g} s, converted on all cores {t[2]:.3g} s, resident {t[3]:.3g} s"
+                           for scene, steps, t, *_ in rows), " ".join(place for row in rows for place in row[3:]))
+
+
+def precision_claim(folder):
+    ways = {way.settings["precision"]: way for way in folder.ways("precision")}
+    says = "double precision would double GPU times or worse"
+    if set(ways) != {"float", "double"}:
+        return Claim("Section 4", says, UNTESTED, "both have not ended well")
+    kernels = lambda way: sum(way.stage(name, "device_ns") for name in ("refit", "seed", "traverse", "contact"))
+    value = kernels(ways["double"]) / kernels(ways["float"])
+    return Claim("Section 4", says, judged(value >= 1.8), f"kernels {value:.3g} times as long, whole frames {ways['double'].total() / ways['float'].total():.3g}",
+                 " ".join(way.places[0] for way in ways.values()))
+
+
+def elsewhere_claims():
+    why = "needs the paper's four GPUs, and one device was measured"
+    return [Claim("Table 5, Figure 12", "NVIDIA's and AMD's devices differ in launches and transfers", UNTESTED, why),
+            Claim("Figure 10", "the K20c is no faster than the C2075, the K40c and W8100 twice as fast", UNTESTED, why),
+            Claim("Section 5", "chunking is simpler to implement and has less risk of bugs", UNTESTED, "an opinion, as the paper says")]
+
+
+def all_claims(folder):
+    return [*narrow_claims(folder), write_claim(folder), kernel_claim(folder), same_pairs_claim(folder), *share_claims(folder), *simulation_claims(folder),
+            order_claim(folder), threshold_claim(folder), cpu_claim(folder), precision_claim(folder), *elsewhere_claims()]

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: MIT
+"""What the figures share: size, colours, titles that are messages, and the CSV beside each."""
+import csv
+import dataclasses
+import textwrap
+
+import matplotlib
+
+matplotlib.use("svg")
+matplotlib.rcParams.update({"svg.hashsalt": "tandem", "svg.fonttype": "none", "font.size": 9, "legend.frameon": False, "axes.spines.top": False,
+                            "axes.spines.right": False, "font.family": "sans-serif"})
+import matplotlib.pyplot as plt
+
+from ..plots import COLOURS, INK, PALE, WINNER
+from .tables import short
+
+WIDTH = 6.6  # inches: a column of a phone held upright at 100 %, two thirds of a printed page
+STAGES = ("transform", "refit", "broad", "seed", "traverse", "balance", "contact", "preprocess", "postprocess", "read", "write")
+COLOUR_OF = dict(zip(STAGES, ("#777777", "#56b4e9", "#999999", "#bbbbbb", "#0072b2", "#f0e442", "#009e73", "#cc79a7", "#66507a", "#e69f00", "#d55e00")))
+COLOUR_OF |= {"solve": "#333333", "assemble": "#aaaaaa", "reduce": "#8c6d31", "move": "#dddddd"}
+
+
+@dataclasses.dataclass
+class Drawn:
+    number: int
+    title: str
+    rows: list  # of the CSV
+    missing: str = ""  # why there is no picture
+
+
+class Plot:
+    """A figure of so many panels: its message above, its data beside it."""
+
+    def __init__(self, number, panels=1, height=3.2, columns=1):
+        self.number = number
+        rows = -(-panels // columns)
+        self.figure, axes = plt.subplots(rows, columns, figsize=(WIDTH, height * rows), layout="constrained", squeeze=False)
+        self.axes = list(axes.flat)
+        for spare in self.axes[panels:]:
+            spare.set_visible(False)
+        self.rows = []
+
+    def save(self, folder, title):
+        self.figure.suptitle("\n".join(textwrap.wrap(title, 78)), x=0.01, ha="left", fontsize=10.5, fontweight="bold", color=INK)
+        self.figure.savefig(folder / f"figure{self.number}.svg", metadata={"Date": None, "Title": title})
+        plt.close(self.figure)
+        write_rows(folder, self.number, self.rows)
+        return Drawn(self.number, title, self.rows)
+
+
+def write_rows(folder, number, rows):
+    columns = list(dict.fromkeys(name for row in rows for name in row)) or ["missing"]
+    with open(folder / f"figure{number}.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows([{name: short(row.get(name)) for name in columns} for row in rows])
+
+
+def missing(folder, number, title, why):
+    """A figure that cannot be drawn is there all the same and says why."""
+    plot = Plot(number, height=1.4)
+    plot.axes[0].axis("off")
+    plot.axes[0].text(0, 0.5, "\n".join(textwrap.wrap(why, 90)), color=INK, va="center")
+    plot.rows = [{"missing": why}]
+    drawn = plot.save(folder, title)
+    return dataclasses.replace(drawn, missing=why)
+
+
+def name_end(ax, x, y, text, colour):
+    """The name of a curve at its last point, instead of a legend."""
+    ax.annotate(text, (x, y), xytext=(4, 0), textcoords="offset points", va="center", color=colour, fontsize=8)
+
+
+def milliseconds(ax):
+    ax.set_ylabel("milliseconds")
+    ax.grid(alpha=0.25)

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: MIT
+"""What a folder of 'tandem paper' has: steps, cells, simulations, the paper's own tables."""
+import csv
+import json
+import pathlib
+
+from .. import lines
+
+SCENES = ("funnel", "glasses", "colosseum", "plates", "tower")
+STEPS_OF_TABLES = 102  # frames 20 to 121 of the paper's Tables 4 and 5
+# Kernels that the release has as well, as it counts them: our refit has a launch for strips and one for tops, our balance
+# one that plans and one that moves, and our seeds and body pairs have some where the release has the host's work.
+THEIRS = ("transform_vertices", "refit_tops", "traverse", "traverse_in_groups", "traverse_queues", "plan_balance", "generate_contacts")
+
+
+def paper_table(number):
+    """Rows of results/paper/tableN.csv, as text; it is part of the package."""
+    for folder in (pathlib.Path(__file__).parent / "data", pathlib.Path(__file__).parents[3] / "results" / "paper"):
+        path = folder / f"table{number}.csv"
+        if path.exists():
+            with open(path, newline="") as file:
+                return list(csv.DictReader(file))
+    raise lines.RecordError(f"table{number}.csv of the paper is not part of this installation; install the package anew")
+
+
+def number(text):
+    """Of a table of the paper; None for a dash."""
+    return float(text) if text else None
+
+
+class Way:
+    """The cells of one scene, algorithm, preset and settings, over one or several ranges of frames: sums over their frames.
+    Times are seconds: medians of the replays, on the device, or on the host where a stage has none there."""
+
+    def __init__(self, records, places):
+        self.records, self.places = records, places
+        first = records[0]
+        self.scene, self.algorithm, self.preset, self.settings = first["scene"]["name"], first["algorithm"], first["preset"], first["settings"]
+        self.device = first["devices"][0]
+        self.frames = sum(r["frames"]["last"] - r["frames"]["first"] + 1 for r in records)
+        self.first, self.last = min(r["frames"]["first"] for r in records), max(r["frames"]["last"] for r in records)
+        self.status = next((r["status"] for r in records if r["status"] != "ok"), "ok")
+        self.scale = STEPS_OF_TABLES / self.frames
+
+    @property
+    def name(self):
+        return f"{self.algorithm} {self.preset}, k = {self.settings.get('k')}"
+
+    def total(self, which="median"):
+        return sum(r["total_ns"][which] for r in self.records) / 1e9
+
+    def stage(self, name, where=None):
+        """where: device_ns, host_ns, launches, waits or bytes; the device's time, or else the host's, when left out."""
+        def of(stage):
+            if where in ("launches", "waits", "bytes"):
+                return stage[where]
+            device, host = stage["device_ns"]["median"], stage["host_ns"]["median"]
+            return (device or host if where is None else stage[where]["median"]) / 1e9
+        return sum(of(r["stages"][name]) for r in self.records if name in r["stages"])
+
+    def sum(self, where):
+        return sum(stage[where] for r in self.records for stage in r["stages"].values())
+
+    @property
+    def theirs(self):
+        """Launches as the release counts them; None where no kernel is one of its."""
+        counts = [r["kernel_times"][name]["launches"] for r in self.records for name in THEIRS if name in (r.get("kernel_times") or {})]
+        return sum(counts) if counts and self.algorithm in ("chunked", "gproximity") else None
+
+    @property
+    def narrow(self):
+        """Seconds of what the paper's Table 3 calls narrow phase: the whole span less transform, refit and broad phase."""
+        return max(self.total() - sum(self.stage(name) for name in ("transform", "refit", "broad")), 0)
+
+    def per_frame(self, name, where="device_ns"):
+        """(frame, seconds) of each frame."""
+        rows = []
+        for r in self.records:
+            column = r["stages"].get(name, {}).get(where, {})
+            rows += [(r["frames"]["first"] + i, ns / 1e9) for i, ns in enumerate(column.get("frames", []))]
+        return sorted(rows)
+
+
+class Simulation:
+    """The steps of the last session of a file of 'tandem simulate --record'."""
+
+    def __init__(self, lines_of_file, name, place):
+        self.name, self.place = name, place
+        # Steps of sessions that went on where another stopped; of a step that was done again, the later one.
+        steps = {line["step"]: line for line in lines_of_file if line["kind"] == "step"}
+        self.steps = [steps[i] for i in sorted(steps)]
+        self.run = [line for line in lines_of_file if line["kind"] == "run"][-1]
+
+    @property
+    def scene(self):
+        return self.run["scene"]["name"]
+
+    def host(self, name):
+        """Seconds, "step" being all of it."""
+        return sum(step["host_ns"][name] for step in self.steps) / 1e9
+
+    def stage(self, name, where=None):
+        of = lambda stage: (stage["device_ns"] or stage["host_ns"]) / 1e9 if where is None else stage[where] / (1e9 if where.endswith("_ns") else 1)
+        return sum(of(step["stages"][name]) for step in self.steps if name in step["stages"])
+
+    def curve(self, what):
+        """A number a step; what: a field of a step, "host:NAME" or "stage:NAME", seconds."""
+        if ":" not in what:
+            return [step[what] for step in self.steps]
+        kind, name = what.split(":")
+        if kind == "host":
+            return [step["host_ns"][name] / 1e9 for step in self.steps]
+        stages = [step["stages"].get(name, {"device_ns": 0, "host_ns": 0}) for step in self.steps]
+        return [(stage["device_ns"] or stage["host_ns"]) / 1e9 for stage in stages]
+
+
+class Folder:
+    def __init__(self, path):
+        self.path = pathlib.Path(path)
+        steps = {step["step"]: step for step in self._json_lines("steps.jsonl")}
+        if not steps:
+            raise lines.RecordError(f"{path}: has no steps.jsonl; make it with 'tandem paper -o {path}'")
+        self.steps = steps
+        self.failed = [name for name, step in steps.items() if step["exit"] != 0]
+
+    def _json_lines(self, name):
+        path = self.path / name
+        if not path.exists():
+            return []
+        with open(path) as file:
+            whole = [line for line in file if line.endswith("\n")]
+        try:
+            return [json.loads(line) for line in whole]
+        except ValueError:
+            raise lines.RecordError(f"{path}: a line is not JSON; measure the step again with --again") from None
+
+    def named(self, beginning):
+        """Steps that have ended well, in their order."""
+        return [name for name, step in self.steps.items() if name.startswith(beginning) and step["exit"] == 0]
+
+    def ways(self, step, split=()):
+        """Of the last record of each cell of a step. Frames of one scene, algorithm, preset and settings are one way."""
+        path = self.path / "records" / f"{step}.jsonl"
+        if step not in self.named(step):
+            return []
+        cells = {}
+        for row, (record, _) in enumerate(lines.each(path), 1):
+            cells[record["key"]] = (record, f"records/{path.name}:{row}")
+        groups = {}
+        for record, place in cells.values():
+            settings = {**record["settings"], **record.get("asked", {})}
+            key = (record["scene"]["key"], record["algorithm"], record["preset"], record["devices"][0]["id"], tuple(sorted(settings.items())))
+            groups.setdefault(key, []).append((record, place))
+        ways = [Way([r for r, _ in group], [p for _, p in group]) for group in groups.values()
+                if all(r["status"] == "failed" or r["total_ns"] for r, _ in group)]
+        return [way for way in ways if way.status == "ok"]
+
+    def wrong(self):
+        """(place, what it says) of every record that failed or is wrong."""
+        found = []
+        for path in sorted((self.path / "records").glob("*.jsonl")):
+            for row, line in enumerate(self._json_lines(f"records/{path.name}"), 1):
+                if line.get("status", "ok") != "ok":
+                    found.append((f"records/{path.name}:{row}", f"{line['status']}: {line.get('failure') or 'another answer than the reference'}"))
+        return found
+
+    def simulation(self, step):
+        """None where it has not ended well."""
+        if step not in self.named(step):
+            return None
+        return Simulation(self._json_lines(f"records/{step}.jsonl"), step, f"records/{step}.jsonl")
+
+    def simulations(self, beginning):
+        return [self.simulation(name) for name in self.named(beginning)]
+
+    def ceilings(self):
+        found = self._json_lines("records/ceilings.jsonl")
+        return found[-1] if found else None

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: MIT
+"""Figures 1 to 6: rendered scenes, and our own chunks."""
+import csv
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy
+from matplotlib.patches import Rectangle
+
+from .drawing import COLOURS, INK, PALE, Plot, missing
+
+TITLES = {"funnel": "funnel", "glasses": "falling glasses", "colosseum": "colosseum", "plates": "plates", "tower": "tower"}
+
+
+def render_script():
+    """scripts/render, part of the package."""
+    for path in (pathlib.Path(__file__).parent / "render.py", pathlib.Path(__file__).parents[3] / "scripts" / "render"):
+        if path.exists():
+            return path
+    return None
+
+
+def rendered(folder, scene, shares):
+    """Pixels of the scene at shares of its animation; nothing where it cannot be drawn."""
+    import matplotlib.image
+    glb, script = folder.path / f"{scene}.glb", render_script()
+    if not glb.exists() or script is None:
+        return []
+    with tempfile.TemporaryDirectory() as work:
+        done = subprocess.run([sys.executable, str(script), str(glb), f"{work}/picture", "--at", ",".join(map(str, shares)), "--size", "640x480"],
+                              capture_output=True, text=True)
+        return [matplotlib.image.imread(f"{work}/picture-{i}.png") for i in range(len(shares))] if done.returncode == 0 else []
+
+
+def scenes(folder, number, wanted, says):
+    """One picture a (scene, share)."""
+    pictures = [(scene, share, image) for scene, share in wanted for image in rendered(folder, scene, [share])]
+    if not pictures:
+        return missing(folder.path, number, says, "no scene has been exported, or there is no python3-pil to draw it with")
+    plot = Plot(number, len(pictures), 2.5, min(len(pictures), 2))
+    for ax, (scene, share, image) in zip(plot.axes, pictures):
+        ax.imshow(image)
+        ax.axis("off")
+        ax.set_title(f"{TITLES[scene]}, at {share:.0%} of its steps", fontsize=9, loc="left", color=INK)
+        plot.rows.append({"scene": scene, "share": share, "file": f"{scene}.glb"})
+    return plot.save(folder.path, says)
+
+
+def figure1(folder):
+    simulation = folder.simulation("sim-funnel")
+    kept = f", {max(simulation.curve('contacts_found')):,} contacts at most" if simulation else ""
+    bodies = f"{simulation.run['scene']['bodies']:,} bodies in a funnel" if simulation else "The funnel"
+    return scenes(folder, 1, [("funnel", 1.0)], f"{bodies}{kept}")
+
+
+def figure2(folder):
+    return scenes(folder, 2, [("funnel", 0.5), ("funnel", 1.0), ("colosseum", 0.0), ("colosseum", 1.0)],
+                  "Bodies in a funnel and a building that stands: two of the paper's four kinds of simulation")
+
+
+def figure6(folder):
+    return scenes(folder, 6, [(scene, 1.0) for scene in ("glasses", "funnel", "colosseum", "plates", "tower")], "The five test scenes, at the end of their steps")
+
+
+class Chunks:
+    """The chunks of one mesh of a file of 'tandem export --chunks'."""
+
+    def __init__(self, path):
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+        counts = {}
+        for row in rows:
+            counts[row["mesh"]] = counts.get(row["mesh"], 0) + 1
+        mesh = max(counts, key=counts.get)  # the largest: the one that has most chunks
+        rows = [row for row in rows if row["mesh"] == mesh]
+        self.chunk = numpy.array([int(row["chunk"]) for row in rows])
+        self.super_chunk = numpy.array([int(row["super_chunk"]) for row in rows])
+        self.corners = numpy.array([[[float(row[f"{axis}{i}"]) for axis in "xyz"] for i in range(4)] for row in rows])
+
+    def boxes(self, numbers=None):
+        """(least, most) corners of the tetrahedra of each chunk."""
+        numbers = self.chunk if numbers is None else numbers
+        parts = [self.corners[numbers == i].reshape(-1, 3) for i in range(numbers.max() + 1)]
+        return numpy.array([[part.min(0), part.max(0)] for part in parts])
+
+    def overlap(self):
+        """Volume of the boxes of all pairs of chunks that is in both, over the volume of the mesh's box."""
+        boxes = self.boxes()
+        low, high = boxes[:, 0], boxes[:, 1]
+        inside = numpy.clip(numpy.minimum(high[:, None], high[None]) - numpy.maximum(low[:, None], low[None]), 0, None).prod(-1)
+        pairs = numpy.triu(inside, 1).sum()
+        return pairs / (high.max(0) - low.min(0)).prod()
+
+    def fatness(self):
+        """Median over chunks of the shortest over the longest side of a box."""
+        sides = self.boxes()[:, 1] - self.boxes()[:, 0]
+        return float(numpy.median(sides.min(1) / sides.max(1)))
+
+
+def chunks_of(folder, order):
+    path = folder.path / f"chunks-{order}.csv"
+    return Chunks(path) if path.exists() and folder.named(f"chunks-{order}") else None
+
+
+def show(ax, chunks, numbers, boxes=True):
+    """Tetrahedra from the front, coloured by chunk, and the boxes of the chunks."""
+    depth = chunks.corners[:, :, 2].mean(1).argsort()
+    centres = chunks.corners.mean(1)[depth]
+    size = min(12.0, 3e4 / len(depth))
+    ax.scatter(centres[:, 0], centres[:, 1], s=size, c=[COLOURS[i % len(COLOURS)] for i in numbers[depth]], linewidths=0)
+    if boxes:
+        for i, (low, high) in enumerate(chunks.boxes(numbers)):
+            ax.add_patch(Rectangle(low[:2], *(high - low)[:2], fill=False, edgecolor=COLOURS[i % len(COLOURS)], linewidth=1.2))
+    ax.set_aspect("equal")
+    ax.axis("off")
+
+
+def figure3(folder):
+    chunks = chunks_of(folder, "morton")
+    if chunks is None:
+        return missing(folder.path, 3, "Chunks in memory", "chunks in Z-order have not been exported")
+    plot = Plot(3, 2, 2.4)
+    memory, mesh = plot.axes
+    count = len(chunks.chunk)
+    for i in range(chunks.chunk.max() + 1):
+        where = numpy.flatnonzero(chunks.chunk == i)
+        memory.broken_barh([(where[0], len(where))], (0, 1), color=COLOURS[i % len(COLOURS)], linewidth=0)
+        plot.rows.append({"chunk": i, "super_chunk": int(chunks.super_chunk[where[0]]), "first": int(where[0]), "tetrahedra": len(where)})
+    memory.set_xlim(0, count)
+    memory.set_yticks([])
+    memory.set_xlabel("position in memory")
+    show(mesh, chunks, chunks.chunk, boxes=False)
+    return plot.save(folder.path, f"{count:,} tetrahedra along the Z-curve make {chunks.chunk.max() + 1} chunks, each one stretch of memory and one place of the mesh")
+
+
+def figure4(folder):
+    chunks = chunks_of(folder, "morton")
+    if chunks is None:
+        return missing(folder.path, 4, "Super chunks", "chunks in Z-order have not been exported")
+    plot = Plot(4, 3, 2.6, 3)
+    levels = [("tetrahedra", numpy.zeros(len(chunks.chunk), int), len(chunks.chunk)), ("chunks", chunks.chunk, chunks.chunk.max() + 1),
+              ("super chunks", chunks.super_chunk, chunks.super_chunk.max() + 1)]
+    for ax, (name, numbers, count), boxes in zip(plot.axes, levels, (False, True, True)):
+        show(ax, chunks, numbers, boxes)
+        ax.set_title(f"{count:,} {name}", fontsize=9, color=INK)
+        plot.rows.append({"level": name, "count": int(count)})
+    most = -(-len(chunks.chunk) // (chunks.chunk.max() + 1))
+    return plot.save(folder.path, f"{len(chunks.chunk):,} tetrahedra, {chunks.chunk.max() + 1} chunks of up to {2 ** math.ceil(math.log2(most))}, {chunks.super_chunk.max() + 1} super chunk"
+                     + ("s" if chunks.super_chunk.max() else "") + ": two levels reach the root")
+
+
+def figure5(folder):
+    breadth, morton = chunks_of(folder, "breadth"), chunks_of(folder, "morton")
+    if breadth is None or morton is None:
+        return missing(folder.path, 5, "Orders of tetrahedra", "chunks in both orders have not been exported")
+    plot = Plot(5, 2, 3.2, 2)
+    for ax, chunks, name in zip(plot.axes, (breadth, morton), ("breadth-first", "Z-order")):
+        show(ax, chunks, chunks.chunk)
+        ax.set_title(f"{name}: {chunks.overlap():.2f} of the mesh's box\nis in two chunks' boxes", fontsize=9, color=INK)
+        plot.rows.append({"order": name, "chunks": int(chunks.chunk.max() + 1), "overlap_over_box": chunks.overlap(), "fatness": chunks.fatness()})
+    times = breadth.overlap() / morton.overlap() if morton.overlap() else math.inf
+    better = "overlap more" if times > 1 else "overlap less"
+    return plot.save(folder.path, f"Chunks of 256 KiB: breadth-first ones {better}, {times:.2g} times as much as those in Z-order")
+
+
+def all_pictures(folder):
+    return [make(folder) for make in (figure1, figure2, figure3, figure4, figure5, figure6)]
