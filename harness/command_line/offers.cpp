@@ -140,7 +140,7 @@ Offer offer_arguments(const LineBefore& before, const std::string& text) {
     const auto name = before.command->get_name();
     if (name == "algorithms") return {algorithm_names(before)};
     if (name == "completion") return {{"bash", "zsh"}};
-    static const std::set<std::string> with_scenes{"run", "check", "accuracy", "simulate", "export"};
+    static const std::set<std::string> with_scenes{"run", "check", "accuracy", "simulate", "export", "view"};
     return with_scenes.contains(name) ? offer_scenes(text) : Offer{};
 }
 
