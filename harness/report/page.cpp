@@ -35,7 +35,7 @@ std::string escaped_text(std::string text) {
 /// No text of a record can end its element.
 std::string data_element(const std::string& id, std::string json) {
     replace_all(json, "<", "\\u003c");
-    return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id, json);
+    return fmt::format("<script type=\"application/json\" id=\"data-{}\">{}</script>\n", id, json);
 }
 
 std::string script_element(std::string_view name) {

@@ -5,7 +5,7 @@ const tandem = {};
 tandem.darkness = matchMedia("(prefers-color-scheme: dark)");
 
 tandem.read = id => {
-  const element = document.getElementById(id);
+  const element = document.getElementById("data-" + id);
   return element ? JSON.parse(element.textContent) : null;
 };
 

@@ -91,7 +91,7 @@ tandem.SceneView = class {
   }
 
   makeContacts() {
-    const material = new THREE.PointsMaterial({color: 0xff2d95, size: 5, sizeAttenuation: false, depthTest: false});
+    const material = new THREE.PointsMaterial({color: 0xff2d95, size: 4, sizeAttenuation: false, depthTest: false});
     this.contactPoints = new THREE.Points(new THREE.BufferGeometry(), material);
     this.contactNormals = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color: 0xff2d95, depthTest: false}));
     for (const object of [this.contactPoints, this.contactNormals]) {

@@ -18,15 +18,26 @@ tandem.view = data => {
     "Page Up and Page Down go through frames"});
   const stage = element("div", {class: "stage"}, canvas);
   const words = element("p", {role: "status", "aria-live": "polite", id: "scene-words"}, tandem.sceneWords(data, 0));
+  tandem.show("view", facts, ...notes, stage, words);
+  // A page of records opens faster when its scene is made once somebody comes near it.
+  new IntersectionObserver((entries, observer) => {
+    if (!entries.some(entry => entry.isIntersecting)) return;
+    observer.disconnect();
+    tandem.animate(data, stage, canvas, words);
+  }, {rootMargin: "400px"}).observe(stage);
+};
+
+tandem.animate = (data, stage, canvas, words) => {
+  const {element} = tandem;
   let view;
   try {
     view = new tandem.SceneView(data, canvas);
   } catch (error) {
-    tandem.show("view", facts, ...notes, words, element("p", {class: "bad"}, "This browser has no WebGL, which draws the scene: " + error.message));
+    stage.replaceWith(element("p", {class: "bad"}, "This browser has no WebGL, which draws the scene: " + error.message));
     return;
   }
   const player = new tandem.Player(view, words);
-  tandem.show("view", facts, ...notes, stage, words, player.controls(), element("p", {class: "quiet"},
+  tandem.show("view", player.controls(), element("p", {class: "quiet"},
     "Drag or use arrows to turn, wheel or + and - to zoom, Page Up and Page Down for frames, space to play."));
   player.listen(canvas);
   view.colour("body");

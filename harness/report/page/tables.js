@@ -139,12 +139,12 @@ tandem.CellTable = class {
     this.body.replaceChildren();
     const update = ++this.pending;
     this.body.dataset.complete = "false";
-    const add = from => {
+    const add = (from, to) => {
       if (update !== this.pending) return;
-      this.body.append(...cells.slice(from, from + 250).map(cell => this.rowOf(cell)));
-      if (from + 250 < cells.length) setTimeout(() => add(from + 250));
+      this.body.append(...cells.slice(from, to).map(cell => this.rowOf(cell)));
+      if (to < cells.length) setTimeout(() => add(to, 3 * to));
       else this.body.dataset.complete = "true";
     };
-    add(0);
+    add(0, 200);
   }
 };

@@ -7,13 +7,16 @@ tandem.summary = data => {
   const paragraphs = data.words.map(text => element("p", {class: "lead"}, text));
   const notes = data.notes.map(text => element("p", {class: "bad"}, "Left out: " + text + "."));
   const groupItem = group => element("li", {}, element("strong", {}, group.title + ": "), group.words);
-  const most = 8;
-  const lists = [element("ul", {}, ...data.groups.slice(0, most).map(groupItem))];
-  if (data.groups.length > most) {
+  // Those that compare anything first.
+  const says = group => group.ranked.length > 1 || group.cells.some(cell => cell.status !== "ok");
+  const groups = [...data.groups.filter(says), ...data.groups.filter(group => !says(group))];
+  const most = 10;
+  const lists = [element("ul", {}, ...groups.slice(0, most).map(groupItem))];
+  if (groups.length > most) {
     // Filled when it is opened: a page of many groups opens faster.
     const rest = element("details", {ontoggle: () => {
-      if (rest.open && rest.children.length === 1) rest.append(element("ul", {}, ...data.groups.slice(most).map(groupItem)));
-    }}, element("summary", {}, `${data.groups.length - most} more comparisons`));
+      if (rest.open && rest.children.length === 1) rest.append(element("ul", {}, ...groups.slice(most).map(groupItem)));
+    }}, element("summary", {}, `${groups.length - most} more comparisons`));
     lists.push(rest);
   }
   const how = element("p", {class: "quiet"}, "Compared are cells of one scene, frames, devices, bounds and output. Brackets are 95 % " +
