@@ -8,6 +8,7 @@
 #include "harness/standard_streams.h"
 #include "scenes/error.h"
 
+#include <cctype>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <optional>

@@ -5,8 +5,11 @@
 #include "harness/statistics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
+#include <optional>
 #include <set>
 
 namespace tandem::report {
@@ -46,9 +49,9 @@ std::string key_of(const ShownCell& cell) {
 }
 
 /// A scene by its name where no other has the name.
-std::string scene_of(const ShownCell& cell, const std::map<std::string, std::set<std::string>>& scenes) {
-    const auto name = cell.scene.substr(0, cell.scene.find(':'));
-    return scenes.at(name).size() == 1 ? name : cell.scene;
+const std::string& scene_of(const ShownCell& cell,
+                            const std::map<std::string, std::set<std::string>>& scenes) {
+    return scenes.at(cell.scene_name).size() == 1 ? cell.scene_name : cell.scene;
 }
 
 std::string title_of(const ShownCell& cell, const std::string& scene_name) {
@@ -128,8 +131,7 @@ std::vector<Group> groups_of(const std::vector<ShownCell>& cells) {
     std::vector<Group> groups;
     std::map<std::string, std::size_t> numbers;
     std::map<std::string, std::set<std::string>> scenes;
-    for (const auto& cell : cells)
-        scenes[cell.scene.substr(0, cell.scene.find(':'))].insert(cell.scene_digest);
+    for (const auto& cell : cells) scenes[cell.scene_name].insert(cell.scene_digest);
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const auto [place, is_new] = numbers.try_emplace(key_of(cells[i]), groups.size());
         if (is_new) groups.push_back({.title = title_of(cells[i], scene_of(cells[i], scenes))});

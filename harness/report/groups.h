@@ -9,7 +9,7 @@ namespace tandem::report {
 /// A cell in the order of speed, held against the fastest of its group.
 struct Place {
     std::size_t cell = 0;       ///< its number
-    compare::Ratio ratio{};       ///< of its time to the fastest's; 1 of the fastest itself
+    compare::Ratio ratio{};     ///< of its time to the fastest's; 1 of the fastest itself
     bool is_told_apart = false; ///< 1 lies outside the ratio's 95 % interval
     bool has_interval = false;  ///< both have rounds enough for one
 };
@@ -21,7 +21,7 @@ struct Group {
     std::vector<std::size_t> cells{};  ///< all, in their order
     std::vector<std::string> labels{}; ///< of each: what differs among them
     std::vector<Place> ranked{};       ///< those that are right and newest, the fastest first
-    bool answers_differ = false;     ///< of these; then none is said to be the fastest
+    bool answers_differ = false;       ///< of these; then none is said to be the fastest
 };
 
 /// Every cell is in one group.

@@ -2,6 +2,8 @@
 // Profiles, ceilings and simulations as the page draws them.
 #include "harness/report/records.h"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fmt/format.h>
 
@@ -92,7 +94,8 @@ constexpr std::array host_parts{"broad", "narrow", "reduce", "assemble", "solve"
 
 Json step_of(const Record& line) {
     auto step = Json::array({line.at("step").get<std::size_t>()});
-    for (const auto* part : host_parts) step.push_back(rounded(line.at("host_ns").at(part).get<double>() / 1e6));
+    for (const auto* part : host_parts)
+        step.push_back(rounded(line.at("host_ns").at(part).get<double>() / 1e6));
     for (const auto* count : {"contacts_found", "contacts_kept"})
         step.push_back(line.at(count).get<std::uint64_t>());
     return step;

@@ -5,8 +5,10 @@
 #include "scenes/error.h"
 #include "scenes/recording/file.h"
 
+#include <array>
 #include <filesystem>
 #include <fmt/format.h>
+#include <stdexcept>
 
 namespace tandem::report {
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tandem::report {
@@ -10,7 +11,7 @@ namespace tandem::report {
 struct Page {
     std::string title{};
     std::vector<std::pair<std::string, std::string>> data{}; ///< {id, JSON text}
-    bool has_scene = false, has_charts = false;            ///< which libraries it takes
+    bool has_scene = false, has_charts = false;              ///< which libraries it takes
 };
 
 /// Throws InputError, one line, where the program was built without a library that the page takes.

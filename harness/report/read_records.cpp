@@ -4,8 +4,10 @@
 #include "scenes/error.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fmt/format.h>
+#include <map>
 
 namespace tandem::report {
 

@@ -6,6 +6,7 @@
 #include "harness/report/interned.h"
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,10 @@ namespace tandem::report {
 /// A record of one cell.
 struct ShownCell {
     compare::RecordedCell recorded;
-    std::string scene{}, scene_digest{}; ///< key and digest of the scene
-    double frames = 1;               ///< that a sample replays
-    bool is_older = false;           ///< a later record of its key is ok and stands for it
-    Json row{};                        ///< by cell_fields, the last but the label, which says what differs
+    std::string scene{}, scene_name{}, scene_digest{}; ///< key, name and digest of the scene
+    double frames = 1;                                 ///< that a sample replays
+    bool is_older = false;                             ///< a later record of its key is ok and stands for it
+    Json row{};             ///< by cell_fields, the last but the label, which says what differs
     Json curve{}, rounds{}; ///< ms of each frame, and of a frame in each round; shown where there is room
 };
 

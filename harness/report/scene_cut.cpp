@@ -74,7 +74,7 @@ SceneCut cut(const SceneSizes& sizes, const SceneBudget& budget) {
     const auto taken = std::min(costs.bytes, half) + for_contacts;
     result.frames = std::clamp<std::size_t>((budget.bytes - std::min(taken, budget.bytes)) / frame_bytes, 1,
                                             std::max<std::size_t>(sizes.frames, 1));
-    result.contacts = for_contacts / result.frames / contact_bytes;
+    result.contacts = std::min(for_contacts / result.frames / contact_bytes, budget.contacts);
     return result;
 }
 

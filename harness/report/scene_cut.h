@@ -12,6 +12,7 @@ struct SceneBudget {
     std::size_t bytes = 3'000'000;   ///< of meshes, poses and contacts; base64 makes four of three
     std::size_t triangles = 400'000; ///< of distinct meshes
     std::size_t drawn = 4'000'000;   ///< triangles of all bodies
+    std::size_t contacts = 3000;     ///< of a frame: more hide the bodies
 };
 
 /// What a scene would take.

@@ -44,7 +44,7 @@ Points corners_of(const Eigen::AlignedBox3d& box) {
 
 /// Sides of the box with these corners, counterclockwise from outside.
 const std::vector<std::uint32_t> sides_of_box{0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
-                                               2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+                                              2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
 
 /// The vertices of a body's surface, or the corners of their box.
 Points shown_points(const Surface& surface, const Points& vertices, bool boxed) {

@@ -3,6 +3,7 @@
 #include "harness/statistics.h"
 #include "harness/text_lines.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace tandem::report {
@@ -164,6 +165,7 @@ ShownCell shown_cell(const Record& record, const std::string& path, std::size_t 
     const auto last = record.at("frames").at("last").get<std::uint64_t>();
     cell.frames = static_cast<double>(last - std::min(first, last) + 1);
     cell.scene = record.at("scene").at("key").get<std::string>();
+    cell.scene_name = record.at("scene").at("name").get<std::string>();
     cell.scene_digest = record.at("scene").at("digest").get<std::string>();
     const auto& total = at(record, {"total_ns"});
     auto stages = stages_of(record, cell.frames);

@@ -37,16 +37,22 @@ tandem.whiskers = {
   }
 };
 
+/** Powers of ten, and twice and five times those where there are few: a tick for each would hide the others. */
+tandem.logarithmic = (text, many) => ({type: "logarithmic", title: {display: true, text: text + ", logarithmic"}, ticks: {maxRotation: 45, autoSkip: true,
+  callback: value => (many ? [1] : [1, 2, 5]).includes(+value.toExponential(3).split("e")[0]) ? tandem.number(value) : ""}});
+
 /** An axis with a title; logarithmic where values differ by more than ten times and none is 0. */
 tandem.axis = (text, values, more) => {
   const known = values.filter(value => value !== null && value !== undefined);
   const least = Math.min(...known);
   const most = Math.max(...known);
   const log = least > 0 && most / least > 10;
-  return {type: log ? "logarithmic" : "linear", beginAtZero: !log, title: {display: true, text: text + (log ? ", logarithmic" : "")},
-    ticks: {maxRotation: 45, callback: value => tandem.number(value)}, ...more};
+  if (log) return {...tandem.logarithmic(text, most / least > 1000), ...more};
+  return {type: "linear", beginAtZero: true, title: {display: true, text}, ticks: {maxRotation: 45, callback: value => tandem.number(value)}, ...more};
 };
 
+/** How long names beside bars may be. */
+tandem.beside = () => innerWidth < 640 ? 22 : 38;
 tandem.shortened = (text, most) => text.length > most ? text.slice(0, most - 1) + "…" : text;
 
 tandem.Figure = class {

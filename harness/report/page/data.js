@@ -35,7 +35,7 @@ tandem.number = value => {
   if (value === null || value === undefined) return "";
   const size = Math.abs(value);
   if (size === 0) return "0";
-  if (size >= 1e7 || size < 1e-4) return value.toExponential(2);
+  if (size >= 1e7 || size < 1e-4) return value.toExponential(2).replace(/\.?0+e/, "e");
   return size >= 1000 ? Math.round(value).toLocaleString("en") : String(+value.toPrecision(4));
 };
 tandem.interval = ([value, low, high]) => `${tandem.number(value)} [${tandem.number(low)}, ${tandem.number(high)}]`;

@@ -18,7 +18,7 @@ tandem.mediansFigure = data => {
         ? `${name} is the fastest, ${tandem.number(second[1])} times as fast as the next` : `${name} and the next are not told apart`,
       alt: `${group.title}: milliseconds a frame of ${cells.length} cells.` + (left ? ` ${left} slower ones are in the table of every cell.` : ""),
       type: "line", height: 110 + 26 * cells.length,
-      data: {labels: cells.map(cell => tandem.shortened(cell.label, 38)), datasets: [{label: "ms a frame", data: cells.map(cell => cell.ms[0]), showLine: false,
+      data: {labels: cells.map(cell => tandem.shortened(cell.label, tandem.beside())), datasets: [{label: "ms a frame", data: cells.map(cell => cell.ms[0]), showLine: false,
         intervals: cells.map(cell => cell.rounds > 1 ? cell.ms.slice(1) : null), colour: 1}]},
       options: {indexAxis: "y", scales: {x: tandem.axis("milliseconds a frame, 95 % intervals", cells.flatMap(cell => cell.ms)), y: {offset: true, ticks: {autoSkip: false}}}},
       table: [group.title, ["cell", "ms a frame", "low", "high", "times the fastest's"],
@@ -70,7 +70,7 @@ tandem.sweepsFigure = data => {
         alt: `${of}: milliseconds a frame over ${setting}, ${shown.length} of ${lines.length} lines.`, type: "line",
         data: {datasets: shown.map((line, i) => ({label: names[i], data: points(line).map(([x, cell]) => ({x, y: cell.ms[0]})),
           intervals: points(line).map(([, cell]) => cell.rounds > 1 ? cell.ms.slice(1) : null)}))},
-        options: {scales: {x: tandem.axis(setting, all.map(point => point[0]), {beginAtZero: false}), y: tandem.axis("milliseconds a frame", all.map(([, cell]) => cell.ms[0]))}},
+        options: {scales: {x: tandem.axis(setting, all.map(point => point[0]), {beginAtZero: false}), y: tandem.axis("ms a frame", all.map(([, cell]) => cell.ms[0]))}},
         table: [of, ["line", setting, "ms a frame", "low", "high"], shown.flatMap((line, i) => points(line).map(([value, cell]) => [names[i], value, ...cell.ms]))]};
     }});
 };
@@ -90,7 +90,7 @@ tandem.stagesFigure = data => {
         : "The fastest has no times by stage",
       alt: `${group.title}: milliseconds a frame by stage, the device's time where a stage has any, otherwise the host's.`,
       type: "bar", height: 150 + 26 * cells.length,
-      data: {labels: cells.map(cell => tandem.shortened(cell.label, 38)), datasets: names.map((name, i) => ({label: name, data: cells.map(cell => time(cell, name)),
+      data: {labels: cells.map(cell => tandem.shortened(cell.label, tandem.beside())), datasets: names.map((name, i) => ({label: name, data: cells.map(cell => time(cell, name)),
         borderColor: tandem.ofStyle("--ground"), borderWidth: 1, pointStyle: "rect", colour: i}))},
       options: {indexAxis: "y", scales: {x: {stacked: true, title: {display: true, text: "milliseconds a frame, with a clock around every command"}}, y: {stacked: true, ticks: {autoSkip: false}}}},
       table: [group.title, ["cell", ...names], cells.map(cell => [cell.label, ...names.map(name => time(cell, name))])]};
@@ -114,8 +114,8 @@ tandem.rooflineFigure = data => data.profiles.length && new tandem.Figure({id: "
       type: "scatter",
       data: {datasets: [{label: "ceiling", data: [ends[0], bends, ends[1]].map(x => ({x, y: under(x)})), showLine: true, pointRadius: 0, colour: 6},
         ...both.slice(0, 7).map((kernel, i) => ({label: kernel.entry, data: [{x: ofBytes(kernel), y: kernel.operations_per_s}], colour: i, pointRadius: 7}))]},
-      options: {scales: {x: {type: "logarithmic", title: {display: true, text: "comparisons per byte, logarithmic"}, ticks: {callback: tandem.number}},
-        y: {type: "logarithmic", title: {display: true, text: "comparisons a second, logarithmic"}, ticks: {callback: tandem.number}}}},
+      options: {scales: {x: tandem.logarithmic("comparisons per byte", true),
+        y: tandem.logarithmic("comparisons a second", true)}},
       table: [name, ["kernel", "stage", "ms a frame", "share", "bytes a second", "of their ceiling", "comparisons a second", "of their ceiling", "times its floor", "bound"],
         kernels.map(kernel => [kernel.entry, kernel.stage, kernel.ms[0], kernel.share, kernel.bytes_per_s, kernel.of_bytes, kernel.operations_per_s, kernel.of_operations,
           kernel.over_floor, kernel.bound ?? "not known"])]};
@@ -150,8 +150,8 @@ tandem.errorFigure = data => {
       type: "scatter",
       data: {datasets: [{label: "beaten by none in both", data: points(unbeaten), intervals: unbeaten.map(cell => cell.ms.slice(1)), colour: 4, pointStyle: "rectRot", pointRadius: 7},
         {label: "others", data: points(others), intervals: others.map(cell => cell.ms.slice(1)), colour: 6}]},
-      options: {scales: {x: {type: "logarithmic", title: {display: true, text: what + ", logarithmic"}, ticks: {maxRotation: 45, callback: tandem.number}},
-        y: tandem.axis("milliseconds a frame", own.map(cell => cell.ms[0]))}},
+      options: {scales: {x: tandem.logarithmic(what, true),
+        y: tandem.axis("ms a frame", own.map(cell => cell.ms[0]))}},
       table: [place, ["cell", "preset", what, "ms a frame", "low", "high", "beaten by none"], [...unbeaten, ...others].slice(0, 300).map(cell =>
         [label(cell), cell.preset, cell.error[name], ...cell.ms, unbeaten.includes(cell) ? "yes" : "no"])]};
   }});
@@ -171,7 +171,7 @@ tandem.curvesFigure = data => {
       alt: `${group.title}: milliseconds of each frame, the median of the replays, of ${cells.length} cells.`, type: "line",
       data: {labels: curve.map((_, i) => first + i), datasets: cells.map(cell => ({label: tandem.shortened(cell.label, 60), data: data.curves[cell.index],
         pointRadius: curve.length > 60 ? 0 : 3, borderWidth: 2}))},
-      options: {scales: {x: {title: {display: true, text: "frame"}}, y: tandem.axis("milliseconds", all)}},
+      options: {scales: {x: {title: {display: true, text: "frame"}}, y: tandem.axis("ms", all)}},
       table: [group.title, ["frame", ...cells.map(cell => cell.label)], curve.map((_, i) => [String(first + i), ...cells.map(cell => data.curves[cell.index][i])])]};
   }});
 };
@@ -188,7 +188,7 @@ tandem.simulationsFigure = data => {
         alt: `${run.name}: milliseconds of a step by part, ${run.kept.length} of ${run.steps} steps.`, type: "line",
         data: {labels: run.kept.map(step => step[0]), datasets: run.parts.map((part, i) => ({label: part, data: run.kept.map(step => step[i + 1]), fill: true,
           pointRadius: 0, borderWidth: 1, pointStyle: "rect"}))},
-        options: {scales: {x: {title: {display: true, text: "step"}}, y: {stacked: true, title: {display: true, text: "milliseconds of the host"}}}},
+        options: {scales: {x: {title: {display: true, text: "step"}}, y: {stacked: true, title: {display: true, text: "ms of the host"}}}},
         table: [run.name, ["step", ...run.parts, "contacts found", "contacts kept"], run.kept.map(([step, ...rest]) => [String(step), ...rest])]};
     }});
 };
@@ -202,7 +202,7 @@ tandem.differencesFigure = differences => differences && new tandem.Figure({id: 
   return {title: `${differences.new} against ${differences.old}: ${differences.summary}`,
     alt: `New time over old time with 95 % intervals; 1 is no change. ${differences.common}. ${differences.notes.join(" ")}` + (left ? ` ${left} cells that changed less are in the table or left out.` : ""),
     type: "line", height: 110 + 26 * shown.length,
-    data: {labels: shown.map(cell => tandem.shortened(cell.label, 38)), datasets: [{label: "new / old", data: shown.map(cell => cell.ratio[0]), showLine: false,
+    data: {labels: shown.map(cell => tandem.shortened(cell.label, tandem.beside())), datasets: [{label: "new / old", data: shown.map(cell => cell.ratio[0]), showLine: false,
       intervals: shown.map(cell => cell.ratio.slice(1)), colour: 1}]},
     options: {indexAxis: "y", scales: {x: {title: {display: true, text: "new time over old time, 95 % intervals; above 1 is slower"}, suggestedMin: Math.min(0.95, ...limits), suggestedMax: Math.max(1.05, ...limits),
       grid: {lineWidth: mark => mark.tick && mark.tick.value === 1 ? 3 : 1, color: mark => tandem.ofStyle(mark.tick && mark.tick.value === 1 ? "--text" : "--grid")}},

@@ -17,8 +17,8 @@
     document.getElementById("made").textContent = "Of " + records.files.map(file => file.name).join(", ") + ". Made " + records.date + ".";
     document.getElementById("program").textContent = records.program;
     attempt("summary", () => tandem.summary(records));
-    if (records.cells.length) attempt("cells", () => new tandem.CellTable(records).show());
     attempt("charts", () => tandem.charts(records, tandem.read("differences")));
+    if (records.cells.length) attempt("cells", () => new tandem.CellTable(records).show());
     attempt("others", () => tandem.ceilings(records));
   }
   if (scene) attempt("view", () => tandem.view(scene));

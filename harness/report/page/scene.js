@@ -75,12 +75,20 @@ tandem.SceneView = class {
     this.rigid = [...groups.values()].map(({mesh, bodies, tint}) => this.add(mesh, bodies, tint));
   }
 
+  /** Objects share the buffers of a mesh, but not its geometry: the library would take them for the same instances. */
+  sharing(mesh) {
+    if (!this.geometries.has(mesh)) this.geometries.set(mesh, this.geometry(this.data.meshes[mesh], tandem.points(this.data.meshes[mesh])));
+    const known = this.geometries.get(mesh);
+    const geometry = new THREE.BufferGeometry();
+    for (const name of ["position", "normal", "color"]) geometry.setAttribute(name, known.attributes[name]);
+    Object.assign(geometry, {userData: known.userData, boundingBox: known.boundingBox, boundingSphere: known.boundingSphere});
+    return geometry;
+  }
+
   add(mesh, bodies, tint) {
     const rigid = !(this.kinds[bodies[0]] & 2);
     const own = this.data.meshes[mesh];
-    const known = rigid && this.geometries.get(mesh);
-    const geometry = known || this.geometry(own, tandem.points(own));
-    if (rigid) this.geometries.set(mesh, geometry);
+    const geometry = rigid ? this.sharing(mesh) : this.geometry(own, tandem.points(own));
     const material = new THREE.MeshLambertMaterial({side: THREE.DoubleSide});
     const object = rigid ? new THREE.InstancedMesh(geometry, material, bodies.length) : new THREE.Mesh(geometry, material);
     object.frustumCulled = false;
@@ -91,7 +99,7 @@ tandem.SceneView = class {
   }
 
   makeContacts() {
-    const material = new THREE.PointsMaterial({color: 0xff2d95, size: 4, sizeAttenuation: false, depthTest: false});
+    const material = new THREE.PointsMaterial({color: 0xff2d95, size: 3, sizeAttenuation: false, depthTest: false});
     this.contactPoints = new THREE.Points(new THREE.BufferGeometry(), material);
     this.contactNormals = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color: 0xff2d95, depthTest: false}));
     for (const object of [this.contactPoints, this.contactNormals]) {
