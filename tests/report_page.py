@@ -14,6 +14,9 @@ from program import SOURCE, Case, tandem
 RECORDS = SOURCE / "results/h200"
 MARKUP = "<img src=x onerror=document.title='run'></script><script>document.title='run'</script>"
 ROWS = "[...document.querySelectorAll('#cell-table tbody tr')]"
+# The distinct pixels of the scene, for a script to go on with.
+PIXELS = "(() => { const c = document.getElementById('scene-canvas'), g = c.getContext('webgl2') || c.getContext('webgl'), p = new Uint8Array(4 * c.width * c.height); " \
+    "tandem.sceneView.draw(); g.readPixels(0, 0, c.width, c.height, g.RGBA, g.UNSIGNED_BYTE, p); const pixels = [...new Set(new Uint32Array(p.buffer))]; return "
 CAMERA = "tandem.sceneView.camera.position.toArray().map(x => x.toFixed(4)).join()"
 
 
@@ -110,8 +113,7 @@ class Pages(Case):
         run = self.browser.run
         run("document.getElementById('view').scrollIntoView()")
         self.browser.until("Boolean(tandem.sceneView)")
-        colours = "(() => { const c = document.getElementById('scene-canvas'), g = c.getContext('webgl2') || c.getContext('webgl'); const p = new Uint8Array(4 * c.width * c.height); " \
-            "tandem.sceneView.draw(); g.readPixels(0, 0, c.width, c.height, g.RGBA, g.UNSIGNED_BYTE, p); return new Set(new Uint32Array(p.buffer)).size; })()"
+        colours = PIXELS + "new Set(pixels).size; })()"
         self.assertGreater(run(colours), 20)
         before = run(CAMERA)
         run("document.getElementById('scene-canvas').focus()")
@@ -263,6 +265,10 @@ class Pages(Case):
         words = self.browser.run("document.getElementById('view').textContent")
         self.assertIn("drawn as boxes", words)
         self.assertRegex(words, r"\d+ of 60 frames are shown")
+        # Bodies of one mesh have several colours: which of red, green and blue is more than which.
+        orders = self.browser.run(PIXELS + "new Set(pixels.map(p => [p & 255, p >> 8 & 255, p >> 16 & 255]).filter(c => Math.max(...c) - Math.min(...c) > 40)"
+                                  ".map(c => [0, 1, 2].sort((a, b) => c[a] - c[b]).join())).size; })()")
+        self.assertGreater(orders, 3)
 
     def test_without_webgl(self):
         page = self.work / "plain.html"

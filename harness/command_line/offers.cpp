@@ -129,6 +129,7 @@ Offer offer_values(const LineBefore& before, const CLI::Option& option, const st
     if (name == "preset") return {preset_names(before), ","};
     if (name == "device") return {device_names(before), ",+"};
     if (name == "require") return {requirable_names(before), ","};
+    if (name == "scene") return offer_scenes(text);
     if (name == "set") return {settings(before, text), "=,"};
     if (name == "dynamics") return {dynamics(text), "="};
     const auto& choices = option.get_option_text();

@@ -3,15 +3,16 @@
 "use strict";
 
 tandem.cellColumns = [
-  {name: "cell", of: cell => cell.label, shown: cell => cell.label || cell.algorithm},
-  {name: "algorithm", of: cell => cell.algorithm},
-  {name: "scene", of: cell => cell.scene},
-  {name: "frames", of: cell => cell.frames},
-  {name: "device", of: cell => cell.device},
-  {name: "status", of: cell => cell.status + (cell.older ? ", recorded again" : "")},
+  {name: "cell", style: "name", of: cell => cell.label, shown: cell => cell.label || cell.algorithm},
   {name: "ms a frame", number: true, of: cell => cell.ms && cell.ms[0]},
   {name: "95 %", number: true, of: cell => cell.ms && (cell.ms[2] - cell.ms[1]) / 2,
    shown: cell => cell.ms && cell.rounds > 1 ? "± " + tandem.number(+((cell.ms[2] - cell.ms[1]) / 2).toPrecision(2)) : ""},
+  {name: "status", of: cell => cell.status + (cell.older ? ", recorded again" : "")},
+  {name: "algorithm", of: cell => cell.algorithm},
+  {name: "k", number: true, of: cell => +cell.settings.k || null},
+  {name: "scene", style: "wraps", of: cell => cell.scene},
+  {name: "frames", of: cell => cell.frames},
+  {name: "device", style: "wraps", of: cell => cell.device},
   {name: "launches", number: true, of: cell => cell.launches},
   {name: "waits", number: true, of: cell => cell.waits},
   {name: "candidate pairs", number: true, of: cell => cell.pairs},
@@ -42,7 +43,7 @@ tandem.cellRow = (cell, data) => {
   tandem.cellColumns.forEach((column, i) => {
     const value = column.shown ? column.shown(cell) : column.of(cell);
     const text = column.number && !column.shown ? tandem.number(value) : String(value ?? "");
-    const place = element("td", {class: column.number ? "number" : i === 0 ? "name" : column.name === "status" ? cell.status : null});
+    const place = element("td", {class: column.number ? "number" : column.name === "status" ? cell.status : column.style});
     if (i > 0) place.textContent = text;
     else place.append(element("button", {type: "button", "aria-expanded": "false", onclick: event => {
       const button = event.currentTarget;
