@@ -17,6 +17,9 @@ ROWS = "[...document.querySelectorAll('#cell-table tbody tr')]"
 # The distinct pixels of the scene, for a script to go on with.
 PIXELS = "(() => { const c = document.getElementById('scene-canvas'), g = c.getContext('webgl2') || c.getContext('webgl'), p = new Uint8Array(4 * c.width * c.height); " \
     "tandem.sceneView.draw(); g.readPixels(0, 0, c.width, c.height, g.RGBA, g.UNSIGNED_BYTE, p); const pixels = [...new Set(new Uint32Array(p.buffer))]; return "
+# How many of 36 hues these have.
+HUES = PIXELS + "new Set(pixels.map(p => new THREE.Color(`rgb(${p & 255},${p >> 8 & 255},${p >> 16 & 255})`).getHSL({})).filter(c => c.s > 0.5)" \
+    ".map(c => Math.floor(c.h * 36))).size; })()"
 CAMERA = "tandem.sceneView.camera.position.toArray().map(x => x.toFixed(4)).join()"
 
 
@@ -130,8 +133,10 @@ class Pages(Case):
         self.assertEqual(run("tandem.sceneView.frame"), 3)
         self.browser.key("PageUp")
         self.assertIn("Frame 22:", run("document.getElementById('scene-words').textContent"))
-        run("tandem.sceneView.colour('chunk')")
-        self.assertGreater(run(colours), 40)
+        run("[...document.querySelectorAll('#view button')].find(b => b.textContent === 'Contacts').click()")
+        bodies = run(HUES)
+        run("(() => { const s = [...document.querySelectorAll('#view select')][0]; s.value = 'chunk'; s.dispatchEvent(new Event('change')); })()")
+        self.assertGreater(run(HUES), 3 * bodies)
 
     def check_sizes_and_colours(self):
         ground = "getComputedStyle(document.body).backgroundColor"
@@ -162,12 +167,13 @@ class Pages(Case):
     def check_sorting(self):
         self.assertEqual(self.sort_by("ms a frame"), "ascending")
         times = [float(text.replace(",", "")) for text in self.column("ms a frame") if text]
-        self.assertEqual(times, sorted(times))
+        self.assertTrue(times == sorted(times), times[:20])  # differences of long lists take minutes to tell
         self.assertEqual(self.sort_by("ms a frame"), "descending")
-        self.assertEqual([float(text.replace(",", "")) for text in self.column("ms a frame") if text], sorted(times, reverse=True))
+        falling = [float(text.replace(",", "")) for text in self.column("ms a frame") if text]
+        self.assertTrue(falling == times[::-1], falling[:20])
         self.assertEqual(self.sort_by("algorithm"), "ascending")
         names = self.column("algorithm")
-        self.assertEqual(names, sorted(names))
+        self.assertTrue(names == sorted(names), names[:20])
 
     def check_filters(self):
         tiled = sum(record["algorithm"] == "tiled" for record in self.made_up(3000))
@@ -265,10 +271,7 @@ class Pages(Case):
         words = self.browser.run("document.getElementById('view').textContent")
         self.assertIn("drawn as boxes", words)
         self.assertRegex(words, r"\d+ of 60 frames are shown")
-        # Bodies of one mesh have several colours: which of red, green and blue is more than which.
-        orders = self.browser.run(PIXELS + "new Set(pixels.map(p => [p & 255, p >> 8 & 255, p >> 16 & 255]).filter(c => Math.max(...c) - Math.min(...c) > 40)"
-                                  ".map(c => [0, 1, 2].sort((a, b) => c[a] - c[b]).join())).size; })()")
-        self.assertGreater(orders, 3)
+        self.assertGreater(self.browser.run(HUES), 3)  # bodies of one mesh have several
 
     def test_without_webgl(self):
         page = self.work / "plain.html"

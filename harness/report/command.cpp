@@ -49,12 +49,12 @@ void write(const std::string& path, const Page& page, const std::string& told) {
 }
 
 /// "36 cells of 2 files", and what there is of others.
-std::string told_of(const report::Records& records, std::size_t files) {
+std::string told_of(std::size_t cells, const report::Records& records, std::size_t files) {
     std::vector<std::string> parts;
     const auto add = [&](std::size_t count, std::string_view one, std::string_view more) {
         if (count > 0) parts.push_back(fmt::format("{} {}", count, count == 1 ? one : more));
     };
-    add(records.cells.size(), "cell", "cells");
+    add(cells, "cell", "cells");
     add(records.profiles.size(), "profile", "profiles");
     add(records.simulations.size(), "simulation", "simulations");
     add(records.ceilings.size(), "device's ceilings", "devices' ceilings");
@@ -77,7 +77,6 @@ int report_command(const ReportOptions& options) {
     Page page{.title = "Report of tandem", .has_scene = !options.scene.scene.empty(), .has_charts = true};
     report::check_libraries(page);
     auto records = report::read_records(options.files);
-    auto told = told_of(records, options.files.size());
     auto bytes = report::empty_bytes(page);
     const auto add = [&](const char* id, std::string json) {
         bytes += json.size();
@@ -85,16 +84,17 @@ int report_command(const ReportOptions& options) {
     };
     if (!options.against.empty())
         add("differences", report::differences(options.against, options.files.front()));
+    std::string scene_told;
     if (page.has_scene) {
         auto scene = open_shown_scene(options.scene);
         add("scene", std::move(scene.json));
-        told += ", " + scene.key;
+        scene_told = ", " + scene.key;
     }
     const auto room = most_page_bytes > bytes ? most_page_bytes - bytes : 0;
-    auto notes = records.notes;
-    add("records", report::data_of(std::move(records), room));
-    write(options.output, page, told);
-    for (const auto& note : notes) tell("tandem: {}\n", note);
+    auto data = report::data_of(records, room);
+    add("records", std::move(data.json));
+    write(options.output, page, told_of(data.cells, records, options.files.size()) + scene_told);
+    for (const auto& note : data.notes) tell("tandem: {}\n", note);
     return 0;
 }
 

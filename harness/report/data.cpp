@@ -79,7 +79,7 @@ void add_labels(Records& records, const std::vector<Group>& groups) {
 
 } // namespace
 
-std::string data_of(Records records, std::size_t most_bytes) {
+PageData data_of(Records records, std::size_t most_bytes) {
     const auto others = dumped(records.profiles).size() + dumped(records.ceilings).size()
                         + dumped(records.simulations).size();
     auto room = most_bytes > others ? most_bytes - others : 0;
@@ -117,7 +117,7 @@ std::string data_of(Records records, std::size_t most_bytes) {
     json["files"] = std::move(records.files);
     json["cell_records"] = records.cell_records;
     json["notes"] = records.notes;
-    return dumped(json);
+    return {dumped(json), records.cells.size(), std::move(records.notes)};
 }
 
 } // namespace tandem::report

@@ -121,7 +121,6 @@ void Simulations::add(const Record& line, const std::string& path) {
 }
 
 Json Simulations::shown() const {
-    constexpr std::size_t most_runs = 40;
     Json all = Json::array();
     for (const auto& run : runs_) {
         if (all.size() == most_runs) break;

@@ -163,6 +163,8 @@ Records Reader::finish() {
             fmt::format("{} profiles or records of ceilings are left out: there is room for {} of "
                         "each",
                         others_, most_others));
+    if (simulations_.left_out() > 0)
+        notes.push_back(fmt::format("the last {} simulations are left out", simulations_.left_out()));
     records_.simulations = simulations_.shown();
     return std::move(records_);
 }

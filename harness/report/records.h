@@ -60,9 +60,11 @@ Json shown_ceilings(const nlohmann::json& record);
 class Simulations {
 public:
     void add(const nlohmann::json& line, const std::string& path);
-    Json shown() const;
+    Json shown() const; ///< the first `most_runs`
+    std::size_t left_out() const { return runs_.size() > most_runs ? runs_.size() - most_runs : 0; }
 
 private:
+    static constexpr std::size_t most_runs = 40;
     struct Run;
     std::vector<std::shared_ptr<Run>> runs_;
 };

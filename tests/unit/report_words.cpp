@@ -99,11 +99,13 @@ TEST(ReportWords, DifferentAnswersHaveNoFastest) {
 TEST(ReportData, LeavesOutTheLastCellsAndSaysSo) {
     Records records;
     for (int i = 0; i < 200; ++i) records.cells.push_back(cell_of("a" + std::to_string(i), one_ms));
-    const auto text = data_of(std::move(records), 40'000);
+    const auto [text, cells, notes] = data_of(std::move(records), 40'000);
     EXPECT_LT(text.size(), 50'000u);
     const auto json = Json::parse(text);
     EXPECT_LT(json["cells"].size(), 200u);
     EXPECT_GT(json["cells"].size(), 10u);
+    EXPECT_EQ(json["cells"].size(), cells);
+    EXPECT_EQ(json["notes"].size(), notes.size());
     EXPECT_THAT(json["notes"][0].get<std::string>(), HasSubstr("of 200 cells are left out"));
 }
 
