@@ -172,10 +172,10 @@ tandem.SceneView = class {
     this.radius = sphere.radius || 1;
     this.centre = sphere.center;
     const all = this.boxOf(() => true).getBoundingSphere(new THREE.Sphere()).radius || 1;
-    this.camera.up.set(0, 0, 1);
+    this.camera.up.set(0, 1, 0);  // as gravity has it
     this.camera.near = this.radius / 200;
     this.camera.far = this.radius * 20 + all * 10;
-    this.camera.position.copy(this.centre).add(new THREE.Vector3(0.6, -1, 0.55).normalize().multiplyScalar(this.radius * 2.9));
+    this.camera.position.copy(this.centre).add(new THREE.Vector3(0.6, 0.55, 1).normalize().multiplyScalar(this.radius * 2.9));
     this.camera.lookAt(this.centre);
     this.camera.updateProjectionMatrix();
     if (this.data.contacts) this.showContacts(this.data.contacts[this.frame]);

@@ -95,11 +95,11 @@ tandem.Player = class {
   /** Around what the camera looks at, by a twelfth of a half turn. */
   turn(right, up) {
     const from = this.view.camera.position.clone().sub(this.orbit.target);
-    const z = new THREE.Vector3(0, 0, 1);
-    from.applyAxisAngle(z, right * Math.PI / 12);
-    const side = new THREE.Vector3().crossVectors(z, from).normalize();
+    const top = new THREE.Vector3(0, 1, 0);
+    from.applyAxisAngle(top, right * Math.PI / 12);
+    const side = new THREE.Vector3().crossVectors(top, from).normalize();
     const tilted = from.clone().applyAxisAngle(side, -up * Math.PI / 12);
-    if (Math.abs(tilted.angleTo(z) - Math.PI / 2) < Math.PI / 2 - 0.05) from.copy(tilted);
+    if (Math.abs(tilted.angleTo(top) - Math.PI / 2) < Math.PI / 2 - 0.05) from.copy(tilted);
     this.view.camera.position.copy(this.orbit.target).add(from);
     this.orbit.update();
     this.view.draw();
