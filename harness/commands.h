@@ -103,6 +103,25 @@ struct ExportOptions {
     std::string device = "host";
 };
 
+/// Options of `tandem view`.
+struct ViewOptions {
+    std::string scene;
+    std::vector<std::string> meshes, poses; ///< as of RunOptions
+    std::string frames;                     ///< "FIRST:LAST" or "N"; empty: all
+    std::size_t every = 1;                  ///< leave out frames between every so many
+    bool contacts = false;                  ///< found on `device`
+    std::string device = "host";
+    std::string output; ///< the page; empty: named after the scene
+};
+
+/// Options of `tandem report`.
+struct ReportOptions {
+    std::vector<std::string> files; ///< of records of any kinds
+    std::string against;            ///< a file of records that the one of `files` is compared with
+    std::string output = "report.html";
+    ViewOptions scene; ///< that the page shows as well; none when it names none
+};
+
 /// Options of `tandem simulate`.
 struct SimulateOptions {
     std::string scene;
@@ -138,6 +157,8 @@ int compare_command(const CompareOptions& options); ///< 1: something changed
 int simulate_command(const SimulateOptions& options);
 int export_command(const ExportOptions& options);
 int paper_command(const PaperOptions& options);
+int report_command(const ReportOptions& options);
+int view_command(const ViewOptions& options);
 int devices_command(const DevicesOptions& options);
 int scenes_command(bool json);
 int algorithms_command(const AlgorithmsOptions& options);

@@ -2,6 +2,8 @@
 #include "algorithms/hierarchy/levels.h"
 #include "algorithms/hierarchy/order.h"
 #include "algorithms/parameters/table.h"
+#include "harness/chunk_numbers.h"
+#include "harness/frame_contacts.h"
 #include "harness/dumps.h"
 #include "harness/inputs.h"
 #include "harness/table/records_csv.h"
@@ -27,48 +29,15 @@ Scene open_scene(const ExportOptions& options) {
     return open_scene(run);
 }
 
-/// The chunk over each tetrahedron, numbered from 0 in each body, of the tree with the paper's 32 leaves.
+/// Of the chunk over each tetrahedron, body after body.
 CellNumbers chunks_of(const Scene& scene) {
-    constexpr std::uint32_t leaves = 32;
     std::vector<std::vector<std::uint32_t>> by_mesh;
-    for (const auto& mesh : scene.meshes) {
-        const auto order = morton_order(mesh);
-        auto& chunks = by_mesh.emplace_back(order.size());
-        for (std::uint32_t i = 0; i < order.size(); ++i) chunks[order[i]] = i / leaves;
-    }
+    for (const auto& mesh : scene.meshes) by_mesh.push_back(chunk_numbers(mesh));
     CellNumbers numbers{"chunk", {}};
     for (const auto& body : scene.bodies)
         numbers.values.insert(numbers.values.end(), by_mesh[body.mesh].begin(), by_mesh[body.mesh].end());
     return numbers;
 }
-
-/// Finds the contacts of one frame after the other.
-class Contacts {
-public:
-    Contacts(const std::string& device, const Scene& scene)
-        : scene_(scene), backends_(open_backends({&device, 1}, {})) {
-        Request request;
-        request.algorithms = {std::string(algorithms().front()->name())};
-        request.devices = {device};
-        const auto devices = choose_devices(backends_, request.devices);
-        if (devices.size() != 1)
-            throw InputError(fmt::format("--device {}: one device finds contacts; name it", device));
-        cell_ = plan(request, devices).front();
-        session_ = cell_.algorithm->prepare(cell_.devices, scene, cell_.settings);
-    }
-
-    /// Coordinates are checked frame by frame: export opens them one at a time, however many there are.
-    std::vector<ContactPoint> of(const Frame& frame) {
-        check_coordinates(cell_, scene_, frame);
-        return session_->run(frame).download_contacts();
-    }
-
-private:
-    const Scene& scene_;
-    std::vector<BackendReport> backends_;
-    Cell cell_;
-    std::unique_ptr<Session> session_;
-};
 
 void make_folder(const std::string& folder) {
     std::error_code error;
@@ -80,7 +49,7 @@ void make_folder(const std::string& folder) {
 
 std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
                        std::span<const std::size_t> frames) {
-    std::optional<Contacts> finder;
+    std::optional<FrameContacts> finder;
     if (options.contacts) finder.emplace(options.device, scene);
     make_folder(options.vtu);
     const auto chunks = chunks_of(scene);

@@ -33,6 +33,8 @@ constexpr Command commands[] = {
     {"simulate", "move a scene with dynamics; record its frames", tandem::add_simulate},
     {"export", "frames as files for ParaView and other viewers, records as a table", tandem::add_export},
     {"paper", "every table and figure of the paper beside ours, with verdicts", tandem::add_paper},
+    {"report", "records, and a scene, as one page for a browser: words, tables, charts", tandem::add_report},
+    {"view", "a scene in three dimensions as a page for a browser", tandem::add_view},
     {"devices", "what there is, or why there is not", tandem::add_devices},
     {"scenes", "scenes the program makes, with their parameters", tandem::add_scenes},
     {"algorithms", "algorithms with their presets and settings; one at length", tandem::add_algorithms},

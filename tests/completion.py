@@ -13,7 +13,7 @@ from program import PROGRAM, SOURCE, Case, tandem
 
 BASH = SOURCE / "scripts/completion/tandem.bash"
 ZSH = SOURCE / "scripts/completion/_tandem"
-COMMANDS = ["accuracy", "algorithms", "check", "compare", "completion", "devices", "export", "profile", "run", "scenes", "simulate"]
+COMMANDS = ["accuracy", "algorithms", "check", "compare", "completion", "devices", "export", "profile", "report", "run", "scenes", "simulate", "view"]
 
 
 def asked(*words):
@@ -52,13 +52,13 @@ class Completion(Case):
 
     def test_bash(self):
         for line, offered in (
-                ("tandem ", COMMANDS), ("tandem r", ["run"]), ("tandem run --algo", ["--algorithm"]), ("tandem run pi", ["pile"]),
+                ("tandem ", COMMANDS), ("tandem r", ["report", "run"]), ("tandem run --algo", ["--algorithm"]), ("tandem run pi", ["pile"]),
                 ("tandem run --algorithm ti", ["tiled"]), ("tandem run --algorithm chunked,ti", ["chunked,tiled"]),
                 ("tandem run --algorithm=ti", ["tiled"]), ("tandem run --device ho", ["host"]),
                 ("tandem run --set slabs=", ["all", "three", "usual"]), ("tandem run --set slabs=t", ["three"]), ("tandem run --set=slabs=t", ["three"]),
                 ("tandem run --set slabs=three,a", ["three,all"]), ("tandem run --set group_siz", ["group_size="]),
                 ("tandem run --set group_size=", ["128", "256", "64"]), ("tandem run pile:bod", ["bodies="]),
-                ("tandem check hard:corner-c", ["corner-cancellation"]), ("tandem run pile:bodies=3,dens", ["3,density="]),
+                ("tandem view pla", ["plates"]), ("tandem report x --scene pla", ["plates"]), ("tandem check hard:corner-c", ["corner-cancellation"]), ("tandem run pile:bodies=3,dens", ["3,density="]),
                 ("tandem run --set slabs= --dry", ["--dry-run"]),
                 ("tandem run --set slabs= ", self.scenes), ("tandem run --out ", []), ("tandem run --frames 3", []),
                 ("tandem run --set builder=", ["breadth", "hilbert", "median", "morton", "sah"]), ("tandem export --builder m", ["median", "morton"]),

@@ -31,8 +31,10 @@ def setUpModule():
     FOLDER = tempfile.TemporaryDirectory(prefix="tandem-package")
     copy = pathlib.Path(FOLDER.name) / "source"
     shutil.copytree(SOURCE / "python", copy / "python", ignore=shutil.ignore_patterns("__pycache__"))
-    for name in ("pyproject.toml", "LICENSE", "CITATION.cff"):
-        shutil.copy(SOURCE / name, copy)
+    shutil.copytree(SOURCE / "results/paper", copy / "results/paper")
+    for name in ("pyproject.toml", "LICENSE", "CITATION.cff", "scripts/render"):
+        (copy / name).parent.mkdir(exist_ok=True)
+        shutil.copy(SOURCE / name, copy / name)
     done = subprocess.run([sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", FOLDER.name], cwd=copy, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     wheel, = pathlib.Path(FOLDER.name).glob("*.whl")

@@ -22,6 +22,8 @@ Action add_compare(CLI::App& app);
 Action add_simulate(CLI::App& app);
 Action add_export(CLI::App& app);
 Action add_paper(CLI::App& app);
+Action add_report(CLI::App& app);
+Action add_view(CLI::App& app);
 Action add_devices(CLI::App& app);
 Action add_scenes(CLI::App& app);
 Action add_algorithms(CLI::App& app);

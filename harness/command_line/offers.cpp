@@ -129,6 +129,7 @@ Offer offer_values(const LineBefore& before, const CLI::Option& option, const st
     if (name == "preset") return {preset_names(before), ","};
     if (name == "device") return {device_names(before), ",+"};
     if (name == "require") return {requirable_names(before), ","};
+    if (name == "scene") return offer_scenes(text);
     if (name == "set") return {settings(before, text), "=,"};
     if (name == "dynamics") return {dynamics(text), "="};
     const auto& choices = option.get_option_text();
@@ -140,7 +141,7 @@ Offer offer_arguments(const LineBefore& before, const std::string& text) {
     const auto name = before.command->get_name();
     if (name == "algorithms") return {algorithm_names(before)};
     if (name == "completion") return {{"bash", "zsh"}};
-    static const std::set<std::string> with_scenes{"run", "check", "accuracy", "simulate", "export"};
+    static const std::set<std::string> with_scenes{"run", "check", "accuracy", "simulate", "export", "view"};
     return with_scenes.contains(name) ? offer_scenes(text) : Offer{};
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -45,6 +46,8 @@ struct RecordedCell {
 
 /// The record that is the text of one line. Throws InputError: PATH:LINE, what it is instead and what to do.
 RecordedCell read_cell(const std::string& text, const std::string& path, std::size_t line);
+/// Likewise of a line that has been parsed.
+RecordedCell read_parsed_cell(const nlohmann::json& record, const std::string& path, std::size_t line);
 
 /// The records of one file, or of one commit in it.
 struct RecordedCells {

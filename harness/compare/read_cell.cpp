@@ -153,11 +153,10 @@ RecordedCell cell_of(const Json& json, std::size_t line) {
 
 } // namespace
 
-RecordedCell read_cell(const std::string& text, const std::string& path, std::size_t line) {
-    const auto json = Json::parse(text, nullptr, false);
+RecordedCell read_parsed_cell(const Json& record, const std::string& path, std::size_t line) {
     try {
-        if (json.is_discarded()) throw NoRecord(fmt::format("is not JSON; {}", what_to_give));
-        return cell_of(json, line);
+        if (record.is_discarded()) throw NoRecord(fmt::format("is not JSON; {}", what_to_give));
+        return cell_of(record, line);
     } catch (const NoRecord& problem) {
         throw InputError(fmt::format("{}:{}: {}", path, line, problem.what()));
     } catch (const Json::exception& problem) {
@@ -166,6 +165,10 @@ RecordedCell read_cell(const std::string& text, const std::string& path, std::si
         throw InputError(fmt::format("{}:{}: is no record of a cell ({}); {}", path, line,
                                      what.substr(std::min(what.find("] ") + 2, what.size())), what_to_give));
     }
+}
+
+RecordedCell read_cell(const std::string& text, const std::string& path, std::size_t line) {
+    return read_parsed_cell(Json::parse(text, nullptr, false), path, line);
 }
 
 } // namespace tandem::compare

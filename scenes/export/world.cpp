@@ -42,6 +42,7 @@ Surface surface_of(const Mesh& mesh) {
             auto face = faces[f];
             if (turned) std::swap(face[1], face[2]);
             for (const auto corner : face) surface.triangles.push_back(corners[corner]);
+            surface.tetrahedra.push_back(static_cast<std::uint32_t>(t));
         }
     }
     surface.vertices = surface.triangles;

@@ -10,8 +10,9 @@ std::vector<Eigen::Vector3d> world_vertices(const Scene& scene, const Frame& fra
 
 /// The boundary of a mesh as triangles that wind counterclockwise seen from outside.
 struct Surface {
-    std::vector<std::uint32_t> vertices;  ///< mesh vertices that the boundary has, ascending
-    std::vector<std::uint32_t> triangles; ///< three indices into `vertices` each
+    std::vector<std::uint32_t> vertices;   ///< mesh vertices that the boundary has, ascending
+    std::vector<std::uint32_t> triangles;  ///< three indices into `vertices` each
+    std::vector<std::uint32_t> tetrahedra; ///< that each triangle is a face of
 };
 
 Surface surface_of(const Mesh& mesh);

@@ -138,10 +138,11 @@ class Folder:
         """Steps that have ended well, in their order."""
         return [name for name, step in self.steps.items() if name.startswith(beginning) and step["exit"] == 0]
 
-    def ways(self, step, split=()):
-        """Of the last record of each cell of a step. Frames of one scene, algorithm, preset and settings are one way."""
+    def ways(self, step):
+        """Of the last record of each cell of a step, also of one that did not end. Frames of one scene, algorithm, preset and settings
+        are one way."""
         path = self.path / "records" / f"{step}.jsonl"
-        if step not in self.named(step):
+        if not path.exists() or path.stat().st_size == 0:
             return []
         cells = {}
         for row, (record, _) in enumerate(lines.each(path), 1):

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// What all parts of the page share: its data, elements whose text is never markup, numbers as they are read.
+"use strict";
+const tandem = {};
+tandem.darkness = matchMedia("(prefers-color-scheme: dark)");
+
+tandem.read = id => {
+  const element = document.getElementById("data-" + id);
+  return element ? JSON.parse(element.textContent) : null;
+};
+
+/** An element with attributes and children; strings become text. */
+tandem.element = (name, attributes, ...children) => {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes || {}))
+    if (typeof value === "function") made[key] = value;
+    else if (value === true) made.setAttribute(key, "");
+    else if (value !== false && value !== null && value !== undefined) made.setAttribute(key, value);
+  made.append(...children.filter(child => child !== null && child !== undefined));
+  return made;
+};
+
+/** Shows a section and what it has; the links at the top get one to it. */
+tandem.show = (id, ...children) => {
+  const section = document.getElementById(id);
+  section.append(...children);
+  if (!section.hidden) return;
+  section.hidden = false;
+  const title = section.querySelector("h2").textContent;
+  document.getElementById("contents").append(tandem.element("a", {href: "#" + id}, title));
+};
+
+/** Four digits. */
+tandem.number = value => {
+  if (value === null || value === undefined) return "";
+  const size = Math.abs(value);
+  if (size === 0) return "0";
+  if (size >= 1e7 || size < 1e-4) return value.toExponential(2).replace(/\.?0+e/, "e");
+  return size >= 1000 ? Math.round(value).toLocaleString("en") : String(+value.toPrecision(4));
+};
+tandem.interval = ([value, low, high]) => `${tandem.number(value)} [${tandem.number(low)}, ${tandem.number(high)}]`;
+tandem.count = (count, one, more) => `${count} ${count === 1 ? one : more}`;
+
+/** A choice among options, each {value, text}. */
+tandem.choice = (label, options, change) => {
+  const select = tandem.element("select", {onchange: () => change(select.value)},
+    ...options.map(({value, text}) => tandem.element("option", {value}, text)));
+  return tandem.element("label", {class: "wide"}, label, select);
+};
+
+/** A table of texts and numbers under headings; for what a chart shows as well. */
+tandem.table = (caption, heads, rows) => tandem.element("div", {class: "scrolls"}, tandem.element("table", {},
+  tandem.element("caption", {}, caption),
+  tandem.element("thead", {}, tandem.element("tr", {}, ...heads.map(head => tandem.element("th", {scope: "col"}, head)))),
+  tandem.element("tbody", {}, ...rows.map(row => tandem.element("tr", {}, ...row.map(value =>
+    tandem.element("td", {class: typeof value === "number" ? "number" : null},
+      typeof value === "number" ? tandem.number(value) : String(value ?? ""))))))));
+
+/** Cells as objects by the names of their fields, from rows whose shared values stand elsewhere, once each. */
+tandem.unpack = data => {
+  const shared = new Set(data.shared);
+  const older = new Set(data.older);
+  data.cells = data.cells.map((row, index) => {
+    const cell = {index, older: older.has(index)};
+    data.fields.forEach((field, i) => {
+      cell[field] = shared.has(field) && row[i] !== null ? data.values[row[i]] : row[i];
+    });
+    return cell;
+  });
+  data.groups.forEach((group, number) => {
+    group.number = number;
+    group.cells = group.cells.map(index => data.cells[index]);
+    for (const cell of group.cells) cell.group = group;
+  });
+  return data;
+};

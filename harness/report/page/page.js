@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Puts the parts together. A part that fails says so in its place and takes no other with it.
+"use strict";
+(() => {
+  const records = tandem.read("records");
+  const scene = tandem.read("scene");
+  const attempt = (id, part) => {
+    try {
+      part();
+    } catch (error) {
+      tandem.show(id, tandem.element("p", {class: "bad", role: "alert"}, "This part could not be drawn: " + error.message));
+      console.error(error);
+    }
+  };
+  if (records) {
+    tandem.unpack(records);
+    document.getElementById("made").textContent = "Of " + records.files.map(file => file.name).join(", ") + ". Made " + records.date + ".";
+    document.getElementById("program").textContent = records.program;
+    attempt("summary", () => tandem.summary(records));
+    attempt("charts", () => tandem.charts(records, tandem.read("differences")));
+    if (records.cells.length) attempt("cells", () => new tandem.CellTable(records).show());
+    attempt("others", () => tandem.ceilings(records));
+  }
+  if (scene) attempt("view", () => tandem.view(scene));
+  document.documentElement.dataset.ready = "true";
+})();

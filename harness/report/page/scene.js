@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+// The scene in three dimensions: bodies that share a mesh are instances of it, deformable ones have vertices of their own.
+"use strict";
+
+tandem.bytes = text => Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
+tandem.shorts = text => new Uint16Array(tandem.bytes(text).buffer);
+
+/** Points of 16 bits in their box. */
+tandem.points = ({lower, size, points}) => Float32Array.from(tandem.shorts(points), (value, i) => lower[i % 3] + size[i % 3] * value / 65535);
+
+tandem.bodyColours = [0xd55e00, 0x0072b2, 0x009e73, 0xe6c229, 0xcc79a7, 0x56b4e9, 0xe69f00, 0x7b5ea7];
+tandem.fixedColour = 0x8a8f98;
+
+/** Draws frames of a scene; knows no controls. */
+tandem.SceneView = class {
+  constructor(data, canvas) {
+    Object.assign(this, {data, frame: 0, colouring: "body"});
+    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.scene = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(40, 1, 0.01, 1000);
+    this.light = new THREE.DirectionalLight(0xffffff, 0.75);
+    this.camera.add(this.light);
+    this.light.position.set(0.5, 1, 1);
+    this.scene.add(this.camera, new THREE.AmbientLight(0xffffff, 0.45));
+    this.bodyMeshes = new Uint32Array(tandem.bytes(data.body_meshes).buffer);
+    this.kinds = tandem.bytes(data.body_kinds);
+    this.makeBodies();
+    this.makeContacts();
+    this.show(0);
+    this.lookAtAll();
+  }
+
+  /** Triangles apart from each other, so that each has a normal and a colour of its own. */
+  geometry(mesh, points) {
+    const corners = mesh.wide ? new Uint32Array(tandem.bytes(mesh.triangles).buffer) : tandem.shorts(mesh.triangles);
+    const positions = new Float32Array(corners.length * 3);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
+    geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(corners.length * 3), 3));
+    Object.assign(geometry.userData ??= {}, {corners, chunks: tandem.bytes(mesh.chunks)});
+    this.place(geometry, points);
+    return geometry;
+  }
+
+  place(geometry, points) {
+    const {corners} = geometry.userData;
+    const positions = geometry.attributes.position;
+    corners.forEach((corner, i) => {
+      for (let axis = 0; axis < 3; ++axis) positions.array[3 * i + axis] = points[3 * corner + axis];
+    });
+    positions.needsUpdate = true;
+    geometry.computeVertexNormals();
+    geometry.computeBoundingBox();
+    geometry.computeBoundingSphere();
+  }
+
+  /** Instances have no colours in this version of the library: rigid bodies of one mesh and colour are one object. */
+  makeBodies() {
+    this.objects = [];
+    this.deformable = [];
+    const groups = new Map();
+    const count = tandem.bodyColours.length;
+    for (let body = 0; body < this.data.bodies; ++body) {
+      if (this.kinds[body] & 2) {
+        this.deformable.push(this.add(this.bodyMeshes[body], [body], body % count));
+        continue;
+      }
+      const tint = this.kinds[body] & 1 ? count : body % count;
+      const key = this.bodyMeshes[body] * (count + 1) + tint;
+      if (!groups.has(key)) groups.set(key, {mesh: this.bodyMeshes[body], bodies: [], tint});
+      groups.get(key).bodies.push(body);
+    }
+    this.geometries = new Map();
+    this.rigid = [...groups.values()].map(({mesh, bodies, tint}) => this.add(mesh, bodies, tint));
+  }
+
+  /** Objects share the buffers of a mesh, but not its geometry: the library would take them for the same instances. */
+  sharing(mesh) {
+    if (!this.geometries.has(mesh)) this.geometries.set(mesh, this.geometry(this.data.meshes[mesh], tandem.points(this.data.meshes[mesh])));
+    const known = this.geometries.get(mesh);
+    const geometry = new THREE.BufferGeometry();
+    for (const name of ["position", "normal", "color"]) geometry.setAttribute(name, known.attributes[name]);
+    Object.assign(geometry, {userData: known.userData, boundingBox: known.boundingBox, boundingSphere: known.boundingSphere});
+    return geometry;
+  }
+
+  add(mesh, bodies, tint) {
+    const rigid = !(this.kinds[bodies[0]] & 2);
+    const own = this.data.meshes[mesh];
+    const geometry = rigid ? this.sharing(mesh) : this.geometry(own, tandem.points(own));
+    const material = new THREE.MeshLambertMaterial({side: THREE.DoubleSide});
+    const object = rigid ? new THREE.InstancedMesh(geometry, material, bodies.length) : new THREE.Mesh(geometry, material);
+    object.frustumCulled = false;
+    Object.assign(object.userData, {bodies, colour: tint < tandem.bodyColours.length ? tandem.bodyColours[tint] : tandem.fixedColour});
+    this.objects.push(object);
+    this.scene.add(object);
+    return object;
+  }
+
+  makeContacts() {
+    const material = new THREE.PointsMaterial({color: 0xff2d95, size: 3, sizeAttenuation: false, depthTest: false});
+    this.contactPoints = new THREE.Points(new THREE.BufferGeometry(), material);
+    this.contactNormals = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({color: 0xff2d95, depthTest: false}));
+    for (const object of [this.contactPoints, this.contactNormals]) {
+      object.frustumCulled = false;
+      object.renderOrder = 1;
+      object.visible = Boolean(this.data.contacts);
+      this.scene.add(object);
+    }
+  }
+
+  colour(by) {
+    this.colouring = by;
+    const chunk = new THREE.Color();
+    for (const {geometry} of this.objects) {
+      const colours = geometry.attributes.color;
+      for (let i = 0; i < colours.count; ++i) {
+        const number = geometry.userData.chunks[Math.floor(i / 3)];
+        chunk.setHSL((number * 0.381966) % 1, 0.65, 0.45 + 0.2 * (number % 2));
+        chunk.toArray(colours.array, 3 * i);
+      }
+      colours.needsUpdate = true;
+    }
+    for (const object of this.objects) {
+      const chunks = by === "chunk";
+      object.material.vertexColors = chunks ? THREE.VertexColors : THREE.NoColors;
+      object.material.color.set(chunks ? 0xffffff : by === "body" ? object.userData.colour : 0xb8bec6);
+      object.material.needsUpdate = true;
+    }
+    this.draw();
+  }
+
+  show(frame) {
+    this.frame = frame;
+    const poses = tandem.shorts(this.data.poses[frame]);
+    const {lower, size} = this.data;
+    const place = new THREE.Vector3(), turn = new THREE.Quaternion(), once = new THREE.Vector3(1, 1, 1), matrix = new THREE.Matrix4();
+    for (const object of this.rigid) {
+      object.userData.bodies.forEach((body, i) => {
+        const at = 7 * body;
+        place.set(...[0, 1, 2].map(axis => lower[axis] + size[axis] * poses[at + axis] / 65535));
+        turn.set(...[3, 4, 5, 6].map(part => (poses[at + part] - 32768) / 32767)).normalize();
+        object.setMatrixAt(i, matrix.compose(place, turn, once));
+      });
+      object.instanceMatrix.needsUpdate = true;
+    }
+    this.deformable.forEach((object, i) => this.place(object.geometry, tandem.points(this.data.deformed[frame][i])));
+    if (this.data.contacts) this.showContacts(this.data.contacts[frame]);
+    this.draw();
+  }
+
+  showContacts(contacts) {
+    const points = tandem.points(contacts);
+    const normals = new Int8Array(tandem.bytes(contacts.normals).buffer);
+    const length = (this.radius || 1) * 0.03;
+    const lines = new Float32Array(points.length * 2);
+    for (let i = 0; i < points.length; i += 3)
+      for (let axis = 0; axis < 3; ++axis) {
+        lines[2 * i + axis] = points[i + axis];
+        lines[2 * i + 3 + axis] = points[i + axis] + length * normals[i + axis] / 127;
+      }
+    this.contactPoints.geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
+    this.contactNormals.geometry.setAttribute("position", new THREE.BufferAttribute(lines, 3));
+  }
+
+  /** So that what moves is in view: around the places of bodies that are not fixed, or of all. */
+  lookAtAll() {
+    const box = this.boxOf(body => !(this.kinds[body] & 1));
+    if (box.isEmpty()) box.copy(this.boxOf(() => true));
+    const sphere = box.getBoundingSphere(new THREE.Sphere());
+    this.radius = sphere.radius || 1;
+    this.centre = sphere.center;
+    const all = this.boxOf(() => true).getBoundingSphere(new THREE.Sphere()).radius || 1;
+    this.camera.up.set(0, 1, 0);  // as gravity has it
+    this.camera.near = this.radius / 200;
+    this.camera.far = this.radius * 20 + all * 10;
+    this.camera.position.copy(this.centre).add(new THREE.Vector3(0.6, 0.55, 1).normalize().multiplyScalar(this.radius * 2.9));
+    this.camera.lookAt(this.centre);
+    this.camera.updateProjectionMatrix();
+    if (this.data.contacts) this.showContacts(this.data.contacts[this.frame]);
+  }
+
+  boxOf(takesPart) {
+    const box = new THREE.Box3(), matrix = new THREE.Matrix4();
+    for (const object of this.rigid)
+      object.userData.bodies.forEach((body, i) => {
+        if (!takesPart(body)) return;
+        matrix.fromArray(object.instanceMatrix.array, 16 * i);
+        box.union(object.geometry.boundingBox.clone().applyMatrix4(matrix));
+      });
+    for (const object of this.deformable) if (takesPart(object.userData.bodies[0])) box.union(object.geometry.boundingBox);
+    return box;
+  }
+
+  resize(width, height) {
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / Math.max(height, 1);
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  draw() {
+    this.renderer.setClearColor(new THREE.Color(tandem.darkness.matches ? 0x14181d : 0xf3f5f7));
+    this.renderer.render(this.scene, this.camera);
+  }
+};

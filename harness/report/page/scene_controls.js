@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// What turns the scene and goes through its frames: pointer, keys, and buttons for the same.
+"use strict";
+
+/** What is shown, in words. */
+tandem.sceneWords = (data, frame) => {
+  const time = data.times ? `, ${tandem.number(data.times[frame])} s` : "";
+  const contacts = data.contacts ? `, ${tandem.count(data.contacts[frame].found, "contact", "contacts")}` : "";
+  const bodies = data.bodies === data.of_bodies ? tandem.count(data.bodies, "body", "bodies") : `${data.bodies} of ${data.of_bodies} bodies`;
+  return `Frame ${data.frames[frame]}${time}: ${bodies} of ${tandem.number(data.tetrahedra)} tetrahedra${contacts}.`;
+};
+
+tandem.view = data => {
+  const {element} = tandem;
+  const facts = element("p", {class: "quiet"}, data.key);
+  const notes = data.notes.map(note => element("p", {class: "quiet"}, "Reduced: " + note + "."));
+  const canvas = element("canvas", {id: "scene-canvas", tabindex: "0", role: "img", "aria-label": "The scene; arrows turn it, plus and minus zoom, " +
+    "Page Up and Page Down go through frames"});
+  const stage = element("div", {class: "stage"}, canvas);
+  const words = element("p", {role: "status", "aria-live": "polite", id: "scene-words"}, tandem.sceneWords(data, 0));
+  tandem.show("view", facts, ...notes, stage, words);
+  // A page of records opens faster when its scene is made once somebody comes near it.
+  new IntersectionObserver((entries, observer) => {
+    if (!entries.some(entry => entry.isIntersecting)) return;
+    observer.disconnect();
+    tandem.animate(data, stage, canvas, words);
+  }, {rootMargin: "400px"}).observe(stage);
+};
+
+tandem.animate = (data, stage, canvas, words) => {
+  const {element} = tandem;
+  let view;
+  try {
+    view = new tandem.SceneView(data, canvas);
+  } catch (error) {
+    stage.replaceWith(element("p", {class: "bad"}, "This browser has no WebGL, which draws the scene: " + error.message));
+    return;
+  }
+  const player = new tandem.Player(view, words);
+  tandem.show("view", player.controls(), element("p", {class: "quiet"},
+    "Drag or use arrows to turn, wheel or + and - to zoom, Page Up and Page Down for frames, space to play."));
+  player.listen(canvas);
+  view.colour("body");
+  new ResizeObserver(() => view.resize(stage.clientWidth, stage.clientHeight)).observe(stage);
+  tandem.darkness.addEventListener("change", () => view.draw());
+  tandem.sceneView = view;
+};
+
+tandem.Player = class {
+  constructor(view, words) {
+    Object.assign(this, {view, words, timer: null});
+    this.orbit = new THREE.OrbitControls(view.camera, view.renderer.domElement);
+    this.orbit.target.copy(view.centre);
+    this.orbit.enableKeys = false;
+    this.orbit.update();
+    this.orbit.addEventListener("change", () => view.draw());
+  }
+
+  controls() {
+    const {element} = tandem;
+    const last = this.view.data.frames.length - 1;
+    const button = (text, label, action) => element("button", {type: "button", "aria-label": label, title: label, onclick: action}, text);
+    this.slider = element("input", {type: "range", id: "frame-slider", min: 0, max: last, value: 0, oninput: () => this.go(+this.slider.value)});
+    this.playButton = button("Play", "Play or pause", () => this.play());
+    const colours = tandem.choice("colour", [["body", "bodies apart"], ["chunk", "chunks of 32 tetrahedra apart"], ["none", "none"]]
+      .map(([value, text]) => ({value, text})), value => this.view.colour(value));
+    const frames = last > 0 ? [element("label", {class: "wide"}, "frame", this.slider), button("◀", "Frame before", () => this.step(-1)), this.playButton,
+      button("▶", "Next frame", () => this.step(1))] : [];
+    const contacts = this.view.data.contacts ? [this.contactButton()] : [];
+    return element("div", {class: "controls", role: "group", "aria-label": "The scene"}, ...frames,
+      button("←", "Turn left", () => this.turn(-1, 0)), button("→", "Turn right", () => this.turn(1, 0)), button("↑", "Turn up", () => this.turn(0, 1)),
+      button("↓", "Turn down", () => this.turn(0, -1)), button("+", "Nearer", () => this.zoom(0.85)), button("−", "Farther", () => this.zoom(1 / 0.85)), colours, ...contacts);
+  }
+
+  contactButton() {
+    const made = tandem.element("button", {type: "button", "aria-pressed": "true", onclick: () => {
+      const shown = made.getAttribute("aria-pressed") !== "true";
+      made.setAttribute("aria-pressed", String(shown));
+      this.view.contactPoints.visible = this.view.contactNormals.visible = shown;
+      this.view.draw();
+    }}, "Contacts");
+    return made;
+  }
+
+  listen(canvas) {
+    const keys = {ArrowLeft: () => this.turn(-1, 0), ArrowRight: () => this.turn(1, 0), ArrowUp: () => this.turn(0, 1), ArrowDown: () => this.turn(0, -1),
+      "+": () => this.zoom(0.85), "=": () => this.zoom(0.85), "-": () => this.zoom(1 / 0.85), PageUp: () => this.step(-1), PageDown: () => this.step(1), " ": () => this.play()};
+    canvas.addEventListener("keydown", event => {
+      if (!keys[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      keys[event.key]();
+    });
+  }
+
+  /** Around what the camera looks at, by a twelfth of a half turn. */
+  turn(right, up) {
+    const from = this.view.camera.position.clone().sub(this.orbit.target);
+    const top = new THREE.Vector3(0, 1, 0);
+    from.applyAxisAngle(top, right * Math.PI / 12);
+    const side = new THREE.Vector3().crossVectors(top, from).normalize();
+    const tilted = from.clone().applyAxisAngle(side, -up * Math.PI / 12);
+    if (Math.abs(tilted.angleTo(top) - Math.PI / 2) < Math.PI / 2 - 0.05) from.copy(tilted);
+    this.view.camera.position.copy(this.orbit.target).add(from);
+    this.orbit.update();
+    this.view.draw();
+  }
+
+  zoom(factor) {
+    const {camera} = this.view;
+    camera.position.sub(this.orbit.target).multiplyScalar(factor).add(this.orbit.target);
+    this.orbit.update();
+    this.view.draw();
+  }
+
+  go(frame) {
+    this.view.show(frame);
+    this.slider.value = frame;
+    this.slider.setAttribute("aria-valuetext", "frame " + this.view.data.frames[frame]);
+    this.words.textContent = tandem.sceneWords(this.view.data, frame);
+  }
+
+  /** Behind the last frame comes the first. */
+  step(by) {
+    const count = this.view.data.frames.length;
+    this.go((this.view.frame + by + count) % count);
+  }
+
+  play() {
+    if (this.view.data.frames.length < 2) return;
+    if (this.timer) clearInterval(this.timer);
+    this.timer = this.timer ? null : setInterval(() => this.step(1), 60);
+    this.playButton.textContent = this.timer ? "Pause" : "Play";
+    this.words.setAttribute("aria-live", this.timer ? "off" : "polite");
+  }
+};

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+namespace tandem::report {
+
+/// Points in a box that is as large as need be, 16 bits a coordinate: a pixel of any screen is larger.
+class Quantised {
+public:
+    explicit Quantised(const Eigen::AlignedBox3d& box)
+        : lower_(box.isEmpty() ? Eigen::Vector3d::Zero() : box.min()),
+          size_(box.isEmpty() ? Eigen::Vector3d::Ones() : Eigen::Vector3d(box.sizes())) {}
+
+    const Eigen::Vector3d& lower() const { return lower_; }
+    const Eigen::Vector3d& size() const { return size_; }
+
+    void add(const Eigen::Vector3d& point, std::vector<std::uint16_t>& to) const {
+        for (int axis = 0; axis < 3; ++axis) {
+            const double share = size_[axis] > 0 ? (point[axis] - lower_[axis]) / size_[axis] : 0;
+            to.push_back(static_cast<std::uint16_t>(share * 65535 + 0.5));
+        }
+    }
+
+private:
+    Eigen::Vector3d lower_, size_;
+};
+
+} // namespace tandem::report

@@ -1,0 +1,287 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""report_page.py PROGRAM SOURCE: pages of `tandem report` and `tandem view` in Chromium: they load without an error or a request, show
+every cell, filter, sort, turn the scene, fit a phone, and hold what is bad or too much."""
+import json
+import lzma
+import sys
+import time
+import unittest
+
+from browser import Browser
+from program import SOURCE, Case, tandem
+
+RECORDS = SOURCE / "results/h200"
+MARKUP = "<img src=x onerror=document.title='run'></script><script>document.title='run'</script>"
+ROWS = "[...document.querySelectorAll('#cell-table tbody tr')]"
+# The distinct pixels of the scene, for a script to go on with.
+PIXELS = "(() => { const c = document.getElementById('scene-canvas'), g = c.getContext('webgl2') || c.getContext('webgl'), p = new Uint8Array(4 * c.width * c.height); " \
+    "tandem.sceneView.draw(); g.readPixels(0, 0, c.width, c.height, g.RGBA, g.UNSIGNED_BYTE, p); const pixels = [...new Set(new Uint32Array(p.buffer))]; return "
+# How many of 36 hues these have.
+HUES = PIXELS + "new Set(pixels.map(p => new THREE.Color(`rgb(${p & 255},${p >> 8 & 255},${p >> 16 & 255})`).getHSL({})).filter(c => c.s > 0.5)" \
+    ".map(c => Math.floor(c.h * 36))).size; })()"
+CAMERA = "tandem.sceneView.camera.position.toArray().map(x => x.toFixed(4)).join()"
+
+
+def short(record):
+    """The record with few samples, as most have."""
+    if isinstance(record, dict):
+        return {name: short(value) for name, value in record.items() if name not in ("kernels", "chosen", "kernel_times")}
+    return [short(value) for value in record[:10]] if isinstance(record, list) else record
+
+
+class Pages(Case):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.__exit__)
+        cls.lines = (RECORDS / "plan.jsonl").read_text().splitlines()
+        cls.plan = [short(json.loads(line)) for line in cls.lines]
+
+    def setUp(self):
+        self.browser.size(1280, 900)
+        self.browser.dark(False)
+
+    def report(self, *arguments, name="page.html", notes=0):
+        page = self.work / name
+        status, out, errors = tandem("report", *arguments, "-o", page)
+        self.assertEqual((status, len(errors)), (0, notes), (arguments, out, errors))
+        self.assertTrue(out.startswith(f"{page}: "), out)
+        self.assertLess(page.stat().st_size, 8e6)
+        return page
+
+    def write(self, name, records):
+        path = self.work / name
+        path.write_text("".join(json.dumps(record) + "\n" for record in records))
+        return path
+
+    def made_up(self, count):
+        """So many cells: several sizes of the committed scenes, the settings of the committed cells."""
+        for i in range(count):
+            record = dict(self.plan[i % len(self.plan)])
+            copy = i // len(self.plan)
+            record["scene"] = {**record["scene"], "key": f"{record['scene']['key']},copy={copy}", "digest": f"{copy:08x}{record['scene']['digest'][:8]}"}
+            record["key"] += f"|copy={copy}"
+            yield record
+
+    def opened(self, page):
+        seconds = self.browser.open(page)
+        self.assertEqual(self.browser.problems(), [])
+        return seconds
+
+    def column(self, name):
+        place = self.browser.run("tandem.cellColumns.map(column => column.name)").index(name)
+        return self.browser.run(f"{ROWS}.map(row => row.children[{place}].textContent)")
+
+    def sort_by(self, name):
+        self.browser.run(f"[...document.querySelectorAll('#cell-table th button')].find(b => b.textContent === {json.dumps(name)}).click()")
+        self.browser.until("document.querySelector('#cell-table tbody').dataset.complete === 'true'")
+        return self.browser.run("[...document.querySelectorAll('#cell-table th')].map(th => th.getAttribute('aria-sort')).filter(s => s !== 'none').join()")
+
+    def type(self, text):
+        self.browser.run(f"(() => {{ const box = document.getElementById('cell-filter'); box.value = {json.dumps(text)}; box.dispatchEvent(new Event('input')); }})()")
+        self.browser.until("document.querySelector('#cell-table tbody').dataset.complete === 'true'")
+        return self.browser.run("document.getElementById('cell-count').textContent")
+
+    def test_everything_that_is_committed(self):
+        files = ["plan", "profile", "accuracy", "ceilings", "simulation-colosseum", "simulation-funnel"]
+        page = self.report(*(RECORDS / f"{name}.jsonl" for name in files), "--scene", "plates", "--frames", "20:23", "--contacts")
+        self.opened(page)
+        cells = sum(len((RECORDS / f"{name}.jsonl").read_text().splitlines()) for name in ("plan", "accuracy"))
+        self.assertEqual(self.browser.run(f"{ROWS}.length"), cells)
+        self.check_charts()
+        self.check_scene()
+        self.check_sizes_and_colours()
+        self.assertEqual(self.browser.problems(), [])
+
+    def check_charts(self):
+        figures = self.browser.run("[...document.querySelectorAll('figure')].map(figure => figure.id)")
+        self.assertEqual(set(figures), {"medians", "sweeps", "stages", "curves", "error", "roofline", "simulations"})
+        for figure in figures:
+            self.browser.run(f"document.getElementById('{figure}').scrollIntoView()")
+            self.browser.until(f"document.getElementById('{figure}').dataset.drawn === 'true'")
+        empty = "[...document.querySelectorAll('figure')].filter(f => !f.querySelector('h3').textContent || !f.querySelector('tbody tr') || " \
+            "f.querySelector('canvas').getAttribute('aria-label').length < 40).map(f => f.id)"
+        self.assertEqual(self.browser.run(empty), [])
+        blank = "[...document.querySelectorAll('figure canvas')].filter(c => !c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some(b => b)).length"
+        self.assertEqual(self.browser.run(blank), 0)
+        # Another choice is another chart.
+        title = "document.querySelector('#medians h3').textContent"
+        before = self.browser.run(title)
+        self.browser.run("(() => { const s = document.querySelector('#medians select'); s.selectedIndex = 1; s.dispatchEvent(new Event('change')); })()")
+        self.assertNotEqual(self.browser.run(title), before)
+
+    def check_scene(self):
+        run = self.browser.run
+        run("document.getElementById('view').scrollIntoView()")
+        self.browser.until("Boolean(tandem.sceneView)")
+        colours = PIXELS + "new Set(pixels).size; })()"
+        self.assertGreater(run(colours), 20)
+        before = run(CAMERA)
+        run("document.getElementById('scene-canvas').focus()")
+        self.browser.key("ArrowRight")
+        turned = run(CAMERA)
+        self.assertNotEqual(turned, before)
+        box = run("(() => { const r = document.getElementById('scene-canvas').getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()")
+        self.browser.drag(box, [box[0] + 90, box[1] + 30])
+        self.assertNotEqual(run(CAMERA), turned)
+        words = run("document.getElementById('scene-words').textContent")
+        self.assertRegex(words, r"^Frame 20: 3 bodies of 5,130 tetrahedra, \d+ contacts\.$")
+        run("(() => { const s = document.getElementById('frame-slider'); s.value = 3; s.dispatchEvent(new Event('input')); })()")
+        self.assertIn("Frame 23:", run("document.getElementById('scene-words').textContent"))
+        self.assertEqual(run("tandem.sceneView.frame"), 3)
+        self.browser.key("PageUp")
+        self.assertIn("Frame 22:", run("document.getElementById('scene-words').textContent"))
+        run("[...document.querySelectorAll('#view button')].find(b => b.textContent === 'Contacts').click()")
+        bodies = run(HUES)
+        run("(() => { const s = [...document.querySelectorAll('#view select')][0]; s.value = 'chunk'; s.dispatchEvent(new Event('change')); })()")
+        self.assertGreater(run(HUES), 3 * bodies)
+
+    def check_sizes_and_colours(self):
+        ground = "getComputedStyle(document.body).backgroundColor"
+        light = self.browser.run(ground)
+        self.browser.dark(True)
+        self.assertNotEqual(self.browser.run(ground), light)
+        self.browser.dark(False)
+        self.browser.size(390, 844, mobile=True)
+        wide = "[...document.querySelectorAll('body *')].filter(e => e.getBoundingClientRect().right > 391 && !e.closest('.tall, .scrolls')).map(e => e.outerHTML.slice(0, 90))"
+        self.browser.run("new Promise(done => setTimeout(done, 500))")
+        self.assertEqual(self.browser.run("document.documentElement.scrollWidth"), 390, self.browser.run(wide))
+        self.browser.size(1280, 900)
+        self.browser.ask("Emulation.setEmulatedMedia", media="print")
+        self.assertEqual(self.browser.run("[...document.querySelectorAll('.controls')].some(c => c.getClientRects().length)"), False)
+        self.assertEqual(self.browser.run("[...document.querySelectorAll('figure canvas')].every(c => c.getClientRects().length)"), True)
+        self.browser.ask("Emulation.setEmulatedMedia", media="")
+
+    def test_three_thousand_cells(self):
+        path = self.write("many.jsonl", self.made_up(3000))
+        page = self.report(path, "--scene", "plates", "--frames", "0:99")
+        seconds = self.opened(page)
+        print(f"\n  3,000 cells and a scene: {page.stat().st_size / 1e6:.1f} MB, whole after {seconds:.2f} s", end="", file=sys.stderr)
+        self.assertLess(seconds, 20)
+        self.assertEqual(self.browser.run(f"{ROWS}.length"), 3000)
+        self.check_sorting()
+        self.check_filters()
+
+    def check_sorting(self):
+        self.assertEqual(self.sort_by("ms a frame"), "ascending")
+        times = [float(text.replace(",", "")) for text in self.column("ms a frame") if text]
+        self.assertTrue(times == sorted(times), times[:20])  # differences of long lists take minutes to tell
+        self.assertEqual(self.sort_by("ms a frame"), "descending")
+        falling = [float(text.replace(",", "")) for text in self.column("ms a frame") if text]
+        self.assertTrue(falling == times[::-1], falling[:20])
+        self.assertEqual(self.sort_by("algorithm"), "ascending")
+        names = self.column("algorithm")
+        self.assertTrue(names == sorted(names), names[:20])
+
+    def check_filters(self):
+        tiled = sum(record["algorithm"] == "tiled" for record in self.made_up(3000))
+        self.assertEqual(self.type("tiled"), f"{tiled} of 3000 cells")
+        self.assertEqual(set(self.column("algorithm")), {"tiled"})
+        both = sum(record["algorithm"] == "tiled" and record["settings"]["k"] == "8" for record in self.made_up(3000))
+        self.assertEqual(self.type("tiled k=8"), f"{both} of 3000 cells")
+        self.assertEqual(self.type("nothing has this"), "0 of 3000 cells")
+        self.type("")
+        self.browser.run("(() => { const s = [...document.querySelectorAll('#cells select')].find(s => s.parentNode.textContent.startsWith('algorithm')); "
+                         "s.value = 'gproximity'; s.dispatchEvent(new Event('change')); })()")
+        self.browser.until("document.querySelector('#cell-table tbody').dataset.complete === 'true'")
+        self.assertEqual(set(self.column("algorithm")), {"gproximity"})
+        self.browser.run(f"{ROWS}[0].querySelector('button').click()")
+        self.assertIn("--quiet --resume", self.browser.run("document.querySelector('.details').textContent"))
+
+    def test_failed_wrong_and_markup(self):
+        failed, wrong, older, named = (json.loads(json.dumps(self.plan[i])) for i in (0, 1, 2, 3))
+        times = {"samples": [], "rounds": [], "frames": []}
+        failed.update(status="failed", failure=f"no memory {MARKUP}", total_ns=times)
+        wrong["status"] = "wrong"
+        wrong["total_ns"]["samples"] = [1] * len(wrong["total_ns"]["samples"])  # faster than any
+        named["scene"]["key"], named["key"] = MARKUP, MARKUP
+        page = self.report(self.write("bad.jsonl", [failed, wrong, older, self.plan[2], named]))
+        self.opened(page)
+        self.assertEqual(self.column("status"), ["failed", "wrong", "ok, recorded again", "ok", "ok"])
+        words = self.browser.run("document.getElementById('summary').textContent")
+        self.assertIn("1 failed and 1 gave a wrong answer", words)
+        self.assertIn("no memory <img", words)
+        ranked = self.browser.run("JSON.parse(document.getElementById('data-records').textContent).groups.flatMap(g => g.ranked.map(r => r[0])).sort()")
+        self.assertEqual(ranked, [3, 4])
+        self.assertEqual(self.browser.run("document.title"), "Report of tandem")
+        self.assertEqual(self.browser.run("document.images.length"), 0)
+        self.assertIn(MARKUP, self.column("scene"))
+
+    def test_against_is_what_compare_says(self):
+        old, new = RECORDS / "tiled.jsonl", self.work / "new.jsonl"
+        records = [json.loads(line) for line in old.read_text().splitlines()]
+        for i, record in enumerate(records):
+            record["session"] = "0" * 16
+            if i % 3 == 0 and record["status"] == "ok":
+                record["total_ns"]["samples"] = [round(1.1 * ns) for ns in record["total_ns"]["samples"]]
+        self.write("new.jsonl", records)
+        self.opened(self.report(new, "--against", old))
+        said = json.loads(tandem("compare", old, new, "--format", "json")[1])
+        shown = self.browser.run("JSON.parse(document.getElementById('data-differences').textContent)")
+        self.assertEqual(shown["summary"], said["summary"])
+        self.assertIn(said["summary"], self.browser.run("document.querySelector('#differences-title').textContent"))
+        self.assertEqual(len(shown["cells"]), len(said["cells"]))
+        for a, b in zip(shown["cells"], said["cells"]):
+            self.assertEqual(a["label"], b["label"])
+            for value, name in zip(a["ratio"], ("ratio", "low", "high")):
+                self.assertAlmostEqual(value, b["times"][name], delta=1e-5 * value)
+        self.bad("two sets of records", "report", old, new, "--against", old)
+
+    def test_bad_files(self):
+        empty, other, text, packed = (self.work / name for name in ("empty.jsonl", "other.jsonl", "text.jsonl", "packed.jsonl.xz"))
+        empty.write_text("")
+        self.write("other.jsonl", [{**self.plan[0], "schema": 4}])
+        text.write_text("no record\n")
+        packed.write_bytes(lzma.compress(b"{}\n" * 100) + b"\n")
+        page = self.work / "none.html"
+        self.bad("empty.jsonl: is empty", "report", empty, "-o", page)
+        self.bad(["other.jsonl:1:", "schema 4"], "report", other, "-o", page)
+        self.bad("text.jsonl:1: is not JSON", "report", text, "-o", page)
+        self.bad("xz -dk", "report", packed, "-o", page)
+        self.bad("cannot be read", "report", self.work / "nowhere.jsonl", "-o", page)
+        self.write("profile.jsonl", [{**json.loads((RECORDS / "profile.jsonl").read_text().splitlines()[0]), "schema": 7}])
+        self.bad("schema 7", "report", self.work / "profile.jsonl", "-o", page)
+        self.assertFalse(page.exists())
+        self.bad("nowhere", "report", RECORDS / "plan.jsonl", "-o", self.work / "nowhere/page.html", code=3)
+        self.bad("no file that could be replaced", "report", RECORDS / "plan.jsonl", "-o", self.work, code=3)
+        self.bad("unknown scene", "view", "plate", "-o", page)
+
+    def test_a_hundred_thousand_lines(self):
+        record = {name: value for name, value in self.plan[0].items() if name not in ("conditions", "breakdown_ns", "device_span_ns", "stages")}
+        record["total_ns"] = {"samples": [9, 8], "rounds": [0, 1], "median": 8.5, "low": 8, "high": 9, "frames": []}
+        line = json.dumps({**record, "key": "@", "scene": {**record["scene"], "key": "pile:number=@"}}).replace('"@"', '"key @"')
+        path = self.work / "long.jsonl"
+        with open(path, "w") as out:
+            out.writelines(line.replace("@", str(i)) + "\n" for i in range(100_000))
+        begin = time.time()
+        page = self.report(path, notes=1)
+        print(f"\n  100,000 lines: {time.time() - begin:.1f} s, {page.stat().st_size / 1e6:.1f} MB", end="", file=sys.stderr)
+        self.opened(page)
+        self.assertRegex(self.browser.run("document.querySelector('.bad').textContent"), r"94000 of 100000 records of cells are left out")
+        self.assertEqual(self.browser.run(f"{ROWS}.length"), self.browser.run("JSON.parse(document.getElementById('data-records').textContent).cells.length"))
+
+    def test_view_of_a_large_scene_is_reduced(self):
+        page = self.work / "view.html"
+        status, out, errors = tandem("view", "pile:bodies=4000,density=0.3,frames=60", "-o", page)
+        self.assertEqual((status, errors), (0, []), out)
+        self.assertLess(page.stat().st_size, 8e6)
+        self.opened(page)
+        words = self.browser.run("document.getElementById('view').textContent")
+        self.assertIn("drawn as boxes", words)
+        self.assertRegex(words, r"\d+ of 60 frames are shown")
+        self.assertGreater(self.browser.run(HUES), 3)  # bodies of one mesh have several
+
+    def test_without_webgl(self):
+        page = self.work / "plain.html"
+        self.assertEqual(tandem("view", "plates", "--frames", "0:1", "-o", page)[0], 0)
+        script = self.browser.ask("Page.addScriptToEvaluateOnNewDocument", source="HTMLCanvasElement.prototype.getContext = () => null")
+        self.browser.open(page)
+        self.browser.ask("Page.removeScriptToEvaluateOnNewDocument", identifier=script["identifier"])
+        self.browser.until("Boolean(document.querySelector('#view .bad'))")
+        self.assertIn("no WebGL", self.browser.run("document.getElementById('view').textContent"))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
