@@ -13,7 +13,7 @@ from program import PROGRAM, SOURCE, Case, tandem
 
 BASH = SOURCE / "scripts/completion/tandem.bash"
 ZSH = SOURCE / "scripts/completion/_tandem"
-COMMANDS = ["accuracy", "algorithms", "check", "compare", "completion", "devices", "export", "profile", "report", "run", "scenes", "simulate", "view"]
+COMMANDS = ["accuracy", "algorithms", "check", "compare", "completion", "devices", "export", "paper", "profile", "report", "run", "scenes", "simulate", "view"]
 
 
 def asked(*words):

@@ -33,6 +33,9 @@ TEST(Declarations, Attributes) {
     using namespace tandem;
     EXPECT_EQ(int{cuda::max_threads_per_block}, int{CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_BLOCK});
     EXPECT_EQ(int{cuda::max_shared_per_block}, int{CU_DEVICE_ATTRIBUTE_MAX_SHARED_MEMORY_PER_BLOCK});
+    EXPECT_EQ(int{cuda::clock_rate_khz}, int{CU_DEVICE_ATTRIBUTE_CLOCK_RATE});
+    EXPECT_EQ(int{cuda::memory_clock_rate_khz}, int{CU_DEVICE_ATTRIBUTE_MEMORY_CLOCK_RATE});
+    EXPECT_EQ(int{cuda::memory_bus_bits}, int{CU_DEVICE_ATTRIBUTE_GLOBAL_MEMORY_BUS_WIDTH});
     EXPECT_EQ(int{cuda::multiprocessor_count}, int{CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT});
     EXPECT_EQ(int{cuda::max_threads_per_multiprocessor},
               int{CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_MULTIPROCESSOR});

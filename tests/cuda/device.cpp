@@ -105,6 +105,25 @@ TEST_F(CudaDevice, TellsAProfilerWhereToBegin) {
     EXPECT_EQ(current(), nullptr);
 }
 
+/// Of the stub's figures: 2 multiprocessors of capability 9.0, each of 128 lanes for float (CUDA C++
+/// Programming Guide, table of arithmetic throughput); data on both edges of 3,201 MHz, 768 bytes wide.
+TEST_F(CudaDevice, TellsWhatItCouldDoAtMost) {
+    EXPECT_EQ(device->info().cores, 256u);
+    EXPECT_EQ(device->info().clock_mhz, 1980u);
+    EXPECT_EQ(device->info().peak_bytes_per_s, 4'916'736'000'000u);
+}
+
+TEST_F(CudaDevice, WhatADriverDoesNotTellIsUnknown) {
+    setenv("STUB_UNTOLD", "13", 1); // CU_DEVICE_ATTRIBUTE_CLOCK_RATE
+    const auto without_clock = cuda::discover().devices.at(0)->info();
+    setenv("STUB_UNTOLD", "37", 1); // CU_DEVICE_ATTRIBUTE_GLOBAL_MEMORY_BUS_WIDTH
+    const auto without_width = cuda::discover().devices.at(0)->info();
+    unsetenv("STUB_UNTOLD");
+    EXPECT_EQ(without_clock.clock_mhz, 0u);
+    EXPECT_EQ(without_clock.peak_bytes_per_s, device->info().peak_bytes_per_s);
+    EXPECT_EQ(without_width.peak_bytes_per_s, 0u);
+}
+
 /// The stub holds 1,024 work-items of the 2,048 that there is room for.
 TEST_F(CudaDevice, TellsTheOccupancyOfAKernel) {
     EXPECT_EQ(test::compile(*device, "do_nothing", {{"GROUP_SIZE", "64"}}).facts().occupancy, 0.5);

@@ -3,7 +3,7 @@
 // context is the thread's, what needs one fails without, and a stream goes with its own only. What goes wrong
 // is chosen by variables: STUB_INIT (code of cuInit), STUB_VERSION, STUB_MEMORY (bytes there are), STUB_FAULT
 // (launches fault), STUB_LAUNCH, STUB_INSTANTIATE and STUB_GRAPH (codes of cuLaunchKernel, of making a
-// graph and of launching one).
+// graph and of launching one), STUB_UNTOLD (an attribute of the device that is not told).
 #include "backends/cuda/driver.h"
 #include "tests/cuda/stub_driver.h"
 
@@ -127,9 +127,15 @@ Result cuDeviceGetUuid_v2(unsigned char* uuid, DeviceHandle) {
 }
 Result cuDeviceGetAttribute(int* value, int what, DeviceHandle) {
     static const std::map<int, int> values{
-        {max_threads_per_block, 1024},          {max_shared_per_block, 49152}, {multiprocessor_count, 2},
-        {max_threads_per_multiprocessor, 2048}, {capability_major, 9},         {capability_minor, 0}};
-    *value = values.at(what);
+        {max_threads_per_block, 1024}, {max_shared_per_block, 49152},
+        {multiprocessor_count, 2},     {max_threads_per_multiprocessor, 2048},
+        {clock_rate_khz, 1980000},     {memory_clock_rate_khz, 3201000},
+        {memory_bus_bits, 6144},       {capability_major, 9},
+        {capability_minor, 0}};
+    const auto found = what == number("STUB_UNTOLD", -1) ? values.end() : values.find(what);
+    if (found == values.end())
+        return 1; // CUDA_ERROR_INVALID_VALUE, as of an attribute that a driver does not know
+    *value = found->second;
     return 0;
 }
 Result cuDeviceTotalMem_v2(std::size_t* bytes, DeviceHandle) {
