@@ -330,6 +330,27 @@ class Scripts(Case):
             self.assertEqual((status, len(errors)), (1, 1), errors)
             self.assertIn(said, errors[0])
 
+    def test_the_picture_of_the_pages_is_of_the_records(self):
+        """By its words, which are comments beside their outlines: how they are drawn is the library's."""
+        words = lambda path: re.findall(r"<!-- (.*?) -->", path.read_text())
+        drawn = self.work / "answer.svg"
+        self.assertEqual(script("answer", SOURCE / "results/h200/plan.jsonl", "--picture", drawn), (0, "", []))
+        self.assertGreater(len(words(drawn)), 10)
+        self.assertEqual(words(SOURCE / "results/h200/answer.svg"), words(drawn))
+
+    def test_numbers_of_the_readme_are_made(self):
+        """What was measured stands between the marks of scripts/answer alone."""
+        text = re.sub(r"<!-- answer: [a-z ]+ -->.*?<!-- end -->|^    .*?$", "", (SOURCE / "README.md").read_text(), flags=re.DOTALL | re.MULTILINE)
+        self.assertEqual(re.findall(r"\d[\d.,]* ?(?:%|ms|us|ns|s|GB|GiB|MB|times|minutes|seconds)(?![A-Za-z])", text), [])
+
+    def test_links_of_pages_lead_somewhere(self):
+        pages = [p for p in SOURCE.rglob("*.md") if not p.relative_to(SOURCE).parts[0].startswith(("build", "."))]
+        self.assertGreater(len(pages), 15)
+        for page in pages:
+            for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", re.sub(r"`[^`]*`", "", page.read_text())):
+                if not re.match(r"[a-z]+:", target):
+                    self.assertTrue((page.parent / target).exists(), f"{page.relative_to(SOURCE)}: {target}")
+
     def test_committed_microbenchmarks(self):
         """What compare.py of Google Benchmark reads, of every benchmark as often; and nothing that names the machine."""
         result = json.loads((SOURCE / "results/cpu/bench.json").read_text(), parse_constant=self.fail)

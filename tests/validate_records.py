@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """validate_records.py [FILE.jsonl|FILE.jsonl.xz ...]: checks records against results/record.schema.json, those of files named
-ceilings*.jsonl against results/ceilings.schema.json, simulation*.jsonl against results/simulation.schema.json and profile*.jsonl,
+ceilings*.jsonl against results/ceilings.schema.json, simulation*.jsonl against results/simulation.schema.json (also sim-*, host-*, serial-* and
+parallel-*.jsonl), steps.jsonl against results/paper.schema.json, and profile*.jsonl,
 or a profile's in any file, against results/profile.schema.json; without files, all committed ones. Exit 1 names file:line and the place of the first problems."""
 import json
 import lzma
@@ -12,6 +13,9 @@ import jsonschema
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SHOWN = 10
+# By the beginning of a file's name; files of 'tandem paper' are named after its steps.
+KINDS = {"ceilings": "ceilings", "simulation": "simulation", "profile": "profile", "steps": "paper", "sim-": "simulation", "host-": "simulation",
+         "serial-": "simulation", "parallel-": "simulation"}
 
 
 def no_constant(name):
@@ -59,20 +63,20 @@ def resolved(schema, records):
 def validator_of(name):
     records = json.loads((ROOT / "results/record.schema.json").read_text())
     schema = resolved(json.loads((ROOT / "results" / name).read_text()), records)
-    schema["definitions"] = {**records["definitions"], **schema["definitions"]}
+    schema["definitions"] = {**records["definitions"], **schema.get("definitions", {})}
     jsonschema.Draft7Validator.check_schema(schema)
     return jsonschema.Draft7Validator(schema)
 
 
 def main(names):
-    validators = {kind: validator_of(kind + ".schema.json") for kind in ("record", "ceilings", "simulation", "profile")}
+    validators = {kind: validator_of(kind + ".schema.json") for kind in ("record", "ceilings", "simulation", "profile", "paper")}
     files = [pathlib.Path(name) for name in names] or sorted([*(ROOT / "results").glob("**/*.jsonl"), *(ROOT / "results").glob("**/*.jsonl.xz")])
     if not files:
         print("no records are committed yet")
         return 0
     total, found = 0, []
     for path in files:
-        kind = next((kind for kind in validators if path.name.startswith(kind)), "record")
+        kind = next((kind for beginning, kind in KINDS.items() if path.name.startswith(beginning)), "record")
         problems, count = problems_in(path, validators, kind)
         total += count
         found += [f"{path}:{number}: {text}" for number, text in problems]

@@ -45,8 +45,15 @@ def narrow_claims(folder):
     if not published:
         return [Claim("Table 4", says, UNTESTED, "no pair of cells has ended well")]
     places = " ".join(row["records"] for row in published)
-    claims = [Claim("Table 4", says + ", as published", judged(min(row["narrow"] for row in published) >= 6),
-                    "; ".join(f"{row['scene']} {row['narrow']:.3g} ({row['against']})" for row in published), places)]
+    whole = [row for row in published if row["against"].endswith("estimated")]
+    published = [row for row in published if row not in whole]
+    said = lambda rows: ", ".join(f"{scene} {span(row['narrow'] for row in rows if row['scene'] == scene)}" for scene in dict.fromkeys(row["scene"] for row in rows))
+    claims = []
+    if whole:
+        claims.append(Claim("Table 4", says + ", with the queue array that its release uploads for every batch", judged(min(row["narrow"] for row in whole) >= 6),
+                            said(whole) + "; estimated: batches times the upload of one array, a quarter of this device's memory, which was measured on plates",
+                            " ".join(row["records"] for row in whole)))
+    claims.append(Claim("Table 4", says + ", as published but with a small queue array", judged(min(row["narrow"] for row in published) >= 6), said(published), places))
     if resident:
         claims.append(Claim("Table 4", "the same with everything resident, which neither the paper nor its release does",
                             judged(min(row["frame"] for row in resident) >= 6), "whole frames: " + "; ".join(f"{row['scene']} {row['frame']:.3g}" for row in resident),
@@ -65,7 +72,7 @@ def write_claim(folder):
     part = {way.scene: way.stage("write") / way.total() for way in ways}
     array = folder.ways("array")
     whole = f"; with the release's whole array on plates {100 * array[0].stage('write') / array[0].total():.0f} %" if array else ""
-    return Claim("Figures 7 and 8", says, judged(statistics.median(part.values()) > 0.5),
+    return Claim("Figures 7 and 8", says, judged(statistics.median(part.values()) > 0.5 or bool(array) and array[0].stage("write") > 0.5 * array[0].total()),
                  "share of write: " + ", ".join(f"{scene} {100 * value:.0f} %" for scene, value in part.items()) + " with a capped queue array" + whole,
                  " ".join(way.places[0] for way in ways))
 

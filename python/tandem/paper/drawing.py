@@ -7,7 +7,7 @@ import textwrap
 import matplotlib
 
 matplotlib.use("svg")
-matplotlib.rcParams.update({"svg.hashsalt": "tandem", "svg.fonttype": "none", "font.size": 9, "legend.frameon": False, "axes.spines.top": False,
+matplotlib.rcParams.update({"svg.hashsalt": "tandem", "svg.fonttype": "none", "savefig.dpi": 150, "font.size": 9, "legend.frameon": False, "axes.spines.top": False,
                             "axes.spines.right": False, "font.family": "sans-serif"})
 import matplotlib.pyplot as plt
 
@@ -41,7 +41,7 @@ class Plot:
         self.rows = []
 
     def save(self, folder, title):
-        self.figure.suptitle("\n".join(textwrap.wrap(title, 78)), x=0.01, ha="left", fontsize=10.5, fontweight="bold", color=INK)
+        self.figure.suptitle("\n".join(textwrap.wrap(title, 70)), x=0.01, ha="left", fontsize=10.5, fontweight="bold", color=INK)
         self.figure.savefig(folder / f"figure{self.number}.svg", metadata={"Date": None, "Title": title})
         plt.close(self.figure)
         write_rows(folder, self.number, self.rows)

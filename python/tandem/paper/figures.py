@@ -249,5 +249,33 @@ def figure13(folder):
     return plot.save(folder.path, f"Seed thresholds on {ways[0].scene}: {'; '.join(said)}")
 
 
+def figure14(folder):
+    """Not of the paper: equation (1)'s chunk bytes, and orders of tetrahedra, which its text names and does not measure."""
+    ways = [way for way in folder.ways("chunk-study")]
+    if not ways:
+        return missing(folder.path, 14, "Chunk bytes and orders of tetrahedra", "no cell of the study has ended well")
+    values = sorted({way.settings["k"] for way in ways}, key=int)
+    plot = Plot(14, len(values), 2.8)
+    orders = list(dict.fromkeys(way.settings["builder"] for way in ways))
+    said = []
+    for ax, k in zip(plot.axes, values):
+        for colour, order in zip(COLOURS, orders):
+            own = sorted((way for way in ways if way.settings["k"] == k and way.settings["builder"] == order), key=lambda way: int(way.settings["chunk_bytes"]))
+            x = [int(way.settings["chunk_bytes"]) for way in own]
+            y, low, high = ([1e3 * way.total(which) / way.frames for way in own] for which in ("median", "low", "high"))
+            ax.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0)
+            ax.plot(x, y, "o-", color=colour, markersize=4, label=order)
+            plot.rows += [{"k": k, "order": order, "chunk_bytes": bytes_, "ms": ms, "low_ms": l, "high_ms": h, "records": way.places[0]}
+                          for way, bytes_, ms, l, h in zip(own, x, y, low, high)]
+        ax.set(xscale="log", yscale="log", xlabel="chunk bytes of equation (1)")
+        ax.set_title(f"chunked resident, k = {k}", fontsize=9, loc="left", color=INK)
+        milliseconds(ax)
+        ax.legend(ncols=4, fontsize=8)
+        best = min((way for way in ways if way.settings["k"] == k), key=lambda way: way.total() / way.frames)
+        ax.plot(int(best.settings["chunk_bytes"]), 1e3 * best.total() / best.frames, "o", color=WINNER, markersize=9, fillstyle="none")
+        said.append(f"{best.settings['builder']}, {int(best.settings['chunk_bytes']):,} bytes at k = {k}")
+    return plot.save(folder.path, f"Beyond the paper, chunk bytes and orders on {ways[0].scene}: fastest {'; '.join(said)}")
+
+
 def all_curves(folder):
-    return [make(folder) for make in (figure7, figure8, figure9, figure10, figure11, figure12, figure13)]
+    return [make(folder) for make in (figure7, figure8, figure9, figure10, figure11, figure12, figure13, figure14)]

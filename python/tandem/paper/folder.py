@@ -72,6 +72,12 @@ class Way:
         """Seconds of what the paper's Table 3 calls narrow phase: the whole span less transform, refit and broad phase."""
         return max(self.total() - sum(self.stage(name) for name in ("transform", "refit", "broad")), 0)
 
+    @property
+    def batches(self):
+        """Of gProximity: body pairs are dealt to its queues so many at a time (setting batch)."""
+        most = int(self.settings.get("batch") or 0)
+        return sum(-(-pairs // most) for r in self.records for pairs in (r["work"] or {}).get("body_pairs") or []) if most else None
+
     def per_frame(self, name, where="device_ns"):
         """(frame, seconds) of each frame."""
         rows = []

@@ -110,7 +110,7 @@ def show(ax, chunks, numbers, boxes=True):
     depth = chunks.corners[:, :, 2].mean(1).argsort()
     centres = chunks.corners.mean(1)[depth]
     size = min(12.0, 3e4 / len(depth))
-    ax.scatter(centres[:, 0], centres[:, 1], s=size, c=[COLOURS[i % len(COLOURS)] for i in numbers[depth]], linewidths=0)
+    ax.scatter(centres[:, 0], centres[:, 1], s=size, c=[COLOURS[i % len(COLOURS)] for i in numbers[depth]], linewidths=0, rasterized=True)
     if boxes:
         for i, (low, high) in enumerate(chunks.boxes(numbers)):
             ax.add_patch(Rectangle(low[:2], *(high - low)[:2], fill=False, edgecolor=COLOURS[i % len(COLOURS)], linewidth=1.2))

@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""paper_command.py PROGRAM SOURCE: tandem paper: steps are listed, run once, gone on with and measured anew; one that fails is said and
+stops none; what is drawn is what records say, the committed tables and verdicts with them; bad use is one line."""
+import csv
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+from program import PROGRAM, SOURCE
+
+COMMITTED = SOURCE / "results/h200/paper"
+FILES = ["index.html", "claims.csv", *(f"table{i}.csv" for i in range(1, 8)), *(f"figure{i}.{kind}" for i in range(1, 15) for kind in ("svg", "csv"))]
+RENDERED = {f"figure{i}.{kind}" for i in (1, 2, 6) for kind in ("svg", "csv")}  # of scenes' surfaces, which are not committed
+
+
+def paper(*words, code=0):
+    done = subprocess.run([PROGRAM, "paper", *map(str, words)], capture_output=True, text=True, timeout=300)
+    assert done.returncode == code, (done.returncode, done.stdout, done.stderr)
+    return done
+
+
+class Paper(unittest.TestCase):
+    def setUp(self):
+        self.work = tempfile.TemporaryDirectory(prefix="tandem-paper")
+        self.addCleanup(self.work.cleanup)
+        self.folder = pathlib.Path(self.work.name) / "out"
+        self.host = ("--device", "host", "-o", self.folder)
+
+    def steps(self):
+        return [json.loads(line) for line in (self.folder / "steps.jsonl").read_text().splitlines()]
+
+    def number(self, name, size="small"):
+        lines = paper("--dry-run", "--size", size, *self.host).stdout.splitlines()
+        return next(line.split()[0] for line in lines if line.split()[1] == name)
+
+    def test_every_table_and_figure_has_a_step(self):
+        for size in ("small", "full"):
+            listed = paper("--dry-run", "--size", size, "--device", "host", "-o", self.folder / size).stdout
+            for scene in ("funnel", "glasses", "colosseum", "plates", "tower"):
+                self.assertIn(f"cells-{scene}", listed)
+            self.assertIn("left", listed.splitlines()[-1])
+
+    def test_bad_use_is_one_line(self):
+        for words, says in (((), "no folder"), (("-o", self.folder, "--size", "huge"), "--size huge: give small or full"),
+                            (("-o", self.folder, "--device", "cuda:99"), "cuda:99"),
+                            ((*self.host, "--steps", "0:3"), "--steps 0:3"), ((*self.host, "--steps", "3:1"), "--steps 3:1"), ((*self.host, "--steps", "x"), "--steps x"),
+                            ((*self.host, "--steps", "1:999"), "give N or FIRST:LAST"), (("-o", self.folder, "--draw-only", "--again"), "--again"),
+                            (("-o", self.folder / "none", "--draw-only"), "steps.jsonl")):
+            code = 3 if "--draw-only" in words and "--again" not in words else 2
+            error = paper(*words, code=code).stderr
+            self.assertEqual(error.count("\n"), 1, error)
+            self.assertIn(says, error)
+
+    def test_steps_are_done_once_and_again_when_asked(self):
+        step = self.number("chunks-morton")
+        paper(*self.host, "--steps", step, "--measure-only")
+        first = self.steps()
+        self.assertEqual([(s["step"], s["exit"]) for s in first], [("chunks-morton", 0)])
+        with open(self.folder / "chunks-morton.csv", newline="") as file:
+            self.assertGreater(len(list(csv.DictReader(file))), 1000)
+        paper(*self.host, "--steps", step, "--measure-only")
+        self.assertEqual(self.steps(), first)
+        paper(*self.host, "--steps", step, "--measure-only", "--again")
+        self.assertEqual(len(self.steps()), 2)
+        self.assertIn("has results of size small on host", paper(*self.host, "--size", "full", "--dry-run", code=2).stderr)
+
+    def test_a_step_that_fails_stops_none_and_the_page_says_so(self):
+        first = self.number("glb-tower")  # of a recording that is not there
+        last = int(first) + 1
+        error = paper(*self.host, "--steps", f"{first}:{last}", code=3).stderr
+        self.assertIn("step glb-tower ended with 2", error)
+        self.assertEqual([s["exit"] for s in self.steps()], [2, 0])
+        for name in FILES:
+            self.assertTrue((self.folder / name).stat().st_size > 0, name)
+        page = (self.folder / "index.html").read_text()
+        self.assertIn("Step glb-tower ended with 2", page)
+        self.assertIn("plates", (self.folder / "figure6.csv").read_text())
+        self.assertIn("missing", (self.folder / "figure7.csv").read_text())
+
+    def test_a_simulation_goes_on_after_a_signal(self):
+        step = self.number("sim-colosseum")
+        running = subprocess.Popen([PROGRAM, "paper", *map(str, self.host), "--steps", step, "--measure-only"], stderr=subprocess.PIPE, text=True)
+        recording = self.folder / "colosseum.frames.checkpoint"
+        until = time.monotonic() + 60
+        while not recording.exists() and time.monotonic() < until:
+            time.sleep(0.05)
+        running.send_signal(signal.SIGTERM)
+        self.assertIn("interrupted", running.communicate(timeout=60)[1])
+        self.assertEqual(running.returncode, 3)
+        paper(*self.host, "--steps", step, "--measure-only")
+        self.assertEqual(self.steps()[-1]["exit"], 0)
+        lines = [json.loads(line) for line in (self.folder / "records/sim-colosseum.jsonl").read_text().splitlines()]
+        self.assertEqual(sorted({line["step"] for line in lines if line["kind"] == "step"}), list(range(60)))
+
+    def test_committed_tables_figures_and_verdicts_are_what_records_say(self):
+        shutil.copytree(COMMITTED, self.folder)
+        for name in FILES:
+            (self.folder / name).unlink()
+        said = paper("-o", self.folder, "--draw-only").stdout
+        self.assertIn("7 tables", said)
+        for name in (name for name in FILES if name.endswith(".csv") and name not in RENDERED):
+            self.assertEqual((self.folder / name).read_text(), (COMMITTED / name).read_text(), name)
+
+    def test_markup_in_records_is_text(self):
+        shutil.copytree(COMMITTED, self.folder)
+        steps = self.steps()
+        steps[0]["says"], steps[0]["command"], steps[0]["exit"] = "<img src=x onerror=alert(1)>", "tandem </code><script>", 3
+        (self.folder / "steps.jsonl").write_text("".join(json.dumps(step) + "\n" for step in steps))
+        paper("-o", self.folder, "--draw-only")
+        page = (self.folder / "index.html").read_text()
+        self.assertNotIn("<img src=x", page)
+        self.assertNotIn("<script", page)
+        self.assertIn("&lt;img src=x", page)
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("MPLCONFIGDIR", tempfile.gettempdir())
+    unittest.main(argv=["paper_command"])
