@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/profile/output.h"
 #include "harness/table/columns.h"
+#include "harness/text_lines.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -107,10 +108,12 @@ KernelProfile sum_of(std::span<const KernelProfile> kernels) {
 
 std::string ceilings_text(const Profile& profile) {
     const auto& l = profile.limits;
-    return fmt::format("ceilings, {}: {} GB/s, cache {} GB/s (to {} MB), {} G comparisons/s, launch {} us\n",
-                       profile.ceilings_from, digits(l.bytes_per_s * 1e-9),
-                       digits(l.cached_bytes_per_s * 1e-9), digits(l.cached_bytes * 1e-6),
-                       digits(l.operations_per_s * 1e-9), digits(l.launch_s * 1e6));
+    return paragraph(
+        fmt::format("ceilings, {}: {} GB/s, cache {} GB/s (to {} MB), {} G comparisons/s, launch {} us",
+                    profile.ceilings_from, digits(l.bytes_per_s * 1e-9), digits(l.cached_bytes_per_s * 1e-9),
+                    digits(l.cached_bytes * 1e-6), digits(l.operations_per_s * 1e-9),
+                    digits(l.launch_s * 1e6)),
+        2);
 }
 
 } // namespace
