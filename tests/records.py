@@ -88,6 +88,21 @@ class Records(Case):
         self.assertEqual(sorted(r["key"] for r in again), sorted(r["key"] for r in records))
         self.assertNotEqual(again[0]["session"], records[0]["session"])
 
+    def test_host_work_has_names(self):
+        """What the paper's release leaves untimed (making of seeds, allocation of the queue array) is told apart, within its stage."""
+        out = self.work / "host-work.jsonl"
+        status, text, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--preset", "published", "--set", "k=8", "--repeat", 2,
+                                      "--set", "queue_bytes=4096", "--truth", "none", "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        for record, name, times in zip(sorted(self.records(out), key=lambda r: r["algorithm"]), ("make seeds", "queue array"), (1, 1)):
+            work = record["host_work"]
+            self.assertLessEqual({name, "convert bodies"}, set(work))
+            self.assertEqual((work[name]["stage"], len(work[name]["host_ns"]["samples"])), ("preprocess", 2))
+            self.assertGreaterEqual(work[name]["times"], times)
+            self.assertGreater(work[name]["host_ns"]["median"], 0)
+            within = [sum(w["host_ns"]["samples"][i] for w in work.values() if w["stage"] == "preprocess") for i in range(2)]
+            self.assertEqual(within, record["stages"]["preprocess"]["host_ns"]["samples"])
+
     def test_samples_until_they_suffice(self):
         out = self.work / "suffice.jsonl"
         arguments = ("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked,tiled", "--set", "k=6",
@@ -123,10 +138,10 @@ class Records(Case):
         tandem("run", "--mesh", flat, "--mesh", self.good, "--device", "opencl:0", "--algorithm", "gproximity", "--truth", "contacts",
                "--out", out)
         record = self.records(out)[0]
-        for name in ("stages", "kernel_times"):  # maps by names, every entry of which has the same fields
+        for name in ("stages", "kernel_times", "host_work"):  # maps by names, every entry of which has the same fields
             record[name] = {key: record[name][key] for key in sorted(record[name])[-2:]}
         record["kernels"] = record["kernels"][:1]
-        maps, nullable = {"settings", "defines", "counters", "kernel_times"}, {"chosen", "failure", "agreement", "commit", "hardware", "device_span_ns",
+        maps, nullable = {"settings", "defines", "counters", "kernel_times", "host_work"}, {"chosen", "failure", "agreement", "commit", "hardware", "device_span_ns",
                                                    "session", "command",
                                                    "registers", "local_bytes", "spill_bytes", "missed_upper95", "candidate_ratio", "decisions",
                                                    "depth_relative", "depth_ulps", "normal_degrees", "point", "hausdorff", "volume_relative"}
@@ -137,7 +152,7 @@ class Records(Case):
                           *(("work", name) for name in ("undecided_by_filter", "undecided_by_double", "batches")),
                           *(("work", "counters", name) for name in record["work"]["counters"])}
         since = {"chosen", "truth", "inputs", "volume_relative", "no_volume"}  # records from before each lack it
-        since_paths = {("devices", 0, "clock"), ("work", "digest"), ("work", "contact_digest"), ("work", "submissions"), ("sampling", "continued")}
+        since_paths = {("devices", 0, "clock"), ("work", "digest"), ("work", "contact_digest"), ("work", "submissions"), ("sampling", "continued"), ("host_work",)}
         seen = set()
         for path in places(record):
             shape = tuple(0 if isinstance(name, int) else name for name in path)

@@ -10,7 +10,7 @@ namespace tandem::record_parts {
 
 using Json = nlohmann::ordered_json;
 
-/// From "total_ns" to "kernel_times": of a cell that failed what there is.
+/// From "total_ns" to "host_work": of a cell that failed what there is.
 void add_times(Json& record, const Measurement& m, bool measured);
 
 /// How it was sampled, and what is to be thought of it.

@@ -74,20 +74,39 @@ Json stages_json(const Measurement& m) {
     return json;
 }
 
+/// What a replay has under a name (`sums`, `time`), one sample a replay; 0 where one does not have it.
+template<class Sums, class Time>
+Json named_times_json(const Measurement& m, const std::string& name, Sums sums, Time time) {
+    std::vector<std::int64_t> times;
+    for (const auto& replay : m.breakdowns) {
+        const auto found = (replay.*sums).find(name);
+        times.push_back(found == (replay.*sums).end() ? 0 : found->second.*time);
+    }
+    Json samples{{"samples", times}};
+    samples.update(statistics_json(summarise(times)));
+    return samples;
+}
+
 /// By entry point, as stages_json.
 Json kernel_times_json(const Measurement& m) {
     Json json = Json::object();
     if (m.breakdowns.empty()) return json;
-    for (const auto& [entry, last] : m.breakdowns.back().kernels) {
-        std::vector<std::int64_t> times;
-        for (const auto& replay : m.breakdowns) {
-            const auto found = replay.kernels.find(entry);
-            times.push_back(found == replay.kernels.end() ? 0 : found->second.device_ns);
-        }
-        Json samples{{"samples", times}};
-        samples.update(statistics_json(summarise(times)));
-        json[entry] = {{"launches", last.launches}, {"device_ns", samples}};
-    }
+    for (const auto& [entry, last] : m.breakdowns.back().kernels)
+        json[entry] = {{"launches", last.launches},
+                       {"device_ns",
+                        named_times_json(m, entry, &InstrumentedReplay::kernels, &KernelSample::device_ns)}};
+    return json;
+}
+
+/// By name, as kernel_times_json.
+Json host_work_json(const Measurement& m) {
+    Json json = Json::object();
+    if (m.breakdowns.empty()) return json;
+    for (const auto& [name, last] : m.breakdowns.back().host_work)
+        json[name] = {
+            {"stage", stage_names[static_cast<std::size_t>(last.stage)]},
+            {"times", last.times},
+            {"host_ns", named_times_json(m, name, &InstrumentedReplay::host_work, &HostWorkSample::host_ns)}};
     return json;
 }
 
@@ -107,6 +126,7 @@ void add_times(Json& record, const Measurement& m, bool measured) {
     record["device_span_ns"] = device_span_json(m);
     record["stages"] = stages_json(m);
     record["kernel_times"] = kernel_times_json(m);
+    record["host_work"] = host_work_json(m);
 }
 
 } // namespace tandem::record_parts

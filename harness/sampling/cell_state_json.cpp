@@ -11,8 +11,9 @@ TANDEM_FIELDS(StageSample, device_ns, host_ns, launches, waits, bytes)
 TANDEM_FIELDS(KernelFacts, entry, defines, compile_ms, registers, local_bytes, spill_bytes, max_group_size,
               occupancy)
 TANDEM_FIELDS(KernelSample, device_ns, launches, stage, groups, group_size, facts)
+TANDEM_FIELDS(HostWorkSample, host_ns, times, stage)
 TANDEM_FIELDS(TimedReplay, round, frame_ns)
-TANDEM_FIELDS(InstrumentedReplay, round, frame_ns, span_ns, stages, kernels, clocks)
+TANDEM_FIELDS(InstrumentedReplay, round, frame_ns, span_ns, stages, kernels, host_work, clocks)
 TANDEM_FIELDS(ProcessorCondition, cores, quota, own, others, governor, mhz, throttled, pressure)
 TANDEM_FIELDS(GpuCondition, sm_mhz, sm_limit_mhz, memory_mhz, memory_limit_mhz, temperature_c, power_w,
               power_limit_w, throttle, busy_percent, processes)

@@ -40,6 +40,13 @@ struct KernelSample {
     KernelFacts facts{};          ///< of the first launch
 };
 
+/// Sums of one kind of host work over a replay.
+struct HostWorkSample {
+    std::int64_t host_ns = 0;
+    std::uint64_t times = 0;
+    Stage stage = Stage::preprocess; ///< in which it counts as well
+};
+
 /// A replay in which nothing but the span of each frame was timed: a sample.
 struct TimedReplay {
     std::uint32_t round = 0;
@@ -56,7 +63,8 @@ struct InstrumentedReplay {
     std::vector<std::int64_t> span_ns;                ///< by frame, first begin to last end; -1: not known
     std::vector<StageSamples> stages;                 ///< by frame
     std::map<std::string, KernelSample> kernels = {}; ///< by entry point
-    std::vector<std::string> clocks = {};             ///< by device: what took its times
+    std::map<std::string, HostWorkSample> host_work = {}; ///< by name
+    std::vector<std::string> clocks = {};                 ///< by device: what took its times
 
     /// Sums over the frames.
     StageSamples totals() const;

@@ -38,6 +38,16 @@ void add_kernels(const Trace& trace, std::map<std::string, KernelSample>& kernel
     }
 }
 
+void add_host_work(const Trace& trace, std::map<std::string, HostWorkSample>& work) {
+    for (const auto& event : trace.events) {
+        if (event.command != Command::host_work) continue;
+        auto& sum = work[event.label];
+        sum.host_ns += event.host_ns;
+        ++sum.times;
+        sum.stage = event.stage;
+    }
+}
+
 } // namespace
 
 Replays::Replays(const Cell& cell, const Scene& scene, const FrameRange& range)
@@ -82,6 +92,7 @@ InstrumentedReplay Replays::instrumented() {
             const auto own = by_stage(trace);
             for (std::size_t stage = 0; stage < own.size(); ++stage) sum[stage] += own[stage];
             add_kernels(trace, replay.kernels);
+            add_host_work(trace, replay.host_work);
             const auto own_span = device_span(trace);
             span = span < 0 || own_span < 0 ? -1 : std::max(span, own_span);
         }

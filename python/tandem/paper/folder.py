@@ -61,6 +61,12 @@ class Way:
     def sum(self, where):
         return sum(stage[where] for r in self.records for stage in r["stages"].values())
 
+    def host_work(self, name):
+        """Seconds of what the host did under that name; None where records are older than such names."""
+        if not all("host_work" in r for r in self.records):
+            return None
+        return sum(r["host_work"][name]["host_ns"]["median"] for r in self.records if name in r["host_work"]) / 1e9
+
     @property
     def theirs(self):
         """Launches as the release counts them; None where no kernel is one of its."""

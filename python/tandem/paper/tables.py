@@ -199,7 +199,7 @@ def table5(folder):
             listed = sum(way.stage(name) for name in PARTS)
             apart = {"broad_s": way.stage("broad"), "seed_s": way.stage("seed")}
             rows.append({"scene": scene, "source": "ours", "device": way.device["id"], "method": way.name,
-                         **{f"{name}_s": way.scale * way.stage(name) for name in PARTS},
+                         **{f"{name}_s": way.scale * way.stage(name) for name in PARTS}, **untimed(way),
                          "launches_as_theirs": None if way.theirs is None else way.scale * way.theirs,
                          **{name: way.scale * value for name, value in apart.items()},
                          "rest_s": way.scale * max(way.total() - listed - sum(apart.values()), 0), "whole_s": way.scale * way.total(),
@@ -209,8 +209,14 @@ def table5(folder):
     return Table(5, f"Where the time goes, seconds in {STEPS_OF_TABLES} frames", ordered(rows),
                  ("Ours are of as many frames as the column says, times as many as make 102. whole is the median of replays that only time whole frames; "
                   "stages are of replays with timestamps, and may overlap.",
-                  "The release leaves the making of seeds and the allocation of the queue array untimed: ours are within preprocess; rest is what no "
-                  "stage has. Wider columns right of launches are ours alone."))
+                  "The release leaves the making of seeds and the allocation of its queue array untimed: columns make_seeds and queue_array, which "
+                  "preprocess contains; empty where a record is older than they. rest is what no stage has. Wider columns right of launches are ours alone."))
+
+
+def untimed(way):
+    """What the release does outside its clocks, of what preprocess has here: seconds in 102 frames; None where a record does not tell."""
+    found = {name: way.host_work(work) for name, work in (("make_seeds_s", "make seeds"), ("queue_array_s", "queue array"))}
+    return {name: None if seconds is None else way.scale * seconds for name, seconds in found.items()}
 
 
 def table6(folder):
