@@ -127,6 +127,7 @@ struct SimulateOptions {
     std::string scene;
     std::string recording;  ///< -o: the file of recorded frames; empty: none
     std::string record;     ///< append one line a step and one for the run
+    std::string pictures;   ///< OUT: draw the recording as OUT-0.png, ...; empty: no pictures
     std::size_t steps = 0;  ///< 0: those of the scene
     std::size_t every = 10; ///< steps from checkpoint to checkpoint
     bool resume = false;

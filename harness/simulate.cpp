@@ -4,6 +4,7 @@
 #include "harness/commands.h"
 #include "harness/inputs.h"
 #include "harness/journal.h"
+#include "harness/pictures.h"
 #include "harness/progress.h"
 #include "harness/simulate_session.h"
 #include "harness/standard_streams.h"
@@ -14,6 +15,7 @@
 #include <chrono>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 namespace tandem {
@@ -149,6 +151,9 @@ Search ContactFinder::take() { return std::exchange(search_, {}); }
 
 int simulate_command(const SimulateOptions& options) {
     const auto scene = open_scene(options);
+    // What they need is looked for before hours are spent.
+    std::optional<Pictures> pictures;
+    if (!options.pictures.empty()) pictures.emplace(options.pictures);
     const auto request = contacts_request(options);
     const auto backends = open_backends(request.devices, options.require);
     check_required(backends, options.require);
@@ -182,6 +187,7 @@ int simulate_command(const SimulateOptions& options) {
         put("{}: {} frames; measure them with 'tandem run {}'\n", options.recording, session.frames(),
             options.recording);
     file.append(run_record(cell, scene, totals, {}));
+    if (pictures) pictures->draw(options.recording);
     return 0;
 }
 

@@ -3,6 +3,7 @@
 """python_package.py PROGRAM SOURCE: the Python package, from its wheel alone: what it reads is what tandem export --csv says of
 the committed records, what it compares what tandem compare says; figures name who wins; the notebook runs; bad files are one line."""
 import csv
+import dataclasses
 import io
 import json
 import math
@@ -97,6 +98,20 @@ class Reading(unittest.TestCase):
         self.assertEqual(list(mine.frames["candidate_pairs"]), record["work"]["candidate_pairs"])
         self.assertEqual(len(records.cells), len(raw))
         self.assertGreater(records.frames["ms"].min(), 0)
+
+    def test_errors_are_those_of_the_truth(self):
+        records = tandem.read(H200 / "accuracy.jsonl")
+        written = [json.loads(line) for line in (H200 / "accuracy.jsonl").read_text().splitlines()]
+        self.assertEqual(set(records.errors["cell"]), {i for i, r in enumerate(written) if r["error"]["truth"]})
+        for row in records.errors.itertuples():
+            truth = written[row.cell]["error"]["truth"]
+            if row.error == "false_share":
+                self.assertAlmostEqual(row.median, truth["false"] / truth["candidates"])
+            elif row.error == "missed_share":
+                missed = truth["missed_touching"] + truth["missed_overlapping"]
+                self.assertAlmostEqual(row.median, missed / (missed + truth["touching"] + truth["overlapping"]))
+            else:
+                self.assertEqual({"median": row.median, "p99": row.p99, "max": row.max}, truth["contacts"][row.error])
 
     def test_several_files_and_packed_ones(self):
         one, other = H200 / "seeds.jsonl", H200 / "accuracy-hard.jsonl.xz"
@@ -231,7 +246,7 @@ class Drawing(unittest.TestCase):
     def test_those_not_told_apart_are_said_to_be(self):
         cells = self.plates.cells.copy()
         cells["ms_high"] = cells["ms"].max()
-        records = tandem.Records(cells, self.plates.samples, self.plates.stages, self.plates.kernels, self.plates.frames)
+        records = dataclasses.replace(self.plates, cells=cells)
         self.assertIn("not told apart", " ".join(tandem.plot_cells(records).get_title("left").split()))
 
     def test_what_is_wrong_is_never_drawn(self):
@@ -239,7 +254,7 @@ class Drawing(unittest.TestCase):
         first = cells["ms"].idxmin()
         cells["status"] = cells["status"].astype(str)
         cells.loc[first, "status"] = "wrong"
-        records = tandem.Records(cells, self.plates.samples, self.plates.stages, self.plates.kernels, self.plates.frames)
+        records = dataclasses.replace(self.plates, cells=cells)
         for draw in (tandem.plot_cells, tandem.plot_stages, tandem.plot_frames, lambda r: tandem.plot_sweep(r, "slabs")):
             with self.assertWarnsRegex(UserWarning, "1 of .* cells failed, were wrong"):
                 draw(records)
@@ -262,6 +277,36 @@ class Drawing(unittest.TestCase):
         best = records.cells.loc[records.cells["ms"].idxmin(), "set_seed_threshold"]
         self.assertIn(str(best), axes.get_title("left"))
         self.assertEqual(sum(len(line.get_xdata()) for line in axes.lines), len(records.cells))
+
+    def test_errors_name_those_that_nothing_beats(self):
+        records = tandem.read(H200 / "accuracy.jsonl")
+        scene = records.cells["scene"].str.startswith("plates") & (records.cells["device"] == "cuda:0")
+        plates = records.of(scene & (records.cells["set_k"] == 18))
+        written = [json.loads(line) for line in (H200 / "accuracy.jsonl").read_text().splitlines()]
+        points = {}
+        for cell in plates.cells.index:
+            record = written[cell]
+            spread = record["error"]["truth"]["contacts"]["hausdorff"]
+            if spread is not None:
+                points[cell] = (record["total_ns"]["median"], spread["p99"])
+        named = [cell for cell, (ns, error) in points.items()
+                 if not any(a <= ns and b <= error and (a, b) != (ns, error) for a, b in points.values())]
+        self.assertTrue(0 < len(named) < len(points) > 4, points)
+        axes = tandem.plot_errors(plates, "hausdorff", "p99")
+        places = sorted(text.xy for text in axes.texts)
+        self.assertEqual([error for _, error in sorted((points[cell][1], points[cell][1]) for cell in named)], [x for x, _ in places])
+        self.assertEqual(len(axes.lines), 2 * len(points))
+        self.assertRegex(" ".join(axes.get_title("left").split()), "has the least error and takes [0-9.]+ times as long as the fastest|is the fastest and has the least")
+
+    def test_no_error_at_all_is_drawn_too(self):
+        errors = self.plates.cells.index[:3]
+        table = pandas.DataFrame({"cell": errors, "error": "false_share", "median": [0.0, 0.5, 0.25], "p99": None, "max": None})
+        axes = tandem.plot_errors(dataclasses.replace(self.plates, errors=table), "false_share")
+        self.assertAlmostEqual(min(line.get_xdata()[0] for line in axes.lines), 0.025)
+        with self.assertRaisesRegex(ValueError, "no such error in these records; there are none: measure with --truth"):
+            tandem.plot_errors(self.plates)
+        with self.assertRaisesRegex(ValueError, "volume: no such error in these records; there are false_share"):
+            tandem.plot_errors(dataclasses.replace(self.plates, errors=table), "volume")
 
     def test_what_cannot_be_drawn(self):
         with self.assertRaisesRegex(ValueError, "no such setting in these records; there are .*seed_threshold"):

@@ -170,6 +170,26 @@ class Simulations(Case):
         status, text, errors = tandem("export", file, "--frames", "0", "--glb", self.work / "bad.glb")
         self.assertEqual((status, errors), (0, []), text)
 
+    def test_pictures_are_of_the_recording(self):
+        frames, out = self.work / "pictured.frames", self.work / "new" / "arch"
+        text = self.simulate("tower:segments=1,slices=3", "--steps", 40, "-o", frames, "--pictures", out)
+        paths = [f"{out}-{i}.png" for i in range(3)]
+        self.assertEqual(text.splitlines()[-3:], paths)
+        glb = self.work / "pictured.glb"
+        self.assertEqual(tandem("export", frames, "--frames", "0:39", "--glb", glb)[0], 0)
+        drawn = subprocess.run([SOURCE / "scripts/render", glb, self.work / "drawn"], capture_output=True, text=True)
+        self.assertEqual((drawn.returncode, drawn.stderr), (0, ""))
+        pictures = [open(path, "rb").read() for path in paths]
+        for which in (0, 2):  # between two keys a viewer may be half a step off
+            self.assertEqual(pictures[which], (self.work / f"drawn-{which}.png").read_bytes())
+        self.assertEqual(len(set(pictures)), 3, "it moves")
+        environment = {**os.environ, "TMPDIR": str(self.work / "absent")}
+        done = subprocess.run([PROGRAM, "simulate", "arch", "--steps", "1", "--device", "host", "-o", self.work / "p.frames", "--pictures", out], env=environment,
+                              capture_output=True, text=True)
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+        self.assertIn("set TMPDIR", done.stderr)
+        self.assertTrue((self.work / "p.frames").exists(), "what was simulated stays")
+
     def test_bad_use(self):
         for expected, *arguments in (
                 ("no scene", ),
@@ -185,6 +205,8 @@ class Simulations(Case):
                 ("asks for 2 cells", "arch", "--set", "k=8,18"),
                 ("a simulation needs contacts", "arch", "--set", "output=count"),
                 ("--resume goes with -o FILE", "arch", "--resume"),
+                ("--pictures goes with -o FILE", "arch", "--pictures", "x"),
+                ("--pictures: cannot make /proc/x", "arch", "-o", self.work / "none.frames", "--pictures", "/proc/x/y"),
                 ("absent", "arch", "-o", "/absent/x.frames"),
                 ("absent", "arch", "--record", "/absent/x.jsonl"),
                 ("--steps", "arch", "--steps", "0")):

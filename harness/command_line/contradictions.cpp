@@ -52,6 +52,7 @@ constexpr Rule rules[] = {
     {"--pose", Together::must, "--mesh FILE", "a scene brings its own poses"},
     {"--resume", Together::must, "-o FILE", "that recording is what it goes on with"},
     {"--checkpoint", Together::must, "-o FILE", "checkpoints are kept beside a recording"},
+    {"--pictures", Together::must, "-o FILE", "that recording is what they show"},
     {"--contacts", Together::must, "--vtu FOLDER", "a .glb has surfaces only"},
     {"--chunks", Together::must_not, "--csv", "a file of records has no chunks"},
     {"--builder", Together::must, "--chunks FILE", only_chunks},

@@ -25,6 +25,8 @@ void add_motion_options(CLI::App& app, SimulateOptions& options) {
     app.add_flag("--resume", options.resume, "go on with the recording from its last checkpoint");
     app.add_option("--checkpoint", options.every, "steps from one checkpoint to the next")
         ->check(CLI::Range(std::size_t{1}, std::size_t{100000000}));
+    app.add_option("--pictures", options.pictures,
+                   "OUT: draw the recording's begin, middle and end as OUT-0.png, OUT-1.png and OUT-2.png");
     app.add_option("--dynamics", options.dynamics,
                    "NAME=VALUE: a setting of the motion (see 'tandem scenes')")
         ->expected(1)

@@ -6,7 +6,6 @@
 #include "harness/standard_streams.h"
 #include "scenes/error.h"
 
-#include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -18,28 +17,23 @@ namespace fs = std::filesystem;
 PaperDrawing::PaperDrawing()
     : python_(python_with("matplotlib, pandas, scipy", "python3-matplotlib python3-pandas python3-scipy",
                           "tandem paper")) {
-    auto folder = (fs::temp_directory_path() / "tandem-XXXXXX").string();
-    if (mkdtemp(folder.data()) == nullptr)
-        throw InputError(fmt::format("{}: cannot be made; set TMPDIR", folder));
-    package_ = folder;
     for (const auto& file : python_package()) {
-        const auto path = fs::path(package_) / file.path;
+        const auto path = fs::path(package_.path()) / file.path;
         fs::create_directories(path.parent_path());
-        std::ofstream(path) << file.text;
+        std::ofstream out(path);
+        if (!(out << file.text).flush())
+            throw InputError(
+                fmt::format("{}: cannot be written; make room there or set TMPDIR", path.string()));
     }
 }
 
-PaperDrawing::~PaperDrawing() {
-    std::error_code none;
-    fs::remove_all(package_, none);
-}
-
 bool PaperDrawing::draw(const std::string& folder) const {
-    const auto script =
-        fmt::format("import sys; sys.path.insert(0, '{}'); sys.dont_write_bytecode = True; "
-                    "import tandem.paper.command as command; sys.exit(command.main(sys.argv[1:]))",
-                    package_);
-    return run_program({python_, "-c", script, folder}, {"", flush_output() ? "" : "/dev/null", ""}) == 0;
+    const auto* const script =
+        "import sys; sys.path.insert(0, sys.argv.pop(1)); sys.dont_write_bytecode = True; "
+        "import tandem.paper.command as command; sys.exit(command.main(sys.argv[1:]))";
+    return run_program({python_, "-c", script, package_.path(), folder},
+                       {"", flush_output() ? "" : "/dev/null", ""})
+           == 0;
 }
 
 } // namespace tandem

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "harness/passing_folder.h"
+
 #include <string>
 
 namespace tandem {
@@ -9,18 +11,16 @@ namespace tandem {
 /// package, which is part of the program.
 class PaperDrawing {
 public:
-    /// Throws InputError where there is no Python with what it takes.
+    /// Throws InputError where there is no Python with what it takes, or no room
+    /// for the package.
     PaperDrawing();
-    ~PaperDrawing();
-    PaperDrawing(const PaperDrawing&) = delete;
-    PaperDrawing& operator=(const PaperDrawing&) = delete;
 
     /// Whether all of it was made; it prints a line of what it made, or why not.
     bool draw(const std::string& folder) const;
 
 private:
     std::string python_;
-    std::string package_; ///< a folder that ends with this
+    PassingFolder package_;
 };
 
 } // namespace tandem

@@ -9,8 +9,8 @@
 """
 from .comparison import Comparison, compare
 from .lines import RecordError
-from .plots import plot_cells, plot_frames, plot_stages, plot_sweep
+from .plots import plot_cells, plot_errors, plot_frames, plot_stages, plot_sweep
 from .records import Records, read
 
-__all__ = ["Comparison", "RecordError", "Records", "compare", "plot_cells", "plot_frames", "plot_stages", "plot_sweep", "read"]
+__all__ = ["Comparison", "RecordError", "Records", "compare", "plot_cells", "plot_errors", "plot_frames", "plot_stages", "plot_sweep", "read"]
 __version__ = "0.1.0"

@@ -149,6 +149,65 @@ def plot_stages(records, ax=None):
     return ax
 
 
+ERRORS = {"depth_relative": "error of depth, relative", "depth_ulps": "error of depth, units in the last place", "normal_degrees": "error of normals, degrees",
+          "point": "distance of points from both bodies", "hausdorff": "distance of the contacts' hull", "volume_relative": "error of volume, relative",
+          "false_share": "share of candidate pairs that do not meet", "missed_share": "share of meeting pairs that are missed"}
+
+
+def _unbeaten(cells):
+    """Of the cells, those that nothing beats: no other has less time and no more error, or less error and no more time."""
+    def beats(other, cell):
+        return other.ms <= cell.ms and other.error <= cell.error and (other.ms < cell.ms or other.error < cell.error)
+    rows = list(cells.itertuples())
+    return [not any(beats(other, cell) for other in rows) for cell in rows]
+
+
+def plot_errors(records, error="depth_relative", which="median", ax=None):
+    """Milliseconds a frame against an error from the exact truth ("depth_relative", "hausdorff", "false_share", ...; its "median",
+    "p99" or "max") of the cells of one scene, its frames and one device. Cells that nothing beats in both are numbered and named
+    below, the others pale; no error at all stands at the left edge. Returns the axes. Raises ValueError for an error that these records do not have."""
+    found = records.errors[(records.errors["error"] == error) & records.errors[which].notna()].set_index("cell")[which]
+    if found.empty:
+        known = ", ".join(records.errors["error"].unique()) or "none: measure with --truth"
+        raise ValueError(f"{error}: no such error in these records; there are {known}")
+    cells = _rankable(records.cells.loc[found.index]).sort_values("ms")
+    where = _of_one_group(cells)
+    cells = cells.assign(error=found[cells.index])
+    unbeaten = _unbeaten(cells)
+    best = cells[unbeaten]
+    names = labels(best.drop(columns="error"), without=GROUP).str.replace(r"\b[a-z_]+=(?=[a-z])", "", regex=True)  # words need no setting's name
+    numbers = {cell: number for number, cell in enumerate(best.index, 1)}
+    ax = _axes(ax, 3.8 + 0.16 * len(best))
+    some = cells["error"][cells["error"] > 0]
+    edge = some.min() / 10 if len(some) else 1.0
+    for cell in cells[::-1].itertuples():  # the fastest above the others
+        place, number = max(cell.error, edge), numbers.get(cell.Index)
+        colour = WINNER if number else PALE
+        ax.plot([place, place], [cell.ms_low, cell.ms_high], color=colour, linewidth=2, solid_capstyle="butt")
+        ax.plot(place, cell.ms, "D" if number else "o", color=colour, markersize=6 if number else 4,
+                label=f"{number}  {names[cell.Index]}: {_figures(cell.ms)} ms, {_figures(cell.error)}" if number else None)
+        if number:
+            ax.annotate(str(number), (place, cell.ms), xytext=(-7 if number % 2 else 7, 0), textcoords="offset points", ha="right" if number % 2 else "left",
+                        va="center", fontsize=9, fontweight="bold", color=WINNER)
+    ax.set_xscale("log")
+    ax.margins(x=0.1)
+    ax.set_ylim(bottom=0)
+    handles, texts = ax.get_legend_handles_labels()
+    ax.legend(handles[::-1], texts[::-1], fontsize=7, frameon=False, loc="upper left", bbox_to_anchor=(0, -0.14), title="beaten by none in both",
+              title_fontsize=7, alignment="left")
+    ax.set_xlabel(f"{ERRORS.get(error, error)}, {which}" if not error.endswith("_share") else ERRORS[error], fontsize=8)
+    ax.set_ylabel("milliseconds a frame", fontsize=8)
+    fastest, least = best["ms"].idxmin(), best["error"].idxmin()
+    if fastest == least:
+        message = f"{names[fastest]} is the fastest and has the least error"
+    else:
+        times = _figures(best.at[least, "ms"] / best.at[fastest, "ms"])
+        message = f"{names[least]} has the least error and takes {times} times as long as the fastest, {names[fastest]}"
+    _title(ax, f"{where}: {message}")
+    ax.spines[["top", "right"]].set_visible(False)
+    return ax
+
+
 def plot_frames(records, what="ms", ax=None):
     """A curve over frames for each cell of one scene and device: "ms", "body_pairs", "candidate_pairs" or "contacts". Returns the
     axes."""

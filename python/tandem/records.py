@@ -17,6 +17,8 @@ WHOLE = ("bodies", "tetrahedra", "first_frame", "last_frame", "samples", "rounds
          "contacts", "missing", "extra", "contact_frames_wrong", "pairs_missed", "device_bytes")
 TIMES = ("ms", "ms_low", "ms_high", "device_span_ms")
 TRUTHS = ("converged", "disturbed", "dirty")
+PARTS = ("samples", "stages", "kernels", "frames", "errors")  # beside cells
+SPREADS = ("median", "p99", "max")
 WORDS = ("status", "algorithm", "preset", "device", "device_name", "driver", "scene")
 
 
@@ -33,17 +35,20 @@ class Records:
     kernels: a row a kernel: cell, kernel, device_ms a frame with its interval, launches, registers, local_bytes, spill_bytes.
         A kernel that was compiled in several ways has the largest of each.
     frames: a row a frame: cell, frame, ms (its median over replays), body_pairs, candidate_pairs, contacts.
+    errors: a row an error against the exact truth of a cell that was held against it: cell, error, median, p99, max; of shares of
+        pairs (false_share of candidates, missed_share of pairs that meet) the median is the share.
     """
     cells: pandas.DataFrame
     samples: pandas.DataFrame
     stages: pandas.DataFrame
     kernels: pandas.DataFrame
     frames: pandas.DataFrame
+    errors: pandas.DataFrame
 
     def of(self, cells):
         """The records of some cells alone: an index of `cells` or a mask of it. Numbers of cells stay as they are."""
         chosen = self.cells.loc[cells]
-        return Records(chosen, *(table[table["cell"].isin(chosen.index)] for table in (self.samples, self.stages, self.kernels, self.frames)))
+        return Records(chosen, *(table[table["cell"].isin(chosen.index)] for table in (getattr(self, name) for name in PARTS)))
 
 
 def _at(record, *path):
@@ -146,6 +151,18 @@ class _Cell:
                            for name in ("body_pairs", "candidate_pairs", "contacts")})
         return rows
 
+    def errors(self):
+        truth = _at(self.record, "error", "truth")
+        if not isinstance(truth, dict):
+            return []
+        missed = truth["missed_touching"] + truth["missed_overlapping"]
+        meeting = truth["touching"] + truth["overlapping"] + missed
+        shares = {"false_share": (truth["false"], truth["candidates"]), "missed_share": (missed, meeting)}
+        rows = [{"cell": self.number, "error": name, "median": part / whole} for name, (part, whole) in shares.items() if whole]
+        contacts = truth.get("contacts") or {}
+        return rows + [{"cell": self.number, "error": name, **{which: spread.get(which) for which in SPREADS}}
+                       for name, spread in contacts.items() if isinstance(spread, dict)]
+
 
 def _typed(column):
     """Settings: whole numbers, numbers, or words, as all values are that there are."""
@@ -184,13 +201,13 @@ def read(files):
     paths = [files] if isinstance(files, (str, os.PathLike)) else list(files)
     if not paths:
         raise lines.RecordError("no file is named; name files of records")
-    rows = {name: [] for name in ("cells", "samples", "stages", "kernels", "frames")}
+    rows = {name: [] for name in ("cells", *PARTS)}
     for path in paths:
         for record, place in lines.each(path):
             try:
                 cell = _Cell(len(rows["cells"]), record)
                 rows["cells"].append(cell.row() | {"file": os.fspath(path)})
-                for name in ("samples", "stages", "kernels", "frames"):
+                for name in PARTS:
                     rows[name] += getattr(cell, name)()
             except (KeyError, TypeError, AttributeError, IndexError):
                 raise lines.RecordError(f"{place}: a record that lacks fields of its schema; {lines.WHAT_TO_GIVE}") from None
@@ -198,4 +215,4 @@ def read(files):
     return Records(_cells(rows["cells"]), _table(rows["samples"], ("sample", "round"), (), ("ms",)),
                    _table(rows["stages"], ("launches", "waits", "bytes"), ("stage",), (*both, "host_ms", "host_ms_low", "host_ms_high")),
                    _table(rows["kernels"], ("launches", "registers", "local_bytes", "spill_bytes"), ("kernel",), both),
-                   _table(rows["frames"], ("frame", "body_pairs", "candidate_pairs", "contacts"), (), ("ms",)))
+                   _table(rows["frames"], ("frame", "body_pairs", "candidate_pairs", "contacts"), (), ("ms",)), _table(rows["errors"], (), ("error",), SPREADS))
