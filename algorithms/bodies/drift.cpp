@@ -12,9 +12,6 @@ constexpr double matrix_error = 24 * 0x1p-53; ///< of an entry that pose_rows co
 
 double roundoff(Precision precision) { return precision == Precision::fp64 ? 0x1p-53 : 0x1p-24; }
 
-/// More than all roundings below the least normal number lose.
-double underflow(Precision precision) { return precision == Precision::fp64 ? 0x1p-1060 : 0x1p-140; }
-
 /// gamma_n of Higham 2002, lemma 3.1.
 double gamma(int n, double u) { return n * u / (1 - n * u); }
 
@@ -24,9 +21,11 @@ double with_room(double bound, double u) { return bound * (1 + 64 * u); }
 
 } // namespace
 
+double underflow(Precision precision) { return precision == Precision::fp64 ? 0x1p-1060 : 0x1p-140; }
+
 double reach_of(std::span<const Eigen::Vector3d> vertices) {
     double reach = 0;
-    for (const auto& v : vertices) reach = std::max(reach, v.norm());
+    for (const auto& v : vertices) reach = std::max(reach, v.stableNorm());
     return reach;
 }
 

@@ -9,7 +9,10 @@
 
 namespace tandem {
 
-/// Largest distance of a vertex from the mesh's origin.
+/// More than all roundings of a vertex below the least normal number lose on its way to a slab.
+double underflow(Precision precision);
+
+/// Largest distance of a vertex from the mesh's origin; right also where squares of coordinates underflow.
 double reach_of(std::span<const Eigen::Vector3d> vertices);
 
 /// Bounds, by axis, |x^ - x| of every vertex of a rigid body: x where the pose puts the scene's own vertex

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/broad/broad.h"
 
+#include "algorithms/bodies/drift.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +13,8 @@ namespace tandem {
 namespace {
 
 /// Roundings on the way from a body's vertex to a slab: input, rotation (4), two sums, and E of a safe corner
-/// (4), doubled for good measure and for the bound on the drift from the pose (6; placement = exact).
+/// (4), doubled for good measure and for the bound on the drift from the pose (6; placement = exact). Below
+/// the least normal number they lose underflow() besides.
 constexpr double rounding_steps = 24;
 
 /// What published rounding adds, in integer directions: its tolerance is one of unit directions, shared by
@@ -53,6 +56,7 @@ BroadSweep::BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound
     : scene_(scene),
       bound_(bound),
       roundoff_(std::ldexp(1.0, geometry.precision == Precision::fp64 ? -53 : -24)),
+      underflow_(underflow(geometry.precision)),
       tolerance_(geometry.rounding == Rounding::published ? published_slack : 0) {
     for (const auto& d : directions(geometry)) directions_.emplace_back(d[0], d[1], d[2]);
     for (const auto& mesh : scene.meshes) shapes_.push_back(shape_of(mesh.vertices));
@@ -62,21 +66,22 @@ BroadSweep::Shape BroadSweep::shape_of(const std::vector<Eigen::Vector3d>& verti
     Eigen::Vector3d lower = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
     Eigen::Vector3d upper = -lower;
     Shape shape;
+    shape.reach = reach_of(vertices);
     for (const auto& v : vertices) {
         lower = lower.cwiseMin(v);
         upper = upper.cwiseMax(v);
-        shape.reach = std::max(shape.reach, v.norm());
     }
     shape.centre = 0.5 * (lower + upper);
     shape.half = 0.5 * (upper - lower);
-    for (const auto& v : vertices) shape.radius = std::max(shape.radius, (v - shape.centre).norm());
+    for (const auto& v : vertices) shape.radius = std::max(shape.radius, (v - shape.centre).stableNorm());
     return shape;
 }
 
 void BroadSweep::bound_rigid(const Shape& shape, const Pose& pose, double* slabs) const {
     const Eigen::Matrix3d rotation = pose.rotation.normalized().toRotationMatrix();
     const Eigen::Vector3d centre = rotation * shape.centre + pose.translation;
-    const double slack = rounding_steps * roundoff_ * (pose.translation.lpNorm<1>() + 2 * shape.reach);
+    const double slack =
+        rounding_steps * roundoff_ * (pose.translation.lpNorm<1>() + 2 * shape.reach) + underflow_;
     for (const auto& d : directions_) {
         const double reach = bound_ == Broad::sphere ? shape.radius * d.norm()
                                                      : (rotation.transpose() * d).cwiseAbs().dot(shape.half);
@@ -101,8 +106,8 @@ void BroadSweep::bound_deformed(const std::vector<Eigen::Vector3d>& vertices, do
                 upper = std::max(upper, d.dot(v));
             }
         }
-        const double slack =
-            rounding_steps * roundoff_ * 2 * shape.reach * d.lpNorm<1>() + tolerance_ * d.norm();
+        const double slack = (rounding_steps * roundoff_ * 2 * shape.reach + underflow_) * d.lpNorm<1>()
+                             + tolerance_ * d.norm();
         *slabs++ = lower - slack;
         *slabs++ = upper + slack;
     }

@@ -36,6 +36,7 @@ private:
     std::vector<Eigen::Vector3d> directions_;
     Broad bound_;
     double roundoff_;
+    double underflow_;          ///< that a coordinate may have lost
     double tolerance_;          ///< of the overlap test along unit directions
     std::vector<Shape> shapes_; ///< by mesh
 };
