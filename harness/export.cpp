@@ -6,6 +6,7 @@
 #include "harness/frame_contacts.h"
 #include "harness/dumps.h"
 #include "harness/inputs.h"
+#include "harness/memory_reserve.h"
 #include "harness/table/records_csv.h"
 #include "harness/standard_streams.h"
 #include "scenes/error.h"
@@ -56,6 +57,7 @@ std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
     std::vector<TimedFile> bodies, contacts;
     std::size_t found = 0;
     for (const auto i : frames) {
+        MemoryReserve::refill();
         const auto frame = scene.frame(i);
         const double time = scene.time ? scene.time(i) : static_cast<double>(i);
         bodies.push_back({time, fmt::format("bodies_{:06}.vtu", i)});

@@ -5,6 +5,7 @@
 #include "harness/command_line/contradictions.h"
 #include "harness/command_line/unknown_words.h"
 #include "harness/environment.h"
+#include "harness/memory_reserve.h"
 #include "harness/standard_streams.h"
 #include "scenes/error.h"
 
@@ -87,6 +88,7 @@ int dispatch(int argc, char** argv) {
 /// failed.
 int run(int argc, char** argv) {
     try {
+        const tandem::MemoryReserve reserve;
         return dispatch(argc, argv);
     } catch (const InputError& error) {
         tandem::tell("tandem: {}\n", error.what());

@@ -4,6 +4,7 @@
 #include "harness/commands.h"
 #include "harness/inputs.h"
 #include "harness/journal.h"
+#include "harness/memory_reserve.h"
 #include "harness/pictures.h"
 #include "harness/progress.h"
 #include "harness/simulate_session.h"
@@ -97,6 +98,7 @@ void run_steps(const SimulateOptions& options, std::size_t last, Simulation& sim
         finder.find(frame, contacts);
     };
     while (simulation.steps_done() < last) {
+        MemoryReserve::refill();
         const auto begin = Clock::now();
         const auto report = simulation.step(detect);
         const auto wall = since(begin);

@@ -24,7 +24,10 @@ struct CheckOptions {
 class CellSampler {
 public:
     /// The cell must outlive this; it goes on with the state.
-    explicit CellSampler(const Cell& cell, CellState state = {}) : cell_(cell), state_(std::move(state)) {}
+    explicit CellSampler(const Cell& cell, CellState state = {}) : cell_(cell), state_(std::move(state)) {
+        // Of a cell that fails before it has begun those that were asked for are said.
+        if (state_.measurement.settings.empty()) state_.measurement.settings = cell.settings;
+    }
     virtual ~CellSampler() = default;
 
     /// The first session: every answer against the reference and the truth.

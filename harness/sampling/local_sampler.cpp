@@ -2,6 +2,7 @@
 #include "harness/sampling/local_sampler.h"
 
 #include "algorithms/bounds/geometry.h"
+#include "harness/memory_reserve.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -33,6 +34,7 @@ LocalSampler::LocalSampler(const Cell& cell, const Scene& scene, const FrameRang
 
 void LocalSampler::begin_session() {
     replays_.reset(); // before the next takes memory
+    MemoryReserve::refill();
     // Facts of kernels from here on are those of this cell; the ones of the cells before are dropped.
     for (auto* device : cell_.devices) device->take_kernels();
     replays_.emplace(cell_, scene_, range_);

@@ -1,0 +1,163 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""sweep.py PROGRAM SOURCE: every call to the C library that can fail does, one a run: malloc, once or for good for what is large, open,
+write, fsync, rename, ftruncate and pthread_create, in every command that records. The program has to end with a documented code and say why in a line, and what was
+recorded before stays whole. PRELOAD names the library that makes calls fail."""
+import collections
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+
+from program import LONG, PROGRAM, SOURCE, SMALL, Case, sets, tandem
+
+PRELOAD = os.environ["PRELOAD"]
+FAMILIES = ("open", "write", "fsync", "rename", "truncate", "thread", "large", "malloc")
+CELLS = ("plan", "check", "accuracy")  # several in a command
+LIBRARYS_WORDS = r"std::|::at\b|basic_string|bad_alloc|json\.exception|vector::"
+SHORT = 14  # runs a command and family, malloc aside, of the short form
+SHORT_MALLOC = 30
+HANGS = 60  # seconds
+OURS = PROGRAM.name
+# What glibc says before it aborts by itself, where a thread's first object with a destructor finds no memory.
+NO_ROOM_FOR_THREADS = "Fatal glibc error: failed to register TLS destructor: out of memory"
+Outcome = collections.namedtuple("Outcome", "code signal errors owner hung stack")
+
+
+def functions(stack):
+    """Names of the program's functions in the lines of a stack, the innermost first."""
+    places = [match[1] for line in stack if (match := re.search(re.escape(OURS) + r"\([^)]*\+(0x[0-9a-f]+)\)", line))]
+    if not places:
+        return []
+    said = subprocess.run(["addr2line", "-Cfe", str(PROGRAM), *places], capture_output=True, text=True).stdout.splitlines()[::2]
+    return [re.sub(r"nlohmann::json_abi\w+::|std::__cxx11::|\[abi:\w+\]", "", name)[:90] for name in said]
+
+
+class Sweep(Case):
+    counts = collections.Counter()
+    lost_by = collections.Counter()
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.old = cls.work / "old.jsonl"
+        assert tandem("run", "--mesh", cls.good, "--mesh", cls.good, "--device", "host", "--set", "k=8", "--repeat", 1, "--truth", "none", "--out", cls.old)[0] == 0
+        cls.plan = cls.work / "cells.json"
+        cls.plan.write_text(json.dumps({"plan": "two cells", "scenes": "pile:bodies=2,frames=1", "devices": "host", "algorithms": ["tiled"],
+                                        "settings": {"k": [6, 8], **{name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")}},
+                                        "measure": {"repeat": 1, "truth": "none"}}))
+
+    @classmethod
+    def tearDownClass(cls):
+        said = ", ".join(f"{cls.counts[family]} of {family}" for family in FAMILIES if cls.counts[family])
+        print(f"faults injected: {said}; ended by a signal in other people's libraries: {dict(cls.lost_by) or 'none'}")
+        super().tearDownClass()
+
+    def commands(self, folder):
+        """Name: words, and the file of records that it appends to, or None. Everything is written to the folder."""
+        out = folder / "old.jsonl"
+        small = sets({name: 4096 for name in SMALL})
+        cell = ("--mesh", self.good, "--mesh", self.good, "--device", "host", "--set", "k=8")
+        tiled = ("--algorithm", "tiled", *sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")}))
+        return {"run": (("run", *cell, *tiled, "--repeat", 1, "--truth", "contacts", "--out", out, "--dump-pairs", folder / "pairs.csv", "--trace", folder / "trace.json"), out),
+                "plan": (("run", self.plan, "--out", out), out),
+                "check": (("check", *cell, "--algorithm", "chunked", *sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "seed_capacity")})), None),
+                "accuracy": (("accuracy", "pile:bodies=2,frames=1", "--device", "host", "--set", "k=8", "--set", "contact_rule=sat", "--set", "decision=fp32",
+                              "--set", "precision=float", "--set", "rounding=safe", *tiled, "--repeat", 1, "--out", out), out),
+                "simulate": (("simulate", "arch:segments=2", "--steps", 2, "--device", "host", "-o", folder / "a.frames", "--record", out, "--quiet"), out),
+                "export": (("export", "pile:bodies=2,frames=2", "--frames", "0:1", "--vtu", folder / "vtu", "--glb", folder / "a.glb", "--chunks", folder / "c.csv"), None)}
+
+    def fault(self, command, family, at, number):
+        """One run in a folder of its own, in which call `at` of a family fails; 0: none does, and what would is listed."""
+        folder = self.work / f"{command}-{family}-{number}"
+        folder.mkdir()
+        shutil.copy(self.old, folder)
+        log = folder / "log"
+        words, _ = self.commands(folder)[command]
+        environment = {**os.environ, "LD_PRELOAD": PRELOAD, "FAULTS_CALL": family, "FAULTS_AT": str(at), "FAULTS_LOG": str(log),
+                       "TANDEM_KERNEL_CACHE": str(folder / "cache")}
+        running = subprocess.Popen([str(PROGRAM), *map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment)
+        hung = False
+        try:
+            errors = running.communicate(timeout=HANGS)[1].splitlines()
+        except subprocess.TimeoutExpired:
+            hung, errors = True, []
+            running.kill()
+            running.communicate()
+        text = log.read_text().splitlines() if log.exists() else []
+        lines = [line.split() for line in text if line.startswith(family)]
+        stack = [line for line in text if not line.startswith(family)]
+        owner = next((line[2] for line in lines if len(line) == 4), None)
+        return folder, lines, Outcome(running.returncode, running.returncode < 0 and not hung, errors, owner, hung, stack)
+
+    def places(self, command, family):
+        """Numbers of the calls to fail: every one, of malloc the first 500 and the first of every place in the program; of a share in
+        the short form."""
+        folder, lines, outcome = self.fault(command, family, 0, "list")
+        self.assertEqual((outcome.code, outcome.errors), (0, []), (command, family))
+        total = int(lines[-1][2])
+        if family != "malloc":
+            every = range(1, total + 1)
+            return list(every) if LONG else list(every)[::max(1, -(-total // SHORT))]
+        firsts = [int(line[1]) for line in lines[:-1] if line[2] == OURS]
+        self.assertGreater(len(firsts), 100, "places in the program that take memory")
+        return sorted({*range(1, min(total, 500) + 1), *firsts}) if LONG else firsts[::-(-len(firsts) // SHORT_MALLOC)]
+
+    def judge(self, command, family, at, folder, outcome):
+        where = f"{command}: call {at} of {family}, of {outcome.owner}: {outcome.errors}\n  " + "\n  ".join(functions(outcome.stack))
+        self.assertFalse(outcome.hung, where)
+        old = self.old.read_bytes()
+        kept = (folder / "old.jsonl").read_bytes()
+        self.assertTrue(kept.startswith(old), f"{where}: a record is gone")
+        for line in kept.decode().split("\n")[:-1]:
+            json.loads(line)
+        owner = "glibc" if outcome.errors[:1] == [NO_ROOM_FOR_THREADS] else outcome.owner
+        if outcome.signal and owner != OURS:
+            self.lost_by[owner] += 1
+            return
+        self.assertFalse(outcome.signal, f"{where}: signal {-outcome.code}")
+        self.assertIn(outcome.code, (0, 2, 3), where)
+        if outcome.code != 0:
+            # A line for each cell that failed, of two at most, or one for the command.
+            self.assertIn(len(outcome.errors), (1, 2) if command in CELLS else (1,), where)
+            self.assertEqual(len(set(outcome.errors)), len(outcome.errors), where)
+            for line in outcome.errors:
+                self.assertRegex(line, "^tandem: .{15}", where)
+                self.assertNotRegex(line, LIBRARYS_WORDS, where)
+
+    def sweep(self, command):
+        for family in FAMILIES:
+            numbers = self.places(command, family)
+            with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as several:
+                for at, (folder, _, outcome) in zip(numbers, several.map(lambda at: self.fault(command, family, at, at), numbers)):
+                    with self.subTest(family=family, at=at):
+                        self.judge(command, family, at, folder, outcome)
+                    shutil.rmtree(folder)
+            self.counts[family] += len(numbers)
+
+    def test_run(self):
+        self.sweep("run")
+
+    def test_plan(self):
+        self.sweep("plan")
+
+    def test_check(self):
+        self.sweep("check")
+
+    def test_accuracy(self):
+        self.sweep("accuracy")
+
+    def test_simulate(self):
+        self.sweep("simulate")
+
+    def test_export(self):
+        self.sweep("export")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=1)
