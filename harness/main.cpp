@@ -7,6 +7,7 @@
 #include "harness/environment.h"
 #include "harness/memory_reserve.h"
 #include "harness/standard_streams.h"
+#include "harness/text_lines.h"
 #include "scenes/error.h"
 
 #include <CLI/CLI.hpp>
@@ -91,16 +92,16 @@ int run(int argc, char** argv) {
         const tandem::MemoryReserve reserve;
         return dispatch(argc, argv);
     } catch (const InputError& error) {
-        tandem::tell("tandem: {}\n", error.what());
+        tandem::tell("tandem: {}\n", tandem::visible(error.what()));
         return 2;
     } catch (const tandem::DeviceError& error) {
-        tandem::tell("tandem: {}\n", error.what());
+        tandem::tell("tandem: {}\n", tandem::visible(error.what()));
         return 3;
     } catch (const std::bad_alloc&) {
         tandem::tell("tandem: out of memory; use fewer bodies or frames\n");
         return 3;
     } catch (const std::exception& error) {
-        tandem::tell("tandem: {}\n", error.what());
+        tandem::tell("tandem: {}\n", tandem::visible(error.what()));
         return 3;
     }
 }

@@ -2,6 +2,7 @@
 #include "harness/text_lines.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace tandem {
 
@@ -54,6 +55,22 @@ std::string paragraph(std::string_view text, std::size_t indent) {
     for (const auto& line : wrap(rest.substr(rest_begins), line_columns - indent))
         result += std::string(indent, ' ') + line + "\n";
     return result;
+}
+
+std::string visible(std::string_view text) {
+    std::string shown;
+    for (const char byte : text) {
+        const auto code = static_cast<unsigned char>(byte);
+        if (byte == '\n')
+            shown += "\\n";
+        else if (byte == '\t')
+            shown += "\\t";
+        else if (code < ' ' || code == 0x7f)
+            shown += fmt::format("\\x{:02x}", code);
+        else
+            shown += byte;
+    }
+    return shown;
 }
 
 std::string one_line(std::string text, std::size_t most) {

@@ -21,6 +21,9 @@ std::vector<std::string> wrap(std::string_view text, std::size_t width);
 /// wrap() to a line's columns; lines after the first begin with `indent` spaces. Each line ends.
 std::string paragraph(std::string_view text, std::size_t indent);
 
+/// A text with its control characters written out (\\n, \\x1b): what a file's own words make of a message.
+std::string visible(std::string_view text);
+
 /// A text in one line: control characters become spaces, and what is longer than `most` bytes is cut.
 std::string one_line(std::string text, std::size_t most);
 

@@ -18,8 +18,11 @@ Materials masonry::materials() {
     // The ground does not meet itself.
     return {.names = {"stone", "ground", "cannonball"},
             .densities = {2000, 5500, 7900},
-            .surfaces = {stones, stone_ground, stone_ball, stone_ground, stone_ground, ball_ground,
-                         stone_ball, ball_ground, balls}};
+            .surfaces = {{{0, 0}, stones},
+                         {{0, 1}, stone_ground},
+                         {{0, 2}, stone_ball},
+                         {{1, 2}, ball_ground},
+                         {{2, 2}, balls}}};
 }
 
 Assembly::Assembly(std::span<const SceneParameter> parameters) : refine_(refine_value(parameters)) {}

@@ -23,7 +23,7 @@ Scene make(std::span<const SceneParameter> parameters) {
     const auto slope = sine_cosine(degree * real_parameter(parameters, "slope", -90, 90));
     dynamics.materials = {.names = {"block", "ground"},
                           .densities = {1000, 1000},
-                          .surfaces = {surface, surface, surface, surface}};
+                          .surfaces = {{{0, 0}, surface}, {{0, 1}, surface}}};
     dynamics.gravity = {9.82 * slope.sine, -9.82 * slope.cosine, 0};
     assembly.add_ground(std::max(100.0, 2 * static_cast<double>(bodies)) * side, 1);
     const auto cube = assembly.add_box({side, side, side});

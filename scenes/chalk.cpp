@@ -17,7 +17,10 @@ enum : std::uint32_t { grain, steel };
 /// As in the paper's configuration, which takes small steps and corrects positions.
 void set_solver(Dynamics& dynamics) {
     constexpr Surface rough{0.65, 0};
-    dynamics.materials = {.names = {"grain", "steel"}, .densities = {10, 7900}, .surfaces = {4, rough}};
+    dynamics.materials = {
+        .names = {"grain", "steel"},
+        .densities = {10, 7900},
+        .surfaces = {{{grain, grain}, rough}, {{grain, steel}, rough}, {{steel, steel}, rough}}};
     dynamics.gravity = {0, -10, 0};
     dynamics.stepping = {.step = 0.001,
                          .pre_stabilize = true,

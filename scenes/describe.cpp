@@ -5,26 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 namespace tandem::description {
 
 void Place::fail(std::string_view what) const { throw InputError(fmt::format("{}: {}", text(), what)); }
-
-Json parse_file(const std::string& path, std::string_view what) {
-    std::ifstream file(path);
-    if (!file || std::filesystem::is_directory(path))
-        throw InputError(fmt::format("{}: cannot be read; name an existing {}", path, what));
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    try {
-        return Json::parse(text);
-    } catch (const Json::parse_error& error) {
-        const auto read = text.substr(0, error.byte == 0 ? 0 : error.byte - 1);
-        const auto line = 1 + std::count(read.begin(), read.end(), '\n');
-        throw InputError(fmt::format("{}:{}: not JSON; repair the {} around this line", path, line, what));
-    }
-}
 
 void check_names(const Json& object, const Place& place, const std::vector<std::string>& allowed) {
     if (!object.is_object()) place.fail("must be an object");

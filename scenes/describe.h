@@ -26,9 +26,6 @@ struct Place {
     [[noreturn]] void fail(std::string_view what) const;
 };
 
-/// The JSON of a file, which is a `what`. Throws InputError, with the line where the JSON breaks off.
-Json parse_file(const std::string& path, std::string_view what);
-
 /// Refuses what is no object or has other names than these.
 void check_names(const Json& object, const Place& place, const std::vector<std::string>& allowed);
 

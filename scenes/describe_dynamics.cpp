@@ -13,24 +13,16 @@ namespace tandem::description {
 
 namespace {
 
-/// Materials, and which pairs of them have a surface.
-struct Known {
+Materials read_materials(const Json& json, const Place& place) {
     Materials materials;
-    std::vector<bool> given;
-};
-
-Known read_materials(const Json& json, const Place& place) {
-    Known known;
-    auto& [names, densities, surfaces] = known.materials;
+    auto& [names, densities, surfaces] = materials;
     if (!json.contains("materials") || !json["materials"].is_object() || json["materials"].empty())
         place.fail("has no materials");
     for (const auto& [name, density] : json["materials"].items()) {
         names.push_back(name);
         densities.push_back(positive(density, place / "materials" / name));
     }
-    surfaces.resize(names.size() * names.size());
-    known.given.resize(surfaces.size());
-    if (!json.contains("surfaces")) return known;
+    if (!json.contains("surfaces")) return materials;
     if (!json["surfaces"].is_array()) (place / "surfaces").fail("must be an array");
     for (std::size_t i = 0; i < json["surfaces"].size(); ++i) {
         const auto& entry = json["surfaces"][i];
@@ -38,18 +30,14 @@ Known read_materials(const Json& json, const Place& place) {
         check_names(entry, at, {"a", "b", "friction", "restitution"});
         for (const auto* name : {"a", "b", "friction", "restitution"})
             if (!entry.contains(name)) at.fail(fmt::format("has no {}", name));
-        const auto a = choice(entry["a"], at / "a", "material", names);
-        const auto b = choice(entry["b"], at / "b", "material", names);
-        if (known.given[a * names.size() + b])
-            at.fail("names a pair of materials that has a surface already");
+        const auto a = static_cast<std::uint32_t>(choice(entry["a"], at / "a", "material", names));
+        const auto b = static_cast<std::uint32_t>(choice(entry["b"], at / "b", "material", names));
         const Surface surface{number(entry["friction"], at / "friction", 0, largest),
                               number(entry["restitution"], at / "restitution", 0, 1)};
-        for (const auto pair : {a * names.size() + b, b * names.size() + a}) {
-            surfaces[pair] = surface;
-            known.given[pair] = true;
-        }
+        if (!surfaces.emplace(MaterialPair(a, b), surface).second)
+            at.fail("names a pair of materials that has a surface already");
     }
-    return known;
+    return materials;
 }
 
 Elastic read_elastic(const Json& json, const Place& place, const Mesh& mesh) {
@@ -95,22 +83,13 @@ BodyDynamics read_body(const Json& json, const Place& place, const Materials& ma
     return body;
 }
 
-/// Every two materials that can meet, of bodies not both fixed, need a surface.
-void check_surfaces(const Known& known, const Scene& scene, const std::vector<BodyDynamics>& bodies,
+/// Every two materials that can meet need a surface.
+void check_surfaces(const Materials& materials, const Scene& scene, const std::vector<BodyDynamics>& bodies,
                     const Place& place) {
-    const auto& names = known.materials.names;
-    std::vector<std::size_t> moving(names.size());
-    std::vector<std::size_t> all(names.size());
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        ++all[bodies[i].material];
-        if (!scene.bodies[i].fixed) ++moving[bodies[i].material];
-    }
-    for (std::size_t a = 0; a < names.size(); ++a)
-        for (std::size_t b = 0; b < names.size(); ++b) {
-            const bool meet = moving[a] > 0 && all[b] > (a == b ? 1u : 0u);
-            if (meet && !known.given[a * names.size() + b])
-                (place / "surfaces").fail(fmt::format("has no entry for {} and {}", names[a], names[b]));
-        }
+    if (const auto missing = missing_surface(materials, scene.bodies, bodies))
+        (place / "surfaces")
+            .fail(fmt::format("has no entry for {} and {}", materials.names[missing->first],
+                              materials.names[missing->second]));
 }
 
 /// Materials and elasticity of all bodies.
@@ -140,11 +119,10 @@ std::shared_ptr<const Dynamics> read_dynamics(const Json& json, const Place& roo
     if (scene.frame_count != 1)
         (root / "frames").fail("must be 1 or left out in a scene with dynamics; steps stand in /dynamics");
     auto dynamics = std::make_shared<Dynamics>();
-    const auto known = read_materials(entry, place);
-    dynamics->materials = known.materials;
+    dynamics->materials = read_materials(entry, place);
     read_settings(entry, place, *dynamics);
     read_bodies(json["bodies"], root / "bodies", scene, start, *dynamics);
-    check_surfaces(known, scene, dynamics->bodies, place);
+    check_surfaces(dynamics->materials, scene, dynamics->bodies, place);
     if (const auto found = first_overlap(scene, start, true))
         (root / "bodies" / (*found)[1])
             .fail(fmt::format("overlaps body {}, and both are fixed; move one", (*found)[0]));

@@ -5,6 +5,7 @@
 #include "scenes/error.h"
 #include "scenes/motion.h"
 #include "scenes/parameters.h"
+#include "scenes/read_json.h"
 #include "scenes/shapes.h"
 
 #include <algorithm>
@@ -145,7 +146,7 @@ std::vector<Motion> read_bodies(const Json& json, const Place& root, Scene& scen
 } // namespace
 
 Scene load_description(const std::string& path) {
-    const auto json = parse_file(path, "scene description");
+    const auto json = read_json(path, "scene description");
     if (json.is_object() && json.contains("plan"))
         throw InputError(fmt::format("{}: is a plan, not a scene; 'tandem run' takes it", path));
     const Place root{path, {}};

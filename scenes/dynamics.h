@@ -2,8 +2,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,13 +20,24 @@ struct Surface {
     double restitution = 0; ///< Newton's coefficient, 0..1
 };
 
-/// Densities by material, surfaces by pair of materials.
+/// Two materials in either order.
+struct MaterialPair {
+    MaterialPair(std::uint32_t one, std::uint32_t other)
+        : first(std::min(one, other)), second(std::max(one, other)) {}
+    auto operator<=>(const MaterialPair&) const = default;
+
+    std::uint32_t first, second;
+};
+
+/// Densities by material, surfaces by pair of those materials that can meet: of thousands of materials few
+/// do.
 struct Materials {
     std::vector<std::string> names;
     std::vector<double> densities; ///< kg/m^3
-    std::vector<Surface> surfaces; ///< names.size() squared, symmetric, row by row
+    std::map<MaterialPair, Surface> surfaces;
 
-    const Surface& surface(std::uint32_t a, std::uint32_t b) const { return surfaces[a * names.size() + b]; }
+    /// Of two materials that have one.
+    const Surface& surface(std::uint32_t a, std::uint32_t b) const { return surfaces.at({a, b}); }
 };
 
 /// How a deformable body resists.
@@ -43,6 +59,13 @@ struct BodyDynamics {
     Eigen::Vector3d spin = Eigen::Vector3d::Zero();     ///< rad/s, in world axes
     std::int32_t elastic = -1; ///< index into Dynamics::elastics of a deformable body
 };
+
+struct Body;
+
+/// Two materials without a surface whose bodies can meet, since they are not both fixed; none where all have
+/// one. One of `moves` a body, with a material that there is.
+std::optional<MaterialPair> missing_surface(const Materials& materials, std::span<const Body> bodies,
+                                            std::span<const BodyDynamics> moves);
 
 /// The proximal contact solver (Erleben 2017). The paper's runs had a relative tolerance of 0.01 and no warm
 /// start: with this solver that ends after a few passes, and arches fall that stand with these defaults.

@@ -32,7 +32,7 @@ Scene make(std::span<const SceneParameter> parameters) {
     const double radius = real_parameter(parameters, "radius", 0.1, 1e3);
     const double width = beam_width * radius * sine_cosine(pi / static_cast<double>(slices)).sine;
     const auto beam = assembly.add_mesh(scaled(built_in_mesh("beam"), {width / beam_width, 1, 1}));
-    dynamics.materials = {.names = {"rubber"}, .densities = {10}, .surfaces = {{0.5, 0}}};
+    dynamics.materials = {.names = {"rubber"}, .densities = {10}, .surfaces = {{{0, 0}, {0.5, 0}}}};
     dynamics.elastics = {{.law = Elastic::Law::corotational,
                           .young = 15000,
                           .poisson = 0.4,

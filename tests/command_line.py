@@ -168,6 +168,12 @@ class CommandLine(Case):
         self.bad("the nearest is 'jack'", "run", "pile:mesh=jak")
         self.bad("absent.json", "run", self.work / "absent.json")
 
+    def test_words_of_a_file_stay_in_one_line(self):
+        scene = self.work / "controls.json"
+        scene.write_text('{"meshes": {"a\\n\\u001b[31mb": {"builtin": "jac"}}, "bodies": []}')
+        self.bad(r"/meshes/a\n\x1b[31mb/builtin: unknown mesh 'jac'", "run", scene, "--device", "host")
+        self.bad(r"no\nsuch.json: cannot be read", "run", "no\nsuch.json", "--device", "host")
+
     def test_bad_use(self):
         self.bad("the nearest is 'chunked'", "run", "plates", "--algorithm", "chunkd")
         self.bad("the nearest is 'seed_threshold'", "run", "plates", "--set", "seed_treshold=1")

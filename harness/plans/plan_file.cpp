@@ -3,10 +3,11 @@
 
 #include "harness/plans/ranges.h"
 #include "scenes/describe.h"
+#include "scenes/error.h"
+#include "scenes/read_json.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 
 namespace tandem {
@@ -134,13 +135,16 @@ void read_measure(const Json& json, const Place& place, PlanFile& plan) {
 /// A file that is no JSON is left to whom it is for, who says what is wrong with it.
 bool is_plan(const std::string& path) {
     if (!path.ends_with(".json") || std::filesystem::is_directory(path)) return false;
-    std::ifstream file(path);
-    const auto json = file ? Json::parse(file, nullptr, false) : Json();
-    return json.is_object() && json.contains("plan");
+    try {
+        const auto json = read_json(path, "plan");
+        return json.is_object() && json.contains("plan");
+    } catch (const InputError&) {
+        return false;
+    }
 }
 
 PlanFile read_plan(const std::string& path) {
-    const auto json = parse_file(path, "plan");
+    const auto json = read_json(path, "plan");
     const Place root{path, {}};
     auto known = product_fields;
     for (const auto* name : {"plan", "include", "exclude", "impossible", "measure"}) known.emplace_back(name);

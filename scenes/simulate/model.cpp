@@ -23,17 +23,19 @@ bool finite(const Eigen::Vector3d& v) {
 /// False for NaN, as every check here is written.
 bool within(double value, double low, double high) { return value >= low && value <= high; }
 
-/// One density a material, kg/m^3, and a surface for every two of them, in both orders.
+/// One density a material, kg/m^3.
 void check_materials(const Scene& scene, const Materials& materials) {
     const auto count = materials.names.size();
-    if (materials.densities.size() != count || materials.surfaces.size() != count * count)
-        refuse(scene,
-               fmt::format("{} materials need {} densities and {} surfaces, there are {} and {}", count,
-                           count, count * count, materials.densities.size(), materials.surfaces.size()));
-    for (const auto& surface : materials.surfaces)
+    if (materials.densities.size() != count)
+        refuse(scene, fmt::format("{} materials need {} densities, there are {}", count, count,
+                                  materials.densities.size()));
+    for (const auto& [pair, surface] : materials.surfaces) {
+        if (pair.second >= count)
+            refuse(scene, fmt::format("has a surface of material {}, there are {}", pair.second, count));
         if (!within(surface.friction, 0, 1e6) || !within(surface.restitution, 0, 1))
             refuse(scene, fmt::format("friction {} must be at least 0 and restitution {} within 0..1",
                                       surface.friction, surface.restitution));
+    }
 }
 
 void check_stepping(const Scene& scene, const Dynamics& dynamics) {
@@ -148,6 +150,10 @@ Model make_model(const Scene& scene) {
         check_body(model, i);
         model.bodies.push_back(make_body(model, i));
     }
+    const auto& materials = model.dynamics->materials;
+    if (const auto missing = missing_surface(materials, scene.bodies, model.dynamics->bodies))
+        refuse(scene, fmt::format("has no surface for materials {} and {}, which can meet",
+                                  materials.names[missing->first], materials.names[missing->second]));
     return model;
 }
 

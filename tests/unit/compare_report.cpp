@@ -11,6 +11,11 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
+TEST(TextLines, ControlCharactersAreShown) {
+    EXPECT_EQ(visible("a\nb\tc\x1b[31m\x7f"), R"(a\nb\tc\x1b[31m\x7f)");
+    EXPECT_EQ(visible("pile \u00e9"), "pile \u00e9");
+}
+
 TEST(TextLines, ColoursHaveNoWidth) {
     EXPECT_EQ(width_of("\033[1m1.0 \u00b1 0.1\033[0m ms"), 12u);
     EXPECT_EQ(wrap("one two  three", 7), (std::vector<std::string>{"one two", "three"}));

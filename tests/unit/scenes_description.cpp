@@ -3,6 +3,7 @@
 #include "scenes/scene.h"
 
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -233,6 +234,53 @@ TEST_F(ScenesDescription, ErrorsOfDynamicsNameThePath) {
                 HasSubstr("/bodies/1/elastic/pinned/0: must be an integer from 0 to 799"));
     EXPECT_THAT(stone(R"("elastic": {"young": 1, "poisson": 0.3}, "spin": [0, 0, 1, 1])"),
                 HasSubstr("/bodies/1/spin: cannot be given"));
+}
+
+std::string repeated(const std::string& text, std::size_t times) {
+    std::string all;
+    for (std::size_t i = 0; i < times; ++i) all += text;
+    return all;
+}
+
+/// What a program could not bear, or readers of JSON take differently, is refused while it is read.
+TEST_F(ScenesDescription, JsonHasABudget) {
+    const std::string jack = R"("meshes": {"j": {"builtin": "jack"}}, "bodies": [{"mesh": "j"}])";
+    EXPECT_EQ(failure("{" + jack + "}"), "no error");
+    EXPECT_THAT(failure(R"({"frames": 1e999, )" + jack + "}"),
+                HasSubstr("has a number that is too large for a double"));
+    for (const auto& [open, close] : {std::pair{"[", "]"}, {R"({"a":)", "}"}})
+        for (const std::size_t depth : {65u, 60000u})
+            EXPECT_THAT(
+                body_failure(R"("material": )" + repeated(open, depth) + "1" + repeated(close, depth)),
+                HasSubstr("is nested deeper than 64 levels"));
+    EXPECT_THAT(body_failure(R"("material": )" + repeated("[", 60000)), HasSubstr("is nested deeper than"));
+    EXPECT_THAT(body_failure(R"("material": )" + repeated("[", 50) + repeated("]", 50)),
+                HasSubstr("needs a scene with dynamics"));
+    EXPECT_THAT(failure(R"({"frames": 2, "frames": 3, )" + jack + "}"),
+                HasSubstr(R"(has the name "frames" twice in one object)"));
+    EXPECT_THAT(failure(R"({"frames": 2, "fr\u0061mes": 3, )" + jack + "}"), HasSubstr(R"("frames" twice)"));
+    EXPECT_THAT(failure(R"({"meshes": {"a\nb": {"builtin": "jack"}, "a\nb": {"builtin": "jack"}}})"),
+                HasSubstr(R"("a\nb" twice)"));
+    EXPECT_EQ(failure(R"({"meshes": {"j": {"builtin": "jack"}, "k": {"builtin": "jack"}},
+                          "bodies": [{"mesh": "j"}, {"mesh": "k"}, {"mesh": "j"}]})"),
+              "no error")
+        << "one name in several objects";
+    EXPECT_THAT(failure("{" + jack + std::string(std::size_t{64} << 20, ' ') + "}"),
+                HasSubstr("is longer than the 64 MiB that a scene description may have"));
+}
+
+/// A table of every two of them would take 6 GB.
+TEST_F(ScenesDescription, ThousandsOfMaterialsOfWhichFewMeet) {
+    std::string materials = R"("s": 1)";
+    for (int i = 0; i < 14000; ++i) materials += fmt::format(R"(, "m{}": 1)", i);
+    const auto scene = load(
+        R"({"meshes": {"j": {"builtin": "jack"}}, "bodies": [{"mesh": "j", "material": "s"}, {"mesh": "j",
+                 "material": "m7", "position": [5, 0, 0]}], "dynamics": {"materials": {)"
+        + materials + R"(}, "surfaces": [{"a": "m7", "b": "s", "friction": 1, "restitution": 0}]}})");
+    EXPECT_EQ(scene.dynamics->materials.names.size(), 14001u);
+    EXPECT_EQ(scene.dynamics->materials.surfaces.size(), 1u);
+    const auto& [m7, s] = scene.dynamics->materials.surfaces.begin()->first;
+    EXPECT_EQ(scene.dynamics->materials.surface(s, m7).friction, 1);
 }
 
 TEST_F(ScenesDescription, ErrorsOfMaterialsNameThePath) {

@@ -163,7 +163,10 @@ TEST(SimulateState, ImpossibleDynamicsAreRefusedByName) {
     EXPECT_THAT(message_of(world), HasSubstr("density"));
     world = mixed();
     world.dynamics.materials.surfaces.clear();
-    EXPECT_THAT(message_of(world), HasSubstr("surfaces"));
+    EXPECT_THAT(message_of(world), HasSubstr("has no surface for materials"));
+    world = mixed();
+    world.dynamics.materials.surfaces[{0, 9}] = {};
+    EXPECT_THAT(message_of(world), HasSubstr("surface of material 9"));
     world = mixed();
     world.dynamics.bodies[1].spin.x() = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THAT(message_of(world), HasSubstr("body 1"));

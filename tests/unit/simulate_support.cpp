@@ -153,7 +153,7 @@ Mesh ball(double radius, int times) {
     return fan(std::move(vertices), triangles);
 }
 
-World::World(Surface surface) { dynamics.materials = {{"stone"}, {2000}, {surface}}; }
+World::World(Surface surface) { dynamics.materials = {{"stone"}, {2000}, {{{0, 0}, surface}}}; }
 
 std::size_t World::add(Mesh mesh, const Pose& pose, bool fixed, const BodyDynamics& moves) {
     scene.meshes.push_back(std::move(mesh));
