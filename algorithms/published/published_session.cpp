@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/published/published_session.h"
 
+#include "algorithms/batches.h"
 #include "algorithms/pipeline.h"
 #include "algorithms/published/published_frame.h"
 
@@ -64,6 +65,7 @@ private:
     std::span<Device* const> do_devices() const override { return devices_; }
     const Settings& do_settings() const override { return steps_.settings; }
 
+    FrameResult run_whole();
     void walk(const AnswerBuffers& answer);
     bool grow(AnswerBuffers& answer);
     void sort_contacts(const AnswerBuffers& answer, std::uint64_t count);
@@ -71,6 +73,7 @@ private:
     Pipeline steps_;
     PublishedFrame frame_;
     std::array<Device*, 1> devices_;
+    std::uint64_t batches_ = 1; ///< parts that frames begin with
 };
 
 void PublishedSession::walk(const AnswerBuffers& answer) {
@@ -110,10 +113,7 @@ void PublishedSession::sort_contacts(const AnswerBuffers& answer, std::uint64_t 
     std::sort(ids.begin(), ids.end());
 }
 
-FrameResult PublishedSession::do_run(const Frame& frame,
-                                     std::optional<std::span<const BodyPair>> body_pairs) {
-    frame_.update(frame);
-    steps_.body_pairs->begin(frame, body_pairs);
+FrameResult PublishedSession::run_whole() {
     auto answer = steps_.answers->take();
     std::uint64_t retries = 0;
     for (walk(*answer); grow(*answer); walk(*answer)) ++retries;
@@ -123,6 +123,20 @@ FrameResult PublishedSession::do_run(const Frame& frame,
     sort_contacts(*answer, result.contacts);
     steps_.add_part(result, std::move(answer));
     return result;
+}
+
+/// A frame that does not fit is walked in parts, as the release launches again with what is left of a full
+/// buffer; each part has its contacts before the next is walked.
+FrameResult PublishedSession::do_run(const Frame& frame,
+                                     std::optional<std::span<const BodyPair>> body_pairs) {
+    frame_.update(frame);
+    try {
+        steps_.body_pairs->begin(frame, body_pairs);
+        if (batches_ == 1) return run_whole();
+    } catch (const OutOfMemory&) {
+        batches_ = std::max<std::uint64_t>(batches_, 2);
+    }
+    return run_in_batches(steps_, frame, body_pairs, batches_);
 }
 
 } // namespace

@@ -100,6 +100,31 @@ TEST_P(Batches, GiveTheSameAnswer) {
     }
 }
 
+/// The paper's data path, whose seeds and pairs are too many: parts of the body pairs, and with less memory
+/// of one body pair.
+TEST_P(Batches, OfThePapersDataPathGiveTheSameAnswer) {
+    const auto scene = crowd(72, 10, 0.9);
+    for (const auto* traversal : algorithms()) {
+        if (!declares(*traversal, "residency")) continue;
+        for (const double share : {0.5, 0.1}) {
+            const SettingTexts given{{"residency", "published"}, {"broad", "sphere"}, {"k", "8"}};
+            SCOPED_TRACE(fmt::format("{} {}", traversal->name(), share));
+            const auto frame = scene.frame(0);
+            const auto settings = resolve(traversal->parameters(), {}, given, traversal->name());
+            const auto right = reference(scene, frame, geometry_of(settings), true, Method::brute_force,
+                                         contact_settings_of(settings));
+            const auto wanted = 16 * right.digest.count + 72 * right.contacts;
+            const Limited limit(on, least_bytes(*traversal, scene, given)
+                                        + static_cast<std::size_t>(share * static_cast<double>(wanted)));
+            const auto session = prepare(*traversal, scene, given);
+            const auto result = session->run(frame);
+            EXPECT_GT(result.batches, 1u);
+            expect_equal(result, right);
+            expect_equal(session->run(frame), right);
+        }
+    }
+}
+
 /// One body pair alone is split by its items; the digest that a walk sums, and the count, know no pairs.
 TEST_P(Batches, SplitABodyPairByItems) {
     auto scene = boxes_scene(7, 2); // of which the first two bodies

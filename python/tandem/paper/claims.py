@@ -2,14 +2,15 @@
 """The paper's claims and what our records say of each."""
 import dataclasses
 import json
+import re
 import statistics
 
 import scipy.stats
 
 from .figures import device_seconds, fit
-from .folder import SCENES
+from .folder import SCENES, Way
 from .pictures import chunks_of
-from .tables import data_path, pick, scene_factors, shares
+from .tables import data_path, pick, ratio, scene_factors, shares
 
 AGREES, DIFFERS, UNTESTED = "agrees", "differs", "cannot be tested here"
 
@@ -220,6 +221,22 @@ def precision_claim(folder):
                  " ".join(way.places[0] for way in ways.values()))
 
 
+def backlog_claim(folder):
+    where, says = "Table 5", "a GPU whose buffers are too small launches again with what is left (C2075, funnel: 518 launches for 408)"
+    whole, short = pick(folder.ways("cells-funnel"), "chunked", "published"), folder.ways("backlog")
+    if not whole or not short:
+        return Claim(where, says, UNTESTED, "no cell with a limit of memory has ended well")
+    frames = [record["frames"] for record in short[0].records]
+    alike = [record for record in whole.records if record["frames"] in frames]
+    if not alike:
+        return Claim(where, says, UNTESTED, "the cells with and without a limit of memory are of other frames")
+    launches = [way.theirs for way in (Way(alike, whole.places), short[0])]
+    limit = re.search(r"--memory (\S+)", short[0].records[0]["command"])[1]
+    return Claim(where, says, judged(launches[1] > launches[0]),
+                 f"with {limit} of memory {ratio(launches[1], launches[0]):.3g} times the launches, in {sum(r['work']['batches'] for r in short[0].records)} parts of "
+                 f"{short[0].frames} frames; same pairs", " ".join((short[0].places[0], whole.places[0])))
+
+
 def elsewhere_claims():
     why = "needs the paper's four GPUs, and one device was measured"
     return [Claim("Table 5, Figure 12", "NVIDIA's and AMD's devices differ in launches and transfers", UNTESTED, why),
@@ -229,4 +246,4 @@ def elsewhere_claims():
 
 def all_claims(folder):
     return [*narrow_claims(folder), write_claim(folder), kernel_claim(folder), same_pairs_claim(folder), *share_claims(folder), *simulation_claims(folder),
-            order_claim(folder), threshold_claim(folder), cpu_claim(folder), precision_claim(folder), *elsewhere_claims()]
+            order_claim(folder), threshold_claim(folder), cpu_claim(folder), precision_claim(folder), backlog_claim(folder), *elsewhere_claims()]
