@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/kept_values.h"
 
+#include "backends/own_folder.h"
 #include "harness/environment.h"
 #include "scenes/digest.h"
 
@@ -38,8 +39,7 @@ bool KeptValues::take(const std::string& question,
 /// Begins with the end of a line, for the one before may be torn.
 void KeptValues::keep(const std::string& question, nlohmann::json value) {
     if (file_.empty()) return;
-    std::error_code none;
-    std::filesystem::create_directories(file_.parent_path(), none);
+    make_own(file_.parent_path());
     std::ofstream(file_, std::ios::app)
         << "\n" + nlohmann::json{{"question", question}, {"value", value}}.dump() + "\n";
     values_[question] = std::move(value);

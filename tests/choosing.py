@@ -92,6 +92,18 @@ class Choosing(Case):
         self.assertIn("tandem: /dev/null/choices/choice-", errors[0])
         self.assertEqual((record["chosen"]["from_cache"], len(errors)), (False, 2))
 
+    def test_choices_of_others_are_not_believed(self):
+        self.work.joinpath(self.kept.name).chmod(0o777)
+        self.bad(f"TANDEM_KERNEL_CACHE: others can write to {self.kept.name}", "run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "auto",
+                 environment=self.environment)
+        home = self.work / "home"
+        (home / ".cache/tandem").mkdir(parents=True)
+        (home / ".cache/tandem").chmod(0o777)
+        environment = {"TANDEM_KERNEL_CACHE": "", "XDG_CACHE_HOME": "", "HOME": str(home)}
+        for _ in range(2):
+            self.assertFalse(self.choose(environment=environment)[0]["chosen"]["from_cache"])
+        self.assertEqual(list((home / ".cache/tandem").iterdir()), [])
+
     def test_folders_of_the_environment(self):
         for name, folder in (("XDG_CACHE_HOME", "tandem"), ("HOME", ".cache/tandem")):
             nothing = {"TANDEM_KERNEL_CACHE": "", "XDG_CACHE_HOME": "", "HOME": ""}

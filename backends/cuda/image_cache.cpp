@@ -2,6 +2,7 @@
 #include "backends/cuda/image_cache.h"
 
 #include "backends/device.h"
+#include "backends/own_folder.h"
 
 #include <algorithm>
 #include <array>
@@ -69,11 +70,11 @@ std::optional<Parts> unpacked(std::string_view text) {
 
 ImageCache::ImageCache(std::filesystem::path folder) : folder_(std::move(folder)) {
     if (folder_.empty()) return;
-    std::error_code code;
-    std::filesystem::create_directories(folder_, code);
-    if (code)
+    if (const auto code = make_own(folder_))
         throw DeviceError(
             fmt::format("TANDEM_KERNEL_CACHE: cannot make {}: {}", folder_.string(), code.message()));
+    if (const auto why = why_not_own(folder_); !why.empty())
+        throw DeviceError(fmt::format("TANDEM_KERNEL_CACHE: {}", why));
 }
 
 std::filesystem::path ImageCache::file_of(const std::string& key) const {

@@ -2,8 +2,10 @@
 #include "harness/choosing/choice_cache.h"
 
 #include "algorithms/sources.h"
+#include "backends/own_folder.h"
 #include "harness/environment.h"
 #include "scenes/digest.h"
+#include "scenes/error.h"
 
 #include <algorithm>
 #include <bit>
@@ -77,10 +79,18 @@ Json question_of(const Cell& cell, const Scene& scene, std::uint64_t pairs) {
 }
 
 fs::path ChoiceCache::default_folder() {
-    if (const auto* given = std::getenv("TANDEM_KERNEL_CACHE"); given != nullptr && *given != 0) return given;
-    if (const auto cache = path_in("XDG_CACHE_HOME"); !cache.empty()) return cache / "tandem";
-    if (const auto home = path_in("HOME"); !home.empty()) return home / ".cache" / "tandem";
-    return {};
+    if (const auto* given = std::getenv("TANDEM_KERNEL_CACHE"); given != nullptr && *given != 0) {
+        if (const auto why = why_not_own(given); !why.empty())
+            throw InputError(fmt::format("TANDEM_KERNEL_CACHE: {}", why));
+        return given;
+    }
+    // Nobody has asked for these: where they are not this user's own, nothing is kept.
+    fs::path folder;
+    if (const auto cache = path_in("XDG_CACHE_HOME"); !cache.empty())
+        folder = cache / "tandem";
+    else if (const auto home = path_in("HOME"); !home.empty())
+        folder = home / ".cache" / "tandem";
+    return folder.empty() || !why_not_own(folder).empty() ? fs::path() : folder;
 }
 
 fs::path ChoiceCache::file_of(const Json& question) const {
@@ -106,8 +116,7 @@ std::optional<Choice> ChoiceCache::find(const Json& question, std::string& warni
 
 std::string ChoiceCache::keep(const Json& question, const Choice& choice) const {
     if (folder_.empty()) return {};
-    std::error_code code;
-    fs::create_directories(folder_, code);
+    const auto code = make_own(folder_);
     const Json json{{"program", program_}, {"question", question}, {"choice", choice_json(choice)}};
     // File names in keys of scenes need not be UTF-8; JSON must be.
     if (!code && replace(file_of(question), json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"))

@@ -16,7 +16,8 @@ nlohmann::ordered_json question_of(const Cell& cell, const Scene& scene, std::ui
 class ChoiceCache {
 public:
     /// $TANDEM_KERNEL_CACHE, else $XDG_CACHE_HOME/tandem, else ~/.cache/tandem; empty, which keeps nothing,
-    /// where none of these is there.
+    /// where none of these is there or others can write to it; throws InputError where that is so of the
+    /// first.
     static std::filesystem::path default_folder();
 
     /// `program`: what a choice goes out of date with. An empty folder keeps nothing.

@@ -153,6 +153,17 @@ class Faults(unittest.TestCase):
             files[0].write_bytes(files[1].read_bytes())  # as if two programs had one name
             self.assertEqual(run(STUB_BROKEN=1), 3)
 
+    def test_images_are_not_taken_from_where_others_can_write(self):
+        with tempfile.TemporaryDirectory() as folder:
+            cache = pathlib.Path(folder) / "images"
+            self.assertEqual(tandem(*RUN, "--device", "cuda:0", TANDEM_KERNEL_CACHE=cache)[0], 1)
+            self.assertEqual(cache.stat().st_mode & 0o777, 0o700)
+            for mode in (0o720, 0o702, 0o1777):
+                cache.chmod(mode)
+                self.assertIn(f"TANDEM_KERNEL_CACHE: others can write to {cache}; 'chmod go-w' it", reason(TANDEM_KERNEL_CACHE=cache))
+            cache.chmod(0o755)
+            self.assertEqual(tandem(*RUN, "--device", "cuda:0", TANDEM_KERNEL_CACHE=cache)[0], 1)
+
     def test_a_folder_for_images_that_cannot_be_made(self):
         text = reason(TANDEM_KERNEL_CACHE="/dev/null/images")
         self.assertIn("TANDEM_KERNEL_CACHE: cannot make /dev/null/images: Not a directory", text)
