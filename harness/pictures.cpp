@@ -7,6 +7,7 @@
 #include "harness/standard_streams.h"
 #include "scenes/error.h"
 #include "scenes/export/glb.h"
+#include "scenes/recording/recording.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -37,7 +38,7 @@ Pictures::Pictures(std::string out)
 }
 
 void Pictures::draw(const std::string& recording) const {
-    const auto scene = make_scene(recording);
+    const auto scene = load_recording(recording);
     const PassingFolder folder;
     const auto glb = folder.path() + "/frames.glb";
     const auto last = scene.frame_count - 1;

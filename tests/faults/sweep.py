@@ -20,8 +20,8 @@ PRELOAD = os.environ["PRELOAD"]
 FAMILIES = ("open", "write", "fsync", "rename", "truncate", "thread", "large", "malloc")
 CELLS = ("plan", "check", "accuracy")  # several in a command
 LIBRARYS_WORDS = r"std::|::at\b|basic_string|bad_alloc|json\.exception|vector::"
-SHORT = 14  # runs a command and family, malloc aside, of the short form
-SHORT_MALLOC = 30
+SHORT = 8  # runs a command and family, malloc aside, of the short form
+SHORT_MALLOC = 16
 HANGS = 60  # seconds
 OURS = PROGRAM.name
 # What glibc says before it aborts by itself, where a thread's first object with a destructor finds no memory.
