@@ -3,6 +3,7 @@
 import csv
 import math
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -23,21 +24,26 @@ def render_script():
     return None
 
 
-def rendered(folder, scene, shares):
-    """Pixels of the scene at shares of its animation; nothing where it cannot be drawn."""
+def rendered(folder, scene, share):
+    """Pixels of the scene at a share of its animation, kept as pictures/SCENE-PERCENT.png; nothing where it cannot be drawn.
+
+    Where its export is not there (recordings and exports are large: results are kept without them), an earlier drawing's."""
     import matplotlib.image
     glb, script = folder.path / f"{scene}.glb", render_script()
-    if not glb.exists() or script is None:
-        return []
-    with tempfile.TemporaryDirectory() as work:
-        done = subprocess.run([sys.executable, str(script), str(glb), f"{work}/picture", "--at", ",".join(map(str, shares)), "--size", "640x480"],
-                              capture_output=True, text=True)
-        return [matplotlib.image.imread(f"{work}/picture-{i}.png") for i in range(len(shares))] if done.returncode == 0 else []
+    kept = folder.path / "pictures" / f"{scene}-{share:.0%}.png".replace("%", "")
+    if glb.exists() and script is not None:
+        with tempfile.TemporaryDirectory() as work:
+            done = subprocess.run([sys.executable, str(script), str(glb), f"{work}/picture", "--at", str(share), "--size", "640x480"],
+                                  capture_output=True, text=True)
+            if done.returncode == 0:
+                kept.parent.mkdir(exist_ok=True)
+                shutil.copyfile(f"{work}/picture-0.png", kept)
+    return [matplotlib.image.imread(kept)] if kept.exists() else []
 
 
 def scenes(folder, number, wanted, says):
     """One picture a (scene, share)."""
-    pictures = [(scene, share, image) for scene, share in wanted for image in rendered(folder, scene, [share])]
+    pictures = [(scene, share, image) for scene, share in wanted for image in rendered(folder, scene, share)]
     if not pictures:
         return missing(folder.path, number, says, "no scene has been exported, or there is no python3-pil to draw it with")
     plot = Plot(number, len(pictures), 2.5, min(len(pictures), 2))
@@ -45,7 +51,7 @@ def scenes(folder, number, wanted, says):
         ax.imshow(image)
         ax.axis("off")
         ax.set_title(f"{TITLES[scene]}, at {share:.0%} of its steps", fontsize=9, loc="left", color=INK)
-        plot.rows.append({"scene": scene, "share": share, "file": f"{scene}.glb"})
+        plot.rows.append({"scene": scene, "share": share, "file": f"pictures/{scene}-{share:.0%}.png".replace("%", "")})
     return plot.save(folder.path, says)
 
 
