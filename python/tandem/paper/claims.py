@@ -233,8 +233,8 @@ def backlog_claim(folder):
     launches = [way.theirs for way in (Way(alike, whole.places), short[0])]
     limit = re.search(r"--memory (\S+)", short[0].records[0]["command"])[1]
     return Claim(where, says, judged(launches[1] > launches[0]),
-                 f"with {limit} of memory {ratio(launches[1], launches[0]):.3g} times the launches, in {sum(r['work']['batches'] for r in short[0].records)} parts of "
-                 f"{short[0].frames} frames; same pairs", " ".join((short[0].places[0], whole.places[0])))
+                 f"with {limit} of memory {ratio(launches[1], launches[0]):.3g} times the launches, in {sum(r['work']['batches'] for r in short[0].records)} batches for "
+                 f"{short[0].frames} frame{'s' * (short[0].frames != 1)}; same pairs", " ".join((short[0].places[0], whole.places[0])))
 
 
 def elsewhere_claims():
