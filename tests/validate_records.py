@@ -9,6 +9,7 @@ import lzma
 import pathlib
 import sys
 
+import fastjsonschema
 import jsonschema
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -31,8 +32,13 @@ def problems_of(line, validators, kind):
     # A profile's line and a cell's say themselves what they are, in one file as well.
     if isinstance(record, dict) and kind in ("record", "profile"):
         kind = "profile" if "profile_of" in record else "record" if "key" in record else kind
-    validator = validators[kind]
-    return [f"/{'/'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in validator.iter_errors(record)]
+    is_valid, validator = validators[kind]
+    try:
+        is_valid(record)
+        return []
+    except fastjsonschema.JsonSchemaException:  # names the first problem only
+        pass
+    return [f"/{'/'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in validator.iter_errors(record)] or ["/: not as the schema says"]
 
 
 def problems_in(path, validators, kind):
@@ -60,16 +66,22 @@ def resolved(schema, records):
     return records
 
 
-def validator_of(name):
+def schema_of(name):
+    """A schema of results/ without references to others."""
     records = json.loads((ROOT / "results/record.schema.json").read_text())
     schema = resolved(json.loads((ROOT / "results" / name).read_text()), records)
     schema["definitions"] = {**records["definitions"], **schema.get("definitions", {})}
     jsonschema.Draft7Validator.check_schema(schema)
-    return jsonschema.Draft7Validator(schema)
+    return schema
+
+
+def validator_of(name):
+    return jsonschema.Draft7Validator(schema_of(name))
 
 
 def main(names):
-    validators = {kind: validator_of(kind + ".schema.json") for kind in ("record", "ceilings", "simulation", "profile", "paper")}
+    # The first decides, in a tenth of the other's time; the other names everything that is wrong.
+    validators = {kind: (fastjsonschema.compile(schema_of(kind + ".schema.json")), validator_of(kind + ".schema.json")) for kind in ("record", "ceilings", "simulation", "profile", "paper")}
     files = [pathlib.Path(name) for name in names] or sorted([*(ROOT / "results").glob("**/*.jsonl"), *(ROOT / "results").glob("**/*.jsonl.xz")])
     if not files:
         print("no records are committed yet")
