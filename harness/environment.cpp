@@ -8,7 +8,6 @@
 #include <fmt/chrono.h>
 #include <fstream>
 #include <random>
-#include <sys/resource.h>
 #include <thread>
 #include <unistd.h>
 
@@ -25,40 +24,7 @@ std::string processor_name() {
     return {};
 }
 
-/// The number that follows `name` in a file of names and numbers; `unknown` when there is none.
-std::uint64_t number_in(const std::string& path, std::string_view name, std::uint64_t unknown) {
-    std::ifstream file(path);
-    std::string word;
-    for (std::uint64_t value = 0; file >> word;)
-        if (word == name && file >> value) return value;
-    return unknown;
-}
-
-constexpr auto unlimited = ~std::uint64_t{0};
-
-/// What ulimit -v leaves; unlimited where there is none.
-std::uint64_t free_address_space() {
-    rlimit limit{};
-    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return unlimited;
-    const auto used = number_in("/proc/self/status", "VmSize:", 0) << 10;
-    return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
-}
-
-/// Of version 2, as it shows in a container. What it keeps of files can be dropped.
-std::uint64_t free_control_group() {
-    std::ifstream most_file("/sys/fs/cgroup/memory.max"), used_file("/sys/fs/cgroup/memory.current");
-    std::uint64_t most = 0, used = 0;
-    if (!(most_file >> most) || !(used_file >> used)) return unlimited;
-    used -= std::min(used, number_in("/sys/fs/cgroup/memory.stat", "inactive_file", 0));
-    return most > used ? most - used : 0;
-}
-
 } // namespace
-
-std::uint64_t free_memory() {
-    const auto available = number_in("/proc/meminfo", "MemAvailable:", unlimited >> 10) << 10;
-    return std::min({available, free_control_group(), free_address_space()});
-}
 
 /// Arguments apart by blanks, in single quotes where they hold one.
 std::string without_folders(std::string_view line) {

@@ -37,8 +37,4 @@ std::string command_line();
 /// A line without the folders of its absolute paths, which say whose machine it was.
 std::string without_folders(std::string_view line);
 
-/// Bytes that this process can still get: the least of what Linux calls available, the rest of its control
-/// group, and the rest of its address space (ulimit -v).
-std::uint64_t free_memory();
-
 } // namespace tandem

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "scenes/memory.h"
 #include "scenes/parameters.h"
 
 namespace tandem {
@@ -32,6 +33,10 @@ public:
     std::uint32_t add_box(const Eigen::Vector3d& size);
     const Mesh& mesh(std::uint32_t number) const { return scene_.meshes[number]; }
 
+    /// Throws InputError where so many bodies of a mesh are more than there is memory for.
+    void expect(std::uint64_t bodies, std::uint32_t mesh) const {
+        refuse_bodies_beyond_memory(bodies, scene_.meshes[mesh], 0);
+    }
     void add(std::uint32_t mesh, const Placing& placing);
     /// A deformable body: its mesh turned by `turn` about the vertical, then moved.
     void add_deformable(std::uint32_t mesh, double turn, const Eigen::Vector3d& translation,

@@ -27,6 +27,7 @@ Scene make(std::span<const SceneParameter> parameters) {
     dynamics.gravity = {9.82 * slope.sine, -9.82 * slope.cosine, 0};
     assembly.add_ground(std::max(100.0, 2 * static_cast<double>(bodies)) * side, 1);
     const auto cube = assembly.add_box({side, side, side});
+    assembly.expect(bodies, cube);
     for (std::uint64_t i = 0; i < bodies; ++i) {
         const auto number = static_cast<double>(i);
         const double y = drop + side * (stack ? number + 0.5 : 0.5);

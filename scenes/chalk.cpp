@@ -61,6 +61,7 @@ Scene make(std::span<const SceneParameter> parameters) {
     std::vector<std::uint32_t> grains;
     for (std::size_t i = 1; i <= shapes; ++i)
         grains.push_back(assembly.add_mesh(built_in_mesh(fmt::format("grain{}", i))));
+    assembly.expect(bodies, grains.front());
     const auto place = [&](std::size_t n) { return pitch * (static_cast<double>(n) + 0.5); };
     for (std::size_t i = 0; i < bodies; ++i) {
         const std::size_t layer = i / (side * side);

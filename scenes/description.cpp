@@ -3,6 +3,7 @@
 #include "scenes/describe_dynamics.h"
 #include "scenes/digest.h"
 #include "scenes/error.h"
+#include "scenes/memory.h"
 #include "scenes/motion.h"
 #include "scenes/parameters.h"
 #include "scenes/read_json.h"
@@ -158,6 +159,8 @@ Scene load_description(const std::string& path) {
     if (json.contains("frames"))
         scene.frame_count = static_cast<std::size_t>(whole(json["frames"], root / "frames", 1, 1e7));
     const auto motions = read_bodies(json, root, scene);
+    refuse_beyond_memory(fmt::format("{}: the vertices of all bodies", path),
+                         3 * sizeof(float) * static_cast<double>(vertex_count(scene)));
     scene.key = fmt::format("{}:frames={},bodies={:016x}", scene.name, scene.frame_count,
                             digest_of(json["bodies"].dump()));
     if (json.contains("dynamics")) {

@@ -26,6 +26,7 @@ Scene make(std::span<const SceneParameter> parameters, const Layout& layout) {
     const auto jack = assembly.add_mesh(scaled(built_in_mesh("jack"), Eigen::Vector3d::Constant(jack_size)));
     assembly.add_ground(layout.ground * size, masonry::ground);
     assembly.add(funnel, {.pose = {.translation = {0, layout.centre * size, 0}}, .fixed = true});
+    assembly.expect(bodies, jack);
     for (const auto& centre : block(bodies, jack_size + spacing, layout.bottom * size))
         assembly.add(jack, {.pose = {.translation = centre}});
     return assembly.finish();

@@ -20,6 +20,7 @@ Scene make(std::span<const SceneParameter> parameters) {
     const auto falling = assembly.add_mesh(scaled(glass, Eigen::Vector3d::Constant(small)));
     assembly.add_ground(1.25 * size, masonry::ground);
     assembly.add(large, {.pose = {.translation = {0, 0.5 * size, 0}}, .fixed = true});
+    assembly.expect(bodies, falling);
     // The paper's block begins half a metre lower, where it would overlap the rim of our glass.
     for (const auto& centre : block(bodies, small + spacing, size))
         assembly.add(falling, {.pose = {.translation = centre}});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/builtin.h"
 #include "scenes/error.h"
+#include "scenes/memory.h"
 #include "scenes/motion.h"
 #include "scenes/parameters.h"
 #include "scenes/random.h"
@@ -73,10 +74,12 @@ Scene make(std::span<const SceneParameter> parameters) {
     const double offset = real_parameter(parameters, "far", -1e9, 1e9);
     scene.frame_count = integer_parameter(parameters, "frames", 1, 1000000);
     scene.meshes.push_back(mesh_named(text_parameter(parameters, "mesh")));
+    const auto levels = refine_value(parameters);
+    refuse_bodies_beyond_memory(bodies, scene.meshes.front(), levels);
     scene.bodies.assign(bodies, Body{});
     const auto [middle, radius] = ball_of(scene.meshes.front());
     const double side = cube_root(static_cast<double>(bodies) * volume(scene.meshes.front()) / density);
-    scene.meshes.front() = refined(scene.meshes.front(), refine_value(parameters));
+    scene.meshes.front() = refined(scene.meshes.front(), levels);
     Random random(integer_parameter(parameters, "seed", 0, ~std::uint64_t{0}));
     std::vector<Mover> movers(bodies);
     for (auto& m : movers) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/builtin.h"
+#include "scenes/memory.h"
 #include "scenes/parameters.h"
 #include "scenes/random.h"
 #include "scenes/refine.h"
@@ -49,7 +50,9 @@ Scene make(std::span<const SceneParameter> parameters) {
     const auto count = integer_parameter(parameters, "count", 1, 100000);
     const double angle = real_parameter(parameters, "angle", -4, 4);
     scene.frame_count = integer_parameter(parameters, "frames", 1, 1000000);
-    scene.meshes.push_back(refined(built_in_mesh("plate"), refine_value(parameters)));
+    const auto levels = refine_value(parameters);
+    refuse_bodies_beyond_memory(count, built_in_mesh("plate"), levels);
+    scene.meshes.push_back(refined(built_in_mesh("plate"), levels));
     scene.bodies.assign(count, Body{.mesh = 0, .fixed = false, .deformable = true});
     scene.frame = [rest = scene.meshes.front().vertices, count, angle](std::size_t step) {
         return twisted(rest, count, angle, step);

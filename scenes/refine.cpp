@@ -2,6 +2,7 @@
 #include "scenes/refine.h"
 
 #include "scenes/error.h"
+#include "scenes/memory.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -113,6 +114,13 @@ Mesh refined(const Mesh& mesh, std::uint64_t levels) {
         throw InputError(
             fmt::format("refinement by {} levels; give a number from 0 to {}", levels, most_refinement));
     check_count(mesh.tetrahedra.size() << 3 * levels, "tetrahedra", mesh.name);
+    // A child's corners, its flags, a sixth of a vertex at least, and its parent's six edges.
+    constexpr double bytes_per_tetrahedron =
+        4 * sizeof(std::uint32_t) + 1 + sizeof(Eigen::Vector3d) / 6.0 + 6;
+    if (levels > 0)
+        refuse_beyond_memory(fmt::format("the tetrahedra of mesh {} refined {} times", mesh.name, levels),
+                             bytes_per_tetrahedron
+                                 * static_cast<double>(mesh.tetrahedra.size() << 3 * levels));
     Mesh fine = mesh;
     for (std::uint64_t level = 0; level < levels; ++level) fine = refined_once(fine);
     if (levels > 0) count_flawed(fine);

@@ -164,6 +164,9 @@ class CommandLine(Case):
         self.bad("the nearest is 'density'", "run", "pile:densty=1")
         for value in ("pile:density=-1", "pile:density=nan", "pile:bodies=0", "pile:bodies=2.5", "plates:count=99999999999999999"):
             self.bad("impossible", "run", value)
+        # More than any machine's memory: nothing is made of it.
+        for value in ("pile:bodies=10000000,refine=4", "plates:count=100000,refine=4", "funnel:bodies=1000000,refine=3", "glasses:bodies=1000000,refine=3"):
+            self.bad(["bodies of mesh", "take at least"], "run", value)
         self.bad("no value", "run", "pile:density")
         self.bad("the nearest is 'jack'", "run", "pile:mesh=jak")
         self.bad("absent.json", "run", self.work / "absent.json")

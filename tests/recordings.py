@@ -98,6 +98,10 @@ class Recordings(Case):
                                  ("text", recording("pyle", self.digest, [0] * 4, self.frames), "cannot be made again: unknown scene 'pyle'"),
                                  ("gone", recording("gone.json", self.digest, [0] * 4, self.frames), "gone.json: cannot be read"),
                                  ("itself", recording("x.frames", self.digest, [0] * 4, self.frames), "is a recording itself"),
+                                 ("elsewhere", recording("/dev/zero.json", self.digest, [0] * 4, self.frames), "opens only those of its own folder"),
+                                 ("above", recording("../x.json", self.digest, [0] * 4, self.frames), "opens only those of its own folder"),
+                                 ("mesh", recording("pile:bodies=4,mesh=/dev/zero", self.digest, [0] * 4, self.frames), "is of the file /dev/zero"),
+                                 ("large", recording("pile:bodies=10000000", self.digest, [0] * 4, self.frames), "holds 4 bodies of a scene with 10000000"),
                                  ("none", recording(self.key, self.digest, [0] * 4, []), "no frame is whole"),
                                  ("header", self.whole[:50], "is cut off in its header"),
                                  ("noise", b"frame,body_a\n0,1\n", "is no recording of frames")):

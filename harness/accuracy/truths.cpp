@@ -2,9 +2,9 @@
 #include "harness/accuracy/truths.h"
 
 #include "harness/accuracy/answer_errors_json.h"
-#include "harness/environment.h"
 #include "scenes/digest.h"
 #include "scenes/error.h"
+#include "scenes/memory.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

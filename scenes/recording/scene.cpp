@@ -4,6 +4,7 @@
 #include "scenes/recording/bytes.h"
 #include "scenes/recording/recording.h"
 
+#include <charconv>
 #include <filesystem>
 #include <fmt/format.h>
 
@@ -11,13 +12,64 @@ namespace tandem {
 
 namespace {
 
+/// What follows "NAME=" among the parameters of a scene; empty where it is not there.
+std::string_view parameter_in(std::string_view specification, std::string_view name) {
+    for (auto at = specification.find(name); at != std::string_view::npos;
+         at = specification.find(name, at + 1))
+        if (at > 0 && (specification[at - 1] == ':' || specification[at - 1] == ',')
+            && specification.substr(at + name.size()).starts_with('=')) {
+            const auto value = specification.substr(at + name.size() + 1);
+            return value.substr(0, value.find(','));
+        }
+    return {};
+}
+
+/// The file that making a scene opens; empty where it opens none.
+std::string_view file_of(std::string_view specification) {
+    if (specification.ends_with(".json")) return specification;
+    const auto mesh = parameter_in(specification, "mesh");
+    return mesh.find_first_of("./") == std::string_view::npos ? std::string_view() : mesh;
+}
+
+bool is_within(const std::filesystem::path& path, const std::filesystem::path& folder) {
+    using std::filesystem::absolute, std::filesystem::weakly_canonical;
+    const auto below =
+        weakly_canonical(absolute(path)).lexically_relative(weakly_canonical(absolute(folder)));
+    return !below.empty() && *below.begin() != "..";
+}
+
+/// A recording can come from anyone: it opens no file but those beside it or where the program was started,
+/// and has no scene made that has more bodies than itself.
+void check_specification(const RecordingHeader& header, const std::filesystem::path& recording) {
+    const auto fail = [&](std::string_view what) {
+        throw InputError(fmt::format("{}: {}", recording.string(), what));
+    };
+    if (header.specification.ends_with(".frames")) fail("its scene is a recording itself; record it again");
+    if (const std::filesystem::path file(file_of(header.specification)); !file.empty()) {
+        const auto own = recording.parent_path();
+        if (!is_within(file, own.empty() ? "." : own) && !is_within(file, std::filesystem::current_path()))
+            fail(fmt::format(
+                "its scene is of the file {}, and a recording opens only those of its own folder and of the "
+                "folder you are in; go there, or copy it",
+                file.string()));
+    }
+    for (const auto* name : {"bodies", "count"}) {
+        const auto text = parameter_in(header.specification, name);
+        std::uint64_t bodies = 0;
+        const auto result = std::from_chars(text.data(), text.data() + text.size(), bodies);
+        if (result.ec == std::errc{} && bodies > header.bodies.size())
+            fail(fmt::format("holds {} bodies of a scene with {} or more; record it again",
+                             header.bodies.size(), bodies));
+    }
+}
+
 /// The scene that was recorded; what goes wrong in making it again is said of the recording.
 Scene remade(const Recording& recording) {
     const auto& header = recording.header();
     const auto fail = [&](std::string_view what) {
         throw InputError(fmt::format("{}: {}", recording.path(), what));
     };
-    if (header.specification.ends_with(".frames")) fail("its scene is a recording itself; record it again");
+    check_specification(header, recording.path());
     Scene scene;
     try {
         scene = make_scene(header.specification);
