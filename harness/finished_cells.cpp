@@ -26,19 +26,30 @@ std::string asked_key(const nlohmann::ordered_json& record) {
 FinishedCells::FinishedCells(const RecordFile& file, const std::string& path) {
     file.for_each([&](const nlohmann::ordered_json& record) {
         if (!record.contains("key")) return; // of ceilings or a simulation
-        if (record.value("schema", 0) != record_schema)
+        const auto schema = record.value("schema", nlohmann::ordered_json());
+        if (schema != record_schema)
             throw InputError(
                 fmt::format("{}: has records of schema {}, and this program writes {}; bring them to it "
                             "with scripts/convert_records, or choose another --out",
-                            path, record.value("schema", 0), record_schema));
-        if (record.at("status") == "failed" || record.at("sampling").at("interrupted") == true) return;
-        auto& finished = by_key_[asked_key(record)];
-        const auto& sources = record.at("environment").at("sources");
-        finished.same_sources |= sources.is_string() && sources == sources_digest();
-        finished.seconds = record.at("sampling").at("spent_seconds").is_null()
-                               ? 0
-                               : record.at("sampling").at("spent_seconds").get<double>();
+                            path, schema.dump(), record_schema));
+        try {
+            take(record);
+        } catch (const nlohmann::json::exception&) {
+            throw InputError(fmt::format(
+                "{}: the record of {} is not as results/record.schema.json says; repair it, or "
+                "choose another --out",
+                path, record.at("key").dump(-1, ' ', true, nlohmann::json::error_handler_t::replace)));
+        }
     });
+}
+
+void FinishedCells::take(const nlohmann::ordered_json& record) {
+    if (record.at("status") == "failed" || record.at("sampling").at("interrupted") == true) return;
+    auto& finished = by_key_[asked_key(record)];
+    const auto& sources = record.at("environment").at("sources");
+    finished.same_sources |= sources.is_string() && sources == sources_digest();
+    const auto& spent = record.at("sampling").at("spent_seconds");
+    finished.seconds = spent.is_null() ? 0 : spent.get<double>();
 }
 
 bool FinishedCells::has(const Cell& cell, const Scene& scene, const FrameRange& range) const {

@@ -6,6 +6,7 @@
 #include "harness/plans/cells.h"
 
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 
 namespace tandem {
@@ -23,6 +24,8 @@ public:
     std::optional<double> seconds(const Cell& cell, const Scene& scene, const FrameRange& range) const;
 
 private:
+    void take(const nlohmann::ordered_json& record);
+
     struct Finished {
         bool same_sources = false;
         double seconds = 0;
