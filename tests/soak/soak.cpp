@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+// soak [--device D] [--frames N] [--seed S]: N frames in sessions of random algorithms, settings, scenes and
+// lengths, several alive at a time, with results that outlive them, resets, answers in batches and memory
+// that runs out. One line a tenth. Exit 1 where a frame has another answer than the reference, or the
+// process, its open files or the device's buffers have grown.
+#include "harness/environment.h"
+#include "scenes/error.h"
+#include "tests/support/cells.h"
+#include "tests/support/scenes.h"
+
+#include <CLI/CLI.hpp>
+#include <deque>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <map>
+#include <unistd.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+std::int64_t resident_bytes() {
+    std::int64_t size = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> size >> resident;
+    return resident * sysconf(_SC_PAGESIZE);
+}
+
+std::size_t open_files() {
+    const std::filesystem::directory_iterator files("/proc/self/fd");
+    return static_cast<std::size_t>(std::distance(begin(files), end(files)));
+}
+
+std::size_t threads() {
+    const std::filesystem::directory_iterator tasks("/proc/self/task");
+    return static_cast<std::size_t>(std::distance(begin(tasks), end(tasks)));
+}
+
+/// Few enough that each compiles once: what is soaked is the sessions.
+const std::vector<SettingTexts> variants{{{"k", "8"}, {"contact_rule", "opposing"}},
+                                         {{"k", "8"}, {"contact_rule", "opposing"}, {"output", "digest"}},
+                                         {{"k", "18"}, {"contact_rule", "sat"}, {"decision", "recheck"}}};
+
+/// What a process is made of that must not grow.
+struct Held {
+    std::int64_t bytes = resident_bytes();
+    std::size_t files = open_files(), tasks = threads();
+};
+
+class Soak {
+public:
+    Soak(Device& on, std::uint64_t seed) : device_(on), random_(seed) {
+        for (std::uint32_t i = 0; i < 6; ++i) scenes_.push_back(crowd(i + 1, 3 + 5 * i, 2.0 + i));
+    }
+
+    /// Frames until `stop` in all.
+    void run_until(std::uint64_t stop) {
+        while (frames_ < stop)
+            live(std::min<std::uint64_t>(stop - frames_, 1 + below(random_.uniform() < 0.9 ? 200 : 5000)));
+        kept_.clear();
+    }
+
+    std::uint64_t frames() const { return frames_; }
+    std::uint64_t sessions() const { return sessions_; }
+    std::uint64_t refusals() const { return refusals_; }
+    std::uint64_t batches() const { return batches_; }
+    std::uint64_t wrong() const { return wrong_; }
+
+private:
+    std::size_t below(std::size_t n) {
+        return static_cast<std::size_t>(random_.uniform() * static_cast<double>(n)) % n;
+    }
+
+    /// Of the pairs of a frame with these bounds: the first session's on the host.
+    const Digest& expected(std::size_t scene, std::size_t frame, const SettingTexts& variant) {
+        const auto key = std::tuple(scene, frame, variant.at("k"));
+        const auto known = expected_.find(key);
+        if (known != expected_.end()) return known->second;
+        const std::array host{&device("host")};
+        const auto& chunked = algorithm("chunked");
+        const auto session = chunked.prepare(
+            host, scenes_[scene], resolve(chunked.parameters(), {}, {{"k", variant.at("k")}}, "chunked"));
+        return expected_[key] = session->run(scenes_[scene].frame(frame)).digest();
+    }
+
+    /// A session for so many frames, another beside it half of the time.
+    void live(std::uint64_t length) {
+        const auto& traversal = *algorithms()[below(algorithms().size())];
+        const auto scene = below(scenes_.size());
+        SettingTexts given = variants[below(variants.size())];
+        given["work_items"] = "64";
+        const auto room = std::size_t{1} << (below(13));
+        given["pair_capacity"] = given["contact_capacity"] = fmt::format("{}", room);
+        if (declares(traversal, "queue_bytes")) given["queue_bytes"] = "65536";
+        const auto settings = resolve(traversal.parameters(), {}, given, traversal.name());
+        const std::array devices{&device_};
+        std::unique_ptr<Session> session, beside;
+        try {
+            session = traversal.prepare(devices, scenes_[scene], settings);
+            if (below(2) == 0)
+                beside = traversal.prepare(devices, scenes_[(scene + 1) % scenes_.size()], settings);
+        } catch (const InputError&) { // settings that do not go together
+            return;
+        }
+        ++sessions_;
+        const std::vector<Frame> frames{scenes_[scene].frame(0), scenes_[scene].frame(1)};
+        for (std::uint64_t i = 0; i < length; ++i) {
+            const auto chance = below(1000);
+            if (chance == 0) session->reset();
+            if (chance == 1) starve(traversal, scenes_[scene], settings);
+            if (chance == 2 && beside) beside->run(scenes_[(scene + 1) % scenes_.size()].frame(0));
+            auto result = session->run(frames[i % 2]);
+            ++frames_;
+            batches_ += result.batches > 1;
+            // A digest costs more than a frame: of the first two and some.
+            if (i < 2 || chance < 50) wrong_ += result.digest() != expected(scene, i % 2, given);
+            if (chance < 5) kept_.push_back(std::move(result));
+            if (kept_.size() > 20) kept_.pop_front();
+        }
+    }
+
+    /// A session where there is little memory: none, one that answers in batches, or one whose frame fails.
+    void starve(const Traversal& traversal, const Scene& scene, const Settings& settings) {
+        const std::array devices{&device_};
+        device_.set_memory_limit(device_.bytes_allocated() + (std::size_t{1} << (10 + below(12))));
+        try {
+            const auto session = traversal.prepare(devices, scene, settings);
+            batches_ += session->run(scene.frame(0)).batches > 1;
+        } catch (const OutOfMemory&) {
+            ++refusals_;
+        }
+        device_.set_memory_limit(Device::no_memory_limit);
+    }
+
+    Device& device_;
+    Random random_;
+    std::vector<Scene> scenes_;
+    std::deque<FrameResult> kept_;
+    std::map<std::tuple<std::size_t, std::size_t, std::string>, Digest> expected_;
+    std::uint64_t frames_ = 0, sessions_ = 0, refusals_ = 0, batches_ = 0, wrong_ = 0;
+};
+
+int run(const std::string& on, std::uint64_t frames, std::uint64_t seed) {
+    auto& soaked = device(on);
+    fmt::print("soak of {} at {}, seed {}\n", on, version_line(), seed);
+    Soak soak(soaked, seed);
+    constexpr std::uint64_t parts = 10;
+    soak.run_until(frames / parts); // caches fill
+    const Held before;
+    const auto device_before = soaked.bytes_allocated();
+    for (std::uint64_t part = 2; part <= parts; ++part) {
+        soak.run_until(frames * part / parts);
+        const Held now;
+        fmt::print("{} frames, {} sessions, {} in batches, {} out of memory, {} wrong; {:+} KiB, {:+} files, "
+                   "{:+} threads, {:+} bytes on "
+                   "the device\n",
+                   soak.frames(), soak.sessions(), soak.batches(), soak.refusals(), soak.wrong(),
+                   (now.bytes - before.bytes) / 1024, static_cast<std::int64_t>(now.files - before.files),
+                   static_cast<std::int64_t>(now.tasks - before.tasks),
+                   static_cast<std::int64_t>(soaked.bytes_allocated() - device_before));
+        std::fflush(stdout);
+    }
+    const Held now;
+    // Fragments of the heap, and what a driver keeps of each program.
+    constexpr std::int64_t most_growth = 64 << 20;
+    const bool flat = now.bytes - before.bytes < most_growth && now.files <= before.files
+                      && now.tasks <= before.tasks && soaked.bytes_allocated() == device_before;
+    fmt::print("{} frames soaked: {} wrong, memory {}\n", soak.frames(), soak.wrong(),
+               flat ? "flat" : "grows");
+    return soak.wrong() == 0 && flat ? 0 : 1;
+}
+
+} // namespace
+} // namespace tandem
+
+int main(int argc, char** argv) {
+    CLI::App app{"frames in sessions of random kinds, for leaks and for answers that change"};
+    std::string on = "host";
+    std::uint64_t frames = 10000, seed = 1;
+    app.add_option("--device", on, "one device")->capture_default_str();
+    app.add_option("--frames", frames, "in all")->check(CLI::Range(10, 1000000000))->capture_default_str();
+    app.add_option("--seed", seed, "of everything random")->capture_default_str();
+    CLI11_PARSE(app, argc, argv);
+    try {
+        return tandem::run(on, frames, seed);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "soak: {}\n", error.what());
+        return 3;
+    }
+}
