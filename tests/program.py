@@ -5,6 +5,7 @@ import itertools
 import json
 import os
 import pathlib
+import re
 import resource
 import subprocess
 import sys
@@ -38,6 +39,17 @@ def tandem(*arguments, environment=None, timeout=300, address_space=None):
                           env={**os.environ, **(environment or {})}, preexec_fn=limit)
     lines = [line for line in done.stderr.splitlines() if line.strip() and not line.rstrip().endswith("generated.")]
     return done.returncode, done.stdout, lines
+
+
+def tried(what, count, unit, where="host", lost=0, crashes=0, hangs=0, others=0):
+    """Adds a line to the file TANDEM_TRIED, if there is one in the environment, for scripts/tried (tests/support/tried.h has the same):
+    so many units were tried; answers or records lost, crashes and hangs of the program, and how many ended in other people's libraries."""
+    if "TANDEM_TRIED" not in os.environ:
+        return
+    commit = re.search(r"commit (\w+)", subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True, check=True).stdout)[1]
+    with open(os.environ["TANDEM_TRIED"], "a", encoding="utf-8") as out:
+        out.write(json.dumps({"what": what, "count": count, "unit": unit, "where": where, "lost": lost, "crashes": crashes, "hangs": hangs,
+                              "others": others, "commit": commit}) + "\n")
 
 
 def bar(cells, offset):

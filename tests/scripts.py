@@ -330,6 +330,24 @@ class Scripts(Case):
             self.assertEqual((status, len(errors)), (1, 1), errors)
             self.assertIn(said, errors[0])
 
+    def test_the_table_of_what_was_tried_is_of_its_lines(self):
+        tried, copy = SOURCE / "results/tried.jsonl", self.work / "page.md"
+        text = (SOURCE / "README.md").read_text()
+        copy.write_text(re.sub(r"<!-- tried -->.*?<!-- end -->", "<!-- tried --><!-- end -->", text, flags=re.DOTALL))
+        self.assertNotEqual(copy.read_text(), text)
+        self.assertEqual(script("tried", tried, "--write", copy), (0, "", []))
+        self.assertEqual(copy.read_text(), text)
+        line = json.loads(tried.read_text().splitlines()[0])
+        bad = self.work / "tried.jsonl"
+        for lines, said in (("", "has no lines"), ("{}\n", "tried.jsonl:1: no line of what was tried"), (json.dumps({**line, "count": "3"}), "tried.jsonl:1: no line")):
+            bad.write_text(lines)
+            status, _, errors = script("tried", bad)
+            self.assertEqual((status, len(errors)), (1, 1), errors)
+            self.assertIn(said, errors[0])
+        bad.write_text(json.dumps({**line, "count": 1}) + "\n" + json.dumps({**line, "count": 2222}) + "\n")
+        self.assertIn("2,222", script("tried", bad)[1])  # the newest of each
+        self.assertEqual(len(script("tried", bad)[1].splitlines()), 3)
+
     def test_the_picture_of_the_pages_is_of_the_records(self):
         """By its words, which are comments beside their outlines: how they are drawn is the library's."""
         words = lambda path: re.findall(r"<!-- (.*?) -->", path.read_text())

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """validate_records.py [FILE.jsonl|FILE.jsonl.xz ...]: checks records against results/record.schema.json, those of files named
 ceilings*.jsonl against results/ceilings.schema.json, simulation*.jsonl against results/simulation.schema.json (also sim-*, host-*, serial-* and
-parallel-*.jsonl), steps.jsonl against results/paper.schema.json, and profile*.jsonl,
+parallel-*.jsonl), steps.jsonl against results/paper.schema.json, tried*.jsonl against results/tried.schema.json, and profile*.jsonl,
 or a profile's in any file, against results/profile.schema.json; without files, all committed ones. Exit 1 names file:line and the place of the first problems."""
 import json
 import lzma
@@ -15,7 +15,7 @@ import jsonschema
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SHOWN = 10
 # By the beginning of a file's name; files of 'tandem paper' are named after its steps.
-KINDS = {"ceilings": "ceilings", "simulation": "simulation", "profile": "profile", "steps": "paper", "sim-": "simulation", "host-": "simulation",
+KINDS = {"ceilings": "ceilings", "simulation": "simulation", "profile": "profile", "steps": "paper", "tried": "tried", "sim-": "simulation", "host-": "simulation",
          "serial-": "simulation", "parallel-": "simulation"}
 
 
@@ -81,7 +81,7 @@ def validator_of(name):
 
 def main(names):
     # The first decides, in a tenth of the other's time; the other names everything that is wrong.
-    validators = {kind: (fastjsonschema.compile(schema_of(kind + ".schema.json")), validator_of(kind + ".schema.json")) for kind in ("record", "ceilings", "simulation", "profile", "paper")}
+    validators = {kind: (fastjsonschema.compile(schema_of(kind + ".schema.json")), validator_of(kind + ".schema.json")) for kind in ("record", "ceilings", "simulation", "profile", "paper", "tried")}
     files = [pathlib.Path(name) for name in names] or sorted([*(ROOT / "results").glob("**/*.jsonl"), *(ROOT / "results").glob("**/*.jsonl.xz")])
     if not files:
         print("no records are committed yet")

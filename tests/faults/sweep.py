@@ -14,10 +14,12 @@ import subprocess
 import sys
 import unittest
 
-from program import LONG, PROGRAM, SOURCE, SMALL, Case, sets, tandem
+from program import LONG, PROGRAM, SOURCE, SMALL, Case, sets, tandem, tried
 
 PRELOAD = os.environ["PRELOAD"]
 FAMILIES = ("open", "write", "fsync", "rename", "truncate", "thread", "large", "malloc")
+CALLS = {"open": "open", "write": "write", "fsync": "fsync", "rename": "rename", "truncate": "ftruncate", "thread": "pthread_create",
+         "large": "all large malloc from one on", "malloc": "malloc"}
 CELLS = ("plan", "check", "accuracy")  # several in a command
 LIBRARYS_WORDS = r"std::|::at\b|basic_string|bad_alloc|json\.exception|vector::"
 SHORT = 8  # runs a command and family, malloc aside, of the short form
@@ -40,7 +42,8 @@ def functions(stack):
 
 class Sweep(Case):
     counts = collections.Counter()
-    lost_by = collections.Counter()
+    lost_by = collections.defaultdict(collections.Counter)  # by family and library
+    swept, wanted = set(), {"run", "plan", "check", "accuracy", "simulate", "export"}
 
     @classmethod
     def setUpClass(cls):
@@ -55,7 +58,11 @@ class Sweep(Case):
     @classmethod
     def tearDownClass(cls):
         said = ", ".join(f"{cls.counts[family]} of {family}" for family in FAMILIES if cls.counts[family])
-        print(f"faults injected: {said}; ended by a signal in other people's libraries: {dict(cls.lost_by) or 'none'}")
+        print(f"faults injected: {said}; ended by a signal in other people's libraries: {dict(sum(cls.lost_by.values(), collections.Counter())) or 'none'}")
+        # Every one of them was judged where no test has failed: a run that is red adds no line.
+        if cls.swept == cls.wanted:
+            for family in FAMILIES:
+                tried(f"calls that fail: {CALLS[family]}", cls.counts[family], "runs", others=sum(cls.lost_by[family].values()))
         super().tearDownClass()
 
     def commands(self, folder):
@@ -118,7 +125,7 @@ class Sweep(Case):
             json.loads(line)
         owner = "glibc" if outcome.errors[:1] == [NO_ROOM_FOR_THREADS] else outcome.owner
         if outcome.signal and owner != OURS:
-            self.lost_by[owner] += 1
+            self.lost_by[family][owner] += 1
             return
         self.assertFalse(outcome.signal, f"{where}: signal {-outcome.code}")
         self.assertIn(outcome.code, (0, 2, 3), where)
@@ -139,6 +146,8 @@ class Sweep(Case):
                         self.judge(command, family, at, folder, outcome)
                     shutil.rmtree(folder)
             self.counts[family] += len(numbers)
+        if self._outcome.success:
+            self.swept.add(command)
 
     def test_run(self):
         self.sweep("run")

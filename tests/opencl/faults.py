@@ -1,8 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """faults.py PROGRAM SHIM: every OpenCL call that can fail does, one a run, with work in flight."""
+import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -21,6 +23,15 @@ def run(folder, **variables):
     environment = {**os.environ, "LD_PRELOAD": str(SHIM), **{k: str(v) for k, v in variables.items()}}
     done = subprocess.run([str(PROGRAM), *arguments], capture_output=True, text=True, env=environment, timeout=100)
     return done.returncode, done.stderr.splitlines()
+
+
+def record(calls):
+    """For scripts/tried, as tests/program.py has it."""
+    if "TANDEM_TRIED" in os.environ:
+        commit = re.search(r"commit (\w+)", subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True, check=True).stdout)[1]
+        with open(os.environ["TANDEM_TRIED"], "a", encoding="utf-8") as out:
+            out.write(json.dumps({"what": "calls that fail: OpenCL, with work in flight", "count": calls, "unit": "runs", "where": "PoCL", "lost": 0,
+                                  "crashes": 0, "hangs": 0, "others": 0, "commit": commit}) + "\n")
 
 
 class Faults(unittest.TestCase):
@@ -47,6 +58,7 @@ class Faults(unittest.TestCase):
         # pairs are downloaded through, for half.
         self.assertLessEqual(survived, 4)
         self.assertEqual(survived, 4 if EACH == 1 else survived)
+        record(len(range(1, calls, EACH)))
         # The last is the wait of the device's end: the work is done, and what may be read still is not freed.
         self.assertEqual(run(self.folder, SHIM_CALL=calls), (0, []))
 

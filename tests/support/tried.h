@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/environment.h"
+
+#include <cstdint>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <fstream>
+
+namespace tandem::testing_support {
+
+/// Adds a line to the file TANDEM_TRIED, if there is one in the environment, for scripts/tried: so many
+/// `unit`s of `what` were tried on `where`, and so many answers or records were lost. (tests/program.py has
+/// the same.)
+inline void tried(std::string_view what, std::uint64_t count, std::string_view unit, std::string_view where,
+                  std::uint64_t lost) {
+    const char* path = std::getenv("TANDEM_TRIED");
+    if (path == nullptr) return;
+    const auto line = version_line();
+    const auto at = line.find("commit ") + 7;
+    std::ofstream(path, std::ios::app) << fmt::format(
+        R"({{"what":"{}","count":{},"unit":"{}","where":"{}","lost":{},"crashes":0,"hangs":0,"others":0,"commit":"{}"}})"
+        "\n",
+        what, count, unit, where, lost, line.substr(at, line.find(',', at) - at));
+}
+
+} // namespace tandem::testing_support
