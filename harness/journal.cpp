@@ -3,6 +3,7 @@
 
 #include "harness/standard_streams.h"
 #include "harness/torn_line.h"
+#include "scenes/durable.h"
 #include "scenes/error.h"
 
 #include <array>
@@ -60,7 +61,9 @@ int share(int descriptor) {
 
 /// Files are read as well, for what a kill has left; a pipe that was opened for both would wait for no
 /// reader.
-int open_for_appending(const std::string& path) {
+int open_for_appending(const std::string& path, Links links) {
+    if (links == Links::refused)
+        return open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC, 0644);
     if (const int descriptor = descriptor_named(path); descriptor >= 0) return share(descriptor);
     struct stat facts {};
     const bool special = stat(path.c_str(), &facts) == 0 && !S_ISREG(facts.st_mode);
@@ -107,11 +110,12 @@ int sync_error(int file) {
 
 } // namespace
 
-RecordFile::RecordFile(const std::string& path)
-    : RecordFile(path, path.empty() ? -1 : open_for_appending(path)) {
+RecordFile::RecordFile(const std::string& path, Links links)
+    : RecordFile(path, path.empty() ? -1 : open_for_appending(path, links)) {
     if (path.empty() || !can_be_mended_) return;
     const AppendLock lock(file_);
     try {
+        if (size_of(file_, path_) == 0) sync_folder_of(path_); // it may be new
         check_first_line(file_, path_);
         mend_last_line(file_, path_);
     } catch (const OutputError& error) {

@@ -8,6 +8,9 @@
 
 namespace tandem {
 
+/// Whether a path may be a link: one that a user has given, not one that follows from such.
+enum class Links { followed, refused };
+
 /// A JSON-lines file that records are appended to, by several processes at a time: every complete line stays,
 /// whatever fails. What a kill in the midst of a line has left behind is mended, under a lock, when the file
 /// is opened and before each record: a line that lacks nothing but its end gets that; another is moved to
@@ -18,13 +21,13 @@ public:
     /// Opens for appending, and makes the file when there is none. Throws InputError when it cannot be
     /// written or mended, and, before anything is written to it, when its first line is no JSON object. An
     /// empty path writes nowhere.
-    explicit RecordFile(const std::string& path);
+    explicit RecordFile(const std::string& path, Links links = Links::followed);
     ~RecordFile();
     RecordFile(const RecordFile&) = delete;
     RecordFile& operator=(const RecordFile&) = delete;
 
-    /// On disk when it returns. Throws OutputError when the line cannot be written whole; a part of it is
-    /// taken off a file again.
+    /// On disk when it returns, as is the file's name. Throws OutputError when the line cannot be written
+    /// whole; a part of it is taken off a file again.
     void append(const nlohmann::ordered_json& record);
     /// append(), but an OutputError is told on standard error; false then, and nothing more should be
     /// measured.

@@ -2,6 +2,7 @@
 #include "harness/torn_line.h"
 
 #include "harness/standard_streams.h"
+#include "scenes/durable.h"
 #include "scenes/error.h"
 
 #include <algorithm>
@@ -19,6 +20,8 @@ namespace tandem {
 namespace {
 
 constexpr std::size_t block_bytes = 1 << 16;
+/// Longer ones are not what was to be a record.
+constexpr std::size_t most_zeros = 1 << 24;
 
 [[noreturn]] void fail_torn(const std::string& path, std::string_view what) {
     throw OutputError(fmt::format("{}: {} ({})", path, what, std::strerror(errno)));
@@ -41,10 +44,16 @@ std::string read_part(int file, const std::string& path, std::size_t at, std::si
 
 enum class Text { object, beginning_of_one, other };
 
+/// What a loss of power has left may be as long as what was written and have zeros in its place.
 Text kind_of(std::string_view text) {
-    if (text.empty() || text.front() != '{') return Text::other;
+    const auto last = text.find_last_not_of('\0');
+    if (last == std::string_view::npos) return text.empty() ? Text::other : Text::beginning_of_one;
+    const bool torn = last + 1 < text.size();
+    text = text.substr(0, last + 1);
+    if (text.front() != '{') return Text::other;
     try {
-        return nlohmann::json::parse(text).is_object() ? Text::object : Text::other;
+        const bool is_object = nlohmann::json::parse(text).is_object();
+        return !is_object ? Text::other : torn ? Text::beginning_of_one : Text::object;
     } catch (const nlohmann::json::parse_error& error) {
         // One byte further than there are: only the end is wrong with it.
         return error.byte > text.size() ? Text::beginning_of_one : Text::other;
@@ -84,6 +93,7 @@ void set_aside(const std::string& path, std::string_view line) {
             throw OutputError(fmt::format("{}: is no file, and a torn line has to go there", path));
         write_torn(file, path, std::string(line) + "\n");
         if (fsync(file) != 0 && errno != EINVAL && errno != ENOTSUP) fail_torn(path, "writing failed");
+        sync_folder_of(path);
     } catch (...) {
         close(file);
         throw;
@@ -115,7 +125,9 @@ void check_first_line(int file, const std::string& path) {
     // What does not begin as an object need not be read to the end of its first line.
     if (size == 0) return;
     std::string line;
-    if (read_part(file, path, 0, 1) == "{") read_line(file, path, 0, line);
+    if (const auto first = read_part(file, path, 0, 1);
+        first == "{" || (first[0] == '\0' && size <= most_zeros))
+        read_line(file, path, 0, line);
     const auto kind = kind_of(line);
     if (kind == Text::object || (kind == Text::beginning_of_one && line.size() == size)) return;
     throw InputError(fmt::format("{}: its first line is no JSON object, so records do not go there; choose "

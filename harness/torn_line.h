@@ -16,7 +16,7 @@ std::size_t size_of(int file, const std::string& path);
 bool read_line(int file, const std::string& path, std::size_t at, std::string& line);
 
 /// Throws InputError unless the file is empty or its first line is a JSON object, or the beginning of one and
-/// all there is.
+/// all there is: zeros behind it count as torn, and nothing but zeros as well.
 void check_first_line(int file, const std::string& path);
 
 /// For a file whose last byte ends no line: ends a last line that is a whole JSON object; moves any other to

@@ -24,7 +24,7 @@ Unfinished::Unfinished(const std::string& path, bool go_on) {
     if (path.empty() || !std::filesystem::is_regular_file(path)) return;
     path_ = path + ".unfinished";
     if (!go_on || !std::filesystem::exists(path_)) return;
-    file_ = std::make_unique<RecordFile>(path_);
+    file_ = std::make_unique<RecordFile>(path_, Links::refused);
     file_->for_each([&](const nlohmann::ordered_json& line) {
         if (!is_of_this_program(line)) return;
         auto& lines = lines_[line.at("key").get<std::string>()];
@@ -45,7 +45,7 @@ CellState Unfinished::state(const Cell& cell, const std::string& key) {
 
 std::vector<nlohmann::ordered_json> Unfinished::of_others() const {
     std::vector<nlohmann::ordered_json> lines;
-    RecordFile(path_).for_each([&](const nlohmann::ordered_json& line) {
+    RecordFile(path_, Links::refused).for_each([&](const nlohmann::ordered_json& line) {
         if (is_of_this_program(line) && !own_.contains(line.at("key").get<std::string>()))
             lines.push_back(line);
     });
@@ -56,7 +56,7 @@ void Unfinished::append(nlohmann::ordered_json line) {
     line["schema"] = unfinished_schema;
     line["sources"] = sources_digest();
     try {
-        if (!file_) file_ = std::make_unique<RecordFile>(path_);
+        if (!file_) file_ = std::make_unique<RecordFile>(path_, Links::refused);
         file_->append(line);
     } catch (const std::runtime_error& error) {
         tell("tandem: {}; rounds are no longer kept, records are\n", error.what());
@@ -81,7 +81,7 @@ void Unfinished::remove() {
         const auto rest = path_ + ".rest";
         if (!others.empty()) {
             std::filesystem::remove(rest);
-            RecordFile file(rest);
+            RecordFile file(rest, Links::refused);
             for (const auto& line : others) file.append(line);
             std::filesystem::rename(rest, path_);
         } else {

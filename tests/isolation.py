@@ -4,22 +4,16 @@
 import json
 import os
 import pathlib
-import random
 import signal
 import subprocess
 import sys
 import time
 import unittest
 
-from program import LONG, PROGRAM, SMALL, Case, sets, tandem
+from program import PROGRAM, SMALL, Case, sets, tandem
 
 ROOMS = {name: room for name, room in SMALL.items() if name in ("pair_capacity", "contact_capacity")}
 CELLS = ("plates:count=2", "--frames", "0:1", "--device", "host", "--algorithm", "chunked,tiled", "--truth", "none", *sets(ROOMS))
-PLAN = {"plan": "to be killed", "scenes": ["plates:count=2", "pile:bodies=2,frames=1", "pile:bodies=3,frames=1"], "frames": 0,
-        "devices": ["host"], "algorithms": ["chunked", "tiled"], "settings": {"k": [8, 18], **ROOMS}, "measure": {"repeat": 5, "truth": "none"}}
-LONG_PLAN = {**PLAN, "devices": ["host", "opencl:0"], "settings": {"k": [6, 8, 12, 14, 18, 26], "group_size": "32..128*2", "broad": ["device", "sphere"], **ROOMS},
-             "exclude": [{"algorithms": "chunked", "settings": {"group_size": 128}}, {"algorithms": "tiled", "settings": {"group_size": 32}}],
-             "measure": {"repeat": 3, "truth": "none", "no-count": True}}
 
 
 def children(process):
@@ -128,32 +122,6 @@ class Isolation(Case):
         at = {r["sampling"]["continued"][0] for r in records}
         self.assertEqual(len(at), 1)  # side by side from here on
         self.assertFalse(left.exists())
-
-    def test_kills_at_any_moment(self):
-        """Every cell once in the end, and a file that is valid all the time."""
-        out, path = self.work / "kills.jsonl", self.work / "plan.json"
-        path.write_text(json.dumps(LONG_PLAN if LONG else PLAN))
-        chance = random.Random(20180)
-        kills = 0
-        for _ in range(60 if LONG else 15):
-            process = self.start(path, "--out", out, "--resume", *(["--isolate"] if chance.random() < 0.3 else []))
-            try:
-                process.wait(timeout=chance.expovariate(1 if LONG else 10))
-            except subprocess.TimeoutExpired:
-                process.kill()
-                kills += 1
-            self.end(process)
-            self.records(out) if out.exists() else None
-        self.assertGreater(kills, 40 if LONG else 5)
-        status, text, errors = tandem("run", path, "--out", out, "--resume")
-        self.assertEqual(status, 0, (text, errors))
-        records = self.records(out)
-        cells, samples = (3 * 48 * 2, 3) if LONG else (12, 5)
-        # On the host cells of another group_size have one key: what they were asked for tells them apart.
-        self.assertEqual((len(records), len({(r["key"], str(r["asked"])) for r in records})), (cells, cells))
-        self.assertTrue(all(len(r["total_ns"]["samples"]) == samples and r["status"] == "ok" for r in records))
-        self.assertFalse((self.work / "kills.jsonl.unfinished").exists())
-        print(f"\n  {kills} kills, {sum(len(r['sampling']['continued']) for r in records)} times a cell went on", end="", file=sys.stderr)
 
 
 if __name__ == "__main__":

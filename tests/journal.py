@@ -95,6 +95,39 @@ class Journal(Case):
         self.assertIn(": right: ", text)
         self.assertEqual(dump.stat().st_size, 100)
 
+    def test_exports_pages_and_pictures_at_a_limit(self):
+        """Each names the file that has no room, in one line, and exits alike."""
+        scene = "pile:bodies=2,frames=2"
+        for number, words in enumerate((("export", scene, "--frames", "0:1", "--vtu"), ("export", scene, "--frames", 0, "--glb"),
+                                        ("export", scene, "--chunks"), ("view", scene, "-o"),
+                                        ("simulate", "block", "--steps", 1, "--device", "host", "--quiet", "-o"))):
+            out = self.work / f"limit{number}"
+            status, _, errors = run(*words, out, before=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300)))
+            self.assertEqual((status, len(errors)), (3, 1), (words, errors))
+            self.assertRegex(errors[0], f"^tandem: {out}[^ ]*: writing failed \\(File too large\\)$")
+
+    def test_files_beside_are_no_links(self):
+        """Whose names follow from one that was given: what a link of that name leads to stays as it is."""
+        victim, out, frames, page = (self.work / name for name in ("victim", "linked.jsonl", "linked.frames", "linked.html"))
+        victim.write_text("of another")
+        for beside, words in ((f"{out}.torn", ("run", *self.cell("--repeat", 1, "--out", out))),
+                              (f"{frames}.checkpoint.partial", ("simulate", "block", "--steps", 1, "--device", "host", "-o", frames)),
+                              (f"{page}.partial", ("view", "block", "-o", page))):
+            out.write_bytes(LINE + b'{"')
+            os.symlink(victim, beside)
+            status, _, errors = run(*words)
+            self.assertIn(status, (2, 3), words)
+            self.assertEqual(len(errors), 1, errors)
+            self.assertIn(beside, errors[0])
+            self.assertEqual(victim.read_text(), "of another")
+            os.remove(beside)
+        out.unlink()
+        os.symlink(victim, f"{out}.unfinished")
+        status, _, errors = run("run", *self.cell("--repeat", 2, "--out", out))
+        self.assertEqual((status, len(errors)), (0, 1), errors)
+        self.assertIn("rounds are no longer kept", errors[0])
+        self.assertEqual((victim.read_text(), len(self.records(out))), ("of another", 1))
+
     def test_programs_that_append_at_a_time(self):
         out, capacities = self.work / "two.jsonl", range(1000, 1012)
         out.write_bytes(LINE)

@@ -3,6 +3,7 @@
 
 #include "harness/environment.h"
 #include "harness/programs.h"
+#include "scenes/durable.h"
 #include "scenes/error.h"
 
 #include <algorithm>
@@ -84,6 +85,8 @@ int PaperFolder::run(const PaperStep& step) {
     if (has_recording(step, path_)) words.emplace_back("--resume");
     const auto begin = Clock::now();
     const int code = run_program(words, {path_, log, log});
+    // The line says for good that it is done: what it and the programs that it ran have written has to last.
+    sync_file_system_of(path_);
     const auto now = environment();
     journal_->append({{"step", step.name},
                       {"size", size_},

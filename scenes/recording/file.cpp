@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/recording/file.h"
 
+#include "scenes/durable.h"
 #include "scenes/error.h"
 
 #include <cerrno>
@@ -21,23 +22,29 @@ int flags_of(File::Mode mode) {
     case File::Mode::read:
         return O_RDONLY | O_CLOEXEC;
     case File::Mode::create:
-        return O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC;
+        return O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC; // which follows no link
     case File::Mode::update:
         return O_RDWR | O_CLOEXEC;
     case File::Mode::replace:
         break;
     }
-    return O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC;
+    return O_RDWR | O_CREAT | O_CLOEXEC; // emptied once it is this process's own
 }
 
-/// Makes a rename last: it is a change of the folder. Some file systems cannot sync a folder; they rename in
-/// order.
-void sync_folder_of(const std::string& path) {
-    const auto parent = std::filesystem::path(path).parent_path();
-    const int folder = open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (folder < 0) return;
-    fsync(folder);
-    close(folder);
+/// Whoever may make files in the folder must not choose what is written to.
+void refuse_link(const std::string& path) {
+    if (std::filesystem::is_symlink(std::filesystem::symlink_status(path)))
+        throw InputError(fmt::format("{}: is a link, and a file has to be made there; remove it", path));
+}
+
+/// The file that takes a new content until it is renamed. What a kill has left there nobody holds.
+File make_partial(const std::string& path) {
+    refuse_link(path);
+    if (std::filesystem::exists(path)) {
+        const File left(path, File::Mode::update); // refused while another process has it
+        remove_if_there(path);
+    }
+    return File(path, File::Mode::create);
 }
 
 } // namespace
@@ -51,8 +58,10 @@ File::File(const std::string& path, Mode mode) : path_(path), descriptor_(-1) {
     if (descriptor_ < 0) fail(mode == Mode::read ? "cannot be read" : "cannot be written");
     struct stat facts {};
     if (fstat(descriptor_, &facts) == 0 && S_ISREG(facts.st_mode)
-        && (mode == Mode::read || flock(descriptor_, LOCK_EX | LOCK_NB) == 0))
+        && (mode == Mode::read || flock(descriptor_, LOCK_EX | LOCK_NB) == 0)) {
+        if (mode == Mode::replace) truncate(0);
         return;
+    }
     close(std::exchange(descriptor_, -1));
     throw InputError(fmt::format("{}: {}", path,
                                  S_ISREG(facts.st_mode) ? "another process writes it; wait for its end"
@@ -116,7 +125,7 @@ std::string read_whole(const std::string& path) {
 
 void replace_whole(const std::string& path, std::string_view bytes) {
     const auto partial = path + ".partial";
-    File file(partial, File::Mode::replace);
+    File file = make_partial(partial);
     file.write(0, bytes);
     file.sync();
     if (std::rename(partial.c_str(), path.c_str()) != 0)

@@ -46,8 +46,8 @@ private:
 std::string read_whole(const std::string& path);
 
 /// Gives `path` the content `bytes` so that a crash at any moment leaves the old or the new content, whole:
-/// written to PATH.partial, synced, renamed. Throws InputError when that cannot be made, OutputError when it
-/// cannot be written.
+/// written to PATH.partial, which is made for it and no link, synced, renamed. Throws InputError when that
+/// cannot be made, OutputError when it cannot be written.
 void replace_whole(const std::string& path, std::string_view bytes);
 
 /// Deletes a file when there is one.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/recording/writer.h"
 
+#include "scenes/durable.h"
 #include "scenes/error.h"
 
 #include <cmath>
@@ -21,10 +22,13 @@ std::string difference(const RecordingHeader& found, const RecordingHeader& want
     return fmt::format("names its scene {}, not {}", found.specification, wanted.specification);
 }
 
-/// A kill while the header was written leaves a part of it.
+/// A kill while the header was written leaves a part of it, a loss of power zeros behind that.
 bool is_part_of(const recording::File& file, const std::string& header) {
-    const auto size = file.size();
-    return size < header.size() && header.starts_with(file.read(0, size));
+    if (file.size() > header.size()) return false;
+    auto found = file.read(0, file.size());
+    found.resize(found.find_last_not_of('\0') + 1);
+    const auto last = header.find_last_not_of('\0') + 1; // of a header that is whole
+    return found.size() < last && header.starts_with(found);
 }
 
 } // namespace
@@ -50,6 +54,7 @@ RecordingWriter RecordingWriter::create(const std::string& path, const Recording
     RecordingWriter writer(recording::File(path, recording::File::Mode::create), header);
     // A checkpoint of a recording that was here before must not be resumed with this one.
     recording::remove_if_there(checkpoint_path(path));
+    sync_folder_of(path);
     writer.file_.write(0, recording::encode(header));
     return writer;
 }
@@ -88,8 +93,17 @@ std::optional<Checkpoint> RecordingWriter::restore() {
             fmt::format("{}: has {} frames, its checkpoint {}; restore the recording or record to "
                         "another file",
                         path(), frames_, checkpoint->frames));
+    check_frames(checkpoint->frames);
     cut_to(checkpoint->frames);
     return checkpoint;
+}
+
+void RecordingWriter::check_frames(std::size_t count) const {
+    for (std::size_t i = 0; i < count; ++i)
+        if (!recording::matches(file_.read(offset(i), frame_bytes_), i))
+            throw InputError(fmt::format("{}: frame {} does not match its checksum; restore the recording or "
+                                         "record to another file",
+                                         path(), i));
 }
 
 void RecordingWriter::append(std::uint64_t step, double time, const Frame& frame) {

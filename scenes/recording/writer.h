@@ -47,6 +47,8 @@ private:
     RecordingWriter(recording::File file, const RecordingHeader& header);
     std::uint64_t offset(std::size_t number) const;
     void cut_to(std::size_t frames);
+    /// Throws InputError when one of the first `count` frames is damaged: nothing would ever say so again.
+    void check_frames(std::size_t count) const;
 
     recording::File file_;
     RecordingHeader header_;

@@ -2,6 +2,7 @@
 #include "tests/support/folder.h"
 #include "tests/support/recordings.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace tandem {
@@ -62,6 +63,21 @@ TEST_F(RecordingResume, GoesOnFromTheCheckpointWithTheSameBytes) {
     EXPECT_EQ(bytes_of(file_), whole.substr(0, fourth - 1)) << "a refusal must not cost frames";
 }
 
+TEST_F(RecordingResume, ADamagedFrameBeforeTheCheckpointIsFound) {
+    const auto whole = bytes_of(file_);
+    for (const std::size_t frame : {0, 2, 3}) {
+        auto damaged = whole;
+        damaged[Recording(file_).offset(frame) + 20] ^= 1;
+        write_bytes(file_, damaged);
+        EXPECT_EQ(resume_failure(),
+                  fmt::format("{}: frame {} does not match its checksum; restore the recording or record to "
+                              "another file",
+                              file_, frame));
+        EXPECT_EQ(bytes_of(file_), damaged);
+        write_bytes(file_, whole);
+    }
+}
+
 TEST_F(RecordingResume, AnIncompleteTailGoesWithTheNextFrame) {
     const auto whole = bytes_of(path("whole.frames"));
     const auto second = Recording(file_).offset(2);
@@ -88,9 +104,15 @@ TEST_F(RecordingResume, AKillInTheHeaderStartsAnew) {
     for (std::size_t size = 0; size < header.size(); ++size) {
         write_bytes(file_, whole.substr(0, size));
         write_bytes(checkpoint_path(file_), "of an older recording");
-        auto writer = RecordingWriter::resume(file_, small_.header);
-        EXPECT_FALSE(writer.restore());
-        EXPECT_EQ(writer.frames(), 0u);
+        {
+            auto writer = RecordingWriter::resume(file_, small_.header);
+            EXPECT_FALSE(writer.restore());
+            EXPECT_EQ(writer.frames(), 0u);
+            EXPECT_EQ(bytes_of(file_), header);
+        }
+        // A loss of power: the length is there, the bytes are not.
+        write_bytes(file_, whole.substr(0, size) + std::string(header.size() - size, '\0'));
+        EXPECT_EQ(RecordingWriter::resume(file_, small_.header).frames(), 0u);
         EXPECT_EQ(bytes_of(file_), header);
     }
 }

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+namespace tandem {
+
+/// Makes the name of a file last that was made or renamed: a synced file has its name for certain only when
+/// the folder is synced as well. Folders that cannot be synced, or not by this user, are left. Throws
+/// OutputError when the disk fails.
+void sync_folder_of(const std::string& path);
+
+/// Makes everything last that any process has written to the file system of a folder. Throws OutputError.
+void sync_file_system_of(const std::string& folder);
+
+} // namespace tandem
