@@ -45,6 +45,15 @@ std::filesystem::path cache_folder() {
     return folder == nullptr ? "" : folder;
 }
 
+/// The code of the first call that failed: what is kept of a program must be all of it.
+template<class Bytes, class Size, class Get>
+NvrtcResult take(Bytes& bytes, Program program, Size size_of, Get get) {
+    std::size_t size = 0;
+    const auto code = size_of(program, &size);
+    bytes.resize(code == 0 ? size : 0);
+    return code == 0 ? get(program, bytes.data()) : code;
+}
+
 } // namespace
 
 Nvrtc::Nvrtc(int driver_version, std::optional<std::filesystem::path> cache)
@@ -68,9 +77,12 @@ Nvrtc::Nvrtc(int driver_version, std::optional<std::filesystem::path> cache)
                         "name an older NVRTC in TANDEM_NVRTC",
                         version_text(version_), version_text(driver_version)));
     int count = 0;
-    nvrtcGetNumSupportedArchs(&count);
+    auto code = nvrtcGetNumSupportedArchs(&count);
     architectures_.resize(static_cast<std::size_t>(std::max(count, 0)));
-    nvrtcGetSupportedArchs(architectures_.data());
+    if (code == 0) code = nvrtcGetSupportedArchs(architectures_.data());
+    if (code != 0)
+        throw DeviceError(
+            fmt::format("{} does not tell what it compiles for (code {})", library_.name(), code));
     std::sort(architectures_.begin(), architectures_.end());
 }
 
@@ -111,23 +123,23 @@ Image Nvrtc::compile_anew(const KernelSource& source, const std::vector<std::str
     Program program = nullptr;
     const std::string text(source.text);
     const std::string name(source.name);
-    nvrtcCreateProgram(&program, text.c_str(), name.c_str(), 0, nullptr, nullptr);
-    const auto code = nvrtcCompileProgram(program, static_cast<int>(texts.size()), texts.data());
     Image image;
     image.target = std::move(target);
-    std::size_t size = 0;
-    nvrtcGetProgramLogSize(program, &size);
-    image.log.resize(size);
-    nvrtcGetProgramLog(program, image.log.data());
-    (machine_code ? nvrtcGetCUBINSize : nvrtcGetPTXSize)(program, &size);
-    image.bytes.resize(code == 0 ? size : 0);
-    if (code == 0) (machine_code ? nvrtcGetCUBIN : nvrtcGetPTX)(program, image.bytes.data());
-    nvrtcDestroyProgram(&program);
+    auto code = nvrtcCreateProgram(&program, text.c_str(), name.c_str(), 0, nullptr, nullptr);
+    if (code == 0) {
+        code = nvrtcCompileProgram(program, static_cast<int>(texts.size()), texts.data());
+        const auto log = take(image.log, program, nvrtcGetProgramLogSize, nvrtcGetProgramLog);
+        if (code == 0) code = log; // it says what spills
+        if (code == 0)
+            code = machine_code ? take(image.bytes, program, nvrtcGetCUBINSize, nvrtcGetCUBIN)
+                                : take(image.bytes, program, nvrtcGetPTXSize, nvrtcGetPTX);
+        nvrtcDestroyProgram(&program);
+    }
     if (code == 0 && !image.bytes.empty()) return image;
     std::replace(image.log.begin(), image.log.end(), '\n', ' ');
     throw DeviceError(fmt::format("{} does not compile with NVRTC {} for {} and {}: {}", source.name,
                                   version_text(version_), image.target, fmt::join(options, " "),
-                                  image.log.c_str()));
+                                  image.log.empty() ? fmt::format("code {}", code) : image.log.c_str()));
 }
 
 } // namespace tandem::cuda

@@ -1,0 +1,170 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""devices.py PROGRAM SOURCE: every call to OpenCL, or to the CUDA driver and NVRTC, that can fail does, one a run: once, or with all that follow,
+as on a device that is gone. The program has to end with a documented code and say why in a line, what was recorded before stays whole, and
+where it goes on its answers are right.
+  OPENCL_SHIM  the library before OpenCL's loader, which keeps what is enqueued in flight
+  CUDA_SHIM    the library before driver and NVRTC
+  CUDA_STUBS   a folder with stubs of both; without it the real ones are called"""
+import collections
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import unittest
+
+from program import LONG, PROGRAM, Case, sets, tandem, tried
+
+SHORT = {"opencl": 6, "cuda": 9}  # runs a command and kind of failure in the short form
+MOST = 700  # calls: past them a sample of a short frame repeats itself
+HANGS = 100  # seconds
+SMALL = {name: 4096 for name in ("pair_capacity", "contact_capacity")}
+SCENE = "pile:bodies=2,frames=1"
+# Calls of CUDA without which the program may go on: they free, put back, or tell what it can do without; anything where memory
+# is short, since frames are done in batches then.
+CAN_DO_WITHOUT = r"Destroy|Free|Unload|Release|Occupancy|GetAttribute|MemGetInfo|GetUuid|CtxGetCurrent|CtxSetCurrent|cuInit|MemHostAlloc|GetError"
+LIBRARYS_WORDS = r"std::|::at\b|basic_string|bad_alloc|json\.exception|vector::"
+Kind = collections.namedtuple("Kind", "name code stays")
+NO_MEMORY = 2  # CUDA_ERROR_OUT_OF_MEMORY
+KINDS = {"opencl": (Kind("once", -5, False),), "cuda": (Kind("once", 999, False), Kind("without memory", NO_MEMORY, False), Kind("for good", 700, True))}
+Outcome = collections.namedtuple("Outcome", "code errors hung")
+
+
+def stubs():
+    """What leads to the stubs, and away from NVML and CUPTI, which are measured with and not for."""
+    folder = os.environ.get("CUDA_STUBS")
+    found = {"LD_LIBRARY_PATH": f"{folder}/driver", "TANDEM_NVRTC": f"{folder}/nvrtc/libnvrtc.so"} if folder else {}
+    return {**found, "TANDEM_NVML": "/nonexistent", "TANDEM_CUPTI": "/nonexistent"}
+
+
+class Sweep(Case):
+    backend, device, shim = "", "", ""
+    environment = {}
+    checks = ()  # words without which commands compare answers: kernels of a stub do nothing
+    counts, went_on, clear = collections.Counter(), collections.Counter(), set()
+
+    @classmethod
+    def setUpClass(cls):
+        if not cls.shim:
+            raise unittest.SkipTest("no library to fail calls")
+        super().setUpClass()
+        cls.counts, cls.went_on, cls.clear = collections.Counter(), collections.Counter(), set()
+        cls.old = cls.work / "old.jsonl"
+        assert tandem("run", "--mesh", cls.good, "--mesh", cls.good, "--device", "host", "--set", "k=8", "--repeat", 1, "--truth", "none", "--out", cls.old)[0] == 0
+
+    @classmethod
+    def tearDownClass(cls):
+        print(f"{cls.backend}: {dict(cls.counts)} calls failed; the program went on after {dict(cls.went_on)}")
+        if cls.clear == set(cls.commands(cls, cls.work)):
+            where = cls.device if cls.backend == "cuda" and not cls.checks else {"opencl": "PoCL", "cuda": "stubs"}[cls.backend]
+            tried(f"calls that fail: {'OpenCL, with work in flight' if cls.backend == 'opencl' else 'CUDA driver and NVRTC'}", sum(cls.counts.values()), "runs", where)
+        super().tearDownClass()
+
+    def commands(self, folder):
+        """Name: words. Everything is written to the folder, records behind those of old.jsonl."""
+        cell = ("--device", self.device, "--set", "k=8", *sets(SMALL))
+        out = ("--out", folder / "old.jsonl")
+        return {"run": ("run", SCENE, "--algorithm", "chunked,tiled", *cell, "--repeat", 1, "--truth", "none", *self.checks, *out, "--dump-pairs", folder / "pairs.csv", "--quiet"),
+                "check": ("check", SCENE, "--algorithm", "gproximity", "--preset", "fair", *cell, *out),
+                "accuracy": ("accuracy", SCENE, "--algorithm", "tiled", *cell, "--set", "contact_rule=sat", "--set", "decision=recheck", "--set", "precision=float",
+                             "--set", "rounding=safe", "--repeat", 1, *out),
+                "simulate": ("simulate", "arch:segments=2", "--steps", 2, "--device", self.device, "-o", folder / "a.frames", "--record", folder / "old.jsonl", "--quiet"),
+                "export": ("export", SCENE, "--frames", 0, "--vtu", folder, "--contacts", "--device", self.device)}
+
+    def fault(self, command, kind, call):
+        """One run in a folder of its own, in which a call fails; 0: none does, and they are counted."""
+        folder = self.work / f"{self.backend}-{command}-{kind.name}-{call}"
+        folder.mkdir()
+        shutil.copy(self.old, folder)
+        environment = {**os.environ, **self.environment, "LD_PRELOAD": self.shim, "SHIM_CALL": str(call), "SHIM_CODE": str(kind.code), "SHIM_FAILED": str(folder / "failed"),
+                       "TANDEM_KERNEL_CACHE": str(folder / "cache"), "POCL_EXTRA_BUILD_FLAGS": "-cl-opt-disable"}
+        environment |= {"SHIM_STAYS": "1"} if kind.stays else {}
+        environment |= {"SHIM_COUNT": str(folder / "count")} if call == 0 else {}
+        running = subprocess.Popen([str(PROGRAM), *map(str, self.commands(folder)[command])], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment)
+        try:
+            errors = running.communicate(timeout=HANGS)[1].splitlines()
+        except subprocess.TimeoutExpired:
+            running.kill()
+            running.communicate()
+            return folder, Outcome(0, [], True)
+        # A compiler below PoCL may have words of its own.
+        return folder, Outcome(running.returncode, [line for line in errors if line.strip() and not line.rstrip().endswith("generated.")], False)
+
+    def files(self, folder):
+        """What a run without a failure leaves that does not depend on time."""
+        return {path.name: path.read_bytes() for path in sorted(folder.rglob("*")) if path.suffix in (".csv", ".frames", ".vtu", ".pvd", ".vtp")}
+
+    def judge(self, command, kind, call, folder, outcome, well):
+        where = f"{self.backend}, {command}, call {call} {kind.name}: {outcome.code}: {outcome.errors}"
+        self.assertFalse(outcome.hung, where)
+        self.assertGreaterEqual(outcome.code, 0, where)
+        old, kept = self.old.read_bytes(), (folder / "old.jsonl").read_bytes()
+        self.assertTrue(kept.startswith(old), f"{where}: a record is gone")
+        for line in kept.decode().split("\n")[:-1]:
+            json.loads(line)
+        if outcome.code == well[0]:
+            self.went_on[command] += 1
+            self.assertEqual((outcome.errors, self.files(folder)), ([], well[1]), where)
+            if self.backend == "cuda" and kind.code != NO_MEMORY:
+                self.assertRegex((folder / "failed").read_text(), CAN_DO_WITHOUT + ("|StreamSynchronize" if kind.stays else ""), where)
+            return
+        self.assertIn(outcome.code, (2, 3), where)
+        self.assertIn(len(outcome.errors), (1, 2) if command in ("run", "check", "accuracy") else (1,), where)
+        self.assertEqual(len(set(outcome.errors)), len(outcome.errors), where)
+        for line in outcome.errors:
+            self.assertRegex(line, "^tandem: .{15}", where)
+            self.assertRegex(line, r"fail|does not compile|out of|no device|unknown device|cannot|takes|needs", where)
+            self.assertNotRegex(line, LIBRARYS_WORDS, where)
+
+    def sweep(self, command):
+        for kind in KINDS[self.backend]:
+            folder, outcome = self.fault(command, kind, 0)
+            self.assertEqual((outcome.hung, outcome.errors), (False, []), command)
+            self.assertIn(outcome.code, (0, 1) if self.checks else (0,))
+            well = outcome.code, self.files(folder)
+            total = min(int((folder / "count").read_text()), MOST)
+            self.assertGreater(total, 30, f"calls of {command}")
+            calls = range(1, total + 1, 1 if LONG else -(-total // SHORT[self.backend]))
+            with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as several:
+                for call, (folder, outcome) in zip(calls, several.map(lambda call: self.fault(command, kind, call), calls)):
+                    with self.subTest(kind=kind.name, call=call):
+                        self.judge(command, kind, call, folder, outcome, well)
+                    shutil.rmtree(folder)
+            self.counts[command] += len(calls)
+        self.assertLess(self.went_on[command], self.counts[command])
+        if self._outcome.success:
+            self.clear.add(command)
+
+    def test_run(self):
+        self.sweep("run")
+
+    def test_check(self):
+        self.sweep("check")
+
+    def test_accuracy(self):
+        self.sweep("accuracy")
+
+    def test_simulate(self):
+        self.sweep("simulate")
+
+    def test_export(self):
+        self.sweep("export")
+
+
+class Opencl(Sweep):
+    backend, device, shim = "opencl", "opencl:0", os.environ.get("OPENCL_SHIM", "")
+
+
+class Cuda(Sweep):
+    backend, device, shim = "cuda", "cuda:0", os.environ.get("CUDA_SHIM", "")
+    environment = stubs()
+    checks = ("--no-check",) if "CUDA_STUBS" in os.environ else ()
+
+
+del Sweep  # by itself it has no backend
+
+if __name__ == "__main__":
+    unittest.main(argv=[os.path.basename(__file__)], verbosity=1)
