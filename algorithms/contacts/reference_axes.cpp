@@ -117,9 +117,21 @@ Real area_inside(const ReferencePair<Real>& pair, unsigned face) {
     return std::abs(area) / 2;
 }
 
+/// Whether one of the two has no corner outside the other.
+template<class Real>
+bool nested(const ReferencePair<Real>& pair) {
+    const auto has_all = [&pair](const Tetrahedron<Real>& outer, const Tetrahedron<Real>& inner) {
+        return std::ranges::all_of(inner.corners, [&](const Vector<Real>& corner) {
+            return pair.inside(outer, corner, 4, pair.tolerance());
+        });
+    };
+    return has_all(pair.solids[0], pair.solids[1]) || has_all(pair.solids[1], pair.solids[0]);
+}
+
 /// The direction in which the common volume shrinks fastest, unless it has none.
 template<class Real>
 std::optional<Vector<Real>> area_normal(const ReferencePair<Real>& pair) {
+    if (nested(pair)) return std::nullopt;
     Vector<Real> sum{};
     Real total = 0;
     for (unsigned face = 0; face < 4; ++face) {
@@ -153,21 +165,20 @@ std::vector<Contact<Real>> axis_contacts(const ReferencePair<Real>& pair, Contac
     if (restricted && boundaries == Boundaries{}) return {};
     const auto meetings = pair.meetings();
     auto [normal, overlap] = least_translation(pair, restricted ? boundaries : all_faces);
-    bool along_normal = false; // the depth is
     // A common volume as thin as rounding has no direction of its own.
     if (rule == ContactRule::clip && overlap > pair.tolerance())
         if (const auto n = area_normal(pair)) {
             normal = *n;
-            along_normal = true;
+            overlap = extent(pair, meetings, normal);
         }
-    if (rule == ContactRule::growth) {
-        if (!concentric(pair)) normal = growth_normal(pair);
-        along_normal = true;
+    if (rule == ContactRule::growth && !concentric(pair)) {
+        normal = growth_normal(pair);
+        const auto [low_a, high_a, low_b, high_b] = pair.extents(normal);
+        overlap = high_a - low_b;
     }
-    const Real depth = -(along_normal ? extent(pair, meetings, normal) : overlap);
     std::vector<Contact<Real>> result;
     result.reserve(meetings.size());
-    for (const auto& meeting : meetings) result.push_back(pair.contact(meeting, normal, depth));
+    for (const auto& meeting : meetings) result.push_back(pair.contact(meeting, normal, -overlap));
     return result;
 }
 

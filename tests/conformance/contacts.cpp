@@ -4,6 +4,7 @@
 #include "harness/oracle/frame_truth.h"
 #include "scenes/builtin.h"
 #include "tests/support/cells.h"
+#include "tests/support/oracle_nested.h"
 #include "tests/support/oracle_pairs.h"
 #include "tests/support/scenes.h"
 
@@ -14,24 +15,21 @@ namespace {
 
 using namespace testing_support;
 
-/// Bodies of one tetrahedron each, whose coordinates are spread over thirty powers of ten: of many pairs not
-/// even double can tell whether they meet.
-Scene hard_pairs(std::size_t bodies) {
-    Random random(8);
+/// A frame of bodies of one tetrahedron each.
+Scene bodies_of(const std::string& name, const std::vector<TetraCorners>& tetrahedra) {
     Scene scene;
-    scene.name = scene.key = "hard pairs";
-    while (scene.bodies.size() < bodies) {
+    scene.name = scene.key = name;
+    for (const auto& corners : tetrahedra) {
         Mesh mesh;
         mesh.name = "one";
-        for (const auto& p : random_pair(Family::mixed_exponents, random).a)
-            mesh.vertices.push_back({p[0], p[1], p[2]});
+        for (const auto& p : corners) mesh.vertices.push_back({p[0], p[1], p[2]});
         mesh.tetrahedra = {{0, 1, 2, 3}};
         complete_mesh(mesh, "one");
         scene.bodies.push_back({.mesh = static_cast<std::uint32_t>(scene.meshes.size())});
         scene.meshes.push_back(mesh);
     }
     scene.frame_count = 1;
-    scene.frame = [bodies](std::size_t) {
+    scene.frame = [bodies = tetrahedra.size()](std::size_t) {
         Frame frame;
         frame.poses.resize(bodies);
         frame.deformed.resize(bodies);
@@ -39,6 +37,25 @@ Scene hard_pairs(std::size_t bodies) {
     };
     scene.digest = digest_of(scene);
     return scene;
+}
+
+/// Coordinates spread over thirty powers of ten: of many pairs not even double can tell whether they meet.
+Scene hard_pairs(std::size_t bodies) {
+    Random random(8);
+    std::vector<TetraCorners> tetrahedra;
+    while (tetrahedra.size() < bodies) tetrahedra.push_back(random_pair(Family::mixed_exponents, random).a);
+    return bodies_of("hard pairs", tetrahedra);
+}
+
+/// Three pairs of each way in which one is inside the other, and whatever others these make.
+Scene nested_pairs() {
+    NestedMaker maker(9);
+    std::vector<TetraCorners> tetrahedra;
+    for (unsigned i = 0; i < 3 * static_cast<unsigned>(Nesting::count); ++i) {
+        const auto [a, b] = maker.make(static_cast<Nesting>(i % static_cast<unsigned>(Nesting::count)));
+        tetrahedra.insert(tetrahedra.end(), {a, b});
+    }
+    return bodies_of("nested pairs", tetrahedra);
 }
 
 class ContactConformance : public testing::TestWithParam<std::string> {
@@ -100,6 +117,14 @@ TEST_P(ContactConformance, RulesThatAskForTheBoundaryEqualTheReference) {
     expect_right("gproximity",
                  {{"contact_rule", "consistent"}, {"precision", "double"}, {"contact_capacity", "1"}});
     expect_right("chunked", {{"contact_rule", "growth"}, {"residency", "published"}});
+}
+
+TEST_P(ContactConformance, NestedPairsEqualTheReference) {
+    scene = nested_pairs();
+    frame = scene.frame(0);
+    for (const std::string rule : {"sat", "clip", "growth"})
+        for (const std::string precision : {"float", "double"})
+            expect_right("chunked", {{"contact_rule", rule}, {"precision", precision}});
 }
 
 TEST_P(ContactConformance, ExactTellsApartWhatTheOracleDoes) {

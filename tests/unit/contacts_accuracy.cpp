@@ -4,6 +4,7 @@
 #include "contacts_pairs.h"
 
 #include "harness/accuracy/answer_errors.h"
+#include "tests/support/oracle_nested.h"
 #include "tests/support/oracle_pairs.h"
 
 #include <gtest/gtest.h>
@@ -91,8 +92,11 @@ TEST(ContactsAccuracy, SatFindsTheLeastTranslation) {
         }
     if (!printing()) return;
     TouchMaker maker(3);
+    NestedMaker nested(3);
     for (const auto& [rule, name_of_rule] : rules) {
         print("nested copies", name_of_rule, errors_of(rule, [&] { return maker.nested(); }));
+        print("nested, touching", name_of_rule,
+              errors_of(rule, [&] { return nested.make(Nesting::on_faces); }));
         print("one ulp deep", name_of_rule, errors_of(rule, [&] { return maker.one_ulp(-1); }));
     }
 }

@@ -7,6 +7,7 @@
 #include "algorithms/sources.h"
 #include "backends/registry.h"
 #include "scenes/hard/hard.h"
+#include "tests/support/oracle_nested.h"
 #include "tests/support/oracle_pairs.h"
 
 #include <gtest/gtest.h>
@@ -255,6 +256,17 @@ void add_concentric_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
     }
 }
 
+/// Pairs of which one is inside the other, what they share shared exactly.
+template<class Real>
+void add_nested_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
+    using namespace testing_support;
+    NestedMaker maker(7);
+    for (unsigned i = 0; i < 100 * static_cast<unsigned>(Nesting::count); ++i) {
+        const auto pair = maker.make(static_cast<Nesting>(i % static_cast<unsigned>(Nesting::count)));
+        pairs.push_back({narrowed<Real>(pair.a), narrowed<Real>(pair.b)});
+    }
+}
+
 /// Pairs of every family of hard cases, and one whose faces rounding cuts into polygons of more than seven
 /// corners.
 template<class Real>
@@ -355,6 +367,7 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReference) {
     auto pairs = random_pairs<TypeParam>(7000);
     add_close_pairs(pairs);
     add_concentric_pairs(pairs);
+    add_nested_pairs(pairs);
     add_hard_pairs(pairs);
     const auto count = static_cast<std::uint32_t>(pairs.size());
     for (const ContactSettings settings : {ContactSettings{published, fp32},
