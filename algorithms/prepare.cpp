@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // From resolved settings to a session: what fits a device, and which data path runs it.
+#include "algorithms/bodies/origin.h"
 #include "algorithms/pipeline.h"
 #include "algorithms/published/published_session.h"
 #include "algorithms/resident_session.h"
@@ -38,20 +39,20 @@ std::string names_of(std::span<Device* const> devices) {
 
 } // namespace
 
-/// Other sessions may have used the devices otherwise.
-void Session::prepare_devices() const {
+FrameResult Session::run_among(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
+    // Other sessions may have used the devices otherwise.
     const auto threads = static_cast<std::uint32_t>(settings()[parameters::threads]);
     for (auto* device : devices()) device->set_threads(threads);
+    if (origin_ == Eigen::Vector3d::Zero()) return do_run(frame, body_pairs);
+    auto result = do_run(counted_from(origin_, frame), body_pairs);
+    result.origin = {origin_.x(), origin_.y(), origin_.z()};
+    return result;
 }
 
-FrameResult Session::run(const Frame& frame) {
-    prepare_devices();
-    return do_run(frame, std::nullopt);
-}
+FrameResult Session::run(const Frame& frame) { return run_among(frame, std::nullopt); }
 
 FrameResult Session::run(const Frame& frame, std::span<const BodyPair> body_pairs) {
-    prepare_devices();
-    return do_run(frame, body_pairs);
+    return run_among(frame, body_pairs);
 }
 
 void Traversal::do_fit(Settings&, const DeviceInfo&, const Scene*) const {}
@@ -91,10 +92,12 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
     check(devices, settings);
     std::vector<Settings> fitting;
     for (const auto* device : devices) fitting.push_back(fitted(settings, device->info(), &scene));
-    if (devices.size() > 1) return split_session(*this, devices, scene, std::move(fitting));
     auto& device = *devices.front();
-    return is_published(settings) ? published_session(*this, device, scene, fitting.front())
-                                  : resident_session(*this, device, scene, fitting.front());
+    auto session = devices.size() > 1       ? split_session(*this, devices, scene, std::move(fitting))
+                   : is_published(settings) ? published_session(*this, device, scene, fitting.front())
+                                            : resident_session(*this, device, scene, fitting.front());
+    session->origin_ = origin_of(scene, geometry_of(settings).origin);
+    return session;
 }
 
 } // namespace tandem

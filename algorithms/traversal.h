@@ -44,15 +44,20 @@ public:
     std::span<Device* const> devices() const { return do_devices(); }
     /// The settings as the devices took them.
     const Settings& settings() const { return do_settings(); }
+    /// What coordinates on the devices count from, by setting origin.
+    const Eigen::Vector3d& origin() const { return origin_; }
 
 private:
-    void prepare_devices() const;
+    friend class Traversal; // which knows the scene
+    FrameResult run_among(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs);
 
     virtual void do_reset() = 0;
     virtual FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) = 0;
     virtual void do_count_work(bool on) = 0;
     virtual std::span<Device* const> do_devices() const = 0;
     virtual const Settings& do_settings() const = 0;
+
+    Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
 };
 
 /// Something that an algorithm counts about its work, by name.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/frames.h"
 
+#include "algorithms/bodies/origin.h"
 #include "scenes/error.h"
 
 #include <algorithm>
@@ -79,6 +80,11 @@ std::shared_ptr<const Frame> FrameRange::frame(std::size_t index) const {
     recent_ = made(index);
     recent_index_ = index;
     return recent_;
+}
+
+std::shared_ptr<const Frame> FrameRange::frame(std::size_t index, Origin origin) const {
+    if (origin == Origin::world) return frame(index);
+    return std::make_shared<const Frame>(counted_from(origin_of(scene_, origin), *frame(index)));
 }
 
 } // namespace tandem

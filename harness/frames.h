@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/parameters/choices.h"
 #include "harness/flaw_search.h"
 
 #include <memory>
@@ -39,6 +40,8 @@ public:
     /// Frame first() + index, which stays as it is for as long as the caller keeps it. Not to be called in a
     /// span that is timed. Throws InputError when a recording cannot be read any more.
     std::shared_ptr<const Frame> frame(std::size_t index) const;
+    /// The same as a session of that setting has it: coordinates count from its origin.
+    std::shared_ptr<const Frame> frame(std::size_t index, Origin origin) const;
 
 private:
     using Frames = std::vector<std::shared_ptr<Frame>>;

@@ -28,11 +28,11 @@ References::References(const Scene& scene, const FrameRange& range, const std::f
 std::string References::question(const Key& key) const {
     const auto& [geometry, contacts, index] = key;
     return fmt::format(
-        "frame {:016x}, k {} {}, precision {}, rounding {}, placement {}, rule {}, decision {}",
+        "frame {:016x}, k {} {}, precision {}, rounding {}, placement {}, origin {}, rule {}, decision {}",
         digest_of(*range_.frame(index)), geometry.k, geometry.coordinate_axes,
         static_cast<int>(geometry.precision), static_cast<int>(geometry.rounding),
-        static_cast<int>(geometry.placement), static_cast<int>(contacts.rule),
-        static_cast<int>(contacts.decision));
+        static_cast<int>(geometry.placement), static_cast<int>(geometry.origin),
+        static_cast<int>(contacts.rule), static_cast<int>(contacts.decision));
 }
 
 const ReferenceAnswer& References::answer(const Geometry& geometry, const ContactSettings& contacts,
@@ -40,8 +40,8 @@ const ReferenceAnswer& References::answer(const Geometry& geometry, const Contac
     const Key key{geometry, contacts, index};
     if (last_ && last_->first == key) return last_->second;
     last_.reset(); // before the next takes memory
-    last_.emplace(
-        key, reference(scene_, *range_.frame(index), geometry, true, reference_method(scene_), contacts));
+    const auto frame = range_.frame(index, geometry.origin);
+    last_.emplace(key, reference(scene_, *frame, geometry, true, reference_method(scene_), contacts));
     return last_->second;
 }
 

@@ -33,7 +33,8 @@ void append_bytes(std::vector<std::byte>& bytes, const void* data, std::size_t s
 SimulationSession::SimulationSession(const SimulateOptions& options, const Scene& scene, const Cell& cell)
     : settings_(describe(*scene.dynamics)), number_(new_number()) {
     // What contacts depend on; devices and schedules find the same ones.
-    for (const auto* name : {"k", "axes", "precision", "rounding", "placement", "contact_rule", "decision"})
+    for (const auto* name :
+         {"k", "axes", "precision", "rounding", "placement", "origin", "contact_rule", "decision"})
         settings_ += fmt::format(" {}={}", name, cell.settings.text(name));
     if (options.recording.empty()) return;
     const auto header = recording_of(options.scene, scene, scene.dynamics->stepping.step);

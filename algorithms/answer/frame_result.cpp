@@ -65,7 +65,10 @@ std::vector<ContactPoint> FrameResult::download_contacts() const {
     for_blocks(found.size(), [&](std::size_t i) { keys[i] = {found[i].pair, found[i].feature, i}; });
     parallel_sort(keys);
     std::vector<ContactPoint> sorted(found.size());
-    for_blocks(found.size(), [&](std::size_t i) { sorted[i] = found[keys[i].index]; });
+    for_blocks(found.size(), [&](std::size_t i) {
+        sorted[i] = found[keys[i].index];
+        for (std::size_t k = 0; k < 3; ++k) sorted[i].point[k] += origin[k];
+    });
     return sorted;
 }
 

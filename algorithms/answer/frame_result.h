@@ -5,6 +5,7 @@
 #include "backends/device.h"
 #include "scenes/contact.h"
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -65,6 +66,7 @@ struct FrameResult {
     std::uint64_t batches = 0; ///< parts that the frame was split into for want of memory; 1: none
     std::map<std::string_view, std::uint64_t> work; ///< by Counter; empty unless Session::count_work(true)
     std::optional<Digest> summed;                   ///< output=digest: of the pairs
+    std::array<double, 3> origin{}; ///< what points of contacts in the parts count from (Session::origin)
     std::vector<std::shared_ptr<const AnswerPart>> parts; ///< none unless output=pairs
 
     /// False with output=count or digest, which keep none.
@@ -73,7 +75,7 @@ struct FrameResult {
     /// counts the sums are 0.
     Digest digest() const;
     Digest contact_digest() const;
-    /// Pairs and contacts, sorted; none unless output=pairs.
+    /// Pairs and contacts in the world, sorted; none unless output=pairs.
     std::vector<Pair> download() const;
     std::vector<ContactPoint> download_contacts() const;
 };

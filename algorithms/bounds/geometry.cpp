@@ -17,8 +17,9 @@ constexpr Direction coordinates[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 constexpr Direction corners[] = {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
 constexpr Direction edges[] = {{1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
 
-constexpr std::array<const Parameter*, 5> declared{&parameters::k, &parameters::axes, &parameters::precision,
-                                                   &parameters::rounding, &parameters::placement};
+constexpr std::array<const Parameter*, 6> declared{&parameters::k,         &parameters::axes,
+                                                   &parameters::precision, &parameters::rounding,
+                                                   &parameters::placement, &parameters::origin};
 
 } // namespace
 
@@ -51,12 +52,17 @@ Geometry geometry_of(const Settings& settings) {
     geometry.precision = settings[parameters::precision];
     geometry.rounding = settings[parameters::rounding];
     geometry.placement = settings[parameters::placement];
+    geometry.origin = settings[parameters::origin];
     if (geometry.coordinate_axes && geometry.k != 8)
         throw InputError("setting axes=coordinate goes with k=8 only; leave axes out for other k");
     if (geometry.placement == Placement::exact && geometry.rounding != Rounding::safe
         && geometry.rounding != Rounding::directed)
         throw InputError("setting placement=exact goes with rounding=safe or directed, which widen slabs by "
                          "the bound it needs; leave rounding or placement out");
+    if (geometry.origin == Origin::automatic && geometry.placement == Placement::exact
+        && geometry.precision == Precision::fp64)
+        throw InputError("setting origin=auto takes one difference in double, which placement=exact has no "
+                         "room for with precision=double; leave one of the three out");
     return geometry;
 }
 

@@ -16,6 +16,7 @@ struct Geometry {
     Precision precision = Precision::fp32;
     Rounding rounding = Rounding::safe;
     Placement placement = Placement::rounded;
+    Origin origin = Origin::world;
 
     bool operator==(const Geometry&) const = default;
 };
@@ -23,10 +24,10 @@ struct Geometry {
 /// The integer directions of a geometry, as rows of {-1, 0, 1}; k / 2 of them, in the kernels' order.
 std::vector<std::array<int, 3>> directions(const Geometry& geometry);
 
-/// Settings k, axes, precision, rounding and placement: those an algorithm with k-DOPs declares.
+/// Settings k, axes, precision, rounding, placement and origin: those an algorithm with k-DOPs declares.
 std::span<const Parameter* const> geometry_parameters();
 
-/// Throws InputError when axes does not fit k, or placement not rounding.
+/// Throws InputError when axes does not fit k, placement not rounding, or origin not placement.
 Geometry geometry_of(const Settings& settings);
 
 /// What kernels need that read rows only (rows.clh): precision and placement as defines, with the group size.

@@ -28,6 +28,12 @@ enum class Placement {
     exact    ///< the scene's own doubles where its poses put them, moved without rounding
 };
 
+/// What coordinates on devices count from.
+enum class Origin {
+    world,
+    automatic ///< a point in the middle of the scene where it begins, zero when that is near enough
+};
+
 /// Who finds body pairs.
 enum class Broad {
     sphere, ///< the host, by the paper's spheres

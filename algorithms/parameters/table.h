@@ -46,6 +46,13 @@ inline constexpr Setting<Placement> placement{
     "PLACEMENT",
     "whose contacts no slab may miss: those of the world vertices as rounded, or those of the scene's own "
     "vertices where its poses put them exactly (safe and directed, wider slabs)"};
+inline constexpr Setting<Origin> origin{
+    "origin",
+    Origin::world,
+    {{"world", Origin::world}, {"auto", Origin::automatic}},
+    "",
+    "what coordinates count from: the world's origin, or a point in the middle of the scene where it begins, "
+    "so that a scene far away is as exact as one near by"};
 
 inline constexpr auto builder =
     Setting<Builder>{"builder",

@@ -180,7 +180,7 @@ DecisionMatrix decision_matrix(const FrameTruth& truth, std::span<const Pair> ca
 }
 
 ContactTruths contact_truths(const Scene& scene, const Frame& frame, Precision precision,
-                             const FrameTruth& truth, std::size_t most) {
+                             const FrameTruth& truth, std::size_t most, const Eigen::Vector3d& origin) {
     ContactTruths result;
     const auto& all = truth.overlapping;
     const auto count = most == 0 ? all.size() : std::min(most, all.size());
@@ -188,7 +188,11 @@ ContactTruths contact_truths(const Scene& scene, const Frame& frame, Precision p
     std::vector<Pair> chosen;
     // Evenly over the order, which is by bodies: a part of the list would be a part of the scene.
     for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
-    const auto corners = pair_corners(scene, frame, precision, chosen);
+    auto corners = pair_corners(scene, frame, precision, chosen);
+    for (auto& pair : corners)
+        for (auto& tetrahedron : pair)
+            for (auto& corner : tetrahedron)
+                for (unsigned axis = 0; axis < 3; ++axis) corner[axis] += origin[axis];
     std::vector<std::optional<ContactTruth>> truths(chosen.size());
     parallel_for(chosen.size(),
                  [&](std::size_t i) { truths[i] = contact_truth(corners[i][0], corners[i][1]); });

@@ -70,9 +70,11 @@ struct ContactTruths {
     bool every = true;         ///< all overlapping pairs of the frame
 };
 
-/// At most `most` of the frame's overlapping pairs, evenly spread over their order; 0: all.
+/// At most `most` of the frame's overlapping pairs, evenly spread over their order; 0: all. In the world,
+/// where the frame's coordinates count from `origin`.
 ContactTruths contact_truths(const Scene& scene, const Frame& frame, Precision precision,
-                             const FrameTruth& truth, std::size_t most);
+                             const FrameTruth& truth, std::size_t most,
+                             const Eigen::Vector3d& origin = Eigen::Vector3d::Zero());
 
 /// L of one tetrahedron.
 double longest_edge(const TetraCorners& corners);

@@ -28,9 +28,9 @@ struct FrameAnswer {
 };
 
 /// The truth of a scene's frames, found once for all cells of the same positions, and the errors of answers,
-/// found once for each answer: cells that give the same have the same errors. Candidate pairs are compared
-/// with the truth that the cell's bounds promise to hold (its setting `placement`); contacts and decisions
-/// with that of the vertices they are made from, in the cell's precision.
+/// found once for each answer: cells that give the same have the same errors. Pairs, contacts and decisions
+/// are compared with the truth that the cell's setting `placement` names: with placement=exact what rounding
+/// did to the vertices is an error of contacts as well.
 class Truths {
 public:
     /// `scene` and `range` must outlive it. `most_contacts`: of this many pairs of a frame at most the exact
@@ -41,8 +41,8 @@ public:
 
     TruthAmount amount() const { return amount_; }
 
-    /// Errors of a cell's answer of frame number `index` of the range. Of its geometry the precision and the
-    /// truth count. Throws InputError when there is too little
+    /// Errors of a cell's answer of frame number `index` of the range. Of its geometry precision, placement
+    /// and origin count. Throws InputError when there is too little
     /// memory for the truth of that frame, or, with the first, of as many like it.
     const AnswerErrors& errors(const Geometry& geometry, std::size_t index, const FrameAnswer& answer,
                                const Report& report = {});
@@ -52,9 +52,10 @@ private:
     using Numbers = std::array<std::uint64_t, 6>; ///< of the digests
     const FrameTruth& truth_of(const Place& place, const Report& report);
     const ContactTruths& contact_truths_of(const Place& place, const Report& report);
-    std::string question(Precision precision, const Place& place, const FrameAnswer& answer) const;
-    AnswerErrors errors_of(Precision precision, const Place& place, const FrameAnswer& answer,
+    std::string question(const Geometry& geometry, const Place& place, const FrameAnswer& answer) const;
+    AnswerErrors errors_of(const Geometry& geometry, const Place& place, const FrameAnswer& answer,
                            const Report& report);
+    const Drift& drift_of(const Geometry& geometry);
 
     const Scene& scene_;
     const FrameRange& range_;
@@ -62,9 +63,9 @@ private:
     std::size_t most_contacts_;
     KeptValues kept_;
     std::map<Place, FrameTruth> truths_;
-    std::map<Place, ContactTruths> contact_truths_; ///< of Placement::rounded
-    std::map<Precision, Drift> drifts_;             ///< of the first frame
-    std::map<std::tuple<Precision, Place, Numbers>, AnswerErrors> errors_;
+    std::map<Place, ContactTruths> contact_truths_;
+    std::map<std::pair<Precision, Origin>, Drift> drifts_; ///< of the first frame
+    std::map<std::tuple<Precision, Origin, Place, Numbers>, AnswerErrors> errors_;
 };
 
 } // namespace tandem

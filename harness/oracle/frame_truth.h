@@ -19,10 +19,13 @@ namespace tandem {
 struct Positions {
     Precision precision = Precision::fp32;
     Placement placement = Placement::rounded;
+    Origin origin = Origin::world; ///< that Placement::rounded rounds from
 
     // NOLINTNEXTLINE(*-explicit-*): most questions are about the vertices of a precision
-    Positions(Precision cell, Placement level = Placement::rounded)
-        : precision(level == Placement::exact ? Precision::fp64 : cell), placement(level) {}
+    Positions(Precision cell, Placement level = Placement::rounded, Origin from = Origin::world)
+        : precision(level == Placement::exact ? Precision::fp64 : cell),
+          placement(level),
+          origin(level == Placement::exact ? Origin::world : from) {}
     auto operator<=>(const Positions&) const = default;
 };
 

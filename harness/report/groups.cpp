@@ -28,6 +28,7 @@ constexpr std::array bounds{Bound{"k", ""},
                             Bound{"precision", "float"},
                             Bound{"rounding", "safe"},
                             Bound{"placement", "rounded"},
+                            Bound{"origin", "world"},
                             Bound{"output", "pairs"}};
 
 /// As read_cell() puts them.

@@ -36,7 +36,7 @@ std::string text_of(const Parts& parts, const std::string& name) {
 }
 
 /// What decides which pairs are candidates, whatever the algorithm: cells that differ in it are not compared.
-constexpr std::array geometry_names{"k", "axes", "precision", "rounding", "placement"};
+constexpr std::array geometry_names{"k", "axes", "precision", "rounding", "placement", "origin"};
 
 bool is_geometry(const Part& part) {
     return std::ranges::find(geometry_names, part.name) != geometry_names.end();

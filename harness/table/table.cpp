@@ -230,7 +230,8 @@ bool comparable(const Row& a, const Row& b) {
         const auto i = x.find(name), j = y.find(name);
         return (i == x.end()) == (j == y.end()) && (i == x.end() || i->second == j->second);
     };
-    return std::ranges::all_of(std::array{"k", "axes", "precision", "rounding", "placement", "output"}, same);
+    return std::ranges::all_of(
+        std::array{"k", "axes", "precision", "rounding", "placement", "origin", "output"}, same);
 }
 
 std::string result_tables(std::span<const Row> rows, bool colour) {

@@ -136,8 +136,8 @@ TEST(Accuracy, VolumesAreThoseOfTheContactPointsHull) {
     EXPECT_TRUE(with({}).contacts->volume_relative.empty()); // unanswered
 }
 
-/// Float takes a gap or an overlap of 2^-30 for a touch. Bounds for t2 are judged by what the poses say,
-/// contacts always by the vertices they are made from.
+/// Float takes a gap or an overlap of 2^-30 for a touch. With placement=exact pairs, decisions and contacts
+/// are judged by what the poses say.
 TEST(Accuracy, PairsAreJudgedByTheTruthThatTheirBoundsAreFor) {
     const Geometry vertices, poses{.placement = Placement::exact};
     for (const double gap : {0x1p-30, -0x1p-30}) {
@@ -153,15 +153,45 @@ TEST(Accuracy, PairsAreJudgedByTheTruthThatTheirBoundsAreFor) {
         EXPECT_EQ(of_vertices.pairs.touching, 1u);
         EXPECT_EQ(of_poses.pairs.disjoint, gap > 0 ? 1u : 0u);
         EXPECT_EQ(of_poses.pairs.overlapping, gap > 0 ? 0u : 1u);
-        EXPECT_EQ((*of_poses.decisions)[1][0], 1u);
-        EXPECT_EQ(of_poses.decisions, of_vertices.decisions);
-        EXPECT_EQ(of_poses.contacts->overlapping, 0u);
+        EXPECT_EQ((*of_vertices.decisions)[1][0], 1u);
+        EXPECT_EQ((*of_poses.decisions)[gap > 0 ? 0 : 2][0], 1u);
+        EXPECT_EQ(of_vertices.contacts->overlapping, 0u);
+        EXPECT_EQ(of_poses.contacts->overlapping, gap > 0 ? 0u : 1u);
         answer.download = [] { return std::vector<Pair>{}; };
         answer.pairs.count = 7; // another answer
         EXPECT_EQ(truths.errors(vertices, 0, answer).pairs.missed_touching, 1u);
         EXPECT_EQ(truths.errors(poses, 0, answer).pairs.missed_overlapping, gap > 0 ? 0u : 1u);
         EXPECT_EQ(truths.errors(poses, 0, answer).missed(), gap > 0 ? 0u : 1u);
     }
+}
+
+/// The shared tetrahedron of legs 1/4 at 1000.1, which floats put 2e-5 aside unless they count from nearby.
+TEST(Accuracy, FarContactsAreJudgedByVerticesThatCountFromTheOrigin) {
+    auto scene = two_units(0.75);
+    scene.frame = [near = scene.frame](std::size_t i) {
+        auto frame = near(i);
+        for (auto& pose : frame.poses) pose.translation += Eigen::Vector3d(1000.1, 0, 0);
+        return frame;
+    };
+    const FrameRange range(scene, 0, 0);
+    Truths truths(scene, range, TruthAmount::contacts, 0);
+    FrameAnswer answer;
+    answer.makes_contacts = true;
+    answer.download = [] { return std::vector<Pair>{the_pair}; };
+    answer.download_contacts = [] {
+        std::vector<ContactPoint> contacts;
+        for (const Point& p :
+             {Point{1000.85, 0, 0}, Point{1001.1, 0, 0}, Point{1000.85, 0.25, 0}, Point{1000.85, 0, 0.25}})
+            contacts.push_back({the_pair, static_cast<std::uint32_t>(contacts.size()), p, {1, 0, 0}, -0.1});
+        return contacts;
+    };
+    const auto point = [&](const Geometry& geometry) {
+        return truths.errors(geometry, 0, answer).contacts->point.at(0);
+    };
+    EXPECT_GT(point({}), 1e-5);
+    EXPECT_LT(point({.origin = Origin::automatic}), 1e-7);
+    EXPECT_LT(point({.placement = Placement::exact}), 1e-11);
+    EXPECT_LT(point({.placement = Placement::exact, .origin = Origin::automatic}), 1e-11);
 }
 
 /// 1e-120 is a size whose cube no double holds.
