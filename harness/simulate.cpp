@@ -107,6 +107,10 @@ void run_steps(const SimulateOptions& options, std::size_t last, Simulation& sim
         book(search, Stage::reduce, report.reduce_ns);
         book(search, Stage::solve, report.solve_ns);
         totals.add(report, search, wall);
+        if (!report.converged && totals.not_converged == 1) {
+            progress.clear();
+            tell_not_converged(report);
+        }
         session.append(report, simulation.midway());
         if (!recorded.contains(report.step)) file.append(step_record(report, search, wall, totals.session));
         const auto done = simulation.steps_done();
@@ -185,6 +189,7 @@ int simulate_command(const SimulateOptions& options) {
         throw;
     }
     put("{}", run_table(totals, !options.record.empty()));
+    tell_not_converged(totals);
     if (!options.recording.empty())
         put("{}: {} frames; measure them with 'tandem run {}'\n", options.recording, session.frames(),
             options.recording);

@@ -45,6 +45,8 @@ struct RunTotals {
     std::int64_t reduce_ns = 0, assemble_ns = 0, solve_ns = 0, move_ns = 0;
     std::vector<std::size_t> found, kept; ///< by step
     double deepest = 0;
+    std::size_t not_converged = 0; ///< steps
+    StepReport worst;              ///< of these the one of the largest residual
     StepReport last;
     std::uint64_t session = 0; ///< the same for all processes that went on with a recording
 
@@ -58,6 +60,11 @@ nlohmann::ordered_json step_record(const StepReport& report, const Search& searc
                                    std::uint64_t session);
 nlohmann::ordered_json run_record(const Cell& cell, const Scene& scene, const RunTotals& totals,
                                   const std::string& failure);
+
+/// Says on standard error, the first time that a step of a run does not converge, what and what to do.
+void tell_not_converged(const StepReport& report);
+/// Says how many did not, where there was more than that one.
+void tell_not_converged(const RunTotals& totals);
 
 /// The paper's Table 3 for this run, contacts and energies; initialization only when device times were
 /// measured.

@@ -68,6 +68,7 @@ void RunTotals::add(const StepReport& report, const Search& search, std::int64_t
     found.push_back(report.found);
     kept.push_back(report.kept);
     deepest = std::max(deepest, report.deepest);
+    if (!report.converged && (not_converged++ == 0 || report.residual > worst.residual)) worst = report;
     last = report;
 }
 
@@ -85,8 +86,10 @@ Json step_record(const StepReport& report, const Search& search, std::int64_t wa
             {"contacts_kept", report.kept},
             {"deepest_m", report.deepest},
             {"energy_j", energies_json(report)},
+            {"energy_change_j", report.energy_change},
             {"iterations", report.iterations},
             {"residual", report.residual},
+            {"converged", report.converged},
             {"inverted", report.inverted},
             {"host_ns",
              {{"step", wall_ns},
@@ -117,6 +120,8 @@ Json run_record(const Cell& cell, const Scene& scene, const RunTotals& t, const 
     json["contacts_kept_median"] = median_or_0(t.kept);
     json["deepest_m"] = t.deepest;
     json["energy_j"] = energies_json(t.last);
+    json["steps_not_converged"] = t.not_converged;
+    json["worst_residual"] = t.not_converged == 0 ? Json(nullptr) : Json(t.worst.residual);
     json["host_ns"] = {{"total", t.wall_ns},    {"broad", t.broad_ns},       {"narrow", t.narrow_ns},
                        {"reduce", t.reduce_ns}, {"assemble", t.assemble_ns}, {"solve", t.solve_ns},
                        {"move", t.move_ns}};

@@ -73,6 +73,12 @@ Energies energies_of(const Model& model, const Motion& motion, std::size_t body)
     return {};
 }
 
+double total_energy(const Model& model, const Motion& motion) {
+    Energies sum;
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) add(sum, energies_of(model, motion, i));
+    return sum.total();
+}
+
 Energies checked_energies(const Model& model, const Motion& motion, std::size_t step) {
     Energies sum;
     Energies most;

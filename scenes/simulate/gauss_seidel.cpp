@@ -30,12 +30,13 @@ SolveReport gauss_seidel(Problem& problem, const SolverSettings& settings) {
     for (const auto& row : problem.rows)
         if (row.impulse != Eigen::Vector3d::Zero()) problem.push(row, world(row, row.impulse));
     Convergence convergence(settings);
-    SolveReport report;
+    SolveReport report{.converged = false};
     auto accepted = problem.nodes;
     while (report.iterations < settings.iterations) {
         const auto verdict = convergence.judge(sweep(problem, convergence.scale()));
         ++report.iterations;
-        if (verdict == Convergence::Verdict::converged) break;
+        report.converged = verdict == Convergence::Verdict::converged;
+        if (report.converged) break;
         if (verdict == Convergence::Verdict::diverged)
             undo(problem, accepted);
         else

@@ -92,7 +92,7 @@ private:
     void work(std::size_t thread) {
         move_nodes(thread);
         barrier_.arrive_and_wait();
-        while (report_.iterations < settings_.iterations && !done_) {
+        while (report_.iterations < settings_.iterations && !report_.converged) {
             changes_[thread] = update_rows(thread);
             barrier_.arrive_and_wait();
             if (thread == 0) judge();
@@ -120,7 +120,7 @@ private:
         const auto verdict = convergence_.judge(*std::max_element(changes_.begin(), changes_.end()));
         report_.residual = convergence_.residual();
         ++report_.iterations;
-        done_ = verdict == Convergence::Verdict::converged;
+        report_.converged = verdict == Convergence::Verdict::converged;
         diverged_ = verdict == Convergence::Verdict::diverged;
     }
 
@@ -155,8 +155,8 @@ private:
     std::vector<Node> free_;
     std::vector<double> changes_; ///< one a thread
     std::barrier<> barrier_;
-    SolveReport report_;
-    bool done_ = false, diverged_ = false;
+    SolveReport report_{.converged = false};
+    bool diverged_ = false;
 };
 
 constexpr std::size_t rows_per_thread = 1000; ///< below this a thread costs more than it saves

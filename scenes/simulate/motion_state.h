@@ -62,7 +62,10 @@ struct Energies {
 /// Of one body; all zero for a fixed one.
 Energies energies_of(const Model& model, const Motion& motion, std::size_t body);
 
-/// The sum over all bodies. Throws InputError naming `step`, the body and its values when one of them is not
+/// J, the sum over all bodies.
+double total_energy(const Model& model, const Motion& motion);
+
+/// The same by kind. Throws InputError naming `step`, the body and its values when one of them is not
 /// finite or their sum exceeds model.highest_energy.
 Energies checked_energies(const Model& model, const Motion& motion, std::size_t step);
 

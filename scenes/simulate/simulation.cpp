@@ -31,12 +31,15 @@ double largest_difference(const Motion& a, const Motion& b) {
     return most;
 }
 
-void add_energies(const Model& model, const Motion& motion, std::size_t step, StepReport& report) {
+/// `before`: the sum at the start of the step, J.
+void add_energies(const Model& model, const Motion& motion, double before, std::size_t step,
+                  StepReport& report) {
     const auto energies = checked_energies(model, motion, step);
     report.kinetic = energies.kinetic;
     report.potential = energies.potential;
     report.elastic = energies.elastic;
     report.inverted = energies.inverted;
+    report.energy_change = energies.total() - before;
 }
 
 void add_times(StepReport& report, const StepReport& other) {
@@ -105,7 +108,7 @@ StepReport Simulation::step(const Detect& detect) {
     auto outcome = adapts(s.model) ? s.adapted(detect)
                                    : advance(s.model, s.motion, s.clock.length, s.clock.steps, detect);
     // Only of a step that is kept: one that is too long for its scene may be repeated.
-    add_energies(s.model, outcome.end, s.clock.steps, outcome.report);
+    add_energies(s.model, outcome.end, total_energy(s.model, s.motion), s.clock.steps, outcome.report);
     s.motion = std::move(outcome.end);
     s.midway = std::move(outcome.midway);
     s.clock.time += outcome.report.length;

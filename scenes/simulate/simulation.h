@@ -21,8 +21,10 @@ struct StepReport {
     std::size_t found = 0, kept = 0;                ///< contacts before and after reduction
     double deepest = 0;                             ///< largest penetration among them, >= 0
     double kinetic = 0, potential = 0, elastic = 0; ///< J, at the end of the step
+    double energy_change = 0;                       ///< J, of their sum, in this step
     std::size_t iterations = 0;                     ///< of the contact solver
-    double residual = 0;                            ///< its last, as it tests it
+    double residual = 0;                            ///< N s, its last, as it tests it
+    bool converged = true;                          ///< it ended by a tolerance, not at its last iteration
     std::size_t inverted = 0;                       ///< elements turned inside out
     std::int64_t detect_ns = 0, reduce_ns = 0, assemble_ns = 0, solve_ns = 0, move_ns = 0;
 };

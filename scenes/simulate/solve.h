@@ -10,7 +10,8 @@ namespace tandem::simulate {
 /// How a solver ended.
 struct SolveReport {
     std::size_t iterations = 0;
-    double residual = 0; ///< N s: largest change of an impulse in the last pass at full r-factors
+    double residual = 0;   ///< N s: largest change of an impulse in the last pass at full r-factors
+    bool converged = true; ///< it ended by a tolerance, or there was nothing to solve
 };
 
 /// Solves for the rows' impulses from those they have, and brings nodes' velocities to match. The proximal

@@ -119,6 +119,7 @@ Outcome advance(const Model& model, const Motion& from, double length, std::size
         solve(problem, model.dynamics->solver, std::max(1u, std::thread::hardware_concurrency()));
     report.iterations = solved.iterations;
     report.residual = solved.residual;
+    report.converged = solved.converged;
     watch.lap(report.solve_ns);
 
     add_impulses(model, problem, motion);

@@ -73,6 +73,37 @@ TEST_P(SimulateSolver, SolutionObeysTheContactLaws) {
     EXPECT_GT(largest, 1);
 }
 
+TEST_P(SimulateSolver, SaysWhetherItEndedByATolerance) {
+    const auto scene = stacks(1, 4).finish();
+    const auto model = make_model(scene);
+    const auto motion = starting_motion(model);
+    std::vector<ContactPoint> contacts;
+    detector(scene)(frame_of(model, motion), contacts);
+    auto free = motion;
+    kick(model, free, 0.01);
+    const auto ended = [&](SolverSettings settings) {
+        auto problem = make_problem(model, motion, free, contacts);
+        settings.method = GetParam();
+        return solve(problem, settings, 1);
+    };
+    const auto capped = ended({.iterations = 5, .absolute_tolerance = 1e-4, .relative_tolerance = 0});
+    EXPECT_FALSE(capped.converged);
+    EXPECT_EQ(capped.iterations, 5u);
+    EXPECT_GT(capped.residual, 1e-4);
+    const auto whole = ended({.iterations = 100000, .absolute_tolerance = 1e-4, .relative_tolerance = 0});
+    EXPECT_TRUE(whole.converged);
+    EXPECT_LE(whole.residual, 1e-4);
+    // Exactly as many as it takes is no cap.
+    EXPECT_TRUE(ended({.iterations = whole.iterations, .absolute_tolerance = 1e-4, .relative_tolerance = 0})
+                    .converged);
+    EXPECT_FALSE(
+        ended({.iterations = whole.iterations - 1, .absolute_tolerance = 1e-4, .relative_tolerance = 0})
+            .converged);
+    EXPECT_TRUE(ended({.iterations = 5000, .absolute_tolerance = 0, .relative_tolerance = 0.1}).converged);
+    contacts.clear();
+    EXPECT_TRUE(ended({.iterations = 5}).converged);
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, SimulateSolver,
                          testing::Values(SolverSettings::Method::gauss_seidel,
                                          SolverSettings::Method::jacobi));

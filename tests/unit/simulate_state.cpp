@@ -78,6 +78,29 @@ TEST(SimulateState, RestoredRunContinuesWithTheSameBits) {
     }
 }
 
+TEST(SimulateState, EnergyChangesAddUpAlsoAfterRestore) {
+    auto world = mixed();
+    const auto& scene = world.finish();
+    const auto detect = detector(scene);
+    Simulation whole(scene), continued(scene);
+    double sum = 0;
+    const auto first = whole.step(detect);
+    const double start = first.kinetic + first.potential + first.elastic - first.energy_change;
+    const double heights = 0.8 + 1.9; // of the two boxes of 2000 kg; the beam of 500 kg is where it is built
+    EXPECT_NEAR(start, 9.82 * (2000 * heights + 500 * 2.75), 1e-6);
+    for (int i = 0; i < 200; ++i) whole.step(detect);
+    continued.restore(whole.state());
+    auto before = whole.step(detect);
+    EXPECT_EQ(continued.step(detect).energy_change, before.energy_change);
+    for (int i = 0; i < 50; ++i) {
+        const auto after = whole.step(detect);
+        sum = (after.kinetic - before.kinetic) + (after.potential - before.potential)
+              + (after.elastic - before.elastic);
+        EXPECT_NEAR(after.energy_change, sum, 1e-9 * start);
+        before = after;
+    }
+}
+
 TEST(SimulateState, WarmStartSavesIterations) {
     std::size_t iterations[2] = {0, 0};
     for (const bool warm : {false, true}) {
