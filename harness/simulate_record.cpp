@@ -89,6 +89,7 @@ Json step_record(const StepReport& report, const Search& search, std::int64_t wa
             {"energy_change_j", report.energy_change},
             {"iterations", report.iterations},
             {"residual", report.residual},
+            {"tolerance", report.tolerance},
             {"converged", report.converged},
             {"inverted", report.inverted},
             {"host_ns",

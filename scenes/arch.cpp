@@ -7,7 +7,7 @@ namespace {
 
 Scene make(std::span<const SceneParameter> parameters) {
     Assembly assembly(parameters);
-    assembly.dynamics.materials = masonry::materials();
+    assembly.dynamics = masonry::dynamics();
     const double radius = real_parameter(parameters, "radius", 0.01, 50);
     const double thickness = real_parameter(parameters, "thickness", 0.01, 0.99);
     const ArchShape shape{.outer = radius,

@@ -9,20 +9,30 @@
 
 namespace tandem {
 
-Materials masonry::materials() {
+StepSettings measured_stepping() {
+    return {.post_stabilize = false, .linear_damping = 0.01, .angular_damping = 0.01};
+}
+
+SolverSettings measured_solver() { return {.iterations = 150, .absolute_tolerance = 0.01}; }
+
+Dynamics masonry::dynamics() {
     constexpr Surface stones{0.65, 0.7};
     constexpr Surface stone_ground{0.75, 0.3};
     constexpr Surface stone_ball{0.45, 0.8};
     constexpr Surface ball_ground{0.45, 0.3};
     constexpr Surface balls{0.3, 0.9};
+    Dynamics result;
     // The ground does not meet itself.
-    return {.names = {"stone", "ground", "cannonball"},
-            .densities = {2000, 5500, 7900},
-            .surfaces = {{{0, 0}, stones},
-                         {{0, 1}, stone_ground},
-                         {{0, 2}, stone_ball},
-                         {{1, 2}, ball_ground},
-                         {{2, 2}, balls}}};
+    result.materials = {.names = {"stone", "ground", "cannonball"},
+                        .densities = {2000, 5500, 7900},
+                        .surfaces = {{{0, 0}, stones},
+                                     {{0, 1}, stone_ground},
+                                     {{0, 2}, stone_ball},
+                                     {{1, 2}, ball_ground},
+                                     {{2, 2}, balls}}};
+    result.stepping = measured_stepping();
+    result.solver = measured_solver();
+    return result;
 }
 
 Assembly::Assembly(std::span<const SceneParameter> parameters) : refine_(refine_value(parameters)) {}

@@ -6,10 +6,16 @@
 
 namespace tandem {
 
-/// The materials of the paper's rigid scenes: brick, earth and iron.
+/// The settings that the paper's scenes are measured with, in place of the defaults, which are for scenes of
+/// one's own: no correction of positions, its damping, and a solver that ends early in heaps.
+StepSettings measured_stepping();
+SolverSettings measured_solver();
+
+/// The materials of the paper's rigid scenes, brick, earth and iron, with the settings they are measured
+/// with.
 namespace masonry {
 enum : std::uint32_t { stone, ground, cannonball };
-Materials materials();
+Dynamics dynamics();
 } // namespace masonry
 
 /// How a rigid body is put into a scene.

@@ -7,7 +7,7 @@ namespace {
 
 Scene make(std::span<const SceneParameter> parameters) {
     Assembly assembly(parameters);
-    assembly.dynamics.materials = masonry::materials();
+    assembly.dynamics = masonry::dynamics();
     const Amphitheatre shape{.inner = real_parameter(parameters, "radius", 0.1, 1e3),
                              .width = real_parameter(parameters, "width", 0.01, 1e3),
                              .slices = integer_parameter(parameters, "slices", 3, 1000),

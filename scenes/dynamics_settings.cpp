@@ -103,7 +103,7 @@ std::vector<DynamicsSetting> make_settings() {
         whole("iterations", at(&Dynamics::solver, &SolverSettings::iterations), 1,
               "of the contact solver, at most"),
         real("absolute_tolerance", at(&Dynamics::solver, &SolverSettings::absolute_tolerance), 0, 1e9,
-             "where it stops, N s"),
+             "where it stops, N s; 0: 1e-5 of what holds the lightest body for a step"),
         real("relative_tolerance", at(&Dynamics::solver, &SolverSettings::relative_tolerance), 0, 1,
              "where it stops, relative change; 0: never"),
         toggle("warm_start", at(&Dynamics::solver, &SolverSettings::warm_start),

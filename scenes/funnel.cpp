@@ -19,7 +19,7 @@ struct Layout {
 
 Scene make(std::span<const SceneParameter> parameters, const Layout& layout) {
     Assembly assembly(parameters);
-    assembly.dynamics.materials = masonry::materials();
+    assembly.dynamics = masonry::dynamics();
     const auto bodies = integer_parameter(parameters, "bodies", 1, 1000000);
     const double size = real_parameter(parameters, "size", 0.5, 1e3);
     const auto funnel = assembly.add_mesh(scaled(built_in_mesh("funnel"), Eigen::Vector3d::Constant(size)));

@@ -12,7 +12,7 @@ constexpr double spacing = 0.1; ///< between them, m
 
 Scene make(std::span<const SceneParameter> parameters) {
     Assembly assembly(parameters);
-    assembly.dynamics.materials = masonry::materials();
+    assembly.dynamics = masonry::dynamics();
     const auto bodies = integer_parameter(parameters, "bodies", 1, 1000000);
     const double size = real_parameter(parameters, "size", 0.5, 1e3);
     const auto glass = built_in_mesh("glass");

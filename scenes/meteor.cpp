@@ -9,7 +9,7 @@ namespace {
 Scene make(std::span<const SceneParameter> parameters) {
     Assembly assembly(parameters);
     auto& dynamics = assembly.dynamics;
-    dynamics.materials = masonry::materials();
+    dynamics = masonry::dynamics();
     dynamics.steps = 5000;
     const Amphitheatre shape{.inner = 4,
                              .width = 0.5,

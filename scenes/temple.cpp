@@ -100,7 +100,7 @@ void add_ceiling(Assembly& assembly, const Plan& plan, double base) {
 
 Scene make(std::span<const SceneParameter> parameters) {
     Assembly assembly(parameters);
-    assembly.dynamics.materials = masonry::materials();
+    assembly.dynamics = masonry::dynamics();
     const Plan plan{.columns = integer_parameter(parameters, "columns", 2, 1000),
                     .rows = integer_parameter(parameters, "rows", 2, 1000),
                     .height = real_parameter(parameters, "height", 0.1, 1e3),

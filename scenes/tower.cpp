@@ -21,7 +21,11 @@ std::vector<std::uint32_t> end_vertices(const Mesh& mesh) {
 
 /// The integrator of the paper's adaptive run: 30 s in steps of a thirtieth.
 StepSettings stepping(bool couple) {
-    return {.step = 0.033, .adaptive_tolerance = 1e-5, .least_step = 1e-5, .couple_contacts = couple};
+    auto result = measured_stepping();
+    result.step = 0.033;
+    result.adaptive_tolerance = 1e-5;
+    result.couple_contacts = couple;
+    return result;
 }
 
 Scene make(std::span<const SceneParameter> parameters) {
@@ -39,6 +43,7 @@ Scene make(std::span<const SceneParameter> parameters) {
                           .damping = 0.01,
                           .pinned = end_vertices(assembly.mesh(beam))}};
     dynamics.stepping = stepping(integer_parameter(parameters, "couple", 0, 1) == 1);
+    dynamics.solver = measured_solver();
     dynamics.steps = 909;
     const double centre = radius + 0.5 * beam_depth;
     for (std::uint64_t row = 0; row < segments; ++row)

@@ -4,8 +4,10 @@
 #include "scenes/error.h"
 #include "scenes/simulate/algebra.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace tandem::simulate {
 
@@ -135,6 +137,29 @@ BodyModel make_body(const Model& model, std::size_t i) {
     return result;
 }
 
+/// kg, the least that is above 0: pinned vertices have the mass of others.
+double least_mass(const BodyModel& body) {
+    return body.kind == Kind::rigid
+               ? body.mass.mass
+               : *std::min_element(body.elastic.masses.begin(), body.elastic.masses.end());
+}
+
+/// What solver_of() measures by.
+void set_scales(Model& model) {
+    constexpr double none = std::numeric_limits<double>::max();
+    model.lightest = model.smallest = none;
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+        const auto& body = model.bodies[i];
+        if (body.kind == Kind::fixed) continue;
+        const auto& moves = model.dynamics->bodies[i];
+        model.lightest = std::min(model.lightest, least_mass(body));
+        model.smallest = std::min(model.smallest, body.size);
+        model.fastest =
+            std::max(model.fastest, length(moves.velocity) + 0.5 * body.size * length(moves.spin));
+    }
+    if (model.lightest == none) model.lightest = model.smallest = 0;
+}
+
 } // namespace
 
 Model make_model(const Scene& scene) {
@@ -154,6 +179,7 @@ Model make_model(const Scene& scene) {
     if (const auto missing = missing_surface(materials, scene.bodies, model.dynamics->bodies))
         refuse(scene, fmt::format("has no surface for materials {} and {}, which can meet",
                                   materials.names[missing->first], materials.names[missing->second]));
+    set_scales(model);
     return model;
 }
 

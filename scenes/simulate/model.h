@@ -25,6 +25,8 @@ struct Model {
     const Dynamics* dynamics = nullptr;
     std::vector<BodyModel> bodies;
     Frame start;
+    /// Of what impulses move, rigid bodies and vertices of deformable ones: kg, m, m/s at the start.
+    double lightest = 0, smallest = 0, fastest = 0;
     double highest_energy = 0; ///< J; the motion has diverged when kinetic + potential + elastic exceed it
 
     const Surface& surface(std::uint32_t a, std::uint32_t b) const {

@@ -24,6 +24,7 @@ struct StepReport {
     double energy_change = 0;                       ///< J, of their sum, in this step
     std::size_t iterations = 0;                     ///< of the contact solver
     double residual = 0;                            ///< N s, its last, as it tests it
+    double tolerance = 0;                           ///< N s, that the residual is to be below
     bool converged = true;                          ///< it ended by a tolerance, not at its last iteration
     std::size_t inverted = 0;                       ///< elements turned inside out
     std::int64_t detect_ns = 0, reduce_ns = 0, assemble_ns = 0, solve_ns = 0, move_ns = 0;

@@ -8,8 +8,20 @@ namespace tandem::simulate {
 namespace {
 
 constexpr double reduction = 0.9; ///< of the r-factors when a pass diverges
+constexpr double part_of_weight = 1e-5;
 
 } // namespace
+
+SolverSettings solver_of(const Model& model, double time) {
+    auto settings = model.dynamics->solver;
+    if (settings.absolute_tolerance > 0) return settings;
+    double speed = length(model.dynamics->gravity) * time;
+    if (!(speed > 0)) speed = 0.01 * model.fastest;
+    // Nothing moves by itself then; what elastic forces or corrections do is measured by sizes.
+    if (!(speed > 0)) speed = 0.01 * model.smallest;
+    settings.absolute_tolerance = part_of_weight * model.lightest * speed;
+    return settings;
+}
 
 Eigen::Vector3d proximal(const ContactRow& row, const Eigen::Vector3d& velocity, double scale) {
     Eigen::Vector3d result;

@@ -7,6 +7,11 @@
 
 namespace tandem::simulate {
 
+/// The settings of a step of `time` s, with a tolerance in place of one of 0: 1e-5 of the impulse that holds
+/// the scene's lightest body against gravity for the step, and without gravity of one that takes a hundredth
+/// of the greatest speed at the start from it.
+SolverSettings solver_of(const Model& model, double time);
+
 /// How a solver ended.
 struct SolveReport {
     std::size_t iterations = 0;

@@ -17,9 +17,9 @@ double pair_size(const Model& model, const Pair& pair);
 /// Velocity (m/s, <= 0) added to a normal row so that a step of `time` lessens the penetration.
 double separation_bias(double depth, double size, double time);
 
-/// Moves positions so that penetrations left after the step lessen; no velocity changes. The same contacts
-/// without friction, solved for displacements. `motion` is at the end of the step, `half` its second part
-/// (s).
+/// Moves positions so that penetrations of rigid bodies left after the step lessen; no velocity changes. The
+/// same contacts without friction, solved for displacements. `motion` is at the end of the step, `half` its
+/// second part (s).
 void correct_positions(const Model& model, Problem problem, std::span<const ContactPoint> contacts,
                        double half, Motion& motion);
 

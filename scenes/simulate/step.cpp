@@ -115,8 +115,9 @@ Outcome advance(const Model& model, const Motion& from, double length, std::size
     // Velocities of the whole step: forces first, then the impulses that contacts need.
     auto problem = assemble(model, from, kept, length, motion);
     watch.lap(report.assemble_ns);
-    const auto solved =
-        solve(problem, model.dynamics->solver, std::max(1u, std::thread::hardware_concurrency()));
+    const auto settings = solver_of(model, length);
+    const auto solved = solve(problem, settings, std::max(1u, std::thread::hardware_concurrency()));
+    report.tolerance = settings.absolute_tolerance;
     report.iterations = solved.iterations;
     report.residual = solved.residual;
     report.converged = solved.converged;

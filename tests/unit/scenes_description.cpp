@@ -171,7 +171,9 @@ TEST_F(ScenesDescription, DynamicsAreRead) {
     EXPECT_EQ(scene.frame(0).poses[1].translation, Eigen::Vector3d(0, 3, 0));
     EXPECT_NE(load(dynamic_scene(R"(, "steps": 7)")).digest, load(dynamic_scene(R"(, "steps": 8)")).digest);
     const auto plain = load(dynamic_scene(""));
-    EXPECT_EQ(plain.dynamics->solver.iterations, 150u);
+    EXPECT_EQ(plain.dynamics->solver.iterations, 1000u);
+    EXPECT_EQ(plain.dynamics->solver.absolute_tolerance, 0);
+    EXPECT_TRUE(plain.dynamics->stepping.post_stabilize);
     EXPECT_EQ(plain.dynamics->gravity, Eigen::Vector3d(0, -9.82, 0));
 }
 

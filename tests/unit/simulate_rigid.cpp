@@ -32,7 +32,7 @@ World tumbling() {
     World world({0.4, 0.6});
     Random random(5);
     world.dynamics.gravity.setZero();
-    world.dynamics.stepping.linear_damping = world.dynamics.stepping.angular_damping = 0;
+    world.dynamics.stepping.post_stabilize = false; // which moves centres without an impulse
     for (int i = 0; i < 6; ++i) {
         const Eigen::Vector3d place(i % 3 * 1.5, i / 3 * 1.5, 0.2 * i);
         BodyDynamics moves;

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/motion.h"
+#include "scenes/simulate/stabilize.h"
+#include "tests/unit/simulate_support.h"
+
+#include <gtest/gtest.h>
+
+namespace tandem {
+
+namespace {
+
+using namespace test;
+
+// Motions with known ends, with the settings that a scene has which names none: within 2 % of each. Half a
+// step's motion is all that a bounce or a stop can be early or late, so that these tell settings from steps.
+
+constexpr double earth = 9.82, radians = 3.14159265358979323846 / 180, within = 0.02;
+
+/// A box of `side` and `density` on the ground, number 1.
+World on_ground(Surface surface, double side = 1, double density = 2000) {
+    World world(surface);
+    world.dynamics.materials.densities = {density};
+    world.add(box({50 * side, side, 50 * side}), at(0, -0.5 * side, 0), true);
+    return world;
+}
+
+/// Gravity of a ground that goes down along x.
+void tilt(World& world, double degrees) {
+    world.dynamics.gravity = {earth * std::sin(radians * degrees), -earth * std::cos(radians * degrees), 0};
+}
+
+struct Ended {
+    Eigen::Vector3d place; ///< of body 1
+    Eigen::Quaterniond rotation;
+    std::size_t iterations = 0, not_converged = 0;
+    double deepest = 0; ///< in the last step
+};
+
+Ended ended(World& world, int steps) {
+    const auto& scene = world.finish();
+    Simulation simulation(scene);
+    const auto detect = detector(scene);
+    Ended result;
+    for (int i = 0; i < steps; ++i) {
+        const auto report = simulation.step(detect);
+        result.iterations += report.iterations;
+        result.not_converged += !report.converged;
+        result.deepest = report.deepest;
+    }
+    const auto pose = simulation.frame().poses[1];
+    result.place = pose.translation;
+    result.rotation = pose.rotation;
+    return result;
+}
+
+/// Gravity and friction cancel to a hundredth: 1/2 g (sin - mu cos) t^2, whatever the block weighs.
+TEST(SimulateDefaults, BlockSlidesDownASlopeThatHardlyTilts) {
+    for (const auto& [side, density] : {std::pair(1.0, 2000.0), {0.02, 1.0}, {30.0, 8000.0}}) {
+        auto world = on_ground({0.5, 0}, side, density);
+        tilt(world, 27);
+        world.add(box({side, side, side}), at(0, (0.5 - 1e-4) * side, 0));
+        const auto end = ended(world, 200);
+        const double expected = 0.5 * earth * (std::sin(27 * radians) - 0.5 * std::cos(27 * radians)) * 2 * 2;
+        EXPECT_NEAR(end.place.x(), expected, within * expected) << side;
+        EXPECT_EQ(end.not_converged, 0u) << side;
+        EXPECT_LT(end.iterations, 200u * 30) << side;
+    }
+}
+
+TEST(SimulateDefaults, BlockStaysOnASlopeThatIsNotSteepEnough) {
+    auto world = on_ground({0.5, 0});
+    tilt(world, 26);
+    world.add(box({1, 1, 1}), at(0, 0.5, 0));
+    EXPECT_LT(std::fabs(ended(world, 300).place.x()), 1e-3);
+}
+
+/// v^2 / (2 mu g), less what the step in which it stops takes from it: of the speed r left then, r h / 2 is
+/// gone in place of r^2 / (2 mu g).
+TEST(SimulateDefaults, BlockThatSlidesStopsWhereCoulombSays) {
+    for (const double friction : {0.2, 0.5}) {
+        auto world = on_ground({friction, 0});
+        BodyDynamics moves;
+        moves.velocity = {2, 0, 0};
+        world.add(box({1, 1, 1}), at(0, 0.5, 0), false, moves);
+        const double slowed = friction * earth * 0.01;
+        const double rest = std::fmod(2, slowed);
+        const double expected = (4 - rest * rest) / (2 * friction * earth) + 0.5 * 0.01 * rest;
+        EXPECT_NEAR(expected, 4 / (2 * friction * earth), 1e-3);
+        EXPECT_NEAR(ended(world, 200).place.x(), expected, 0.002 * expected) << friction;
+    }
+}
+
+TEST(SimulateDefaults, FreeMotionIsNotDamped) {
+    World world;
+    world.add(box({1, 1, 1}), at(0, 0, 0), true);
+    BodyDynamics moves;
+    moves.velocity = {7, 0, 0};
+    moves.spin = {0, 3, 0};
+    world.add(box({1, 1, 1}), at(5, 0, 0), false, moves);
+    const auto end = ended(world, 1000);
+    EXPECT_NEAR(end.place.x(), 5 + 70, 1e-9);
+    EXPECT_NEAR(end.place.y(), -0.5 * earth * 100, 1e-8);
+    EXPECT_NEAR(std::fabs(end.rotation.dot(turn({0, 1, 0}, 30))), 1, 1e-4);
+}
+
+/// What it had sunk in by is taken back to what settings tolerate.
+TEST(SimulateDefaults, WhatFallsWithoutBouncingLiesOnTheGround) {
+    for (const double side : {0.1, 1.0}) {
+        auto world = on_ground({0.5, 0}, side);
+        world.add(box({side, side, side}), at(0, 1.5 * side, 0));
+        const auto end = ended(world, 200);
+        EXPECT_LT(end.deepest, 1.01 * simulate::tolerated_gap * side);
+        EXPECT_NEAR(end.place.y(), 0.5 * side, 1.01 * simulate::tolerated_gap * side);
+    }
+}
+
+TEST(SimulateDefaults, BounceKeepsTheSquareOfRestitution) {
+    auto world = on_ground({0.5, 0.6});
+    world.add(box({1, 1, 1}), at(0, 1.5, 0));
+    const auto& scene = world.finish();
+    Simulation simulation(scene);
+    const auto detect = detector(scene);
+    double before = 0;
+    for (int i = 0; i < 60; ++i) {
+        const auto report = simulation.step(detect);
+        if (report.found > 0) {
+            EXPECT_NEAR(report.kinetic, 0.36 * before, within * 0.36 * before);
+            return;
+        }
+        before = report.kinetic;
+    }
+    FAIL() << "it does not come down";
+}
+
+/// Without gravity tolerances are measured by the speed at the start.
+TEST(SimulateDefaults, EqualBallsSwapTheirVelocities) {
+    World world({0, 1});
+    world.dynamics.gravity.setZero();
+    BodyDynamics moves;
+    moves.velocity = {3, 0, 0};
+    world.add(ball(0.5, 1), at(-1.2, 0, 0), false, moves);
+    world.add(ball(0.5, 1), at(0.2, 0, 0));
+    const auto end = ended(world, 100);
+    const double met = (1.4 - 1) / 3; // s
+    EXPECT_NEAR(end.place.x(), 0.2 + 3 * (1 - met), within * 3);
+    EXPECT_EQ(end.not_converged, 0u);
+}
+
+/// A pillar half as wide as high tips over beyond an angle whose tangent is a half.
+TEST(SimulateDefaults, PillarStandsOnASlopeUnlessItIsTooSteep) {
+    for (const double degrees : {25.0, 28.0}) {
+        auto world = on_ground({2, 0});
+        tilt(world, degrees);
+        world.add(box({0.5, 1, 0.5}), at(0, 0.5, 0));
+        const auto end = ended(world, 200);
+        const double tipped = 2 * std::acos(std::min(1.0, std::fabs(end.rotation.w())));
+        EXPECT_EQ(tipped > 0.5, degrees > 26.6) << degrees << " " << tipped;
+        if (degrees < 26) {
+            EXPECT_LT(end.place.x(), 0.01);
+        }
+    }
+}
+
+TEST(SimulateDefaults, StackStaysAtRest) {
+    auto world = on_ground({0.5, 0});
+    for (int i = 0; i < 5; ++i) world.add(box({1, 1, 1}), at(0, 0.5 + i, 0));
+    const auto& scene = world.finish();
+    Simulation simulation(scene);
+    const auto detect = detector(scene);
+    for (int i = 0; i < 200; ++i) simulation.step(detect);
+    const auto frame = simulation.frame();
+    for (std::size_t i = 1; i < frame.poses.size(); ++i)
+        EXPECT_LT((frame.poses[i].translation - world.start.poses[i].translation).norm(), 0.005) << i;
+}
+
+} // namespace
+
+} // namespace tandem
