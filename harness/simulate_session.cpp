@@ -68,7 +68,7 @@ std::span<const std::byte> SimulationSession::read_number(std::span<const std::b
 }
 
 void SimulationSession::append(const StepReport& report, const Frame& frame) {
-    if (writer_) writer_->append(report.step, report.time, frame);
+    if (writer_) writer_->append(report.step, report.midway_time(), frame);
 }
 
 void SimulationSession::save(const Simulation& simulation) {

@@ -31,6 +31,19 @@ def poses(path, bodies):
     return [[struct.unpack_from("<7f", data, header + f * size + 16 + 28 * b) for b in range(bodies)] for f in range(frames)]
 
 
+def frame_times(path):
+    """s, of each frame of a recording whose frames have one size: the second field of each."""
+    data = path.read_bytes()
+    header = struct.unpack_from("<I", data, 12)[0]
+    bodies, text = struct.unpack_from("<II", data, 32)
+    floats = 0
+    for body in range(bodies):
+        kind, vertices = struct.unpack_from("<II", data, 40 + text + 8 * body)
+        floats += {0: 7, 1: 0, 2: 3 * vertices}[kind]
+    size = 20 + 4 * floats
+    return [struct.unpack_from("<d", data, header + size * i + 8)[0] for i in range((len(data) - header) // size)]
+
+
 class Simulations(Case):
     def simulate(self, scene, *arguments):
         """Standard output of a run that says nothing else; of a scene in STACKS it may say that it does not converge."""
@@ -62,6 +75,22 @@ class Simulations(Case):
                                       "--preset", "all" if LONG else "resident,fair")
         self.assertEqual((status, errors), (0, []), text)
         self.assertIn("all agree with the reference", text)
+
+    def test_frames_have_the_time_they_are_of(self):
+        """The middle of their step, also of steps that adapt: what flies at 2 m/s is where it is at that time."""
+        file, record = self.work / "flying.frames", self.work / "simulation-flying.jsonl"
+        for scene in ("block:speed=2,drop=9", "tower:segments=1,slices=3"):
+            self.simulate(scene, "--steps", 20, "-o", file, "--record", record)
+            steps, _ = self.lines(record)
+            times = frame_times(file)
+            self.assertEqual(len(times), 20)
+            for line, time_of in zip(steps, times):
+                self.assertAlmostEqual(time_of, line["time_s"] - 0.5 * line["length_s"], delta=1e-12)
+            if scene.startswith("block"):
+                for frame, time_of in zip(poses(file, 1), times):
+                    self.assertAlmostEqual(frame[0][0], 2 * time_of, delta=1e-6)
+            for left in (file, record, self.work / "flying.frames.checkpoint"):
+                left.unlink()
 
     def test_lines_of_a_run(self):
         record = self.work / "simulation.jsonl"

@@ -10,7 +10,7 @@ namespace tandem {
 /// A frame as recorded: what float keeps of it.
 struct RecordedFrame {
     std::uint64_t step = 0;
-    double time = 0; ///< s
+    double time = 0; ///< s, that the frame is of
     Frame frame;
 };
 

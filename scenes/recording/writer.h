@@ -17,7 +17,7 @@ RecordingHeader recording_of(const std::string& specification, const Scene& scen
 ///     else writer.checkpoint(0, simulation.state());
 ///     while (simulation.steps_done() < steps) {
 ///         const auto report = simulation.step(detect);
-///         writer.append(report.step, report.time, simulation.midway());
+///         writer.append(report.step, report.midway_time(), simulation.midway());
 ///         if (now and then) writer.checkpoint(simulation.steps_done(), simulation.state());
 ///     }
 ///
@@ -34,7 +34,8 @@ public:
     /// The checkpoint to go on from; frames recorded after it are dropped. None when nothing is recorded yet
     /// and there is none. Throws when frames are there and no checkpoint that goes with them.
     std::optional<Checkpoint> restore();
-    /// Adds a frame, which survives the end of the process (not of the machine).
+    /// Adds a frame with the time that it is of, in s; it survives the end of the process (not of the
+    /// machine).
     void append(std::uint64_t step, double time, const Frame& frame);
     /// Makes the frames so far and then the state of the simulation after `steps_done` steps survive a crash
     /// of the machine.

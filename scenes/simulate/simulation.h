@@ -22,12 +22,16 @@ struct StepReport {
     double deepest = 0;                             ///< largest penetration among them, >= 0
     double kinetic = 0, potential = 0, elastic = 0; ///< J, at the end of the step
     double energy_change = 0;                       ///< J, of their sum, in this step
-    std::size_t iterations = 0;                     ///< of the contact solver
-    double residual = 0;                            ///< N s, its last, as it tests it
-    double tolerance = 0;                           ///< N s, that the residual is to be below
-    bool converged = true;                          ///< it ended by a tolerance, not at its last iteration
-    std::size_t inverted = 0;                       ///< elements turned inside out
+    double lifted = 0;          ///< J, of that what corrections of positions added by lifting bodies
+    std::size_t iterations = 0; ///< of the contact solver
+    double residual = 0;        ///< N s, its last, as it tests it
+    double tolerance = 0;       ///< N s, that the residual is to be below
+    bool converged = true;      ///< it ended by a tolerance, not at its last iteration
+    std::size_t inverted = 0;   ///< elements turned inside out
     std::int64_t detect_ns = 0, reduce_ns = 0, assemble_ns = 0, solve_ns = 0, move_ns = 0;
+
+    /// s, that Simulation::midway() is of.
+    double midway_time() const { return time - 0.5 * length; }
 };
 
 /// A scene with dynamics, in motion. State in double. Deterministic: the same scene and the same contacts
