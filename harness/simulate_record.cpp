@@ -87,6 +87,7 @@ Json step_record(const StepReport& report, const Search& search, std::int64_t wa
             {"deepest_m", report.deepest},
             {"energy_j", energies_json(report)},
             {"energy_change_j", report.energy_change},
+            {"lifted_j", report.lifted},
             {"iterations", report.iterations},
             {"residual", report.residual},
             {"tolerance", report.tolerance},

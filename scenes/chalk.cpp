@@ -26,6 +26,7 @@ void set_solver(Dynamics& dynamics) {
                          .pre_stabilize = true,
                          .post_stabilize = true,
                          .bounce = false,
+                         .bound_energy = false,
                          .linear_damping = 0.001,
                          .angular_damping = 0.001};
     dynamics.solver = {.iterations = 1000, .absolute_tolerance = 1e-5};

@@ -27,6 +27,7 @@ const std::vector<Group>& groups() {
          {{"pre_stabilize", "pre_stabilize"},
           {"post_stabilize", "post_stabilize"},
           {"bounce", "bounce"},
+          {"bound_energy", "bound_energy"},
           {"linear_damping", "linear_damping"},
           {"angular_damping", "angular_damping"},
           {"adaptive_tolerance", "adaptive_tolerance"},

@@ -85,6 +85,7 @@ struct StepSettings {
     bool pre_stabilize = false; ///< velocities that lessen penetration
     bool post_stabilize = true; ///< positions corrected after the step
     bool bounce = true;         ///< Newton's restitution
+    bool bound_energy = true;   ///< a step whose bounces would add energy is taken without them
     double linear_damping = 0;  ///< 1/s
     double angular_damping = 0; ///< 1/s
     /// Deformables: the step is halved until the difference to two half steps is below this (m), and doubled

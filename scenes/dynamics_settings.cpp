@@ -113,6 +113,8 @@ std::vector<DynamicsSetting> make_settings() {
         toggle("post_stabilize", at(&Dynamics::stepping, &StepSettings::post_stabilize),
                "positions corrected after the step"),
         toggle("bounce", at(&Dynamics::stepping, &StepSettings::bounce), "Newton's restitution"),
+        toggle("bound_energy", at(&Dynamics::stepping, &StepSettings::bound_energy),
+               "a step whose bounces would add energy is taken without them"),
         real("linear_damping", at(&Dynamics::stepping, &StepSettings::linear_damping), 0, 1e6,
              "of rigid bodies, 1/s"),
         real("angular_damping", at(&Dynamics::stepping, &StepSettings::angular_damping), 0, 1e6,

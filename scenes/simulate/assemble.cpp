@@ -95,7 +95,7 @@ private:
         const auto& surface = model_.surface(contact.pair.body_a, contact.pair.body_b);
         row.friction = surface.friction;
         if (model_.dynamics->stepping.bounce)
-            row.bias = surface.restitution * dot(row.normal, problem_.velocity(row));
+            row.bias = row.bounce = surface.restitution * dot(row.normal, problem_.velocity(row));
         problem_.rows.push_back(row);
         problem_.sources.push_back(source);
     }

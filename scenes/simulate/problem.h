@@ -37,6 +37,7 @@ struct ContactRow {
     Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  ///< N s on b: normal, tangent, binormal
     Eigen::Vector3d previous = Eigen::Vector3d::Zero(); ///< of the last accepted pass
     double bias = 0;                                    ///< m/s
+    double bounce = 0;                                  ///< m/s, what restitution adds to it
     double friction = 0;
     double factor_normal = 0, factor_tangent = 0; ///< r-factors, kg
     double mixed_tangent = 0, mixed_binormal = 0; ///< 1/kg: what a normal impulse does along the tangents

@@ -28,6 +28,11 @@ struct SolveReport {
 /// of `threads`; Gauss-Seidel uses one.
 SolveReport solve(Problem& problem, const SolverSettings& settings, unsigned threads);
 
+/// The same for a step: where the impulses would give the bodies energy, which Newton's restitution and
+/// friction at several contacts together can (Kane and Levinson, "Dynamics: theory and applications", 1985),
+/// solves again without restitution; so that what is left to add energy is forces. Iterations are of both.
+SolveReport solve_bounded(Problem& problem, const SolverSettings& settings, unsigned threads);
+
 /// Proximal point of one row: its new impulse where `velocity` is that of b against a, at r-factors times
 /// `scale`.
 Eigen::Vector3d proximal(const ContactRow& row, const Eigen::Vector3d& velocity, double scale);

@@ -22,6 +22,15 @@ void move_by(const Model& model, const Problem& problem, double time, Motion& mo
     }
 }
 
+/// J, of bodies and vertices moved by their nodes' velocities for `time`.
+double lifted(const Model& model, const Problem& problem, double time) {
+    double sum = 0;
+    for (const auto& node : problem.nodes)
+        if (node.inverse_mass > 0)
+            sum -= time * dot(model.dynamics->gravity, node.velocity) / node.inverse_mass;
+    return sum;
+}
+
 /// A tolerance that is left to the scene is a tenth of the penetration that stays anyway.
 SolverSettings position_solver(const Model& model, double time) {
     auto settings = model.dynamics->solver;
@@ -45,8 +54,8 @@ double separation_bias(double depth, double size, double time) {
     return -std::min(gap_reduction * -depth, greatest_correction * size) / time;
 }
 
-void correct_positions(const Model& model, Problem problem, std::span<const ContactPoint> contacts,
-                       double half, Motion& motion) {
+double correct_positions(const Model& model, Problem problem, std::span<const ContactPoint> contacts,
+                         double half, Motion& motion) {
     for (std::size_t i = 0; i < problem.rows.size(); ++i) {
         auto& row = problem.rows[i];
         const auto& contact = contacts[problem.sources[i]];
@@ -60,6 +69,7 @@ void correct_positions(const Model& model, Problem problem, std::span<const Cont
     for (auto& node : problem.nodes) node.velocity = node.spin = Eigen::Vector3d::Zero();
     solve(problem, position_solver(model, 2 * half), 1);
     move_by(model, problem, 2 * half, motion);
+    return lifted(model, problem, 2 * half);
 }
 
 } // namespace tandem::simulate

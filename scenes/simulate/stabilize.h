@@ -20,7 +20,8 @@ double separation_bias(double depth, double size, double time);
 /// Moves positions so that penetrations of rigid bodies left after the step lessen; no velocity changes. The
 /// same contacts without friction, solved for displacements. `motion` is at the end of the step, `half` its
 /// second part (s).
-void correct_positions(const Model& model, Problem problem, std::span<const ContactPoint> contacts,
-                       double half, Motion& motion);
+/// Returns what it adds to the potential energy, J.
+double correct_positions(const Model& model, Problem problem, std::span<const ContactPoint> contacts,
+                         double half, Motion& motion);
 
 } // namespace tandem::simulate

@@ -116,7 +116,9 @@ Outcome advance(const Model& model, const Motion& from, double length, std::size
     auto problem = assemble(model, from, kept, length, motion);
     watch.lap(report.assemble_ns);
     const auto settings = solver_of(model, length);
-    const auto solved = solve(problem, settings, std::max(1u, std::thread::hardware_concurrency()));
+    const auto threads = std::max(1u, std::thread::hardware_concurrency());
+    const auto solved = model.dynamics->stepping.bound_energy ? solve_bounded(problem, settings, threads)
+                                                              : solve(problem, settings, threads);
     report.tolerance = settings.absolute_tolerance;
     report.iterations = solved.iterations;
     report.residual = solved.residual;
@@ -128,7 +130,7 @@ Outcome advance(const Model& model, const Motion& from, double length, std::size
     if (model.dynamics->solver.warm_start) motion.impulses = keep_impulses(problem, kept);
     drift(model, motion, length / 2);
     if (model.dynamics->stepping.post_stabilize)
-        correct_positions(model, std::move(problem), kept, length / 2, motion);
+        report.lifted = correct_positions(model, std::move(problem), kept, length / 2, motion);
     watch.lap(report.move_ns);
     return outcome;
 }
