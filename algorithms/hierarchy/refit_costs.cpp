@@ -53,9 +53,11 @@ std::vector<KernelCost> tile_tree_costs(const SceneFacts& scene, double leaf_wor
     const auto leaf_operations = corners * leaf_words * items + (items - tiles) * scene.k;
     const auto boxes = sum_of(scene.tetrahedra, [](double n) { // of levels above 1, a box for a tile below
         double sum = 0;
-        for (auto below = parts_of(parts_of(n, tile_boxes), tile_boxes); below > 1;
-             below = parts_of(below, tile_boxes))
+        auto below = parts_of(parts_of(n, tile_boxes), tile_boxes);
+        while (below > 1) {
             sum += below;
+            below = parts_of(below, tile_boxes);
+        }
         return sum;
     });
     const auto upper_bytes = 2 * boxes * scene.dop();
