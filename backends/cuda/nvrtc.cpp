@@ -136,10 +136,11 @@ Image Nvrtc::compile_anew(const KernelSource& source, const std::vector<std::str
         nvrtcDestroyProgram(&program);
     }
     if (code == 0 && !image.bytes.empty()) return image;
+    image.log = image.log.substr(0, image.log.find('\0')); // its end counts as a byte of it
     std::replace(image.log.begin(), image.log.end(), '\n', ' ');
     throw DeviceError(fmt::format("{} does not compile with NVRTC {} for {} and {}: {}", source.name,
                                   version_text(version_), image.target, fmt::join(options, " "),
-                                  image.log.empty() ? fmt::format("code {}", code) : image.log.c_str()));
+                                  image.log.empty() ? fmt::format("code {}", code) : image.log));
 }
 
 } // namespace tandem::cuda
