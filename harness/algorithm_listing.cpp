@@ -65,6 +65,7 @@ std::string by_preset(const Traversal& traversal, const Parameter& parameter) {
     const auto own = parameter.text(parameter.initial);
     if (values.size() == 1 && values.front().first == own) return {};
     std::vector<std::string> texts;
+    texts.reserve(values.size() + 1);
     for (const auto& [value, presets] : values)
         texts.push_back(fmt::format("{} in {}", value, fmt::join(presets, ", ")));
     if (std::ranges::find(values, own, [](const auto& entry) { return entry.first; }) == values.end())

@@ -127,6 +127,7 @@ nlohmann::ordered_json folded(const std::vector<nlohmann::ordered_json>& values)
     auto result = *shape;
     for (const auto& [name, part] : shape->items()) {
         std::vector<nlohmann::ordered_json> parts;
+        parts.reserve(values.size());
         for (const auto& value : values)
             parts.push_back(value.is_null()     ? nlohmann::ordered_json()
                             : shape->is_array() ? value.at(std::stoul(name))

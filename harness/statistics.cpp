@@ -101,6 +101,7 @@ std::vector<double> round_medians(std::span<const std::int64_t> samples,
     for (std::size_t i = 0; i < samples.size(); ++i)
         by_round[rounds[i]].push_back(static_cast<double>(samples[i]));
     std::vector<double> medians;
+    medians.reserve(by_round.size());
     for (auto& [round, values] : by_round) medians.push_back(median(std::move(values)));
     return medians;
 }

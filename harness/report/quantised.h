@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -20,7 +21,7 @@ public:
     void add(const Eigen::Vector3d& point, std::vector<std::uint16_t>& to) const {
         for (int axis = 0; axis < 3; ++axis) {
             const double share = size_[axis] > 0 ? (point[axis] - lower_[axis]) / size_[axis] : 0;
-            to.push_back(static_cast<std::uint16_t>(share * 65535 + 0.5));
+            to.push_back(static_cast<std::uint16_t>(std::lround(share * 65535)));
         }
     }
 

@@ -22,7 +22,7 @@ using Points = std::vector<Eigen::Vector3d>;
 Json json_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /// The points as they are drawn, in a box of their own.
-Json points_json(const Points& points, Quantised in) {
+Json points_json(const Points& points, const Quantised& in) {
     std::vector<std::uint16_t> coordinates;
     for (const auto& point : points) in.add(point, coordinates);
     return {{"lower", json_of(in.lower())}, {"size", json_of(in.size())}, {"points", base64(coordinates)}};
