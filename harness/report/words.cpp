@@ -93,6 +93,7 @@ std::string wins_text(const std::map<std::string, Wins>& wins, std::size_t conte
     std::vector<std::pair<std::string, Wins>> order(wins.begin(), wins.end());
     std::ranges::stable_sort(order, [](const auto& a, const auto& b) { return a.second.all > b.second.all; });
     std::vector<std::string> parts;
+    parts.reserve(order.size());
     for (const auto& [name, won] : order)
         parts.push_back(
             fmt::format("{} is the fastest in {} of {} comparisons, told apart from the best other "

@@ -24,7 +24,7 @@ Parts parts_of(const Row& row) {
     Parts parts{{"algorithm", std::string(cell.algorithm->name())}, {"preset", cell.preset}};
     const auto changed = changes(cell);
     for (const auto& [name, value] : cell.settings.texts())
-        parts.push_back({name, name + "=" + value, true, changed.contains(name)});
+        parts.push_back({name, fmt::format("{}={}", name, value), true, changed.contains(name)});
     parts.push_back({"device", "on " + name_of(cell.devices)});
     if (!row.scene.empty()) parts.push_back({"scene", row.scene});
     return parts;

@@ -92,7 +92,9 @@ int run(const Options& options) {
                1e-6 * static_cast<double>(sum.pairs * cells.size()) / sum.test_seconds);
     std::string where;
     for (const auto& group : choose_devices(backends, options.devices))
-        for (const auto* device : group) where += (where.empty() ? "" : ", ") + device->info().name;
+        for (const auto* device : group) // by two interfaces it is one
+            if (where.find(device->info().name) == std::string::npos)
+                where += (where.empty() ? "" : ", ") + device->info().name;
     if (options.rounding == "safe")
         testing_support::tried("pairs of hard families by five k, against the exact truth (`adversarial`)",
                                sum.pairs, "pairs", where, total(sum.missed));
