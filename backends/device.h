@@ -70,6 +70,8 @@ public:
     /// What an adaptor adds its handle to.
     struct Impl : std::enable_shared_from_this<Impl> {
         virtual ~Impl() = default;
+        /// What Device::adopt takes.
+        virtual void* native() const = 0;
         std::size_t bytes = 0; ///< at least what was asked for
         std::string label;     ///< names it in traces and errors
     };
@@ -80,6 +82,9 @@ public:
     explicit operator bool() const { return impl_ != nullptr; }
     std::size_t bytes() const { return impl_ ? impl_->bytes : 0; }
     Impl& impl() const { return *impl_; } ///< not of an empty handle
+    /// The memory by the vendor's own handle, which this one frees: a pointer of the host's or of CUDA's, a
+    /// cl_mem of OpenCL's; null of an empty handle.
+    void* native() const { return impl_ ? impl_->native() : nullptr; }
 
 private:
     std::shared_ptr<Impl> impl_;

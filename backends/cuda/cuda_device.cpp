@@ -44,6 +44,7 @@ struct CudaBuffer : Buffer::Impl {
         const CurrentContext current(*driver, context);
         driver->cuMemFree_v2(pointer);
     }
+    void* native() const override { return reinterpret_cast<void*>(pointer); }
 };
 
 struct CudaKernel : Kernel::Impl {

@@ -59,6 +59,7 @@ template<class Real>
 }
 
 struct HostBuffer : Buffer::Impl {
+    void* native() const override { return data; }
     std::unique_ptr<std::byte[]> storage;
     std::byte* data = nullptr;
 };

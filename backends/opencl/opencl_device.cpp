@@ -103,6 +103,7 @@ struct OpenclBuffer : Buffer::Impl {
     ~OpenclBuffer() override {
         if (owned && memory) clReleaseMemObject(memory);
     }
+    void* native() const override { return memory; }
 };
 
 struct OpenclKernel : Kernel::Impl {

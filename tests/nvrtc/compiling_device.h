@@ -27,7 +27,9 @@ public:
     std::string clock() const override { return "none"; }
 
 private:
-    struct Nothing : Buffer::Impl {};
+    struct Nothing : Buffer::Impl {
+        void* native() const override { return nullptr; }
+    };
     struct NoKernel : Kernel::Impl {};
 
     std::shared_ptr<Buffer::Impl> do_allocate(std::size_t) override { return std::make_shared<Nothing>(); }

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "python/core/answer.h"
+
+#include "algorithms/parameters/table.h"
+#include "scenes/error.h"
+
+#include <charconv>
+#include <fmt/format.h>
+#include <nanobind/stl/vector.h>
+
+namespace nb = nanobind;
+
+namespace tandem::python {
+
+namespace {
+
+static_assert(sizeof(Pair) == 4 * sizeof(std::int32_t) && sizeof(ContactPoint) % sizeof(double) == 0);
+
+/// The kind that DLPack has for a device's memory, and the device's number; none for OpenCL's.
+std::optional<std::pair<int, int>> dlpack_device(const std::string& id) {
+    if (id == "host") return std::pair(nb::device::cpu::value, 0);
+    constexpr std::string_view cuda = "cuda:";
+    int number = 0;
+    if (!id.starts_with(cuda)) return std::nullopt;
+    std::from_chars(id.data() + cuda.size(), id.data() + id.size(), number);
+    return std::pair(nb::device::cuda::value, number);
+}
+
+} // namespace
+
+Answer::~Answer() {
+    // Its buffers go back to where another thread may be taking some.
+    const std::lock_guard lock(collider_->mutex());
+    on_device_.reset();
+    result_.parts.clear();
+}
+
+Digest Answer::digest() const {
+    const std::lock_guard lock(collider_->mutex());
+    return result_.digest();
+}
+
+Digest Answer::contact_digest() const {
+    const std::lock_guard lock(collider_->mutex());
+    return result_.contact_digest();
+}
+
+void Answer::check_kept() const {
+    const auto& settings = collider_->settings();
+    if (settings[parameters::output] != Output::pairs)
+        throw InputError(fmt::format("setting output={} keeps no pairs; make the collider with output=pairs",
+                                     settings.text("output")));
+}
+
+std::vector<Pair> Answer::pairs() const {
+    check_kept();
+    const std::lock_guard lock(collider_->mutex());
+    return result_.download();
+}
+
+std::vector<ContactPoint> Answer::contacts() const {
+    check_kept();
+    if (collider_->settings()[parameters::contact_rule] == ContactRule::none)
+        throw InputError("setting contact_rule=none makes no contacts; make the collider without it");
+    const std::lock_guard lock(collider_->mutex());
+    return result_.download_contacts();
+}
+
+const Answer::OnDevice& Answer::on_device() const {
+    check_kept();
+    const std::lock_guard lock(collider_->mutex());
+    if (on_device_) return *on_device_;
+    auto& device = *collider_->devices().front();
+    const auto kind = dlpack_device(device.info().id);
+    if (!kind)
+        throw InputError(fmt::format("on_device: no array library takes OpenCL's memory by DLPack, and the "
+                                     "pairs are on {}; leave on_device out",
+                                     device.info().id));
+    if (result_.parts.size() != 1 || (result_.count > 0 && !result_.parts.front()->pairs().rows))
+        throw DeviceError(fmt::format("{}: the pairs are in {} parts, not all of them on one device; leave "
+                                      "on_device out",
+                                      device.info().id, result_.parts.size()));
+    OnDevice all{device.allocate(std::max<std::size_t>(1, result_.count) * sizeof(Pair), "pairs for DLPack"),
+                 kind->first, kind->second};
+    if (result_.count > 0) result_.parts.front()->expand(0, result_.count, all.rows);
+    device.finish();
+    on_device_ = std::move(all);
+    return *on_device_;
+}
+
+namespace {
+
+using Rows = nb::ndarray<nb::numpy, std::int32_t, nb::shape<-1, 4>>;
+
+Rows pairs(const Answer& answer) {
+    auto found = [&] {
+        const nb::gil_scoped_release released;
+        return answer.pairs();
+    }();
+    return owned_array<std::int32_t, 4>(std::move(found));
+}
+
+/// Columns of one array of records: pairs, features, points, normals, depths.
+nb::tuple contacts(const Answer& answer) {
+    auto found = [&] {
+        const nb::gil_scoped_release released;
+        return answer.contacts();
+    }();
+    const auto count = found.size();
+    const auto [data, owner] = owned(std::move(found));
+    constexpr auto words = std::int64_t{sizeof(ContactPoint) / sizeof(std::int32_t)};
+    constexpr auto reals = std::int64_t{sizeof(ContactPoint) / sizeof(double)};
+    ContactPoint none;
+    auto& first = count > 0 ? *data : none;
+    using Vectors = nb::ndarray<nb::numpy, double, nb::shape<-1, 3>>;
+    return nb::make_tuple(
+        Rows(&first.pair, {count, 4}, owner, {words, 1}),
+        nb::ndarray<nb::numpy, std::uint32_t, nb::shape<-1>>(&first.feature, {count}, owner, {words}),
+        Vectors(first.point.data(), {count, 3}, owner, {reals, 1}),
+        Vectors(first.normal.data(), {count, 3}, owner, {reals, 1}),
+        nb::ndarray<nb::numpy, double, nb::shape<-1>>(&first.depth, {count}, owner, {reals}));
+}
+
+nb::ndarray<nb::array_api, std::int32_t, nb::shape<-1, 4>> pairs_on_device(nb::handle self) {
+    const auto& answer = nb::cast<const Answer&>(self);
+    const auto& found = [&]() -> const Answer::OnDevice& {
+        const nb::gil_scoped_release released;
+        return answer.on_device();
+    }();
+    return {found.rows.native(), {answer.result().count, 4}, self, {}, nb::dtype<std::int32_t>(), found.type,
+            found.number};
+}
+
+template<auto member>
+auto number() {
+    return [](const Answer& self) { return self.result().*member; };
+}
+
+nb::tuple digest_tuple(const Digest& digest) { return nb::make_tuple(digest.count, digest.a, digest.b); }
+
+} // namespace
+
+void bind_answer(nb::module_& module) {
+    nb::class_<Answer>(module, "Answer", "What a run of Collider found; tandem.Answer hands on what it says.")
+        .def_prop_ro("count", number<&FrameResult::count>())
+        .def_prop_ro("contact_count", number<&FrameResult::contacts>())
+        .def_prop_ro("body_pairs", number<&FrameResult::body_pairs>())
+        .def_prop_ro("degenerate", number<&FrameResult::degenerate>())
+        .def_prop_ro("retries", number<&FrameResult::retries>())
+        .def_prop_ro("batches", number<&FrameResult::batches>())
+        .def("digest", [](const Answer& self) { return digest_tuple(self.digest()); })
+        .def("contact_digest", [](const Answer& self) { return digest_tuple(self.contact_digest()); })
+        .def("pairs", &pairs)
+        .def("contacts", &contacts)
+        .def("pairs_on_device", &pairs_on_device);
+}
+
+} // namespace tandem::python

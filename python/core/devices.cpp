@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "python/core/devices.h"
+
+#include "backends/registry.h"
+
+namespace nb = nanobind;
+
+namespace tandem::python {
+
+namespace {
+
+/// Under the names of `tandem devices --json`.
+nb::dict dictionary(const std::string& backend, const DeviceInfo& info) {
+    nb::dict fields;
+    fields["id"] = info.id.c_str();
+    fields["backend"] = backend.c_str();
+    fields["name"] = info.name.c_str();
+    fields["driver"] = info.driver.c_str();
+    fields["compiler"] = info.compiler.c_str();
+    fields["compute_units"] = info.compute_units;
+    fields["memory_bytes"] = info.global_bytes;
+    fields["local_bytes"] = info.local_bytes;
+    fields["double"] = info.has_double;
+    fields["hardware"] = info.hardware.empty() ? nb::object(nb::none()) : nb::str(info.hardware.c_str());
+    return fields;
+}
+
+nb::list devices() {
+    const auto backends = [] {
+        const nb::gil_scoped_release released;
+        return discover();
+    }();
+    nb::list all;
+    for (const auto& backend : backends)
+        for (const auto& device : backend.devices) all.append(dictionary(backend.name, device->info()));
+    return all;
+}
+
+} // namespace
+
+void bind_devices(nb::module_& module) {
+    module.def(
+        "devices", &devices, nb::sig("def devices() -> list[dict[str, object]]"),
+        "Every device there is, under the names of `tandem devices --json`: id (what Collider takes), "
+        "backend, name, driver, compiler, compute_units, memory_bytes, local_bytes, double (whether it "
+        "has that type), hardware (PCI address or UUID; None where unknown). A backend without devices "
+        "has no entry; asking a Collider for one of them says why.");
+}
+
+} // namespace tandem::python

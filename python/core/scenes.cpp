@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "python/core/scenes.h"
+
+#include "python/core/arrays.h"
+#include "scenes/scene.h"
+
+#include <fmt/format.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+namespace nb = nanobind;
+
+namespace tandem::python {
+
+namespace {
+
+Frame frame_of(const Scene& scene, std::size_t number) {
+    if (number >= scene.frame_count)
+        throw nb::index_error(
+            fmt::format("frame {} of {}; they are numbered from 0", number, scene.frame_count).c_str());
+    return scene.frame(number);
+}
+
+auto poses_of(const Scene& scene, std::size_t number) {
+    const auto frame = frame_of(scene, number);
+    std::vector<double> rows;
+    for (const auto& [q, t] : frame.poses)
+        rows.insert(rows.end(), {t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()});
+    return owned_array<double, 7>(std::move(rows));
+}
+
+nb::dict vertices_of(const Scene& scene, std::size_t number) {
+    auto frame = frame_of(scene, number);
+    nb::dict all;
+    for (std::size_t body = 0; body < scene.bodies.size(); ++body)
+        if (scene.bodies[body].deformable)
+            all[nb::int_(body)] = owned_array<double, 3>(std::move(frame.deformed[body]));
+    return all;
+}
+
+std::vector<std::uint32_t> meshes_of_bodies(const Scene& scene) {
+    std::vector<std::uint32_t> meshes;
+    for (const auto& body : scene.bodies) meshes.push_back(body.mesh);
+    return meshes;
+}
+
+std::vector<std::size_t> deformable_bodies(const Scene& scene) {
+    std::vector<std::size_t> bodies;
+    for (std::size_t body = 0; body < scene.bodies.size(); ++body)
+        if (scene.bodies[body].deformable) bodies.push_back(body);
+    return bodies;
+}
+
+} // namespace
+
+void bind_scenes(nb::module_& module) {
+    nb::class_<Scene>(module, "Scene",
+                      "Meshes, bodies and their motion, to be given to a Collider frame by frame. meshes: a "
+                      "list of Mesh; bodies: the mesh of each body; deformable: numbers of the bodies whose "
+                      "vertices come with every frame; frame_count, and key: name and parameters.")
+        .def_ro("key", &Scene::key)
+        .def_ro("frame_count", &Scene::frame_count)
+        .def_ro("meshes", &Scene::meshes)
+        .def_prop_ro("bodies", &meshes_of_bodies)
+        .def_prop_ro("deformable", &deformable_bodies)
+        .def("poses", &poses_of, nb::arg("frame"),
+             "Of a frame, numbered from 0: (bodies, 7) float64, rows tx ty tz qw qx qy qz.")
+        .def("vertices", &vertices_of, nb::arg("frame"),
+             "Of a frame's deformable bodies: {body: (n, 3) float64}, in the world.");
+    module.def(
+        "make_scene", [](const std::string& specification) { return make_scene(specification); },
+        nb::arg("specification"), nb::call_guard<nb::gil_scoped_release>(),
+        "A scene as the program takes it: NAME, NAME:par=value,par=value, the path of a scene "
+        "description (.json) or of a recording (.frames). Raises ValueError.");
+}
+
+} // namespace tandem::python
