@@ -146,6 +146,7 @@ void bind_answer(nb::module_& module) {
         .def_prop_ro("contact_count", number<&FrameResult::contacts>())
         .def_prop_ro("body_pairs", number<&FrameResult::body_pairs>())
         .def_prop_ro("degenerate", number<&FrameResult::degenerate>())
+        .def_prop_ro("seconds", &Answer::seconds)
         .def_prop_ro("retries", number<&FrameResult::retries>())
         .def_prop_ro("batches", number<&FrameResult::batches>())
         .def("digest", [](const Answer& self) { return digest_tuple(self.digest()); })

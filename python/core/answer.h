@@ -9,13 +9,14 @@ namespace tandem::python {
 /// interpreter's lock.
 class Answer {
 public:
-    Answer(std::shared_ptr<Collider> collider, FrameResult result)
-        : collider_(std::move(collider)), result_(std::move(result)) {}
+    Answer(std::shared_ptr<Collider> collider, FrameResult result, double seconds)
+        : collider_(std::move(collider)), result_(std::move(result)), seconds_(seconds) {}
     Answer(const Answer&) = delete;
     Answer& operator=(const Answer&) = delete;
     ~Answer();
 
     const FrameResult& result() const { return result_; }
+    double seconds() const { return seconds_; }
     Digest digest() const;
     Digest contact_digest() const;
     /// Sorted. Throw InputError where the settings keep none.
@@ -38,6 +39,7 @@ private:
 
     std::shared_ptr<Collider> collider_;
     FrameResult result_;
+    double seconds_;
     mutable std::optional<OnDevice> on_device_;
 };
 

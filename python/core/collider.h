@@ -27,7 +27,9 @@ public:
 
     /// Finds the pairs of a frame; without poses every body is at the identity, and deformable ones without
     /// vertices have their mesh's. Throws InputError or DeviceError.
-    FrameResult run(const std::optional<Poses>& poses, const std::vector<std::optional<Points>>& vertices);
+    /// Seconds: of the frame itself, as the program measures one.
+    std::pair<FrameResult, double> run(const std::optional<Poses>& poses,
+                                       const std::vector<std::optional<Points>>& vertices);
     void reset();
 
     std::size_t bodies() const { return scene_.bodies.size(); }

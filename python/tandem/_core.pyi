@@ -103,6 +103,9 @@ class Answer:
     def degenerate(self) -> int: ...
 
     @property
+    def seconds(self) -> float: ...
+
+    @property
     def retries(self) -> int: ...
 
     @property

@@ -50,9 +50,24 @@ class Answer:
         return self._core.body_pairs
 
     @property
+    def degenerate(self) -> int:
+        """Pairs without contacts because a tetrahedron has no volume."""
+        return self._core.degenerate
+
+    @property
+    def seconds(self) -> float:
+        """What the frame took, from its poses to known counts, without the call's own part: what the program measures."""
+        return self._core.seconds
+
+    @property
     def retries(self) -> int:
         """How often a buffer was too small and a walk ran again."""
         return self._core.retries
+
+    @property
+    def batches(self) -> int:
+        """Parts that the frame was split into for want of memory; 1: none."""
+        return self._core.batches
 
     def digest(self) -> Digest:
         """Of the pairs, summed on the device: no pair is brought to the host."""
@@ -100,12 +115,13 @@ class Collider:
                  deformable: bool | Iterable[int] = False, preset: str = "", **settings: Any) -> None:
         made = [_mesh(mesh, f"meshes[{i}]") for i, mesh in enumerate(_list(meshes, "meshes"))]
         of = list(range(len(made))) if bodies is None else [_number(value, f"bodies[{i}]") for i, value in enumerate(_list(bodies, "bodies"))]
-        self._deformable = _flags(deformable, len(of))
+        flags = _flags(deformable, len(of))
+        self._bodies, self._soft = len(of), [body for body, flag in enumerate(flags) if flag]
         for what, text in (("algorithm", algorithm), ("device", device), ("preset", preset)):
             if not isinstance(text, str):
                 raise TypeError(f"{what}: type {type(text).__name__}, and a name is wanted")
         texts = {name: _text(value, name) for name, value in settings.items()}
-        self._core = _core.Collider(made, of, self._deformable, algorithm, preset, device, texts)
+        self._core = _core.Collider(made, of, flags, algorithm, preset, device, texts)
 
     def run(self, poses: Any = None, vertices: Any = None) -> Answer:
         """Finds the candidate pairs and contacts of a frame.
@@ -154,18 +170,17 @@ class Collider:
 
     def _vertices(self, vertices):
         """One entry for each body: its array, or None."""
-        bodies = [body for body, flag in enumerate(self._deformable) if flag]
-        if not bodies:
+        if not self._soft:
             raise ValueError("vertices: no body is deformable; make the collider with deformable=True or numbers of bodies")
-        if not isinstance(vertices, Mapping):
+        if not isinstance(vertices, (dict, Mapping)):
             rows = _list(vertices, "vertices")
-            if len(rows) != len(bodies):
-                raise ValueError(f"vertices: {len(rows)} arrays for {len(bodies)} deformable bodies; give each its array")
-            vertices = dict(zip(bodies, rows))
-        given = [None] * len(self._deformable)
+            if len(rows) != len(self._soft):
+                raise ValueError(f"vertices: {len(rows)} arrays for {len(self._soft)} deformable bodies; give each its array")
+            vertices = dict(zip(self._soft, rows))
+        given = [None] * self._bodies
         for body, rows in vertices.items():
-            if body not in bodies:
-                raise ValueError(f"vertices: {body!r} is no deformable body (there are: {', '.join(map(str, bodies))})")
+            if body not in self._soft:
+                raise ValueError(f"vertices: {body!r} is no deformable body (there are: {', '.join(map(str, self._soft))})")
             given[body] = host_array(rows, f"vertices of body {body}", 3)
         return given
 
