@@ -302,6 +302,22 @@ class Threads(ColliderCase):
         self.assertEqual(wrong, [])
 
 
+    def test_colliders_side_by_side(self):
+        expected = self.collider().digest(POSES)
+        found = []
+
+        def work(device):
+            for _ in range(3):
+                collider = self.collider(device=device)
+                found.extend(collider.digest(POSES) for _ in range(10))
+        threads = [threading.Thread(target=work, args=(device,)) for device in DEVICES + DEVICES]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual((len(found), set(found)), (120, {expected}))
+
+
 class BadInput(ColliderCase):
     def expect(self, kind, words, function, *arguments, **named):
         with self.assertRaises(kind) as caught:
@@ -391,6 +407,24 @@ class BadInput(ColliderCase):
     def test_failures_of_devices(self):
         self.assertTrue(issubclass(tandem.DeviceError, RuntimeError) and issubclass(tandem.OutOfMemory, tandem.DeviceError))
         self.expect(tandem.OutOfMemory, "bytes", tandem.Collider, self.meshes, **{**self.small("gproximity"), "algorithm": "gproximity", "queue_bytes": 1 << 39})
+
+
+class Example(ColliderCase):
+    def example(self, *arguments, code=0):
+        done = subprocess.run([sys.executable, SOURCE / "scripts/examples/collide.py", *map(str, arguments)], cwd=self.work, capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": FOLDER.name})
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1 if code else 0, done.stderr)
+        return done.stdout + done.stderr
+
+    def test_draws_contacts(self):
+        self.assertRegex(self.example(), r"\d{2,} contacts")
+        self.assertGreater((self.work / "collide.png").stat().st_size, 10000)
+        self.example(*self.files, "--shift", "0.125,0,0.0625", "-o", "other.png")
+        self.assertTrue((self.work / "other.png").exists())
+        self.assertIn("no contacts to draw", self.example(*self.files, "--shift", "99,0,0"))
+        for arguments in ((self.files[0],), (self.files[0], "nowhere.msh"), ("--shift", "1,x"), ("--device", "hst")):
+            self.assertTrue(self.example(*arguments, code=2).startswith("collide.py: "))
 
 
 class Package(unittest.TestCase):

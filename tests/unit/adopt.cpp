@@ -26,6 +26,7 @@ TEST(Adopt, WorksOnTheApplicationsQueueAndMemory) {
         const auto device = opencl::adopt(context, id, queue);
         const StageScope scope(*device, Stage::read);
         const auto buffer = device->adopt(memory, 16, "the application's");
+        EXPECT_EQ(buffer.native(), memory);
         std::vector<std::uint32_t> back(4);
         device->download(buffer, std::as_writable_bytes(std::span(back)));
         EXPECT_EQ(back, words);
