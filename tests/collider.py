@@ -18,7 +18,7 @@ import unittest
 
 import numpy
 
-from program import PROGRAM, SMALL, SOURCE, Case, bar, gmsh, sets, tandem as run_tandem
+from program import LONG, PROGRAM, SMALL, SOURCE, Case, bar, gmsh, sets, tandem as run_tandem
 
 DEVICES = ("host", "opencl:0")
 POSES = [[0, 0, 0, 1, 0, 0, 0], [0.125, 0, 0.0625, 0.98, 0.1, 0.05, 0.15]]
@@ -461,17 +461,18 @@ class Package(unittest.TestCase):
 
     def test_what_a_call_costs(self):
         """Printed, not judged: a machine that is busy has no times."""
-        scene = tandem.make_scene("plates")
+        name, last, rounds = ("plates", 69, 5) if LONG else ("plates:count=2", 62, 2)
+        scene = tandem.make_scene(name)
         for device in DEVICES:
             collider = tandem.Collider(scene.meshes, device=device, bodies=scene.bodies, deformable=True)
-            frames = [scene.vertices(i) for i in range(60, 70)]
-            whole, within = min(self.replay(collider, frames) for _ in range(5))
+            frames = [scene.vertices(i) for i in range(60, last + 1)]
+            whole, within = min(self.replay(collider, frames) for _ in range(rounds))
             out = pathlib.Path(FOLDER.name) / f"cost-{device}.jsonl"
-            status, text, errors = run_tandem("run", "plates", "--frames", "60:69", "--algorithm", "tiled", "--device", device, "--repeat", 5, "--no-check",
+            status, text, errors = run_tandem("run", name, "--frames", f"60:{last}", "--algorithm", "tiled", "--device", device, "--repeat", rounds, "--no-check",
                                               "--no-count", "--out", out)
             self.assertEqual((status, errors), (0, []), text)
             program = min(json.loads(out.read_text().splitlines()[0])["total_ns"]["samples"]) / len(frames)
-            print(f"\n  plates on {device}, us a frame: {1e6 * whole:.0f} by Collider.run, of which {1e6 * (whole - within):.1f} are the call's; "
+            print(f"\n  {name} on {device}, us a frame: {1e6 * whole:.0f} by Collider.run, of which {1e6 * (whole - within):.1f} are the call's; "
                   f"{program * 1e-3:.0f} by tandem run", end="", file=sys.stderr)
 
     @staticmethod
