@@ -6,9 +6,8 @@ namespace tandem {
 
 void tell_not_converged(const StepReport& report) {
     tell("tandem: step {}: the contact solver has not converged after {} iterations: residual {:.3g} N s "
-         "above "
-         "{:.3g}, energy changed by {:+.3g} J; raise iterations, shorten step or raise absolute_tolerance "
-         "(--dynamics NAME=VALUE)\n",
+         "above {:.3g}, energy changed by {:+.3g} J; raise iterations, shorten step or raise "
+         "absolute_tolerance (--dynamics NAME=VALUE)\n",
          report.step, report.iterations, report.residual, report.tolerance, report.energy_change);
 }
 
