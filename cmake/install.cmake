@@ -6,6 +6,9 @@ include(CMakePackageConfigHelpers)
 # Strangers write <tandem/backends/device.h>; the headers name each other from the tree's root.
 target_include_directories(tandem INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 install(TARGETS tandem EXPORT tandem-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+if(TANDEM_HAS_MPI)
+  install(TARGETS tandem-mpi EXPORT tandem-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endif()
 install(TARGETS tandem-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES scripts/completion/tandem.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME tandem)
 install(FILES scripts/completion/_tandem DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
@@ -16,17 +19,23 @@ foreach(script tables figures render convert_records)
 endforeach()
 set(public_headers
   backends/device.h backends/trace.h backends/registry.h backends/host/host_device.h backends/opencl/opencl_device.h
-  backends/cuda/cuda_device.h
+  backends/cuda/cuda_device.h backends/ranks.h
   algorithms/traversal.h algorithms/cost.h algorithms/answer/frame_result.h
   algorithms/parameters/parameter.h algorithms/parameters/choices.h algorithms/parameters/table.h
   algorithms/bounds/geometry.h algorithms/bodies/range.h scenes/scene.h scenes/dynamics.h
   scenes/contact.h scenes/simulate/simulation.h scenes/mesh.h scenes/builtin.h scenes/error.h)
+if(TANDEM_HAS_MPI)
+  list(APPEND public_headers backends/mpi/mpi_ranks.h)
+endif()
 foreach(header ${public_headers})
   cmake_path(GET header PARENT_PATH folder)
   install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tandem/${folder})
 endforeach()
 install(EXPORT tandem-targets NAMESPACE tandem:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/tandem)
 set(of_peers)
+if(TANDEM_HAS_MPI)
+  set(of_mpi "find_dependency(MPI COMPONENTS CXX)\n")
+endif()
 if(embree_FOUND)
   set(of_peers "find_dependency(embree 3)\n")
 endif()
@@ -35,7 +44,7 @@ list(APPEND CMAKE_MODULE_PATH \${CMAKE_CURRENT_LIST_DIR})
 foreach(package Eigen3 fmt nlohmann_json OpenCL ZLIB Threads TBB GMP)
   find_dependency(\${package})
 endforeach()
-${of_peers}include(\${CMAKE_CURRENT_LIST_DIR}/tandem-targets.cmake)
+${of_peers}${of_mpi}include(\${CMAKE_CURRENT_LIST_DIR}/tandem-targets.cmake)
 ")
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/tandem-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/tandem-config.cmake ${PROJECT_BINARY_DIR}/tandem-config-version.cmake

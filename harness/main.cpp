@@ -2,6 +2,7 @@
 #include "backends/device.h"
 #include "harness/command_line/command_line.h"
 #include "harness/memory_reserve.h"
+#include "harness/ranks/launched.h"
 #include "harness/standard_streams.h"
 #include "harness/text_lines.h"
 #include "scenes/error.h"
@@ -18,6 +19,7 @@ using tandem::InputError;
 int run(int argc, char** argv) {
     try {
         const tandem::MemoryReserve reserve;
+        const tandem::Launched launched;
         return tandem::read_command_line(argc, argv)();
     } catch (const InputError& error) {
         tandem::tell("tandem: {}\n", tandem::visible(error.what()));

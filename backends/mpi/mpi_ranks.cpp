@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+#include "backends/mpi/mpi_ranks.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <string_view>
+
+namespace tandem {
+
+namespace {
+
+enum Tag { exchanged = 1, passed };
+
+/// Counts of MPI's calls are ints: a longer message goes in pieces of that size.
+constexpr std::size_t most_at_once = std::size_t{1} << 30;
+
+void check(int code, std::string_view call) {
+    if (code == MPI_SUCCESS) return;
+    std::array<char, MPI_MAX_ERROR_STRING> text{};
+    int length = 0;
+    if (MPI_Error_string(code, text.data(), &length) != MPI_SUCCESS) length = 0;
+    throw RanksError(fmt::format("MPI: {}: {}", call,
+                                 length > 0 ? std::string_view(text.data(), static_cast<std::size_t>(length))
+                                            : std::string_view("unknown error")));
+}
+
+int count_of(std::size_t bytes) { return static_cast<int>(std::min(bytes, most_at_once)); }
+
+/// work(offset, count) for each piece of so many bytes.
+template<class Work>
+void in_pieces(std::size_t bytes, const Work& work) {
+    for (std::size_t offset = 0; offset < bytes; offset += most_at_once)
+        work(offset, count_of(bytes - offset));
+}
+
+class MpiRanks final : public Ranks {
+public:
+    explicit MpiRanks(MPI_Comm communicator) {
+        check(MPI_Comm_dup(communicator, &communicator_), "MPI_Comm_dup");
+        check(MPI_Comm_set_errhandler(communicator_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+        check(MPI_Comm_rank(communicator_, &rank_), "MPI_Comm_rank");
+        check(MPI_Comm_size(communicator_, &size_), "MPI_Comm_size");
+    }
+    ~MpiRanks() override { MPI_Comm_free(&communicator_); }
+
+    int rank() const override { return rank_; }
+    int size() const override { return size_; }
+
+    void broadcast(Bytes& bytes, int from) override;
+    std::vector<Bytes> gather_to_all(std::span<const std::byte> own) override;
+    std::vector<Bytes> exchange(const std::vector<Bytes>& out) override;
+    void send(int to, std::span<const std::byte> bytes) override;
+    Received receive() override;
+    bool is_there() override;
+    [[noreturn]] void abort(int code) override {
+        MPI_Abort(communicator_, code);
+        std::_Exit(code); // MPI_Abort is not declared not to return
+    }
+
+private:
+    std::vector<std::uint64_t> sizes_to_all(const std::vector<Bytes>& out);
+
+    MPI_Comm communicator_ = MPI_COMM_NULL;
+    int rank_ = 0, size_ = 1;
+};
+
+void MpiRanks::broadcast(Bytes& bytes, int from) {
+    std::uint64_t size = bytes.size();
+    check(MPI_Bcast(&size, 1, MPI_UINT64_T, from, communicator_), "MPI_Bcast");
+    bytes.resize(size);
+    in_pieces(size, [&](std::size_t offset, int count) {
+        check(MPI_Bcast(bytes.data() + offset, count, MPI_BYTE, from, communicator_), "MPI_Bcast");
+    });
+}
+
+std::vector<Ranks::Bytes> MpiRanks::gather_to_all(std::span<const std::byte> own) {
+    const auto ranks = static_cast<std::size_t>(size_);
+    int length = 0;
+    if (own.size() > most_at_once)
+        throw RanksError(
+            fmt::format("MPI: a rank gave {} bytes to all; at most {}", own.size(), most_at_once));
+    length = static_cast<int>(own.size());
+    std::vector<int> lengths(ranks), starts(ranks);
+    check(MPI_Allgather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, communicator_), "MPI_Allgather");
+    std::uint64_t total = 0;
+    for (std::size_t i = 0; i < ranks; ++i) {
+        starts[i] = static_cast<int>(total);
+        total += static_cast<std::uint64_t>(lengths[i]);
+    }
+    if (total > most_at_once)
+        throw RanksError(fmt::format("MPI: the ranks gave {} bytes to all; at most {}", total, most_at_once));
+    Bytes all(total);
+    check(MPI_Allgatherv(own.data(), length, MPI_BYTE, all.data(), lengths.data(), starts.data(), MPI_BYTE,
+                         communicator_),
+          "MPI_Allgatherv");
+    std::vector<Bytes> parts(ranks);
+    for (std::size_t i = 0; i < ranks; ++i)
+        parts[i].assign(all.begin() + starts[i], all.begin() + starts[i] + lengths[i]);
+    return parts;
+}
+
+/// How many bytes each rank has for this one.
+std::vector<std::uint64_t> MpiRanks::sizes_to_all(const std::vector<Bytes>& out) {
+    std::vector<std::uint64_t> sizes(out.size()), coming(out.size());
+    for (std::size_t i = 0; i < out.size(); ++i) sizes[i] = out[i].size();
+    check(MPI_Alltoall(sizes.data(), 1, MPI_UINT64_T, coming.data(), 1, MPI_UINT64_T, communicator_),
+          "MPI_Alltoall");
+    return coming;
+}
+
+std::vector<Ranks::Bytes> MpiRanks::exchange(const std::vector<Bytes>& out) {
+    const auto coming = sizes_to_all(out);
+    std::vector<Bytes> in(out.size());
+    std::vector<MPI_Request> requests;
+    for (int other = 0; other < size_; ++other) {
+        auto& bytes = in[static_cast<std::size_t>(other)];
+        bytes.resize(coming[static_cast<std::size_t>(other)]);
+        in_pieces(bytes.size(), [&](std::size_t offset, int count) {
+            check(MPI_Irecv(bytes.data() + offset, count, MPI_BYTE, other, exchanged, communicator_,
+                            &requests.emplace_back()),
+                  "MPI_Irecv");
+        });
+    }
+    for (int other = 0; other < size_; ++other) {
+        const auto& bytes = out[static_cast<std::size_t>(other)];
+        in_pieces(bytes.size(), [&](std::size_t offset, int count) {
+            check(MPI_Isend(bytes.data() + offset, count, MPI_BYTE, other, exchanged, communicator_,
+                            &requests.emplace_back()),
+                  "MPI_Isend");
+        });
+    }
+    check(MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE),
+          "MPI_Waitall");
+    return in;
+}
+
+void MpiRanks::send(int to, std::span<const std::byte> bytes) {
+    if (bytes.size() > most_at_once)
+        throw RanksError(fmt::format("MPI: a message of {} bytes; at most {}", bytes.size(), most_at_once));
+    check(MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, passed, communicator_),
+          "MPI_Send");
+}
+
+Ranks::Received MpiRanks::receive() {
+    MPI_Status status;
+    check(MPI_Probe(MPI_ANY_SOURCE, passed, communicator_, &status), "MPI_Probe");
+    int length = 0;
+    check(MPI_Get_count(&status, MPI_BYTE, &length), "MPI_Get_count");
+    Received message{status.MPI_SOURCE, Bytes(static_cast<std::size_t>(length))};
+    check(MPI_Recv(message.bytes.data(), length, MPI_BYTE, message.from, passed, communicator_,
+                   MPI_STATUS_IGNORE),
+          "MPI_Recv");
+    return message;
+}
+
+bool MpiRanks::is_there() {
+    int flag = 0;
+    check(MPI_Iprobe(MPI_ANY_SOURCE, passed, communicator_, &flag, MPI_STATUS_IGNORE), "MPI_Iprobe");
+    return flag != 0;
+}
+
+} // namespace
+
+std::unique_ptr<Ranks> mpi_ranks(MPI_Comm communicator) { return std::make_unique<MpiRanks>(communicator); }
+
+std::string mpi_version() {
+    std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
+    int length = 0;
+    if (MPI_Get_library_version(text.data(), &length) != MPI_SUCCESS) return "unknown";
+    const std::string_view all(text.data(), static_cast<std::size_t>(length));
+    return std::string(all.substr(0, all.find_first_of(",\n")));
+}
+
+} // namespace tandem
