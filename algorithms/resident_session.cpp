@@ -7,32 +7,12 @@
 
 namespace tandem {
 
-namespace {
-
-class ResidentSession final : public Session {
-public:
-    ResidentSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted)
-        : steps_(traversal, device, scene, std::move(fitted)), devices_{&device} {}
-
-private:
-    void do_reset() override;
-    FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override;
-    void do_count_work(bool on) override { steps_.count(on); }
-    std::span<Device* const> do_devices() const override { return devices_; }
-    const Settings& do_settings() const override { return steps_.settings; }
-
-    void refresh(const Frame& frame);
-    void launch(const AnswerBuffers& answer);
-    void begin(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs,
-               const AnswerBuffers& answer);
-    bool grow(AnswerBuffers& answer);
-    FrameResult run_whole(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs);
-
-    Pipeline steps_;
-    std::array<Device*, 1> devices_;
-    std::uint64_t batches_ = 1; ///< to begin a frame with
-    bool stale_ = true;         ///< whether all commands so far have run is not known
-};
+void ResidentSession::take(const Share& share) {
+    stale_ = true; // bodies new to the share have no poses here
+    steps_.bodies->take(share);
+    steps_.steps.hierarchy->take(share, steps_.bodies->count());
+    steps_.body_pairs->take(share);
+}
 
 void ResidentSession::do_reset() {
     steps_.body_pairs->reset();
@@ -125,13 +105,6 @@ FrameResult ResidentSession::do_run(const Frame& frame, std::optional<std::span<
     auto result = run_in_batches(steps_, frame, body_pairs, batches_);
     stale_ = false;
     return result;
-}
-
-} // namespace
-
-std::unique_ptr<Session> resident_session(const Traversal& traversal, Device& device, const Scene& scene,
-                                          Settings fitted) {
-    return std::make_unique<ResidentSession>(traversal, device, scene, std::move(fitted));
 }
 
 } // namespace tandem

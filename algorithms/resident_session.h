@@ -2,13 +2,43 @@
 #pragma once
 
 #include "algorithms/pipeline.h"
+#include "algorithms/shares/share.h"
+
+#include <array>
 
 namespace tandem {
 
 /// A session on one device whose data stay there: a frame is a fixed sequence of commands and one wait. Past
 /// capacity counters count on, buffers grow and the walk runs again; a frame that does not fit into memory
 /// runs in batches.
-std::unique_ptr<Session> resident_session(const Traversal& traversal, Device& device, const Scene& scene,
-                                          Settings fitted);
+class ResidentSession final : public Session {
+public:
+    /// `fitted`: Traversal::fitted.
+    ResidentSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted)
+        : steps_(traversal, device, scene, std::move(fitted)), devices_{&device} {}
+
+    /// From now on finds the pairs of a share of each frame, and looks at nothing else of it. Body pairs that
+    /// run() is given are of bodies that have a part in the share.
+    void take(const Share& share);
+
+private:
+    void do_reset() override;
+    FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override;
+    void do_count_work(bool on) override { steps_.count(on); }
+    std::span<Device* const> do_devices() const override { return devices_; }
+    const Settings& do_settings() const override { return steps_.settings; }
+
+    void refresh(const Frame& frame);
+    void launch(const AnswerBuffers& answer);
+    void begin(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs,
+               const AnswerBuffers& answer);
+    bool grow(AnswerBuffers& answer);
+    FrameResult run_whole(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs);
+
+    Pipeline steps_;
+    std::array<Device*, 1> devices_;
+    std::uint64_t batches_ = 1; ///< to begin a frame with
+    bool stale_ = true;         ///< whether all commands so far have run is not known
+};
 
 } // namespace tandem

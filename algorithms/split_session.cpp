@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/split_session.h"
 
-#include "algorithms/bounds/geometry.h"
-#include "algorithms/broad/broad.h"
+#include "algorithms/parameters/table.h"
 #include "algorithms/resident_session.h"
+#include "algorithms/shares/balance.h"
+#include "algorithms/shares/deal.h"
 #include "scenes/parallel.h"
+
+#include <chrono>
 
 namespace tandem {
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 void add(FrameResult& sum, FrameResult& part, std::span<const Counter> counters) {
     sum.count += part.count;
+    sum.body_pairs += part.body_pairs;
     sum.contacts += part.contacts;
     sum.degenerate += part.degenerate;
     sum.rejected += part.rejected;
@@ -31,7 +37,7 @@ void add(FrameResult& sum, FrameResult& part, std::span<const Counter> counters)
 class SplitSession final : public Session {
 public:
     SplitSession(const Traversal& traversal, std::span<Device* const> devices, const Scene& scene,
-                 std::vector<Settings> fitted);
+                 const std::vector<Settings>& fitted);
 
 private:
     void do_reset() override {
@@ -44,38 +50,111 @@ private:
     std::span<Device* const> do_devices() const override { return devices_; }
     const Settings& do_settings() const override { return sessions_.front()->settings(); }
 
+    bool deal(const Frame& frame);
+    void deal_pairs(std::span<const BodyPair> body_pairs);
+    FrameResult run_share(std::size_t i, const Frame& frame, bool is_dealt_pairs);
+    void look_back(const FrameResult& result);
+
     const Traversal& traversal_;
     std::vector<Device*> devices_;
-    std::vector<std::unique_ptr<Session>> sessions_;
-    std::optional<BroadSweep> broad_;
+    std::vector<std::unique_ptr<ResidentSession>> sessions_;
+    std::optional<BroadSweep> broad_; ///< where the host finds body pairs
+    Deal deal_;
+    Balance balance_;
+    std::vector<Share> taken_;                 ///< by device: what its session has been told
+    std::vector<std::vector<Role>> roles_;     ///< by device and body, of taken_
+    std::vector<std::vector<BodyPair>> dealt_; ///< by device: pairs that the host has dealt out
 };
 
 SplitSession::SplitSession(const Traversal& traversal, std::span<Device* const> devices, const Scene& scene,
-                           std::vector<Settings> fitted)
-    : traversal_(traversal), devices_(devices.begin(), devices.end()) {
-    for (std::size_t i = 0; i < devices.size(); ++i) {
-        if (fitted[i][parameters::broad] == Broad::device) fitted[i].set(parameters::broad(Broad::tight));
-        sessions_.push_back(resident_session(traversal, *devices[i], scene, fitted[i]));
+                           const std::vector<Settings>& fitted)
+    : traversal_(traversal),
+      devices_(devices.begin(), devices.end()),
+      deal_(scene, geometry_of(fitted.front()), devices.size()),
+      balance_(devices.size()),
+      taken_(devices.size()),
+      roles_(devices.size(), std::vector<Role>(scene.bodies.size(), Role::none)),
+      dealt_(devices.size()) {
+    for (std::size_t i = 0; i < devices.size(); ++i)
+        sessions_.push_back(std::make_unique<ResidentSession>(traversal, *devices[i], scene, fitted[i]));
+    if (const auto who = settings()[parameters::broad]; who != Broad::device)
+        broad_.emplace(scene, geometry_of(settings()), who);
+}
+
+/// Deals the bodies anew where it has to be, or had better be; returns whether it has.
+bool SplitSession::deal(const Frame& frame) {
+    if (deal_.holds(frame) && !balance_.wants_a_deal()) return false;
+    const HostWork work(*devices_.front(), Stage::broad, "deal bodies");
+    deal_.make(frame, balance_.speeds());
+    balance_.dealt();
+    for (std::size_t i = 0; i < sessions_.size(); ++i) {
+        taken_[i] = deal_.shares()[i];
+        roles_[i] = roles_in(taken_[i], roles_[i].size());
+        sessions_[i]->take(taken_[i]);
     }
-    broad_.emplace(scene, geometry_of(settings()), settings()[parameters::broad]);
+    return true;
+}
+
+/// Deals pairs out by who owns their bodies. Pairs that are given may be of any bodies: shares that lack one
+/// get it.
+void SplitSession::deal_pairs(std::span<const BodyPair> body_pairs) {
+    std::vector<bool> lacks(sessions_.size());
+    for (auto& pairs : dealt_) pairs.clear();
+    for (const auto& pair : body_pairs) {
+        const auto i = std::min(deal_.share_of(pair), sessions_.size() - 1);
+        dealt_[i].push_back(pair);
+        for (const auto body : {pair.a, pair.b}) {
+            if (roles_[i][body] != Role::none) continue;
+            roles_[i][body] = Role::other;
+            taken_[i].others.push_back(body);
+            lacks[i] = true;
+        }
+    }
+    for (std::size_t i = 0; i < sessions_.size(); ++i)
+        if (lacks[i]) sessions_[i]->take(taken_[i]);
+}
+
+FrameResult SplitSession::run_share(std::size_t i, const Frame& frame, bool is_dealt_pairs) {
+    const auto begin = Clock::now();
+    auto result = is_dealt_pairs ? sessions_[i]->run(frame, dealt_[i]) : sessions_[i]->run(frame);
+    const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
+    result.shared = {{taken_[i].own.size() + taken_[i].others.size(), result.body_pairs, result.count, ns}};
+    return result;
+}
+
+/// What the frame tells of the next deal.
+void SplitSession::look_back(const FrameResult& result) {
+    if (result.retries > 0 || result.batches > sessions_.size()) return; // they are not what frames take
+    std::vector<double> work;
+    for (std::size_t i = 0; i < result.shared.size(); ++i)
+        work.push_back(deal_.work_of(taken_[i], result.shared[i].pairs));
+    balance_.see(result.shared, work);
+    if (!balance_.wants_a_deal() || !result.has_pairs()) return;
+    std::vector<std::uint64_t> counts;
+    for (const auto& part : result.parts) part->count_by_body(counts);
+    counts.resize(roles_.front().size());
+    deal_.learn(counts);
 }
 
 FrameResult SplitSession::do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
+    const bool is_new = deal(frame);
     std::vector<BodyPair> found;
-    if (!body_pairs) {
+    if (!body_pairs && broad_) {
         const HostWork work(*devices_.front(), Stage::broad, "body pairs");
         found = broad_->pairs(frame);
+        body_pairs = found;
     }
-    const auto pairs = body_pairs ? *body_pairs : std::span<const BodyPair>(found);
+    if (body_pairs) deal_pairs(*body_pairs);
     std::vector<FrameResult> parts(sessions_.size());
-    parallel_for(sessions_.size(), sessions_.size(), [&](std::size_t i) {
-        const auto first = pairs.size() * i / sessions_.size();
-        const auto end = pairs.size() * (i + 1) / sessions_.size();
-        parts[i] = sessions_[i]->run(frame, pairs.subspan(first, end - first));
-    });
+    parallel_for(sessions_.size(), sessions_.size(),
+                 [&](std::size_t i) { parts[i] = run_share(i, frame, body_pairs.has_value()); });
     FrameResult sum;
-    for (auto& part : parts) add(sum, part, traversal_.counters());
-    sum.body_pairs = pairs.size();
+    for (auto& part : parts) {
+        sum.shared.push_back(part.shared.front());
+        add(sum, part, traversal_.counters());
+    }
+    sum.deals = is_new ? 1 : 0;
+    look_back(sum);
     return sum;
 }
 
@@ -83,7 +162,7 @@ FrameResult SplitSession::do_run(const Frame& frame, std::optional<std::span<con
 
 std::unique_ptr<Session> split_session(const Traversal& traversal, std::span<Device* const> devices,
                                        const Scene& scene, std::vector<Settings> fitted) {
-    return std::make_unique<SplitSession>(traversal, devices, scene, std::move(fitted));
+    return std::make_unique<SplitSession>(traversal, devices, scene, fitted);
 }
 
 } // namespace tandem

@@ -5,10 +5,10 @@
 
 namespace tandem {
 
-/// A session on several devices, which share a frame's body pairs: the host finds them and deals them out
-/// evenly, each device has all bodies and walks its own pairs, all at the same time. `fitted`: of each
-/// device; with broad=device all settle for broad=tight, since nobody could deal out pairs that a device has
-/// found.
+/// A session on several devices, which share a frame's body pairs: each owns some of the bodies and has the
+/// pairs that shares/share.h says, all at the same time. It moves and bounds only the bodies that it needs.
+/// With broad=device each finds its own pairs; otherwise, and where run() is given some, the host deals them
+/// out by the same rule. `fitted`: of each device.
 std::unique_ptr<Session> split_session(const Traversal& traversal, std::span<Device* const> devices,
                                        const Scene& scene, std::vector<Settings> fitted);
 

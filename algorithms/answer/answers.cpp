@@ -100,6 +100,10 @@ public:
         tools_->download(buffers_->pairs.buffer(), pairs_, pairs);
     }
 
+    void count_by_body(std::vector<std::uint64_t>& counts) const override {
+        tools_->count_by_body(buffers_->pairs.buffer(), pairs_, counts);
+    }
+
     void append_contacts(std::vector<ContactPoint>& contacts) const override {
         if (contacts_ == 0) return;
         auto& device = tools_->device();
@@ -131,6 +135,7 @@ AnswerTools::AnswerTools(std::shared_ptr<const Bodies> bodies, LaunchShape shape
     const auto& source = kernel_source("algorithms/answer/digest.cl");
     pairs_kernel_ = device().compile(source, "digest_pairs", defines);
     expand_kernel_ = device().compile(source, "expand_pairs", defines);
+    count_kernel_ = device().compile(source, "count_by_body", defines);
     if (contacts)
         contacts_kernel_ = device().compile(kernel_source("algorithms/contacts/digest_contacts.cl"),
                                             "digest_contacts", defines);
@@ -176,6 +181,21 @@ void AnswerTools::expand(const Buffer& pairs, std::uint64_t first, std::uint64_t
                                             bodies_->ids(),
                                             expanded};
     device().launch(expand_kernel_, {shape_.groups, shape_.group_size}, arguments);
+}
+
+void AnswerTools::count_by_body(const Buffer& pairs, std::uint64_t count,
+                                std::vector<std::uint64_t>& counts) const {
+    std::vector<std::uint32_t> words(bodies_->count());
+    counts.resize(words.size());
+    if (count == 0) return;
+    const auto sums = device().allocate(words.size() * 4, "pairs by body");
+    const StageScope scope(device(), Stage::postprocess);
+    device().clear(sums, words.size() * 4);
+    const std::array<Argument, 4> arguments{pairs, static_cast<std::uint32_t>(count), bodies_->owners(),
+                                            sums};
+    device().launch(count_kernel_, {shape_.groups, shape_.group_size}, arguments);
+    device().download(sums, std::as_writable_bytes(std::span(words)));
+    for (std::size_t body = 0; body < words.size(); ++body) counts[body] += words[body];
 }
 
 /// Through a buffer for a part of them at a time: memory may be short where answers are large.
@@ -257,6 +277,15 @@ Digest HostPart::contact_digest() const {
 
 void HostPart::append_pairs(std::vector<Pair>& pairs) const {
     for (std::uint64_t row = 0; row < count_; ++row) pairs.push_back(pair(row));
+}
+
+void HostPart::count_by_body(std::vector<std::uint64_t>& counts) const {
+    for (std::uint64_t row = 0; row < count_; ++row) {
+        const auto one = pair(row);
+        counts.resize(std::max<std::size_t>(counts.size(), one.body_b + std::size_t{1}));
+        ++counts[one.body_a];
+        ++counts[one.body_b];
+    }
 }
 
 void HostPart::append_contacts(std::vector<ContactPoint>& contacts) const {

@@ -28,6 +28,8 @@ public:
     /// Of the first rows of a buffer. They launch, and wait for the sums.
     Digest digest(const Buffer& pairs, std::uint64_t count) const;
     Digest contact_digest(const AnswerBuffers& buffers, std::uint64_t contacts) const;
+    /// As AnswerPart::count_by_body.
+    void count_by_body(const Buffer& pairs, std::uint64_t count, std::vector<std::uint64_t>& counts) const;
     /// As AnswerPart::expand, of any buffer of rows.
     void expand(const Buffer& pairs, std::uint64_t first, std::uint64_t count, const Buffer& expanded) const;
     /// The first rows of a buffer in input order's numbers, appended; waits for them.
@@ -48,7 +50,7 @@ private:
     std::shared_ptr<const Bodies> bodies_;
     LaunchShape shape_;
     Buffer sums_;
-    Kernel pairs_kernel_, expand_kernel_, contacts_kernel_;
+    Kernel pairs_kernel_, expand_kernel_, contacts_kernel_, count_kernel_;
 };
 
 /// Pairs and contacts that lie in a device's buffers.
@@ -71,6 +73,7 @@ public:
     Digest contact_digest() const override;
     void append_pairs(std::vector<Pair>& pairs) const override;
     void append_contacts(std::vector<ContactPoint>& contacts) const override;
+    void count_by_body(std::vector<std::uint64_t>& counts) const override;
 
 private:
     std::shared_ptr<const AnswerTools> tools_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is asked about candidate pairs that lie in a buffer: their digest, and which tetrahedra they are.
+// What is asked about candidate pairs that lie in a buffer: their digest, which tetrahedra they are, and how
+// many each body is in.
 #include "backends/portable.h"
 #include "algorithms/answer/pairs.clh"
 
@@ -22,5 +23,40 @@ KERNEL void expand_pairs(GLOBAL const uint* found, uint first, uint count, GLOBA
         const Members pair = members_of(found, first + i, owners);
         const WordRow row = {pair.a.body, ids[pair.a.tetrahedron], pair.b.body, ids[pair.b.tetrahedron]};
         ((GLOBAL WordRow*)expanded)[i] = row;
+    }
+}
+
+// Rows that a work-item looks through: most follow others of the same two bodies.
+#define ROWS_AT_ONCE 64u
+
+DEVICE void add_count(GLOBAL uint* counts, uint body, uint count) {
+    if (count != 0u) counter_add(counts + body, count);
+}
+
+// Adds to counts[b] the number of rows that body b is in.
+KERNEL void count_by_body(GLOBAL const uint* found, uint count, GLOBAL const uint* owners,
+                          GLOBAL uint* counts) {
+    for (ulong first = (ulong)GLOBAL_ID * ROWS_AT_ONCE; first < count;
+         first += (ulong)GLOBAL_COUNT * ROWS_AT_ONCE) {
+        const ulong end = first + ROWS_AT_ONCE < count ? first + ROWS_AT_ONCE : count;
+        Members last = members_of(found, first, owners);
+        uint of_a = 0;
+        uint of_b = 0;
+        for (ulong i = first; i < end; ++i) {
+            const Members pair = members_of(found, i, owners);
+            if (pair.a.body != last.a.body) {
+                add_count(counts, last.a.body, of_a);
+                of_a = 0;
+            }
+            if (pair.b.body != last.b.body) {
+                add_count(counts, last.b.body, of_b);
+                of_b = 0;
+            }
+            ++of_a;
+            ++of_b;
+            last = pair;
+        }
+        add_count(counts, last.a.body, of_a);
+        add_count(counts, last.b.body, of_b);
     }
 }

@@ -49,6 +49,16 @@ public:
     /// Appends pairs and contacts, in no order.
     virtual void append_pairs(std::vector<Pair>& pairs) const = 0;
     virtual void append_contacts(std::vector<ContactPoint>& contacts) const = 0;
+    /// Adds the number of pairs that each body is in, by body.
+    virtual void count_by_body(std::vector<std::uint64_t>& counts) const = 0;
+};
+
+/// What one of several devices did of a frame.
+struct SharedWork {
+    std::uint64_t bodies = 0;     ///< placed and bounded, whoever owns them
+    std::uint64_t body_pairs = 0; ///< walked
+    std::uint64_t pairs = 0;      ///< candidate pairs found
+    std::int64_t ns = 0;          ///< from when it was given its share to its answer, by the host's clock
 };
 
 /// A frame's answer, which owns its parts: one for each device, and one for each batch whose pairs were
@@ -63,7 +73,9 @@ struct FrameResult {
     std::uint64_t undecided_by_filter = 0; ///< that the certified filter left (decision=recheck, exact)
     std::uint64_t undecided_by_double = 0; ///< that double left (decision=recheck, fp64, exact)
     std::uint64_t retries = 0;             ///< times a buffer was too small and a walk ran again
-    std::uint64_t batches = 0; ///< parts that the frame was split into for want of memory; 1: none
+    std::uint64_t batches = 0;      ///< parts that the frame was split into for want of memory; 1: none
+    std::vector<SharedWork> shared; ///< by device; of a session on one device none
+    std::uint64_t deals = 0;        ///< 1 where the bodies were dealt to the devices anew
     std::map<std::string_view, std::uint64_t> work; ///< by Counter; empty unless Session::count_work(true)
     std::optional<Digest> summed;                   ///< output=digest: of the pairs
     std::array<double, 3> origin{}; ///< what points of contacts in the parts count from (Session::origin)

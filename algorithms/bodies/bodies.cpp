@@ -38,6 +38,7 @@ Bodies::Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sha
     }
     lay_out();
     lay_out_slots();
+    plan_runs();
     upload_static();
 }
 
@@ -65,7 +66,6 @@ void Bodies::lay_out() {
                          static_cast<std::uint32_t>(mesh.ids.size()), own ? in_world_flag : 0u});
         if (!shared) tetrahedron_total_ += mesh.ids.size();
         if (own) vertex_total_ += mesh.vertices.size();
-        if (scene_.bodies[body].deformable) deformed_vertices_ += mesh.vertices.size();
     }
     constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
     if (vertex_total_ > most || tetrahedron_total_ > most)
@@ -164,9 +164,14 @@ std::array<double, 3> Bodies::drift_of(const Frame& frame, std::size_t body) con
 
 std::vector<std::byte> Bodies::packed_poses(const Frame& frame) const {
     std::vector<std::byte> bytes;
-    bytes.reserve(frame.poses.size() * pose_reals(geometry_) * real_bytes(geometry_));
-    for (std::size_t body = 0; body < frame.poses.size(); ++body)
-        pack_pose(bytes, geometry_, frame.poses[body], drift_of(frame, body));
+    const auto row = pose_reals(geometry_) * real_bytes(geometry_);
+    bytes.reserve(frame.poses.size() * row);
+    for (std::size_t body = 0; body < frame.poses.size(); ++body) {
+        if (takes(body))
+            pack_pose(bytes, geometry_, frame.poses[body], drift_of(frame, body));
+        else
+            bytes.resize(bytes.size() + row);
+    }
     return bytes;
 }
 
@@ -186,22 +191,42 @@ void Bodies::upload_poses(const Frame& frame, bool all) {
     device_.upload(poses_, bytes);
 }
 
-/// Vertices of deformable bodies lie behind one another, so that one upload takes them all.
-void Bodies::upload_deformed(const Frame& frame) {
-    std::vector<std::byte> bytes;
-    std::uint64_t first = vertex_total_;
-    {
-        const HostWork work(device_, Stage::preprocess, "pack vertices");
-        bytes.reserve(deformed_vertices_ * 4 * real_bytes(geometry_));
-        for (std::size_t body = 0; body < scene_.bodies.size(); ++body) {
-            if (!scene_.bodies[body].deformable) continue;
-            first = std::min<std::uint64_t>(first, rows_[body].vertices);
-            pack_vertices(bytes, geometry_, mesh(body), frame.deformed[body]);
-        }
+void Bodies::take(const Share& share) {
+    roles_ = roles_in(share, rows_.size());
+    plan_runs();
+}
+
+/// Vertices of deformable bodies lie behind one another, so that one upload takes them all, and those of
+/// bodies that are left out as well where they are few.
+void Bodies::plan_runs() {
+    constexpr std::uint64_t longest_gap = 4096; // vertices that take less than another upload
+    runs_.clear();
+    for (std::uint32_t body = 0; body < rows_.size(); ++body) {
+        if (!scene_.bodies[body].deformable || !takes(body)) continue;
+        const auto& row = rows_[body];
+        if (runs_.empty() || row.vertices - runs_.back().end > longest_gap)
+            runs_.push_back({row.vertices, row.vertices, {}});
+        runs_.back().bodies.push_back(body);
+        runs_.back().end = row.vertices + mesh(body).vertices.size();
     }
-    if (bytes.empty()) return;
-    const StageScope scope(device_, Stage::write);
-    device_.upload(vertices_, bytes, first * 4 * real_bytes(geometry_));
+}
+
+void Bodies::upload_deformed(const Frame& frame) {
+    const auto row = 4 * real_bytes(geometry_);
+    for (const auto& run : runs_) {
+        std::vector<std::byte> bytes;
+        {
+            const HostWork work(device_, Stage::preprocess, "pack vertices");
+            bytes.reserve((run.end - run.first) * row);
+            for (const auto body : run.bodies) {
+                bytes.resize((rows_[body].vertices - run.first) * row);
+                pack_vertices(bytes, geometry_, mesh(body), frame.deformed[body]);
+            }
+        }
+        if (bytes.empty()) continue;
+        const StageScope scope(device_, Stage::write);
+        device_.upload(vertices_, bytes, run.first * row);
+    }
 }
 
 void Bodies::update(const Frame& frame, bool all) {

@@ -3,6 +3,7 @@
 
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/hierarchy/order.h"
+#include "algorithms/shares/share.h"
 #include "scenes/scene.h"
 
 namespace tandem {
@@ -40,6 +41,8 @@ public:
     /// what does not move, as the first frame needs it. For Sharing::by_mesh; the published data path uploads
     /// everything itself.
     void update(const Frame& frame, bool all = true);
+    /// From now on only what has a part in `share` is looked at in a frame and uploaded.
+    void take(const Share& share);
 
     Device& device() const { return device_; }
     const Scene& scene() const { return scene_; }
@@ -85,6 +88,8 @@ private:
     std::array<double, 3> drift_of(const Frame& frame, std::size_t body) const;
     void upload_poses(const Frame& frame, bool all);
     void upload_deformed(const Frame& frame);
+    void plan_runs();
+    bool takes(std::size_t body) const { return roles_.empty() || roles_[body] != Role::none; }
     bool has_own_vertices(std::size_t body) const;
 
     Device& device_;
@@ -98,8 +103,14 @@ private:
     std::vector<std::uint32_t> slot_order_;
     std::vector<std::uint64_t> first_blocks_; ///< in slot_order(), and the number of all behind them
     std::uint64_t vertex_total_ = 0;
-    std::uint64_t deformed_vertices_ = 0; ///< of all bodies whose vertices change
     std::uint64_t tetrahedron_total_ = 0;
+    std::vector<Role> roles_; ///< by body; none where all take part
+    /// Deformable bodies whose vertices are uploaded together, and the rows of vertices() that they fill.
+    struct Run {
+        std::uint64_t first = 0, end = 0;
+        std::vector<std::uint32_t> bodies;
+    };
+    std::vector<Run> runs_;
     Buffer row_table_, blocks_, tetrahedra_, ids_, boundary_, vertices_, poses_;
 };
 

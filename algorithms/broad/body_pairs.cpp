@@ -51,9 +51,23 @@ void BodyPairs::begin(const Frame& frame, std::optional<std::span<const BodyPair
         {
             const HostWork work(device_, Stage::broad, "body pairs");
             found_ = broad_->pairs(frame);
+            std::erase_if(found_, [this](BodyPair pair) { return !has(pair); });
         }
         upload(found_);
     }
+}
+
+void BodyPairs::take(const Share& share) {
+    roles_ = roles_in(share, scene_.bodies.size());
+    if (stage_) stage_->take(share);
+    sorted_ = true;
+}
+
+/// Whether the share has that pair.
+bool BodyPairs::has(BodyPair pair) const {
+    if (roles_.empty()) return true;
+    const auto a = roles_[pair.a], b = roles_[pair.b];
+    return a != Role::none && b != Role::none && (a == Role::own || b == Role::own);
 }
 
 void BodyPairs::begin_part(std::span<const BodyPair> part) { upload(part); }
@@ -74,7 +88,9 @@ std::vector<BodyPair> BodyPairs::list(const Frame& frame, const Status& status) 
     const auto found = status.counter(STATUS_BODY_PAIRS);
     if (found > room_.rows()) {
         const HostWork work(device_, Stage::broad, "body pairs");
-        return BroadSweep(scene_, geometry_, Broad::tight).pairs(frame);
+        auto all = BroadSweep(scene_, geometry_, Broad::tight).pairs(frame);
+        std::erase_if(all, [this](BodyPair pair) { return !has(pair); });
+        return all;
     }
     std::vector<BodyPair> pairs(found);
     {

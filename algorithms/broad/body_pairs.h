@@ -34,8 +34,10 @@ public:
     /// The frame's pairs in ascending order, after a launch; they are downloaded when the device has found
     /// them, and found by the host where there is no room for them on the device.
     std::vector<BodyPair> list(const Frame& frame, const Status& status) const;
-    /// Forgets the order in which bodies stand.
-    void reset() { sorted_ = false; }
+    /// Forgets the order in which bodies stand, unless it is that of a share.
+    void reset() { sorted_ = !roles_.empty(); }
+    /// From now on finds the pairs of `share`, which has them all where the host does not tell otherwise.
+    void take(const Share& share);
 
     /// Whether it is the device that finds the pairs at hand.
     bool searched() const { return searches_; }
@@ -46,6 +48,7 @@ public:
 
 private:
     void upload(std::span<const BodyPair> pairs);
+    bool has(BodyPair pair) const;
 
     Device& device_;
     const Scene& scene_;
@@ -55,6 +58,7 @@ private:
     std::unique_ptr<BroadStage> stage_; ///< the device's
     bool searches_ = false;             ///< the device searches in this frame
     bool sorted_ = false;               ///< bodies stand in the order of some frame
+    std::vector<Role> roles_;           ///< by body, in a share; none without one
     std::vector<BodyPair> found_;       ///< by the host
     std::span<const BodyPair> on_host_; ///< of this launch, where the host knows them
     Room room_;

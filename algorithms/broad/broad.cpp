@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/broad/broad.h"
 
+#include "algorithms/bodies/ball.h"
 #include "algorithms/bodies/drift.h"
 
 #include <algorithm>
@@ -63,17 +64,9 @@ BroadSweep::BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound
 }
 
 BroadSweep::Shape BroadSweep::shape_of(const std::vector<Eigen::Vector3d>& vertices) const {
-    Eigen::Vector3d lower = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-    Eigen::Vector3d upper = -lower;
-    Shape shape;
-    shape.reach = reach_of(vertices);
-    for (const auto& v : vertices) {
-        lower = lower.cwiseMin(v);
-        upper = upper.cwiseMax(v);
-    }
-    shape.centre = 0.5 * (lower + upper);
-    shape.half = 0.5 * (upper - lower);
-    for (const auto& v : vertices) shape.radius = std::max(shape.radius, (v - shape.centre).stableNorm());
+    const auto ball = ball_around(vertices);
+    Shape shape{ball.centre, Eigen::Vector3d::Zero(), ball.radius, reach_of(vertices)};
+    for (const auto& v : vertices) shape.half = shape.half.cwiseMax((v - shape.centre).cwiseAbs());
     return shape;
 }
 
@@ -113,6 +106,15 @@ void BroadSweep::bound_deformed(const std::vector<Eigen::Vector3d>& vertices, do
     }
 }
 
+/// A point that moves by `margin` moves by no more along a unit direction.
+void BroadSweep::widen(double* slabs, double margin) const {
+    for (const auto& d : directions_) {
+        const double width = margin * d.norm() * (1 + 8 * std::numeric_limits<double>::epsilon());
+        *slabs++ -= width;
+        *slabs++ += width;
+    }
+}
+
 std::size_t BroadSweep::sweep_direction(const std::vector<double>& slabs) const {
     const auto stride = 2 * directions_.size();
     const auto bodies = scene_.bodies.size();
@@ -135,7 +137,7 @@ std::size_t BroadSweep::sweep_direction(const std::vector<double>& slabs) const 
     return best;
 }
 
-std::vector<double> BroadSweep::bounds(const Frame& frame) const {
+std::vector<double> BroadSweep::bounds(const Frame& frame, std::span<const double> margins) const {
     const auto stride = 2 * directions_.size();
     const auto bodies = static_cast<std::uint32_t>(scene_.bodies.size());
     std::vector<double> slabs(bodies * stride);
@@ -144,12 +146,13 @@ std::vector<double> BroadSweep::bounds(const Frame& frame) const {
             bound_deformed(frame.deformed[body], &slabs[body * stride]);
         else
             bound_rigid(shapes_[scene_.bodies[body].mesh], frame.poses[body], &slabs[body * stride]);
+        if (!margins.empty()) widen(&slabs[body * stride], margins[body]);
     }
     return slabs;
 }
 
-std::vector<BodyPair> BroadSweep::pairs(const Frame& frame) const {
-    const auto slabs = bounds(frame);
+std::vector<BodyPair> BroadSweep::pairs(const Frame& frame, std::span<const double> margins) const {
+    const auto slabs = bounds(frame, margins);
     const auto stride = 2 * directions_.size();
     const auto bodies = scene_.bodies.size();
     const auto sweep = 2 * sweep_direction(slabs);

@@ -17,7 +17,10 @@ public:
     BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound);
 
     /// Pairs in ascending order. O(n log n) and the pairs that overlap along the sweep.
-    std::vector<BodyPair> pairs(const Frame& frame) const;
+    std::vector<BodyPair> pairs(const Frame& frame) const { return pairs(frame, {}); }
+    /// Those that may overlap as long as no vertex is further from where `frame` has it than its body's
+    /// margin; none: 0.
+    std::vector<BodyPair> pairs(const Frame& frame, std::span<const double> margins) const;
 
 private:
     struct Shape {
@@ -26,10 +29,11 @@ private:
         double reach = 0;  ///< largest distance of a vertex from the mesh's origin
     };
 
-    std::vector<double> bounds(const Frame& frame) const;
+    std::vector<double> bounds(const Frame& frame, std::span<const double> margins) const;
     Shape shape_of(const std::vector<Eigen::Vector3d>& vertices) const;
     void bound_rigid(const Shape& shape, const Pose& pose, double* slabs) const;
     void bound_deformed(const std::vector<Eigen::Vector3d>& vertices, double* slabs) const;
+    void widen(double* slabs, double margin) const;
     std::size_t sweep_direction(const std::vector<double>& slabs) const;
 
     const Scene& scene_;

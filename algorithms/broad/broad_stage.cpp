@@ -2,12 +2,12 @@
 #include "algorithms/broad/broad_stage.h"
 
 #include "algorithms/broad/tile.clh"
+#include "algorithms/bodies/ball.h"
 #include "algorithms/sources.h"
 #include "scenes/error.h"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <limits>
 
 namespace tandem {
 
@@ -16,16 +16,6 @@ namespace {
 constexpr std::uint32_t most_bodies = (1u << 15) * BROAD_TILE; ///< 2^30 pairs of tiles, numbered by a word
 
 std::uint32_t tiles_of(std::uint32_t bodies) { return (bodies + BROAD_TILE - 1) / BROAD_TILE; }
-
-Eigen::Vector3d centre_of(const std::vector<Eigen::Vector3d>& vertices) {
-    Eigen::Vector3d lower = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-    Eigen::Vector3d upper = -lower;
-    for (const auto& v : vertices) {
-        lower = lower.cwiseMin(v);
-        upper = upper.cwiseMax(v);
-    }
-    return 0.5 * (lower + upper);
-}
 
 } // namespace
 
@@ -38,7 +28,7 @@ BroadStage::BroadStage(const Bodies& bodies, const Hierarchy& hierarchy, LaunchS
         throw InputError(fmt::format("setting broad=device takes at most {} bodies and the scene has {}; "
                                      "choose broad=tight",
                                      most_bodies, count));
-    for (const auto& mesh : bodies.scene().meshes) mesh_centres_.push_back(centre_of(mesh.vertices));
+    for (const auto& mesh : bodies.scene().meshes) mesh_centres_.push_back(box_centre(mesh.vertices));
     auto& device = bodies.device();
     const auto& geometry = bodies.geometry();
     const auto defines = geometry_defines(geometry, shape_.group_size);
@@ -62,7 +52,7 @@ std::vector<Eigen::Vector3d> BroadStage::centres(const Frame& frame) const {
     for (std::size_t body = 0; body < bodies.size(); ++body) {
         const auto& pose = frame.poses[body];
         centres.push_back(bodies[body].deformable
-                              ? centre_of(frame.deformed[body])
+                              ? box_centre(frame.deformed[body])
                               : pose.rotation.normalized() * mesh_centres_[bodies[body].mesh]
                                     + pose.translation);
     }
@@ -78,20 +68,32 @@ void BroadStage::sort(const Frame& frame) {
         const auto fixed = std::stable_partition(order.begin(), order.end(), moving);
         moving_count_ = static_cast<std::uint32_t>(fixed - order.begin());
     }
+    upload(order);
+}
+
+void BroadStage::take(const Share& share) {
+    auto order = share.own;
+    order.insert(order.end(), share.others.begin(), share.others.end());
+    moving_count_ = static_cast<std::uint32_t>(share.own.size());
+    upload(order);
+}
+
+void BroadStage::upload(const std::vector<std::uint32_t>& order) {
+    count_ = static_cast<std::uint32_t>(order.size());
+    if (order.empty()) return;
     const StageScope scope(bodies_.device(), Stage::write);
     bodies_.device().upload(order_, bytes_of(order));
 }
 
 void BroadStage::launch(const Buffer& pairs, std::uint32_t capacity, const Buffer& status) {
     const StageScope scope(bodies_.device(), Stage::broad);
-    const auto count = bodies_.count();
-    if (tiles_of(count) > 1) {
-        const std::array<Argument, 5> bound{hierarchy_.volumes(), order_, count, roots_, unions_};
-        bodies_.device().launch(bound_, {tiles_of(count), shape_.group_size}, bound);
+    if (tiles_of(count_) > 1) {
+        const std::array<Argument, 5> bound{hierarchy_.volumes(), order_, count_, roots_, unions_};
+        bodies_.device().launch(bound_, {tiles_of(count_), shape_.group_size}, bound);
     }
-    const std::array<Argument, 9> find{hierarchy_.volumes(), roots_, unions_,  order_, count,
+    const std::array<Argument, 9> find{hierarchy_.volumes(), roots_, unions_,  order_, count_,
                                        moving_count_,        pairs,  capacity, status};
-    const auto tile_pairs = tiles_of(moving_count_) * tiles_of(count);
+    const auto tile_pairs = tiles_of(moving_count_) * tiles_of(count_);
     bodies_.device().launch(find_, {std::max(1u, std::min(shape_.groups, tile_pairs)), shape_.group_size},
                             find);
 }

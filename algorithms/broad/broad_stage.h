@@ -18,6 +18,8 @@ public:
     /// Puts the bodies in order of where `frame` has them. Neighbours in space should be neighbours there
     /// whenever pairs are sought: that decides how fast they are found, never which.
     void sort(const Frame& frame);
+    /// From now on finds the pairs of a share, in whose order bodies stand.
+    void take(const Share& share);
     /// Enqueues the search. Pairs go to `pairs`, 2 words each, in no order, as far as its `capacity` reaches;
     /// their number goes to `status`, which has been cleared.
     void launch(const Buffer& pairs, std::uint32_t capacity, const Buffer& status);
@@ -26,11 +28,13 @@ public:
 
 private:
     std::vector<Eigen::Vector3d> centres(const Frame& frame) const;
+    void upload(const std::vector<std::uint32_t>& order);
 
     const Bodies& bodies_;
     const Hierarchy& hierarchy_;
     LaunchShape shape_;
-    std::uint32_t moving_count_ = 0; ///< bodies in the order that are not fixed; they come first
+    std::uint32_t count_ = 0;        ///< bodies in the order
+    std::uint32_t moving_count_ = 0; ///< of these the first, one of which every pair has: that are not fixed
     std::vector<Eigen::Vector3d> mesh_centres_;
     Buffer order_, roots_, unions_;
     Kernel bound_, find_;

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace tandem {
 
@@ -102,7 +101,7 @@ void ChunkTrees::plan_strip(std::uint32_t level, bool fixed, std::uint32_t top) 
     const auto& scene = bodies_.scene();
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) {
         const auto& levels = this->levels(body);
-        if (scene.bodies[body].fixed != fixed || level >= levels.size()) continue;
+        if (scene.bodies[body].fixed != fixed || level >= levels.size() || !takes(body)) continue;
         const auto& row = bodies_.row(body);
         for (std::uint32_t chunk = 0; chunk < levels[level].chunks; ++chunk) {
             const auto first = chunk * leaves_;
@@ -118,21 +117,37 @@ void ChunkTrees::plan_strip(std::uint32_t level, bool fixed, std::uint32_t top) 
     }
 }
 
-/// Tables that no frame changes. Bodies that move come first, so that a refit of these alone is a shorter
-/// launch.
+/// Tables that no frame changes.
 void ChunkTrees::upload_static() {
     tree_table_ = uploaded(device_, bytes_of(trees_), "trees");
     level_table_ = uploaded(device_, bytes_of(level_rows_), "levels");
-    job_table_ = uploaded(device_, bytes_of(jobs_), "refit jobs");
-    std::vector<std::uint32_t> order(bodies_.count());
-    std::iota(order.begin(), order.end(), 0u);
-    const auto moving = [&](std::uint32_t body) { return !bodies_.scene().bodies[body].fixed; };
-    moving_bodies_ =
-        static_cast<std::uint32_t>(std::stable_partition(order.begin(), order.end(), moving) - order.begin());
-    body_order_ = uploaded(device_, bytes_of(order), "bodies to refit");
+    upload_jobs();
     const auto node = static_cast<std::uint64_t>(bodies_.geometry().k) * real_bytes(bodies_.geometry());
     nodes_ = device_.allocate(slots_ * node, "nodes");
     volumes_ = device_.allocate(bodies_.count() * node, "volumes");
+}
+
+/// Bodies that move come first, so that a refit of these alone is a shorter launch.
+void ChunkTrees::upload_jobs() {
+    if (jobs_.empty()) jobs_.resize(job_words); // a buffer of nothing there is not
+    job_table_ = uploaded(device_, bytes_of(jobs_), "refit jobs");
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t body = 0; body < bodies_.count(); ++body)
+        if (takes(body)) order.push_back(body);
+    const auto moving = [&](std::uint32_t body) { return !bodies_.scene().bodies[body].fixed; };
+    ordered_bodies_ = static_cast<std::uint32_t>(order.size());
+    moving_bodies_ =
+        static_cast<std::uint32_t>(std::stable_partition(order.begin(), order.end(), moving) - order.begin());
+    if (order.empty()) order.emplace_back();
+    body_order_ = uploaded(device_, bytes_of(order), "bodies to refit");
+}
+
+void ChunkTrees::do_take() {
+    jobs_.clear();
+    strips_.clear();
+    plan_strips();
+    upload_jobs();
+    fresh_ = true;
 }
 
 std::size_t ChunkTrees::do_bytes() const {
@@ -166,7 +181,7 @@ void ChunkTrees::launch_strips(bool all) {
 void ChunkTrees::launch_tops(bool all) {
     const std::array<Argument, 6> arguments{nodes_,       volumes_,    tree_table_,
                                             level_table_, body_order_, first_top_level_};
-    const auto bodies = all ? bodies_.count() : moving_bodies_;
+    const auto bodies = all ? ordered_bodies_ : moving_bodies_;
     if (bodies > 0) device_.launch(tops_kernel_, {bodies, shape_.group_size}, arguments);
 }
 

@@ -46,6 +46,7 @@ private:
     };
 
     void do_refit(const Frame& frame, bool all) override;
+    void do_take() override;
     const Buffer& do_volumes() const override { return volumes_; }
     const Buffer& do_nodes() const override { return nodes_; }
     std::size_t do_bytes() const override;
@@ -55,6 +56,7 @@ private:
     void plan_strips();
     void plan_strip(std::uint32_t level, bool fixed, std::uint32_t top);
     void upload_static();
+    void upload_jobs();
     void leave_out(const Frame& frame);
     void upload_emptied();
     void launch_strips(bool all);
@@ -71,7 +73,8 @@ private:
     std::vector<std::uint32_t> jobs_;
     std::vector<Strip> strips_;
     std::uint32_t first_top_level_ = 1; ///< the first level that refit_tops does
-    std::uint32_t moving_bodies_ = 0;   ///< how many in body_order_ are not fixed; they come first
+    std::uint32_t ordered_bodies_ = 0;  ///< how many are in body_order_
+    std::uint32_t moving_bodies_ = 0;   ///< of these those that are not fixed; they come first
     std::uint64_t slots_ = 0;
     bool fresh_ = true; ///< fixed bodies need a refit: there was no frame yet, or it skipped others of theirs
     std::vector<std::vector<std::uint32_t>> skipped_; ///< by the last frame

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/shares/share.h"
 #include "backends/device.h"
 #include "scenes/scene.h"
 
@@ -19,6 +20,12 @@ public:
     /// Tetrahedra that the frame skips are in no bound. Bodies that do not move are left as they are unless
     /// `all` are to be refitted. Throws DeviceError.
     void refit(const Frame& frame, bool all = false) { do_refit(frame, all); }
+    /// From the next refit on, which is of all of them, bodies that have no part in `share` are left out:
+    /// their bounds are of no frame. Throws DeviceError.
+    void take(const Share& share, std::size_t bodies) {
+        roles_ = roles_in(share, bodies);
+        do_take();
+    }
 
     /// The k-DOP of every body, K reals each (volume.clh), as the last refit made them.
     const Buffer& volumes() const { return do_volumes(); }
@@ -27,11 +34,18 @@ public:
     /// Bytes of device memory in all buffers.
     std::size_t bytes() const { return do_bytes(); }
 
+protected:
+    bool takes(std::uint32_t body) const { return roles_.empty() || roles_[body] != Role::none; }
+
 private:
     virtual void do_refit(const Frame& frame, bool all) = 0;
     virtual const Buffer& do_volumes() const = 0;
     virtual const Buffer& do_nodes() const = 0;
     virtual std::size_t do_bytes() const = 0;
+    /// A hierarchy may go on making all bounds.
+    virtual void do_take() {}
+
+    std::vector<Role> roles_; ///< by body; none where all take part
 };
 
 } // namespace tandem

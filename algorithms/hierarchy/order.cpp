@@ -118,9 +118,11 @@ std::vector<std::uint32_t> morton_order(const std::vector<Eigen::Vector3d>& poin
 
 std::vector<std::uint32_t> morton_order(const Mesh& mesh) { return morton_order(centroids(mesh)); }
 
-std::vector<std::uint32_t> hilbert_order(const Mesh& mesh) {
-    return curve_order(centroids(mesh), hilbert_code);
+std::vector<std::uint32_t> hilbert_order(const std::vector<Eigen::Vector3d>& points) {
+    return curve_order(points, hilbert_code);
 }
+
+std::vector<std::uint32_t> hilbert_order(const Mesh& mesh) { return hilbert_order(centroids(mesh)); }
 
 OrderedMesh ordered(const Mesh& mesh, Builder builder) {
     OrderedMesh result;

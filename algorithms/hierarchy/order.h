@@ -27,6 +27,7 @@ std::vector<std::uint32_t> morton_order(const std::vector<Eigen::Vector3d>& poin
 std::vector<std::uint32_t> morton_order(const Mesh& mesh);
 
 /// Along Hilbert's curve, with the same cells and ties.
+std::vector<std::uint32_t> hilbert_order(const std::vector<Eigen::Vector3d>& points);
 std::vector<std::uint32_t> hilbert_order(const Mesh& mesh);
 
 /// Centroids of the mesh's tetrahedra; not finite where coordinates are near the largest numbers.

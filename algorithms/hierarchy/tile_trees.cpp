@@ -30,10 +30,15 @@ std::uint32_t levels_over(std::uint32_t items) {
 
 TileTrees::TileTrees(const Bodies& bodies, Slabs slabs, std::uint32_t group_size, std::uint64_t most_seeds,
                      std::uint32_t units_at_once)
-    : bodies_(bodies), device_(bodies.device()), slabs_(slabs), group_size_(group_size), shapes_(bodies) {
+    : bodies_(bodies),
+      device_(bodies.device()),
+      slabs_(slabs),
+      group_size_(group_size),
+      units_at_once_(units_at_once),
+      shapes_(bodies) {
     lay_out();
     choose_beginnings(most_seeds);
-    plan_refit(units_at_once);
+    plan_refit();
     tile_table_ = uploaded(device_, bytes_of(tile_rows()), "tiles");
     tops_ = uploaded(device_, bytes_of(top_tiles()), "top tiles");
     const auto& geometry = bodies.geometry();
@@ -155,28 +160,37 @@ void TileTrees::add_units(std::uint32_t body, std::uint32_t level, std::uint32_t
 
 std::uint32_t TileTrees::units_of_leaves() const {
     std::uint64_t units = 0;
-    for (std::uint32_t body = 0; body < bodies_.count(); ++body) units += in_tiles(boxes_of(body, 1));
+    for (std::uint32_t body = 0; body < bodies_.count(); ++body)
+        if (takes(body)) units += in_tiles(boxes_of(body, 1));
     return static_cast<std::uint32_t>(units);
 }
 
 /// Two levels a step. Where the lowest two would leave most of the device idle, leaves are a step of their
 /// own, in units of a tile for each team of a group: no team then makes one tile after the other.
-void TileTrees::plan_refit(std::uint32_t units_at_once) {
-    const bool few = units_of_leaves() < units_at_once;
+void TileTrees::plan_refit() {
+    const bool few = units_of_leaves() < units_at_once_;
     std::uint32_t unit_tiles = few ? std::max(1u, group_size_ / lanes) : lanes;
     for (std::uint32_t level = 0; level < levels(); level += unit_tiles == lanes ? 2 : 1) {
         if (level > 0) unit_tiles = lanes;
         std::vector<Unit> units;
         Step step;
         for (const auto body : bodies_.slot_order()) {
+            if (!takes(body)) continue;
             add_units(body, level, unit_tiles, units);
             if (!bodies_.scene().bodies[body].fixed)
                 step.moving_units = static_cast<std::uint32_t>(units.size());
         }
         step.units = static_cast<std::uint32_t>(units.size());
+        if (units.empty()) units.emplace_back(); // a buffer of nothing there is not
         step.table = uploaded(device_, bytes_of(units), "units of a refit");
         steps_.push_back(std::move(step));
     }
+}
+
+void TileTrees::do_take() {
+    steps_.clear();
+    plan_refit();
+    fresh_ = true;
 }
 
 std::size_t TileTrees::do_bytes() const {

@@ -67,6 +67,7 @@ private:
     };
 
     void do_refit(const Frame& frame, bool all) override;
+    void do_take() override;
     const Buffer& do_volumes() const override { return volumes_; }
     const Buffer& do_nodes() const override { return leaves_; }
     std::size_t do_bytes() const override;
@@ -75,7 +76,7 @@ private:
     void choose_beginnings(std::uint64_t most_seeds);
     std::vector<std::uint32_t> top_tiles() const;
     std::vector<Tile> tile_rows() const;
-    void plan_refit(std::uint32_t units_at_once);
+    void plan_refit();
     void add_units(std::uint32_t body, std::uint32_t level, std::uint32_t unit_tiles,
                    std::vector<Unit>& units) const;
     /// Of 32 leaf tiles each.
@@ -88,6 +89,7 @@ private:
     Device& device_;
     Slabs slabs_;
     std::uint32_t group_size_;
+    std::uint32_t units_at_once_;
     TileShapes shapes_;
     std::vector<std::uint32_t> level_first_; ///< the first tile of each level
     std::vector<bool> is_top_;               ///< by level: whether the tree of some body ends there

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/shares/deal.h"
+
+#include "algorithms/hierarchy/order.h"
+#include "scenes/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+namespace tandem {
+
+namespace {
+
+constexpr double most_margin = 2; ///< of a radius: more bring nearly all bodies of a heap
+constexpr std::size_t soon = 8;   ///< a deal that holds for fewer frames costs more than a margin saves
+/// Of a candidate pair, walked and made contacts of, in tetrahedra refitted: 2,000 jacks on an H200.
+constexpr double work_of_a_pair = 6;
+
+/// Volume of what two balls have in common.
+double common_volume(double a, double b, double distance) {
+    if (distance >= a + b) return 0;
+    const double least = std::min(a, b);
+    if (distance <= std::abs(a - b)) return 4 * std::numbers::pi / 3 * least * least * least;
+    const double depth = a + b - distance;
+    return std::numbers::pi * depth * depth
+           * (distance * distance + 2 * distance * (a + b) - 3 * (a - b) * (a - b)) / (12 * distance);
+}
+
+} // namespace
+
+Deal::Deal(const Scene& scene, const Geometry& geometry, std::size_t shares)
+    : scene_(scene),
+      sweep_(scene, geometry, Broad::tight),
+      shares_(shares),
+      owners_(scene.bodies.size(), shares),
+      balls_(scene.bodies.size()),
+      learned_(scene.bodies.size(), 1.0),
+      foreseen_(scene.bodies.size()) {
+    for (const auto& mesh : scene.meshes) mesh_balls_.push_back(ball_around(mesh.vertices));
+}
+
+Ball Deal::ball_of(const Frame& frame, std::uint32_t body) const {
+    if (scene_.bodies[body].deformable) return ball_around(frame.deformed[body]);
+    const auto& ball = mesh_balls_[scene_.bodies[body].mesh];
+    const auto& pose = frame.poses[body];
+    return {pose.rotation.normalized() * ball.centre + pose.translation, ball.radius};
+}
+
+/// No vertex of the body is further from where it was dealt. Of a rigid one: its centre's way, and the
+/// radius times the norm of the difference of the rotations, which is twice the sine of half their angle.
+double Deal::moved(const Frame& frame, std::uint32_t body) const {
+    if (scene_.bodies[body].deformable) {
+        double squared = 0;
+        const auto& now = frame.deformed[body];
+        const auto& then = dealt_.deformed[body];
+        for (std::size_t i = 0; i < now.size(); ++i)
+            squared = std::max(squared, (now[i] - then[i]).squaredNorm());
+        return std::sqrt(squared);
+    }
+    const auto& ball = mesh_balls_[scene_.bodies[body].mesh];
+    const auto& pose = frame.poses[body];
+    const auto now = pose.rotation.normalized();
+    const double cosine = now.dot(dealt_.poses[body].rotation.normalized());
+    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    const Eigen::Vector3d way = now * ball.centre + pose.translation - balls_[body].centre;
+    // More than the roundings of these few operations, relative to what they are made of.
+    return (way.norm() + 2 * sine * ball.radius) * (1 + 1e-12) + 1e-7 * ball.radius;
+}
+
+bool Deal::all_within_margins(const Frame& frame) const {
+    constexpr std::size_t part = 4096;
+    const auto bodies = scene_.bodies.size();
+    const auto parts = (bodies + part - 1) / part;
+    std::atomic<bool> within = true;
+    parallel_for(parts, [&](std::size_t i) {
+        for (auto body = i * part; within && body < std::min(bodies, (i + 1) * part); ++body) {
+            const auto number = static_cast<std::uint32_t>(body);
+            // Written so that what is no number is beyond.
+            if (!scene_.bodies[body].fixed && !(moved(frame, number) <= margin_ * balls_[body].radius))
+                within = false;
+        }
+    });
+    return within;
+}
+
+bool Deal::holds(const Frame& frame) {
+    is_over_ = dealt_.poses.empty() || (!has_all_ && !all_within_margins(frame));
+    held_ += is_over_ ? 0 : 1;
+    return !is_over_;
+}
+
+void Deal::place(const Frame& frame) {
+    dealt_.poses = frame.poses;
+    dealt_.deformed = frame.deformed;
+    for (std::uint32_t body = 0; body < balls_.size(); ++body) balls_[body] = ball_of(frame, body);
+    order_.clear();
+}
+
+void Deal::order_bodies() {
+    std::vector<Eigen::Vector3d> centres;
+    std::vector<std::uint32_t> moving;
+    for (std::uint32_t body = 0; body < balls_.size(); ++body) {
+        if (scene_.bodies[body].fixed) continue;
+        moving.push_back(body);
+        centres.push_back(balls_[body].centre);
+    }
+    for (const auto position : hilbert_order(centres)) order_.push_back(moving[position]);
+}
+
+/// As if tetrahedra were strewn evenly through the balls: those of one whose middle lies within the sum of
+/// both sizes of a tetrahedron of the other.
+double Deal::expected_pairs(BodyPair pair) const {
+    const auto &a = balls_[pair.a], &b = balls_[pair.b];
+    const double volume = common_volume(a.radius, b.radius, (a.centre - b.centre).norm());
+    if (!(volume > 0)) return 0;
+    const auto density = [&](const Ball& ball, std::uint32_t body) {
+        const auto count = static_cast<double>(scene_.meshes[scene_.bodies[body].mesh].tetrahedra.size());
+        return count / (4 * std::numbers::pi / 3 * ball.radius * ball.radius * ball.radius);
+    };
+    const double of_a = density(a, pair.a), of_b = density(b, pair.b);
+    const double size = 1 / std::cbrt(of_a) + 1 / std::cbrt(of_b);
+    return volume * of_a * of_b * size * size * size;
+}
+
+/// A body brings its share its own tetrahedra and the pairs with those that follow it on the curve.
+void Deal::expect_work(std::span<const BodyPair> near) {
+    std::vector<std::uint32_t> positions(scene_.bodies.size(), std::numeric_limits<std::uint32_t>::max());
+    for (std::uint32_t i = 0; i < order_.size(); ++i) positions[order_[i]] = i;
+    work_.assign(order_.size(), 0);
+    for (std::size_t i = 0; i < order_.size(); ++i)
+        work_[i] = static_cast<double>(scene_.meshes[scene_.bodies[order_[i]].mesh].tetrahedra.size());
+    std::fill(foreseen_.begin(), foreseen_.end(), 0);
+    for (const auto& pair : near) {
+        const double pairs = expected_pairs(pair);
+        foreseen_[pair.a] += pairs;
+        foreseen_[pair.b] += pairs;
+        work_[std::min(positions[pair.a], positions[pair.b])] +=
+            work_of_a_pair * pairs * std::sqrt(learned_[pair.a] * learned_[pair.b]);
+    }
+}
+
+/// Each share takes bodies up to where its part of all work ends.
+void Deal::cut(std::span<const double> speeds) {
+    const double all_work = std::accumulate(work_.begin(), work_.end(), 0.0);
+    const double all_speed = std::accumulate(speeds.begin(), speeds.end(), 0.0);
+    std::fill(owners_.begin(), owners_.end(), shares_.size());
+    for (auto& share : shares_) share = {};
+    double done = 0, until = 0;
+    std::size_t share = 0;
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+        // A body goes to the share in whose part the middle of its work lies.
+        while (share + 1 < shares_.size()
+               && done + work_[i] / 2 >= until + all_work * speeds[share] / all_speed)
+            until += all_work * speeds[share++] / all_speed;
+        shares_[share].own.push_back(order_[i]);
+        owners_[order_[i]] = share;
+        done += work_[i];
+    }
+}
+
+/// Of every pair the share that has it needs both.
+void Deal::gather(std::span<const BodyPair> near) {
+    std::vector<std::vector<Role>> roles;
+    for (const auto& share : shares_) roles.push_back(roles_in(share, scene_.bodies.size()));
+    for (const auto& pair : near) {
+        const auto share = share_of(pair);
+        for (const auto body : {pair.a, pair.b}) {
+            auto& role = roles[share][body];
+            if (role != Role::none) continue;
+            role = Role::other;
+            shares_[share].others.push_back(body);
+        }
+    }
+}
+
+void Deal::gather_all() {
+    for (std::size_t i = 0; i < shares_.size(); ++i)
+        for (std::uint32_t body = 0; body < owners_.size(); ++body)
+            if (owners_[body] > i) shares_[i].others.push_back(body);
+}
+
+void Deal::make(const Frame& frame, std::span<const double> speeds) {
+    const bool too_soon = is_over_ && !dealt_.poses.empty() && held_ < soon;
+    has_all_ = has_all_ || (too_soon && margin_ >= most_margin);
+    if (too_soon) margin_ = std::min(2 * margin_, most_margin);
+    held_ = 0;
+    place(frame);
+    order_bodies();
+    std::vector<double> margins;
+    for (const auto& ball : balls_) margins.push_back(margin_ * ball.radius);
+    const auto near = sweep_.pairs(frame, margins);
+    expect_work(near);
+    cut(speeds);
+    if (has_all_)
+        gather_all();
+    else
+        gather(near);
+}
+
+double Deal::work_of(const Share& share, std::uint64_t pairs) const {
+    double tetrahedra = 0;
+    for (const auto* bodies : {&share.own, &share.others})
+        for (const auto body : *bodies)
+            tetrahedra += static_cast<double>(scene_.meshes[scene_.bodies[body].mesh].tetrahedra.size());
+    return tetrahedra + work_of_a_pair * static_cast<double>(pairs);
+}
+
+void Deal::learn(std::span<const std::uint64_t> pairs_by_body) {
+    constexpr double least = 1e-3, most = 1e3;
+    for (std::size_t body = 0; body < learned_.size(); ++body)
+        if (foreseen_[body] >= 1)
+            learned_[body] =
+                std::clamp(static_cast<double>(pairs_by_body[body]) / foreseen_[body], least, most);
+}
+
+} // namespace tandem
