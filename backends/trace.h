@@ -25,11 +25,12 @@ enum class Stage {
     preprocess,
     postprocess,
     read,
-    write
+    write,
+    exchange ///< of messages, between ranks of a job
 };
-inline constexpr std::array<std::string_view, 13> stage_names{
+inline constexpr std::array<std::string_view, 14> stage_names{
     "transform", "refit", "broad",      "seed",        "traverse", "balance", "contact",
-    "reduce",    "solve", "preprocess", "postprocess", "read",     "write"};
+    "reduce",    "solve", "preprocess", "postprocess", "read",     "write",   "exchange"};
 
 enum class Command { launch, upload, download, clear, wait, host_work };
 

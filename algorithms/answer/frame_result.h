@@ -59,6 +59,9 @@ struct SharedWork {
     std::uint64_t body_pairs = 0; ///< walked
     std::uint64_t pairs = 0;      ///< candidate pairs found
     std::int64_t ns = 0;          ///< from when it was given its share to its answer, by the host's clock
+    std::int64_t exchange_ns = 0; ///< before that, on ranks of a job: passing messages, and waiting for them
+    std::uint64_t exchange_bytes = 0; ///< sent
+    std::uint64_t messages = 0;       ///< sent
 };
 
 /// A frame's answer, which owns its parts: one for each device, and one for each batch whose pairs were

@@ -26,12 +26,12 @@ double imbalance(std::span<const SharedWork> done) {
 }
 
 void Balance::see(std::span<const SharedWork> done, std::span<const double> work) {
+    if (frames_++ == 0) return;
     for (std::size_t i = 0; i < speeds_.size(); ++i) {
         if (!(work[i] > 0) || done[i].ns <= 0) continue;
         const double speed = work[i] / static_cast<double>(done[i].ns);
-        speeds_[i] = is_first_ ? speed : of_the_last * speed + (1 - of_the_last) * speeds_[i];
+        speeds_[i] = frames_ == 2 ? speed : of_the_last * speed + (1 - of_the_last) * speeds_[i];
     }
-    is_first_ = false;
     const double now = imbalance(done);
     if (judges_) {
         const bool was_useful = now - 1 < useful * (before_ - 1);

@@ -12,7 +12,8 @@ class Balance {
 public:
     explicit Balance(std::size_t shares) : speeds_(shares, 1.0) {}
 
-    /// A frame: what each device did, and its work as deals count it.
+    /// A frame: what each device did, and its work as deals count it. The first one says nothing of times:
+    /// some devices compile in it.
     void see(std::span<const SharedWork> done, std::span<const double> work);
     /// Whether in some frames one after the other one device took so much longer than all on average that
     /// bodies had better be dealt anew. After a deal that was of no use it takes twice as many frames.
@@ -24,7 +25,7 @@ public:
 
 private:
     std::vector<double> speeds_;
-    bool is_first_ = true;
+    std::size_t frames_ = 0;
     bool wants_a_deal_ = false;
     bool judges_ = false;      ///< the next frame tells what the last deal was good for
     double before_ = 1;        ///< imbalance that it was made for

@@ -13,6 +13,9 @@ using Json = nlohmann::ordered_json;
 /// From "total_ns" to "host_work": of a cell that failed what there is.
 void add_times(Json& record, const Measurement& m, bool measured);
 
+/// How several devices shared its frames; null on one.
+Json shares_json(const Measurement& m, const Cell& cell);
+
 /// How it was sampled, and what is to be thought of it.
 Json sampling_json(const Measurement& m, const Cell& cell, const Outcome& outcome, const Sampling& sampling);
 

@@ -12,8 +12,9 @@ TANDEM_FIELDS(KernelFacts, entry, defines, compile_ms, registers, local_bytes, s
               occupancy)
 TANDEM_FIELDS(KernelSample, device_ns, launches, stage, groups, group_size, facts)
 TANDEM_FIELDS(HostWorkSample, host_ns, times, stage)
-TANDEM_FIELDS(TimedReplay, round, frame_ns)
-TANDEM_FIELDS(InstrumentedReplay, round, frame_ns, span_ns, stages, kernels, host_work, clocks)
+TANDEM_FIELDS(SharedWork, bodies, body_pairs, pairs, ns, exchange_ns, exchange_bytes, messages)
+TANDEM_FIELDS(TimedReplay, round, frame_ns, shared_ns, longest_ns, deals)
+TANDEM_FIELDS(InstrumentedReplay, round, frame_ns, span_ns, stages, by_device, kernels, host_work, clocks)
 TANDEM_FIELDS(ProcessorCondition, cores, quota, own, others, governor, mhz, throttled, pressure)
 TANDEM_FIELDS(GpuCondition, sm_mhz, sm_limit_mhz, memory_mhz, memory_limit_mhz, temperature_c, power_w,
               power_limit_w, throttle, busy_percent, processes)
@@ -80,6 +81,7 @@ void each_of_round(State& state, const Each& each) {
     auto& m = state.measurement;
     each("continued", m.continued);
     each("submissions", m.submissions);
+    each("shared", m.shared);
     each("agreement", m.agreement);
     each("replay_ns", state.replay_ns);
     each("prepare_ns", state.prepare_ns);

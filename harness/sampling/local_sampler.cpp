@@ -169,7 +169,9 @@ void LocalSampler::warm_up() {
 void LocalSampler::sample() {
     const auto before = replays_->submissions();
     std::uint64_t looking = 0;
+    out_.shared.clear();
     auto replay = replays_->timed([&](std::size_t index, const FrameResult& result) {
+        if (!result.shared.empty()) out_.shared.push_back(result.shared);
         const auto begin = replays_->submissions();
         if (out_.settings[parameters::output] != Output::count && result.digest() != state_.digests[index])
             ++out_.agreement.extra;

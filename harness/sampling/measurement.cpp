@@ -40,6 +40,24 @@ std::int64_t TimedReplay::total_ns() const {
     return std::accumulate(frame_ns.begin(), frame_ns.end(), std::int64_t{0});
 }
 
+void TimedReplay::add_shared(const FrameResult& result) {
+    if (result.shared.empty()) return;
+    shared_ns.resize(result.shared.size());
+    std::int64_t longest = 0;
+    for (std::size_t i = 0; i < result.shared.size(); ++i) {
+        shared_ns[i] += result.shared[i].ns;
+        longest = std::max(longest, result.shared[i].ns);
+    }
+    longest_ns += longest;
+    deals += result.deals;
+}
+
+std::optional<double> TimedReplay::imbalance() const {
+    const auto sum = std::accumulate(shared_ns.begin(), shared_ns.end(), std::int64_t{0});
+    if (sum <= 0) return std::nullopt;
+    return static_cast<double>(longest_ns) * static_cast<double>(shared_ns.size()) / static_cast<double>(sum);
+}
+
 StageSamples InstrumentedReplay::totals() const {
     StageSamples sums{};
     for (const auto& frame : stages)

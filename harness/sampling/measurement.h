@@ -51,8 +51,15 @@ struct HostWorkSample {
 struct TimedReplay {
     std::uint32_t round = 0;
     std::vector<std::int64_t> frame_ns;
+    // Of a session on several devices.
+    std::vector<std::int64_t> shared_ns = {}; ///< by device: what it was at work, over the frames
+    std::int64_t longest_ns = 0;              ///< of the devices, frame by frame, over the frames
+    std::uint64_t deals = 0;                  ///< frames for which bodies were dealt anew
 
     std::int64_t total_ns() const;
+    void add_shared(const FrameResult& result);
+    /// The longest of the devices over the mean of all, 1 where all end together; none on one device.
+    std::optional<double> imbalance() const;
 };
 
 /// A replay with a clock around every command; slower than a sample, so that nothing of it goes into the
@@ -62,6 +69,7 @@ struct InstrumentedReplay {
     std::vector<std::int64_t> frame_ns;               ///< host spans
     std::vector<std::int64_t> span_ns;                ///< by frame, first begin to last end; -1: not known
     std::vector<StageSamples> stages;                 ///< by frame
+    std::vector<StageSamples> by_device = {};         ///< sums over the frames
     std::map<std::string, KernelSample> kernels = {}; ///< by entry point
     std::map<std::string, HostWorkSample> host_work = {}; ///< by name
     std::vector<std::string> clocks = {};                 ///< by device: what took its times
@@ -99,8 +107,9 @@ struct Measurement {
     std::vector<std::uint32_t> continued;    ///< rounds from which on another run of the program went on
     std::vector<std::uint64_t> body_pairs, candidate_pairs, contacts; ///< [frame]
     std::uint64_t degenerate = 0, rejected = 0, undecided_by_filter = 0, undecided_by_double = 0;
-    std::uint64_t retries = 0, batches = 0;         ///< of the checking replay
-    std::uint64_t submissions = 0;                  ///< calls that handed devices work, in the last sample
+    std::uint64_t retries = 0, batches = 0;      ///< of the checking replay
+    std::vector<std::vector<SharedWork>> shared; ///< [frame][device], in the last sample; of several devices
+    std::uint64_t submissions = 0;               ///< calls that handed devices work, in the last sample
     std::map<std::string_view, std::uint64_t> work; ///< by counter, over the frames; empty when not counted
     Agreement agreement;
     std::optional<AnswerErrors> errors; ///< against the exact truth; none when not asked for

@@ -78,6 +78,7 @@ InstrumentedReplay Replays::instrumented() {
     for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
     const ranges::Range cell(name_.c_str());
     InstrumentedReplay replay;
+    replay.by_device.resize(cell_.devices.size());
     for (std::size_t i = 0; i < range_.size(); ++i) {
         const auto frame = range_.frame(i);
         const ranges::Range stretch(frame_names_[i].c_str());
@@ -87,10 +88,13 @@ InstrumentedReplay Replays::instrumented() {
         replay.frame_ns.push_back(since(begin));
         auto& sum = replay.stages.emplace_back();
         std::int64_t span = 0; // the longest of the devices, -1 when one does not tell
-        for (auto* device : cell_.devices) {
-            const auto trace = device->finish();
+        for (std::size_t number = 0; number < cell_.devices.size(); ++number) {
+            const auto trace = cell_.devices[number]->finish();
             const auto own = by_stage(trace);
-            for (std::size_t stage = 0; stage < own.size(); ++stage) sum[stage] += own[stage];
+            for (std::size_t stage = 0; stage < own.size(); ++stage) {
+                sum[stage] += own[stage];
+                replay.by_device[number][stage] += own[stage];
+            }
             add_kernels(trace, replay.kernels);
             add_host_work(trace, replay.host_work);
             const auto own_span = device_span(trace);

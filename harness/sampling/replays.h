@@ -33,6 +33,7 @@ public:
             const auto begin = std::chrono::steady_clock::now();
             const auto result = session_->run(*frame);
             replay.frame_ns.push_back(since(begin));
+            replay.add_shared(result);
             look(i, result);
         }
         return replay;

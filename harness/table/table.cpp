@@ -54,7 +54,7 @@ std::uint64_t launches_of(const Measurement& m) {
 /// By the clock of whoever does the work.
 double stage_ms(const Measurement& m, Stage stage) {
     const bool host =
-        stage == Stage::preprocess || stage == Stage::postprocess
+        stage == Stage::preprocess || stage == Stage::postprocess || stage == Stage::exchange
         || (stage == Stage::broad && count_over(m, std::array{Stage::broad}, &StageSample::launches) == 0);
     return stage_ms(m, stage, host ? &StageSample::host_ns : &StageSample::device_ns);
 }
@@ -96,6 +96,16 @@ Column count_column(std::string head, std::span<const Row> rows, const Count& co
     return result;
 }
 
+/// The middle one of the samples; empty on one device.
+std::string imbalance_text(const Measurement& m) {
+    std::vector<double> values;
+    for (const auto& sample : m.samples)
+        if (const auto value = sample.imbalance()) values.push_back(*value);
+    if (values.empty()) return {};
+    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+    return fmt::format("{:.2f}", values[values.size() / 2]);
+}
+
 std::string half_width(const Measurement& m) {
     if (m.round_count() < 2) return "±    ?";
     const auto s = summarise(m.totals(), m.rounds());
@@ -134,6 +144,7 @@ std::string totals_table(std::span<const Row> rows, const RowLabels& labels, boo
         count_column(
             "waits", rows,
             [](const Row& row) { return count_over(*row.measurement, all_stages(), &StageSample::waits); }),
+        column("imbalance", rows, [](const Row& row) { return imbalance_text(*row.measurement); }),
         column("", rows, [&](const Row& row) {
             return row.measurement->agreement.ok() ? std::string() : painted("WRONG", "1;31", colour);
         })};
@@ -154,6 +165,52 @@ std::string stages_table(std::span<const Row> rows, const RowLabels& labels) {
         }));
     }));
     return in_columns(labels.of, "stages, ms/frame", columns);
+}
+
+/// Milliseconds a frame of one device in a stage: the larger of its own time and the host's in its calls,
+/// where that is the host's work.
+double share_stage_ms(const Measurement& m, std::size_t device, Stage stage) {
+    const bool is_host =
+        stage == Stage::preprocess || stage == Stage::postprocess || stage == Stage::exchange;
+    return replay_ms(m, [&](const InstrumentedReplay& r) {
+        const auto& sample = r.by_device[device][static_cast<std::size_t>(stage)];
+        return is_host ? sample.host_ns : sample.device_ns;
+    });
+}
+
+std::uint64_t mean_over_frames(const Measurement& m, std::size_t device, std::uint64_t SharedWork::*member) {
+    std::uint64_t sum = 0;
+    for (const auto& frame : m.shared) sum += frame[device].*member;
+    return sum / std::max<std::size_t>(1, m.shared.size());
+}
+
+double share_ms(const Measurement& m, std::size_t device) {
+    std::vector<std::int64_t> samples;
+    for (const auto& sample : m.samples) samples.push_back(sample.shared_ns[device]);
+    return per_frame_ms(m, summarise(samples).median);
+}
+
+/// A row for each of several devices of a cell.
+std::string shares_table(const Row& row, const std::string& label) {
+    const auto& m = *row.measurement;
+    if (m.shared.empty() || m.samples.empty() || m.breakdowns.empty()) return {};
+    std::vector<std::string> devices;
+    std::vector<Column> columns{{"bodies", {}}, {"body pairs", {}}, {"pairs", {}}, {"ms/frame", {}}};
+    for (const auto stage : all_stages())
+        columns.push_back({std::string(stage_names[static_cast<std::size_t>(stage)]), {}});
+    for (std::size_t i = 0; i < m.shared.front().size(); ++i) {
+        devices.push_back(row.cell->devices[i % row.cell->devices.size()]->info().id);
+        columns[0].texts.push_back(short_count(mean_over_frames(m, i, &SharedWork::bodies)));
+        columns[1].texts.push_back(short_count(mean_over_frames(m, i, &SharedWork::body_pairs)));
+        columns[2].texts.push_back(short_count(mean_over_frames(m, i, &SharedWork::pairs)));
+        columns[3].texts.push_back(milliseconds(share_ms(m, i)));
+        for (std::size_t stage = 0; stage < stage_names.size(); ++stage)
+            columns[4 + stage].texts.push_back(milliseconds(share_stage_ms(m, i, static_cast<Stage>(stage))));
+    }
+    for (auto& column : columns)
+        if (std::ranges::all_of(column.texts, [](const auto& t) { return t == "0.000"; }))
+            column.texts.assign(devices.size(), "");
+    return fmt::format("shares of {}\n{}\n", label, in_columns(devices, "a frame", columns));
 }
 
 /// By rounds, which the two took side by side.
@@ -240,6 +297,7 @@ std::string result_tables(std::span<const Row> rows, bool colour) {
     auto text = labels.common.empty() ? std::string() : "all: " + labels.common + "\n\n";
     text += totals_table(rows, labels, colour) + "\n";
     text += stages_table(rows, labels) + "\n";
+    for (std::size_t i = 0; i < rows.size(); ++i) text += shares_table(rows[i], labels.of[i]);
     return text + ratio_tables(rows, labels);
 }
 

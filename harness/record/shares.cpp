@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "harness/record/parts.h"
+#include "harness/statistics.h"
+
+namespace tandem::record_parts {
+
+namespace {
+
+/// One number of a device in every frame of the last sample.
+Json by_frame(const Measurement& m, std::size_t device, std::uint64_t SharedWork::*member) {
+    Json json = Json::array();
+    for (const auto& frame : m.shared) json.push_back(frame[device].*member);
+    return json;
+}
+
+/// By replay; the clock is the host's, and of the span that total_ns is of.
+Json times_json(const Measurement& m, std::size_t device) {
+    std::vector<std::int64_t> samples;
+    std::vector<std::uint32_t> rounds;
+    for (const auto& sample : m.samples) {
+        samples.push_back(sample.shared_ns[device]);
+        rounds.push_back(sample.round);
+    }
+    const auto s = summarise(samples, rounds);
+    return {{"samples", samples}, {"median", s.median}, {"low", s.low}, {"high", s.high}};
+}
+
+/// Medians of the instrumented replays; stages in which nothing was done are left out.
+Json stages_json(const Measurement& m, std::size_t device) {
+    Json json = Json::object();
+    for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
+        std::vector<std::int64_t> on_device, on_host;
+        for (const auto& replay : m.breakdowns) {
+            on_device.push_back(replay.by_device[device][stage].device_ns);
+            on_host.push_back(replay.by_device[device][stage].host_ns);
+        }
+        const auto host = on_host.empty() ? 0.0 : summarise(on_host).median;
+        if (host <= 0) continue;
+        json[std::string(stage_names[stage])] = {{"device_ns", summarise(on_device).median},
+                                                 {"host_ns", host}};
+    }
+    return json;
+}
+
+/// Bytes and messages of the frames of the last sample; null where none were sent.
+Json exchange_json(const Measurement& m, std::size_t device) {
+    SharedWork sum;
+    for (const auto& frame : m.shared) {
+        sum.exchange_ns += frame[device].exchange_ns;
+        sum.exchange_bytes += frame[device].exchange_bytes;
+        sum.messages += frame[device].messages;
+    }
+    if (sum.exchange_ns == 0) return nullptr;
+    return {{"host_ns", sum.exchange_ns}, {"bytes", sum.exchange_bytes}, {"messages", sum.messages}};
+}
+
+} // namespace
+
+Json shares_json(const Measurement& m, const Cell& cell) {
+    if (m.samples.empty() || m.shared.empty()) return nullptr;
+    std::vector<double> imbalances;
+    for (const auto& sample : m.samples) imbalances.push_back(sample.imbalance().value_or(1));
+    std::ranges::sort(imbalances);
+    Json devices = Json::array();
+    for (std::size_t i = 0; i < m.shared.front().size(); ++i)
+        devices.push_back({{"device", cell.devices[i % cell.devices.size()]->info().id},
+                           {"ns", times_json(m, i)},
+                           {"bodies", by_frame(m, i, &SharedWork::bodies)},
+                           {"body_pairs", by_frame(m, i, &SharedWork::body_pairs)},
+                           {"candidate_pairs", by_frame(m, i, &SharedWork::pairs)},
+                           {"exchange", exchange_json(m, i)},
+                           {"stages", stages_json(m, i)}});
+    return {{"imbalance", imbalances[imbalances.size() / 2]},
+            {"deals", m.samples.back().deals},
+            {"devices", devices}};
+}
+
+} // namespace tandem::record_parts

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: MIT
+// Sessions on several devices, each of which owns bodies: who needs what, deals that end, pairs that are
+// given, and answers that are those of one device whatever happens.
+#include "algorithms/shares/balance.h"
+#include "algorithms/shares/deal.h"
+#include "harness/reference.h"
+#include "tests/support/cells.h"
+#include "tests/support/scenes.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <set>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+/// Boxes in a row along x, each of which meets its neighbours; from frame to frame they all go `step` along x
+/// and turn. The first is fixed, the second one deformable.
+Scene procession(std::uint32_t bodies, std::size_t frames, double step) {
+    Random random(17);
+    Scene scene;
+    scene.name = scene.key = "procession";
+    scene.meshes = {shaken_box(2, random)};
+    scene.bodies.resize(bodies);
+    scene.bodies[0].fixed = true;
+    scene.bodies[1].deformable = true;
+    scene.frame_count = frames;
+    const auto vertices = scene.meshes.front().vertices;
+    scene.frame = [bodies, step, vertices](std::size_t number) {
+        Frame frame;
+        frame.deformed.resize(bodies);
+        const double way = step * static_cast<double>(number);
+        for (std::uint32_t i = 0; i < bodies; ++i) {
+            const Eigen::Vector3d place(0.8 * i + (i == 0 ? 0 : way), i % 3 * 0.1, 0);
+            const Eigen::Quaterniond turn(
+                Eigen::AngleAxisd(i == 0 ? 0 : way + 0.3 * i, Eigen::Vector3d::UnitZ()));
+            frame.poses.push_back(i == 1 ? Pose{} : Pose{turn, place});
+            if (i != 1) continue;
+            for (const auto& vertex : vertices) frame.deformed[1].push_back(turn * vertex + place);
+        }
+        return frame;
+    };
+    scene.digest = digest_of(scene);
+    return scene;
+}
+
+class Shares : public testing::Test {
+protected:
+    static Settings settings_of(const Traversal& traversal, const SettingTexts& given) {
+        return resolve(traversal.parameters(), {}, given, traversal.name());
+    }
+    static std::unique_ptr<Session> shared(const Traversal& traversal, const Scene& scene,
+                                           const SettingTexts& given = {}) {
+        const std::array devices{&device("host"), &device("opencl:0")};
+        return traversal.prepare(devices, scene, settings_of(traversal, given));
+    }
+    static std::unique_ptr<Session> alone(const Traversal& traversal, const Scene& scene,
+                                          const SettingTexts& given = {}) {
+        const std::array devices{&device("host")};
+        return traversal.prepare(devices, scene, settings_of(traversal, given));
+    }
+    /// Every bit, and the number of body pairs where both find them alike.
+    static void expect_equal(const FrameResult& result, const FrameResult& right) {
+        EXPECT_EQ(result.count, right.count);
+        EXPECT_EQ(result.body_pairs, right.body_pairs);
+        EXPECT_EQ(result.digest(), right.digest());
+        EXPECT_EQ(result.contact_digest(), right.contact_digest());
+    }
+};
+
+/// Frames of a scene that moves, there and back, so that deals end: the same as one device's in every frame.
+TEST_F(Shares, AnswersAreThoseOfOneDevice) {
+    const auto scene = procession(24, 4, 0.35);
+    for (const auto* traversal : algorithms())
+        for (const std::string broad : {"device", "tight"}) {
+            SCOPED_TRACE(fmt::format("{} {}", traversal->name(), broad));
+            const auto both = shared(*traversal, scene, {{"broad", broad}});
+            const auto one = alone(*traversal, scene, {{"broad", broad}});
+            std::uint64_t deals = 0;
+            for (const std::size_t i : {0u, 1u, 2u, 3u, 0u, 3u, 3u}) {
+                const auto result = both->run(scene.frame(i));
+                ASSERT_GT(result.count, 0u);
+                expect_equal(result, one->run(scene.frame(i)));
+                deals += result.deals;
+            }
+            EXPECT_GT(deals, 1u);
+        }
+}
+
+/// In a row a device needs its own half and what meets it at the cut, and does all of it.
+TEST_F(Shares, EachDeviceMovesOnlyWhatItNeeds) {
+    const auto scene = procession(60, 2, 0.01);
+    const auto session = shared(algorithm("tiled"), scene);
+    const auto result = session->run(scene.frame(0));
+    ASSERT_EQ(result.shared.size(), 2u);
+    EXPECT_EQ(result.shared[0].pairs + result.shared[1].pairs, result.count);
+    EXPECT_EQ(result.shared[0].body_pairs + result.shared[1].body_pairs, result.body_pairs);
+    for (const auto& share : result.shared) {
+        EXPECT_GT(share.bodies, 20u);
+        EXPECT_LT(share.bodies, 40u);
+        EXPECT_GT(share.ns, 0);
+    }
+    EXPECT_EQ(result.deals, 1u);
+    EXPECT_EQ(session->run(scene.frame(1)).deals, 0u) << "the deal holds: nothing went far";
+}
+
+/// Bodies that jump so far in every frame that no margin is of use: soon both devices have them all.
+TEST_F(Shares, BodiesThatJumpAreEverybodys) {
+    const auto scene = procession(12, 2, 40);
+    const auto both = shared(algorithm("chunked"), scene);
+    const auto one = alone(algorithm("chunked"), scene);
+    std::uint64_t deals = 0;
+    for (std::size_t i = 0; i < 12; ++i) {
+        const auto result = both->run(scene.frame(i % 2));
+        expect_equal(result, one->run(scene.frame(i % 2)));
+        if (i >= 6) deals += result.deals;
+        if (i == 11) {
+            EXPECT_EQ(result.shared[0].bodies, 12u);
+        }
+    }
+    EXPECT_LE(deals, 1u) << "but for balance";
+}
+
+/// Pairs of bodies that are far from each other, which no deal has foreseen.
+TEST_F(Shares, PairsThatAreGivenMayBeOfAnyBodies) {
+    const auto scene = procession(10, 1, 0);
+    for (const auto* traversal : algorithms()) {
+        SCOPED_TRACE(traversal->name());
+        const auto both = shared(*traversal, scene);
+        const auto one = alone(*traversal, scene);
+        for (const auto& pairs :
+             {std::vector<BodyPair>{{0, 9}, {3, 4}, {4, 5}, {2, 8}}, all_pairs(scene), {}})
+            expect_equal(both->run(scene.frame(0), pairs), one->run(scene.frame(0), pairs));
+        expect_equal(both->run(scene.frame(0)), one->run(scene.frame(0)));
+    }
+}
+
+/// One body that moves, and one that does not: a device has nothing to do.
+TEST_F(Shares, MoreDevicesThanBodies) {
+    auto scene = procession(3, 1, 0);
+    scene.bodies[1] = {.mesh = 0, .fixed = true};
+    const auto frame = scene.frame;
+    scene.frame = [frame](std::size_t i) {
+        auto all = frame(i);
+        all.deformed[1].clear();
+        all.poses[1].translation = {0.4, 0, 0};
+        return all;
+    };
+    for (const auto* traversal : algorithms()) {
+        SCOPED_TRACE(traversal->name());
+        const auto result = shared(*traversal, scene)->run(scene.frame(0));
+        ASSERT_GT(result.count, 0u);
+        expect_equal(result, alone(*traversal, scene)->run(scene.frame(0)));
+    }
+}
+
+/// Buffers with room for one row, and skipped tetrahedra, in shares.
+TEST_F(Shares, RoomForOneAndTetrahedraLeftOut) {
+    const auto scene = procession(8, 2, 0.3);
+    for (const auto* traversal : algorithms()) {
+        SCOPED_TRACE(traversal->name());
+        const SettingTexts given{
+            {"pair_capacity", "1"}, {"contact_capacity", "1"}, {"body_pair_capacity", "1"}};
+        const auto both = shared(*traversal, scene, given);
+        const auto one = alone(*traversal, scene);
+        for (std::size_t i = 0; i < 2; ++i) {
+            auto frame = scene.frame(i);
+            expect_equal(both->run(frame), one->run(frame));
+            frame.skipped.resize(8);
+            frame.skipped[2] = {0, 3, 7};
+            frame.skipped[5] = {1};
+            expect_equal(both->run(frame), one->run(frame));
+        }
+    }
+}
+
+/// Batches for want of memory look for their pairs among the share's alone, wherever they are found.
+TEST_F(Shares, FramesInBatches) {
+    const auto scene = procession(30, 1, 0);
+    const auto one = alone(algorithm("tiled"), scene)->run(scene.frame(0));
+    auto& little = device("opencl:0");
+    const auto both =
+        shared(algorithm("tiled"), scene, {{"pair_capacity", "1"}, {"body_pair_capacity", "1"}});
+    little.set_memory_limit(little.bytes_allocated() + 3'000);
+    const auto result = both->run(scene.frame(0));
+    little.set_memory_limit(Device::no_memory_limit);
+    EXPECT_GT(result.batches, 2u);
+    expect_equal(result, one);
+}
+
+TEST(Deals, EveryPairBelongsToOneShareThatHasBoth) {
+    const auto scene = procession(40, 2, 0.05);
+    for (const std::size_t count : {1u, 2u, 3u, 7u, 60u}) {
+        Deal deal(scene, {}, count);
+        EXPECT_FALSE(deal.holds(scene.frame(0)));
+        deal.make(scene.frame(0), std::vector<double>(count, 1.0));
+        EXPECT_TRUE(deal.holds(scene.frame(0)));
+        std::multiset<std::uint32_t> owned;
+        std::vector<std::vector<Role>> roles;
+        for (const auto& share : deal.shares()) {
+            owned.insert(share.own.begin(), share.own.end());
+            roles.push_back(roles_in(share, scene.bodies.size()));
+        }
+        EXPECT_EQ(owned.size(), 39u) << "all but the fixed one, each once";
+        EXPECT_EQ(std::set<std::uint32_t>(owned.begin(), owned.end()).size(), 39u);
+        // Also of a later frame, as long as the deal holds.
+        for (std::size_t i = 0; i < 2; ++i) {
+            ASSERT_TRUE(deal.holds(scene.frame(i)));
+            for (const auto& pair : BroadSweep(scene, {}, Broad::tight).pairs(scene.frame(i))) {
+                std::size_t having = 0;
+                for (const auto& of : roles)
+                    having += of[pair.a] != Role::none && of[pair.b] != Role::none
+                              && (of[pair.a] == Role::own || of[pair.b] == Role::own);
+                EXPECT_EQ(having, 1u) << count << " shares, bodies " << pair.a << " and " << pair.b;
+            }
+        }
+    }
+}
+
+TEST(Deals, EndWhenABodyGoesTooFar) {
+    const auto scene = procession(10, 2, 0);
+    Deal deal(scene, {}, 2);
+    deal.make(scene.frame(0), std::array{1.0, 1.0});
+    const auto holds_with = [&](std::uint32_t body, const auto& change) {
+        auto frame = scene.frame(0);
+        change(frame, body);
+        return deal.holds(frame);
+    };
+    const auto push = [](double way) {
+        return [way](Frame& frame, std::uint32_t body) { frame.poses[body].translation.x() += way; };
+    };
+    EXPECT_TRUE(holds_with(5, push(0.1)));
+    EXPECT_FALSE(holds_with(5, push(0.4)));
+    EXPECT_TRUE(holds_with(0, push(0.4))) << "a fixed one does not move, whatever a frame says";
+    const auto turn = [](Frame& frame, std::uint32_t body) {
+        frame.poses[body].rotation =
+            Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX())) * frame.poses[body].rotation;
+    };
+    EXPECT_FALSE(holds_with(5, turn));
+    const auto stretch = [](Frame& frame, std::uint32_t body) { frame.deformed[body].back().z() += 1; };
+    EXPECT_FALSE(holds_with(1, stretch));
+    const auto lose = [](Frame& frame, std::uint32_t body) {
+        frame.poses[body].translation.x() = std::numeric_limits<double>::quiet_NaN();
+    };
+    EXPECT_FALSE(holds_with(5, lose));
+}
+
+/// Work goes by speed, and by what was found where balls told wrong.
+TEST(Deals, GoBySpeedAndByWhatWasFound) {
+    const auto scene = procession(100, 1, 0);
+    Deal deal(scene, {}, 2);
+    deal.make(scene.frame(0), std::array{1.0, 1.0});
+    EXPECT_NEAR(static_cast<double>(deal.shares()[0].own.size()), 49.5, 3);
+    deal.make(scene.frame(0), std::array{3.0, 1.0});
+    EXPECT_NEAR(static_cast<double>(deal.shares()[0].own.size()), 74.25, 3);
+    std::vector<std::uint64_t> counts(100, 1000);
+    std::fill(counts.begin(), counts.begin() + 50, 100'000);
+    deal.learn(counts);
+    deal.make(scene.frame(0), std::array{1.0, 1.0});
+    const auto& owned = deal.shares()[0].own;
+    const auto first = std::ranges::find(owned, 2u) != owned.end() ? owned.size() : 99 - owned.size();
+    EXPECT_LT(first, 30u) << "half of the work is of the first fifty bodies";
+}
+
+SharedWork took(std::int64_t ns) { return {.bodies = 1, .body_pairs = 1, .pairs = 1, .ns = ns}; }
+
+TEST(Balances, WantADealAfterSomeFramesOutOfBalance) {
+    Balance balance(2);
+    const std::array work{100.0, 100.0};
+    const std::array even{took(100), took(104)}, odd{took(100), took(300)};
+    EXPECT_DOUBLE_EQ(imbalance(odd), 1.5);
+    balance.see(std::array{took(100), took(90'000)}, work);
+    EXPECT_EQ(balance.speeds()[0], balance.speeds()[1]) << "devices may compile in the first frame";
+    balance.see(even, work);
+    EXPECT_FALSE(balance.wants_a_deal());
+    balance.see(odd, work);
+    EXPECT_FALSE(balance.wants_a_deal()) << "one frame says little";
+    balance.see(odd, work);
+    EXPECT_TRUE(balance.wants_a_deal());
+    EXPECT_GT(balance.speeds()[0], 1.5 * balance.speeds()[1]);
+    balance.dealt();
+    EXPECT_FALSE(balance.wants_a_deal());
+    // The deal was of no use: the next ones are asked for later and later.
+    std::size_t frames = 0;
+    while (!balance.wants_a_deal() && frames < 100) {
+        balance.see(odd, work);
+        ++frames;
+    }
+    EXPECT_EQ(frames, 4u);
+}
+
+} // namespace
+} // namespace tandem
