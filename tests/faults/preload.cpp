@@ -23,6 +23,7 @@
 #include <pthread.h>
 #include <sys/syscall.h>
 #include <sys/types.h>
+#include <initializer_list>
 #include <sys/uio.h>
 #include <unistd.h>
 
