@@ -3,6 +3,7 @@
 #include "algorithms/bodies/origin.h"
 #include "algorithms/pipeline.h"
 #include "algorithms/published/published_session.h"
+#include "algorithms/ranks/rank_session.h"
 #include "algorithms/resident_session.h"
 #include "algorithms/split_session.h"
 #include "scenes/error.h"
@@ -97,6 +98,25 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
                    : is_published(settings)
                        ? published_session(*this, device, scene, fitting.front())
                        : std::make_unique<ResidentSession>(*this, device, scene, fitting.front());
+    session->origin_ = origin_of(scene, geometry_of(settings).origin);
+    return session;
+}
+
+std::unique_ptr<Session> Traversal::prepare(Device& device, const Scene& scene, const Settings& settings,
+                                            Ranks& ranks) const {
+    if (scene.bodies.empty()) throw InputError(fmt::format("scene {} has no bodies", scene.name));
+    if (is_published(settings))
+        throw InputError(
+            fmt::format("{} with residency=published cannot share a frame between ranks: the paper's "
+                        "data path is one device's; leave residency and preset out",
+                        name()));
+    if (settings[tandem::parameters::broad] != Broad::device)
+        throw InputError(
+            fmt::format("setting broad={} does not go with ranks of a job, none of which has all "
+                        "bodies; choose broad=device",
+                        settings.text("broad")));
+    auto session =
+        std::make_unique<RankSession>(*this, device, scene, fitted(settings, device.info(), &scene), ranks);
     session->origin_ = origin_of(scene, geometry_of(settings).origin);
     return session;
 }

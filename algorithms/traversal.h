@@ -13,6 +13,7 @@
 
 namespace tandem {
 
+class Ranks;       // backends/ranks.h
 struct Ground;     // steps.h
 struct KernelCost; // cost.h
 struct Steps;
@@ -42,6 +43,9 @@ public:
     /// Switches to kernels that count their work and make no contacts (and back); such runs are never timed.
     void count_work(bool on) { do_count_work(on); }
     std::span<Device* const> devices() const { return do_devices(); }
+    /// The bodies that frames have to have from this process, in no order: of a session on ranks of a job its
+    /// own ones, until FrameResult::deals says that they are others; nothing: all of them.
+    std::optional<std::span<const std::uint32_t>> owned() const { return do_owned(); }
     /// The settings as the devices took them.
     const Settings& settings() const { return do_settings(); }
     /// What coordinates on the devices count from, by setting origin.
@@ -56,6 +60,7 @@ private:
     virtual void do_count_work(bool on) = 0;
     virtual std::span<Device* const> do_devices() const = 0;
     virtual const Settings& do_settings() const = 0;
+    virtual std::optional<std::span<const std::uint32_t>> do_owned() const { return std::nullopt; }
 
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
 };
@@ -101,6 +106,14 @@ public:
     /// outlive the session and its results. Throws InputError or DeviceError.
     std::unique_ptr<Session> prepare(std::span<Device* const> devices, const Scene& scene,
                                      const Settings& settings) const;
+
+    /// The same on ranks of a job, which all call it together, each with a device of its own; run() and
+    /// reset() of the session too. Ranks own bodies, tell each other where those are that come near, and each
+    /// pair is found by one of them. Of a frame a rank gives those that it owns, and fixed bodies; its result
+    /// has what it found itself, and in `shared` what each rank did. On its device are only bodies that it
+    /// needs. An error of one rank is thrown on all, with its number. `ranks` must outlive the session.
+    std::unique_ptr<Session> prepare(Device& device, const Scene& scene, const Settings& settings,
+                                     Ranks& ranks) const;
 
     /// What each kernel of a frame with these settings, as a device took them, has to move and to compute at
     /// least: its own and those of every algorithm, by entry point (cost.h).

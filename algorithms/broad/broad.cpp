@@ -137,22 +137,34 @@ std::size_t BroadSweep::sweep_direction(const std::vector<double>& slabs) const 
     return best;
 }
 
-std::vector<double> BroadSweep::bounds(const Frame& frame, std::span<const double> margins) const {
-    const auto stride = 2 * directions_.size();
-    const auto bodies = static_cast<std::uint32_t>(scene_.bodies.size());
-    std::vector<double> slabs(bodies * stride);
-    for (std::uint32_t body = 0; body < bodies; ++body) {
-        if (scene_.bodies[body].deformable)
-            bound_deformed(frame.deformed[body], &slabs[body * stride]);
-        else
-            bound_rigid(shapes_[scene_.bodies[body].mesh], frame.poses[body], &slabs[body * stride]);
-        if (!margins.empty()) widen(&slabs[body * stride], margins[body]);
-    }
-    return slabs;
+void BroadSweep::bound(const Frame& frame, std::uint32_t body, double margin, double* slabs) const {
+    if (scene_.bodies[body].deformable)
+        bound_deformed(frame.deformed[body], slabs);
+    else
+        bound_rigid(shapes_[scene_.bodies[body].mesh], frame.poses[body], slabs);
+    if (margin > 0) widen(slabs, margin);
 }
 
 std::vector<BodyPair> BroadSweep::pairs(const Frame& frame, std::span<const double> margins) const {
-    const auto slabs = bounds(frame, margins);
+    const auto stride = 2 * directions_.size();
+    std::vector<double> slabs(scene_.bodies.size() * stride);
+    for (std::uint32_t body = 0; body < scene_.bodies.size(); ++body)
+        bound(frame, body, margins.empty() ? 0 : margins[body], &slabs[body * stride]);
+    return swept(slabs);
+}
+
+std::vector<BodyPair> BroadSweep::pairs(std::span<const Ball> balls) const {
+    std::vector<double> slabs;
+    for (const auto& ball : balls)
+        for (const auto& d : directions_) {
+            slabs.push_back(d.dot(ball.centre) - ball.radius * d.norm());
+            slabs.push_back(d.dot(ball.centre) + ball.radius * d.norm());
+        }
+    return swept(slabs);
+}
+
+/// Pairs of bodies whose slabs overlap along all directions.
+std::vector<BodyPair> BroadSweep::swept(const std::vector<double>& slabs) const {
     const auto stride = 2 * directions_.size();
     const auto bodies = scene_.bodies.size();
     const auto sweep = 2 * sweep_direction(slabs);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/bodies/ball.h"
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/traversal.h"
 
@@ -21,6 +22,12 @@ public:
     /// Those that may overlap as long as no vertex is further from where `frame` has it than its body's
     /// margin; none: 0.
     std::vector<BodyPair> pairs(const Frame& frame, std::span<const double> margins) const;
+    /// Those of bodies that fill these balls.
+    std::vector<BodyPair> pairs(std::span<const Ball> balls) const;
+
+    /// Bounds of one body: lower and upper end along each axis, one after the other.
+    void bound(const Frame& frame, std::uint32_t body, double margin, double* slabs) const;
+    std::size_t axes() const { return directions_.size(); }
 
 private:
     struct Shape {
@@ -29,7 +36,7 @@ private:
         double reach = 0;  ///< largest distance of a vertex from the mesh's origin
     };
 
-    std::vector<double> bounds(const Frame& frame, std::span<const double> margins) const;
+    std::vector<BodyPair> swept(const std::vector<double>& slabs) const;
     Shape shape_of(const std::vector<Eigen::Vector3d>& vertices) const;
     void bound_rigid(const Shape& shape, const Pose& pose, double* slabs) const;
     void bound_deformed(const std::vector<Eigen::Vector3d>& vertices, double* slabs) const;

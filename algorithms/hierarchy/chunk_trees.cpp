@@ -80,7 +80,7 @@ void ChunkTrees::plan_strips() {
     for (std::uint32_t level = 0; level < first_top_level_; ++level) {
         std::uint32_t deepest = 0;
         for (const auto& levels : mesh_levels_)
-            if (level < levels.size())
+            if (level < levels.size() && levels[level].items > 0)
                 deepest = std::max(deepest, ceil_log2(std::min(levels[level].items, leaves_)));
         for (std::uint32_t bottom = deepest;;) {
             const auto top = bottom > strip_height ? bottom - strip_height : 0;

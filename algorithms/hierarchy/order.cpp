@@ -64,6 +64,7 @@ std::vector<std::uint32_t> curve_order(const std::vector<Eigen::Vector3d>& point
 
 /// The order of a mesh that a builder makes.
 std::vector<std::uint32_t> order_of(const Mesh& mesh, Builder builder) {
+    if (mesh.tetrahedra.empty()) return {};
     switch (builder) {
     case Builder::morton:
         return morton_order(mesh);

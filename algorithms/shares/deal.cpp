@@ -2,10 +2,7 @@
 #include "algorithms/shares/deal.h"
 
 #include "algorithms/hierarchy/order.h"
-#include "scenes/parallel.h"
-
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -35,79 +32,31 @@ double common_volume(double a, double b, double distance) {
 Deal::Deal(const Scene& scene, const Geometry& geometry, std::size_t shares)
     : scene_(scene),
       sweep_(scene, geometry, Broad::tight),
+      places_(scene),
+      all_(scene.bodies.size()),
       shares_(shares),
       owners_(scene.bodies.size(), shares),
       balls_(scene.bodies.size()),
       learned_(scene.bodies.size(), 1.0),
       foreseen_(scene.bodies.size()) {
-    for (const auto& mesh : scene.meshes) mesh_balls_.push_back(ball_around(mesh.vertices));
-}
-
-Ball Deal::ball_of(const Frame& frame, std::uint32_t body) const {
-    if (scene_.bodies[body].deformable) return ball_around(frame.deformed[body]);
-    const auto& ball = mesh_balls_[scene_.bodies[body].mesh];
-    const auto& pose = frame.poses[body];
-    return {pose.rotation.normalized() * ball.centre + pose.translation, ball.radius};
-}
-
-/// No vertex of the body is further from where it was dealt. Of a rigid one: its centre's way, and the
-/// radius times the norm of the difference of the rotations, which is twice the sine of half their angle.
-double Deal::moved(const Frame& frame, std::uint32_t body) const {
-    if (scene_.bodies[body].deformable) {
-        double squared = 0;
-        const auto& now = frame.deformed[body];
-        const auto& then = dealt_.deformed[body];
-        for (std::size_t i = 0; i < now.size(); ++i)
-            squared = std::max(squared, (now[i] - then[i]).squaredNorm());
-        return std::sqrt(squared);
-    }
-    const auto& ball = mesh_balls_[scene_.bodies[body].mesh];
-    const auto& pose = frame.poses[body];
-    const auto now = pose.rotation.normalized();
-    const double cosine = now.dot(dealt_.poses[body].rotation.normalized());
-    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-    const Eigen::Vector3d way = now * ball.centre + pose.translation - balls_[body].centre;
-    // More than the roundings of these few operations, relative to what they are made of.
-    return (way.norm() + 2 * sine * ball.radius) * (1 + 1e-12) + 1e-7 * ball.radius;
-}
-
-bool Deal::all_within_margins(const Frame& frame) const {
-    constexpr std::size_t part = 4096;
-    const auto bodies = scene_.bodies.size();
-    const auto parts = (bodies + part - 1) / part;
-    std::atomic<bool> within = true;
-    parallel_for(parts, [&](std::size_t i) {
-        for (auto body = i * part; within && body < std::min(bodies, (i + 1) * part); ++body) {
-            const auto number = static_cast<std::uint32_t>(body);
-            // Written so that what is no number is beyond.
-            if (!scene_.bodies[body].fixed && !(moved(frame, number) <= margin_ * balls_[body].radius))
-                within = false;
-        }
-    });
-    return within;
+    std::iota(all_.begin(), all_.end(), 0u);
 }
 
 bool Deal::holds(const Frame& frame) {
-    is_over_ = dealt_.poses.empty() || (!has_all_ && !all_within_margins(frame));
+    is_over_ = !is_made_ || (!has_all_ && !places_.all_within(frame, all_, margin_));
     held_ += is_over_ ? 0 : 1;
     return !is_over_;
-}
-
-void Deal::place(const Frame& frame) {
-    dealt_.poses = frame.poses;
-    dealt_.deformed = frame.deformed;
-    for (std::uint32_t body = 0; body < balls_.size(); ++body) balls_[body] = ball_of(frame, body);
-    order_.clear();
 }
 
 void Deal::order_bodies() {
     std::vector<Eigen::Vector3d> centres;
     std::vector<std::uint32_t> moving;
-    for (std::uint32_t body = 0; body < balls_.size(); ++body) {
+    for (const auto body : all_) {
         if (scene_.bodies[body].fixed) continue;
         moving.push_back(body);
         centres.push_back(balls_[body].centre);
     }
+    order_.clear();
     for (const auto position : hilbert_order(centres)) order_.push_back(moving[position]);
 }
 
@@ -184,21 +133,28 @@ void Deal::gather_all() {
 }
 
 void Deal::make(const Frame& frame, std::span<const double> speeds) {
-    const bool too_soon = is_over_ && !dealt_.poses.empty() && held_ < soon;
+    const bool too_soon = is_over_ && is_made_ && held_ < soon;
     has_all_ = has_all_ || (too_soon && margin_ >= most_margin);
     if (too_soon) margin_ = std::min(2 * margin_, most_margin);
     held_ = 0;
-    place(frame);
+    is_made_ = true;
+    places_.keep(frame, all_);
+    for (const auto body : all_) balls_[body] = places_.ball(body);
     order_bodies();
-    std::vector<double> margins;
-    for (const auto& ball : balls_) margins.push_back(margin_ * ball.radius);
-    const auto near = sweep_.pairs(frame, margins);
+    const auto near = sweep_.pairs(frame, places_.margins(margin_));
     expect_work(near);
     cut(speeds);
     if (has_all_)
         gather_all();
     else
         gather(near);
+}
+
+void Deal::make(std::span<const Ball> balls, std::span<const double> speeds) {
+    balls_.assign(balls.begin(), balls.end());
+    order_bodies();
+    expect_work(sweep_.pairs(balls));
+    cut(speeds);
 }
 
 double Deal::work_of(const Share& share, std::uint64_t pairs) const {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/bodies/ball.h"
 #include "algorithms/broad/broad.h"
+#include "algorithms/shares/places.h"
 #include "algorithms/shares/share.h"
 
 namespace tandem {
@@ -20,20 +20,21 @@ public:
     /// Deals anew. `speeds`: of each share's device, in any unit. Where the last deal has not held for long
     /// margins grow, and where they are of no use shares have all bodies, which holds for any frame.
     void make(const Frame& frame, std::span<const double> speeds);
+    /// The same for who knows no more of a frame than the balls that bodies are in: shares have their own
+    /// bodies and no others, and hold() is not to be asked.
+    void make(std::span<const Ball> balls, std::span<const double> speeds);
     /// Candidate pairs of each body in the frame that was dealt, from which the next deal expects work.
     void learn(std::span<const std::uint64_t> pairs_by_body);
 
     const std::vector<Share>& shares() const { return shares_; }
     /// The share that a pair of bodies, not both of which are fixed, belongs to.
     std::size_t share_of(BodyPair pair) const { return std::min(owners_[pair.a], owners_[pair.b]); }
+    /// The share that owns a body; of a fixed one the number of shares.
+    std::size_t owner_of(std::uint32_t body) const { return owners_[body]; }
     /// What a share in which so many candidate pairs were found has worked, in tetrahedra refitted.
     double work_of(const Share& share, std::uint64_t pairs) const;
 
 private:
-    Ball ball_of(const Frame& frame, std::uint32_t body) const;
-    double moved(const Frame& frame, std::uint32_t body) const;
-    bool all_within_margins(const Frame& frame) const;
-    void place(const Frame& frame);
     void order_bodies();
     void expect_work(std::span<const BodyPair> near);
     double expected_pairs(BodyPair pair) const;
@@ -43,19 +44,20 @@ private:
 
     const Scene& scene_;
     BroadSweep sweep_;
-    std::vector<Ball> mesh_balls_; ///< in the frame of each mesh
+    Places places_;
+    std::vector<std::uint32_t> all_; ///< bodies
     std::vector<Share> shares_;
-    std::vector<std::size_t> owners_; ///< share by body; of fixed ones the number of shares
-    Frame dealt_;
-    std::vector<Ball> balls_;          ///< by body, in dealt_
+    std::vector<std::size_t> owners_;  ///< by body
+    std::vector<Ball> balls_;          ///< by body, in the frame that was dealt
     std::vector<std::uint32_t> order_; ///< moving bodies along the curve
-    std::vector<double> work_;     ///< by position in order_: what is expected that its body brings its share
-    std::vector<double> learned_;  ///< by body: candidate pairs found for each that was expected
-    std::vector<double> foreseen_; ///< by body: candidate pairs expected from balls alone
-    double margin_ = 0.25;         ///< of a body's radius
-    std::size_t held_ = 0;         ///< frames that the deal was asked for and held
-    bool is_over_ = false;         ///< it was asked for one and did not hold
-    bool has_all_ = false;         ///< shares have all bodies
+    std::vector<double> work_;         ///< by position in order_: expected of what its body brings its share
+    std::vector<double> learned_;      ///< by body: candidate pairs found for each that was expected
+    std::vector<double> foreseen_;     ///< by body: candidate pairs expected from balls alone
+    double margin_ = 0.25;             ///< of a body's radius
+    std::size_t held_ = 0;             ///< frames that the deal was asked for and held
+    bool is_made_ = false;             ///< there is one
+    bool is_over_ = false;             ///< it was asked for one and did not hold
+    bool has_all_ = false;             ///< shares have all bodies
 };
 
 } // namespace tandem

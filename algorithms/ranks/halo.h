@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/broad/broad.h"
+#include "algorithms/shares/deal.h"
+#include "backends/ranks.h"
+
+namespace tandem {
+
+/// What ranks tell each other of bodies: those of a rank that come near bodies of a lower one are that one's
+/// to pair, and it is sent their poses or vertices in every frame. Who is near is found from bounds with a
+/// margin, and holds until a body has gone further. Functions that are marked so are called by all ranks
+/// together, in the same order, also by one that has failed (`failed`): the others must not wait for it.
+class Halo {
+public:
+    /// What a rank has sent.
+    struct Traffic {
+        std::uint64_t bytes = 0, messages = 0;
+    };
+
+    /// `scene` and `ranks` must outlive this.
+    Halo(const Scene& scene, const Geometry& geometry, Ranks& ranks);
+
+    /// By all ranks: whether bodies of any of them have gone too far, or are others than before.
+    bool is_over(const Frame& frame, bool failed, Traffic& traffic);
+    /// By all ranks: exchanges bounds, and finds who is near. `frame` has the poses or vertices of `own`, and
+    /// of fixed bodies.
+    void meet(const std::vector<std::uint32_t>& own, const Frame& frame, bool failed, Traffic& traffic);
+    /// By all ranks: puts the poses and vertices of others into `frame`.
+    void trade(Frame& frame, bool failed, Traffic& traffic);
+    /// Of this rank: its own bodies, and the others that it gets or that are fixed and near.
+    const Share& share() const { return share_; }
+    /// The next is_over() is true.
+    void forget() { is_met_ = false; }
+
+private:
+    using Numbers = std::vector<std::uint32_t>;
+
+    std::vector<double> slabs_of(const Numbers& bodies, const Frame& frame) const;
+    std::vector<double> boxes_over(const std::vector<double>& slabs) const;
+    Numbers near(const Numbers& bodies, const std::vector<double>& slabs,
+                 std::span<const double> boxes) const;
+    void tell(std::vector<Numbers> lists, Traffic& traffic);
+    std::vector<Ranks::Bytes> passed(const std::vector<Ranks::Bytes>& out, Traffic& traffic);
+
+    const Scene& scene_;
+    Ranks& ranks_;
+    BroadSweep sweep_;
+    Places places_;
+    Numbers fixed_; ///< bodies
+    Share share_;
+    std::vector<Numbers> sent_, gotten_; ///< by rank
+    double margin_ = 0.25;               ///< of a body's radius
+    std::size_t held_ = 0;               ///< frames since the last meet()
+    bool is_met_ = false;
+};
+
+} // namespace tandem

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/ranks/rank_session.h"
+
+#include "algorithms/parameters/table.h"
+#include "algorithms/ranks/bytes.h"
+#include "scenes/error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace tandem {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::int64_t ns_since(Clock::time_point begin) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
+}
+
+/// Where frame 0 has them all.
+std::vector<Ball> balls_at_the_start(const Scene& scene) {
+    Places places(scene);
+    std::vector<std::uint32_t> all(scene.bodies.size());
+    std::iota(all.begin(), all.end(), 0u);
+    places.keep(scene.frame(0), all);
+    std::vector<Ball> balls;
+    for (const auto body : all) balls.push_back(places.ball(body));
+    return balls;
+}
+
+} // namespace
+
+RankSession::RankSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted,
+                         Ranks& ranks)
+    : traversal_(traversal),
+      devices_{&device},
+      scene_(scene),
+      settings_(std::move(fitted)),
+      ranks_(ranks),
+      deal_(scene, geometry_of(settings_), static_cast<std::size_t>(ranks.size())),
+      balance_(static_cast<std::size_t>(ranks.size())),
+      halo_(scene, geometry_of(settings_), ranks),
+      places_(scene),
+      is_present_(scene.bodies.size()) {
+    deal_.make(balls_at_the_start(scene), balance_.speeds());
+    // What compiles and allocates does so now, and not in the first frame.
+    auto frame = scene.frame(0);
+    Report own;
+    exchange(frame, own);
+    fail(reports(own));
+}
+
+void RankSession::do_reset() {
+    if (session_) session_->reset();
+}
+
+void RankSession::do_count_work(bool on) {
+    counts_work_ = on;
+    if (session_) session_->count_work(on);
+}
+
+/// A session of those bodies alone.
+void RankSession::build(const std::vector<bool>& is_present) {
+    session_.reset(); // before the next takes memory
+    present_ = scene_of(scene_, is_present);
+    session_ = std::make_unique<ResidentSession>(traversal_, *devices_.front(), *present_, settings_);
+    if (counts_work_) session_->count_work(true);
+    is_present_ = is_present;
+}
+
+/// Bodies that were there stay, as long as there is room: those at the border come and go.
+void RankSession::take_share() {
+    const auto& share = halo_.share();
+    if (share.own.empty()) {
+        session_.reset();
+        is_present_.assign(is_present_.size(), false);
+        return;
+    }
+    std::vector<bool> needed(is_present_.size());
+    for (const auto* bodies : {&share.own, &share.others})
+        for (const auto body : *bodies) needed[body] = true;
+    auto both = needed;
+    for (std::size_t body = 0; body < both.size(); ++body) both[body] = both[body] || is_present_[body];
+    if (!session_ || both != is_present_) {
+        try {
+            build(both);
+        } catch (const OutOfMemory&) {
+            if (both == needed) throw;
+            build(needed);
+        }
+    }
+    session_->take(share);
+}
+
+/// What others have to say of a frame. Every rank passes the same messages, whatever becomes of it.
+void RankSession::exchange(Frame& frame, Report& own) {
+    const HostWork work(*devices_.front(), Stage::exchange, "bodies of other ranks");
+    const auto begin = Clock::now();
+    Halo::Traffic traffic;
+    if (halo_.is_over(frame, false, traffic)) {
+        halo_.meet(own_bodies(), frame, false, traffic);
+        try {
+            take_share();
+        } catch (const std::exception& error) {
+            own.failure = error.what();
+            own.is_memory = dynamic_cast<const OutOfMemory*>(&error) != nullptr;
+            session_.reset();
+            is_present_.assign(is_present_.size(), false);
+            halo_.forget();
+        }
+    }
+    halo_.trade(frame, false, traffic);
+    own.work.exchange_ns = ns_since(begin);
+    own.work.exchange_bytes = traffic.bytes;
+    own.work.messages = traffic.messages;
+}
+
+void RankSession::walk(const Frame& frame, FrameResult& result, Report& own) {
+    if (!own.failure.empty() || !session_) return;
+    const auto begin = Clock::now();
+    try {
+        result = session_->run(frame);
+    } catch (const std::exception& error) {
+        own.failure = error.what();
+        own.is_memory = dynamic_cast<const OutOfMemory*>(&error) != nullptr;
+        return;
+    }
+    for (auto& part : result.parts) part = kept_part(std::move(part), present_);
+    own.work.bodies = halo_.share().own.size() + halo_.share().others.size();
+    own.work.body_pairs = result.body_pairs;
+    own.work.pairs = result.count;
+    own.work.ns = ns_since(begin);
+    own.is_usual = result.retries == 0 && result.batches <= 1;
+}
+
+/// Throws the error of the first rank that had one, on all of them.
+void RankSession::fail(const std::vector<Report>& all) const {
+    const auto failed =
+        std::ranges::find_if(all, [](const Report& report) { return !report.failure.empty(); });
+    if (failed == all.end()) return;
+    if (failed->is_memory) throw OutOfMemory(failed->failure);
+    throw DeviceError(failed->failure);
+}
+
+/// Of all ranks.
+std::vector<RankSession::Report> RankSession::reports(const Report& own) {
+    Ranks::Bytes message;
+    append(message, std::span(&own.work, 1));
+    append(message, std::span(&own.is_memory, 1));
+    append(message, std::span(&own.is_usual, 1));
+    append_text(message,
+                own.failure.empty() ? own.failure : fmt::format("rank {}: {}", ranks_.rank(), own.failure));
+    std::vector<Report> all;
+    for (const auto& bytes : ranks_.gather_to_all(message)) {
+        MessageReader reader(bytes);
+        auto& report = all.emplace_back();
+        report.work = reader.read<SharedWork>();
+        report.is_memory = reader.read<bool>();
+        report.is_usual = reader.read<bool>();
+        report.failure = reader.read_text();
+    }
+    return all;
+}
+
+/// All ranks see the same numbers and come to the same end.
+void RankSession::deal_anew(const Frame& frame, FrameResult& result) {
+    std::vector<double> work;
+    for (std::size_t i = 0; i < result.shared.size(); ++i)
+        work.push_back(deal_.work_of(deal_.shares()[i], result.shared[i].pairs));
+    balance_.see(result.shared, work);
+    if (!balance_.wants_a_deal()) return;
+    const HostWork timed(*devices_.front(), Stage::exchange, "deal bodies");
+    // Places of own bodies and candidate pairs of all that pairs here are of.
+    places_.keep(frame, own_bodies());
+    Ranks::Bytes message;
+    for (const auto body : own_bodies()) append(message, std::span(&places_.ball(body), 1));
+    std::vector<std::uint64_t> counts(scene_.bodies.size());
+    for (const auto& part : result.parts) part->count_by_body(counts);
+    append(message, std::span(counts));
+    std::vector<Ball> balls = balls_at_the_start(scene_); // of fixed ones
+    std::vector<std::uint64_t> sums(counts.size());
+    const auto all = ranks_.gather_to_all(message);
+    for (std::size_t rank = 0; rank < all.size(); ++rank) {
+        MessageReader reader(all[rank]);
+        for (const auto body : deal_.shares()[rank].own) reader.read(std::span(&balls[body], 1));
+        reader.read(std::span(counts));
+        for (std::size_t body = 0; body < sums.size(); ++body) sums[body] += counts[body];
+    }
+    if (settings_[parameters::output] == Output::pairs) deal_.learn(sums);
+    deal_.make(balls, balance_.speeds());
+    balance_.dealt();
+    halo_.forget();
+    result.deals = 1;
+}
+
+FrameResult RankSession::do_run(const Frame& given, std::optional<std::span<const BodyPair>> body_pairs) {
+    if (body_pairs) throw InputError("run() was given body pairs, which ranks of a job find themselves");
+    Frame frame = given;
+    Report own;
+    FrameResult result;
+    exchange(frame, own);
+    walk(frame, result, own);
+    const auto all = reports(own);
+    fail(all);
+    result.shared.clear();
+    bool is_usual = true;
+    for (const auto& report : all) {
+        result.shared.push_back(report.work);
+        is_usual = is_usual && report.is_usual;
+    }
+    if (is_usual) deal_anew(frame, result);
+    return result;
+}
+
+} // namespace tandem

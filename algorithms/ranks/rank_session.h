@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/ranks/halo.h"
+#include "algorithms/resident_session.h"
+#include "algorithms/shares/balance.h"
+
+namespace tandem {
+
+/// A session of one rank of a job, each with a device of its own: ranks own bodies, tell each other where
+/// those are that come near, and each pair is found by one of them. All ranks call run() together. Of a frame
+/// a rank needs its own bodies (owned()) and the fixed ones; what it says of others is not looked at. The
+/// result is what this rank has found, its `shared` what each of them has done. On the device are only bodies
+/// that have a part in this rank's share. An error on one rank is one of all: DeviceError that names it.
+class RankSession final : public Session {
+public:
+    /// Bodies are dealt by where frame 0 has them, so that all ranks know who owns them. `fitted`:
+    /// Traversal::fitted. All must outlive this.
+    RankSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted,
+                Ranks& ranks);
+
+private:
+    /// What a rank tells all others at the end of a frame.
+    struct Report {
+        SharedWork work;
+        std::string failure;
+        bool is_memory = false; ///< that there is too little
+        bool is_usual = true;   ///< the frame took what frames take: no buffer had to grow
+    };
+
+    void do_reset() override;
+    FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override;
+    void do_count_work(bool on) override;
+    std::span<Device* const> do_devices() const override { return devices_; }
+    std::optional<std::span<const std::uint32_t>> do_owned() const override { return own_bodies(); }
+    const Settings& do_settings() const override { return session_ ? session_->settings() : settings_; }
+
+    const std::vector<std::uint32_t>& own_bodies() const {
+        return deal_.shares()[static_cast<std::size_t>(ranks_.rank())].own;
+    }
+    void take_share();
+    void build(const std::vector<bool>& is_present);
+    void exchange(Frame& frame, Report& own);
+    void walk(const Frame& frame, FrameResult& result, Report& own);
+    std::vector<Report> reports(const Report& own);
+    void fail(const std::vector<Report>& all) const;
+    void deal_anew(const Frame& frame, FrameResult& result);
+
+    const Traversal& traversal_;
+    std::array<Device*, 1> devices_;
+    const Scene& scene_;
+    Settings settings_;
+    Ranks& ranks_;
+    Deal deal_;
+    Balance balance_;
+    Halo halo_;
+    Places places_;
+    std::vector<bool> is_present_; ///< by body: on the device
+    std::shared_ptr<const Scene> present_;
+    std::unique_ptr<ResidentSession> session_; ///< none where the share has no bodies
+    bool counts_work_ = false;
+};
+
+} // namespace tandem
