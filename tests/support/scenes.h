@@ -91,4 +91,34 @@ inline Scene crowd(std::uint64_t seed, std::uint32_t bodies, double spread) {
     return scene;
 }
 
+/// Boxes in a row along x, each of which meets its neighbours; from frame to frame they all go `step` along x
+/// and turn. The first is fixed, the second one deformable.
+inline Scene procession(std::uint32_t bodies, std::size_t frames, double step) {
+    Random random(17);
+    Scene scene;
+    scene.name = scene.key = "procession";
+    scene.meshes = {shaken_box(2, random)};
+    scene.bodies.resize(bodies);
+    scene.bodies[0].fixed = true;
+    scene.bodies[1].deformable = true;
+    scene.frame_count = frames;
+    const auto vertices = scene.meshes.front().vertices;
+    scene.frame = [bodies, step, vertices](std::size_t number) {
+        Frame frame;
+        frame.deformed.resize(bodies);
+        const double way = step * static_cast<double>(number);
+        for (std::uint32_t i = 0; i < bodies; ++i) {
+            const Eigen::Vector3d place(0.8 * i + (i == 0 ? 0 : way), i % 3 * 0.1, 0);
+            const Eigen::Quaterniond turn(
+                Eigen::AngleAxisd(i == 0 ? 0 : way + 0.3 * i, Eigen::Vector3d::UnitZ()));
+            frame.poses.push_back(i == 1 ? Pose{} : Pose{turn, place});
+            if (i != 1) continue;
+            for (const auto& vertex : vertices) frame.deformed[1].push_back(turn * vertex + place);
+        }
+        return frame;
+    };
+    scene.digest = digest_of(scene);
+    return scene;
+}
+
 } // namespace tandem::testing_support

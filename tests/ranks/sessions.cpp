@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+// Sessions on ranks of a job, which a launcher has started: answers together are those of one device, every
+// pair is found once, and an error of one rank is one of all. Every rank runs every test.
+#include "algorithms/ranks/bytes.h"
+#include "backends/mpi/mpi_ranks.h"
+#include "scenes/error.h"
+#include "tests/support/cells.h"
+#include "tests/support/scenes.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+std::unique_ptr<Ranks> job;
+
+Settings settings_of(const Traversal& traversal, const SettingTexts& given = {}) {
+    return resolve(traversal.parameters(), traversal.presets().front().values, given, traversal.name());
+}
+
+/// Of all ranks, added up.
+template<class T>
+T summed(const T& own) {
+    T sum{};
+    const auto all = job->gather_to_all(std::as_bytes(std::span(&own, 1)));
+    for (const auto& bytes : all) sum += MessageReader(bytes).read<T>();
+    return sum;
+}
+
+/// Of a frame what a rank has to give of it; the rest is far away, so that it would be missed or met.
+Frame of_own(const Scene& scene, const Session& session, std::size_t number) {
+    auto frame = scene.frame(number);
+    std::vector<bool> is_own(scene.bodies.size());
+    const auto own = session.owned().value();
+    for (const auto body : own) is_own[body] = true;
+    for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
+        if (is_own[body] || scene.bodies[body].fixed) continue;
+        frame.poses[body].translation = {1e6, 0, 0};
+        frame.deformed[body].clear();
+    }
+    return frame;
+}
+
+class RankSessions : public testing::Test {
+protected:
+    /// A frame by all ranks, and by this one alone on another session.
+    void expect_equal(const Scene& scene, Session& session, Session& alone, std::size_t number) {
+        const auto result = session.run(of_own(scene, session, number));
+        const auto right = alone.run(scene.frame(number));
+        ASSERT_GT(right.count, 0u);
+        EXPECT_EQ(summed(result.count), right.count);
+        EXPECT_EQ(summed(result.body_pairs), right.body_pairs);
+        EXPECT_EQ(summed(result.contacts), right.contacts);
+        EXPECT_EQ(summed(result.digest()), right.digest());
+        EXPECT_EQ(summed(result.contact_digest()), right.contact_digest());
+        ASSERT_EQ(result.shared.size(), static_cast<std::size_t>(job->size()));
+        std::uint64_t pairs = 0;
+        for (const auto& work : result.shared) pairs += work.pairs;
+        EXPECT_EQ(pairs, right.count);
+        EXPECT_EQ(result.shared[static_cast<std::size_t>(job->rank())].pairs, result.count);
+        last_ = result;
+    }
+    std::unique_ptr<Session> alone(const Traversal& traversal, const Scene& scene) {
+        const std::array one{&device("host")};
+        return traversal.prepare(one, scene, settings_of(traversal));
+    }
+
+    FrameResult last_;
+};
+
+/// There and back, so that who is near changes; a deformable body's vertices travel; results outlive the
+/// sessions' parts that they lie in.
+TEST_F(RankSessions, AnswersTogetherAreThoseOfOneDevice) {
+    const auto scene = procession(24, 4, 0.35);
+    for (const auto* traversal : algorithms()) {
+        SCOPED_TRACE(traversal->name());
+        const auto session = traversal->prepare(device("host"), scene, settings_of(*traversal), *job);
+        const auto one = alone(*traversal, scene);
+        std::vector<FrameResult> kept;
+        for (const std::size_t i : {0u, 1u, 2u, 3u, 0u, 3u, 3u}) {
+            expect_equal(scene, *session, *one, i);
+            kept.push_back(last_);
+        }
+        EXPECT_EQ(summed(kept.front().digest()), one->run(scene.frame(0)).digest());
+    }
+}
+
+TEST_F(RankSessions, OnlyWhatIsNeededIsOnTheDevice) {
+    const auto scene = procession(400, 1, 0.35);
+    const auto& traversal = algorithm("tiled");
+    auto& on = device("host");
+    const auto before = on.bytes_allocated();
+    const auto session = traversal.prepare(on, scene,
+                                           settings_of(traversal, {{"pair_capacity", "1"},
+                                                                   {"contact_capacity", "1"},
+                                                                   {"tile_pair_capacity", "1"},
+                                                                   {"body_pair_capacity", "1"}}),
+                                           *job);
+    const auto shared = on.bytes_allocated() - before;
+    const std::array one{&on};
+    const auto whole = traversal.prepare(one, scene,
+                                         settings_of(traversal, {{"pair_capacity", "1"},
+                                                                 {"contact_capacity", "1"},
+                                                                 {"tile_pair_capacity", "1"},
+                                                                 {"body_pair_capacity", "1"}}));
+    const auto all = on.bytes_allocated() - before - shared;
+    EXPECT_LT(static_cast<double>(shared), (0.3 + 1.0 / job->size()) * static_cast<double>(all));
+    expect_equal(scene, *session, *whole, 0);
+    const auto& own = last_.shared[static_cast<std::size_t>(job->rank())];
+    EXPECT_LT(own.bodies, 400u / static_cast<unsigned>(job->size()) + 20u);
+    if (job->size() > 1) {
+        EXPECT_GT(summed(own.exchange_bytes), 0u);
+        EXPECT_LT(own.exchange_bytes, 400u * 144) << "only bodies at the border travel";
+    }
+}
+
+TEST_F(RankSessions, CountsAndDigestsWithoutPairs) {
+    const auto scene = procession(20, 1, 0);
+    for (const std::string output : {"count", "digest"}) {
+        const auto& traversal = algorithm("chunked");
+        const auto session =
+            traversal.prepare(device("host"), scene, settings_of(traversal, {{"output", output}}), *job);
+        const auto right = alone(traversal, scene)->run(scene.frame(0));
+        for (int i = 0; i < 4; ++i) {
+            const auto result = session->run(of_own(scene, *session, 0));
+            EXPECT_EQ(summed(result.count), right.count);
+            if (output == "digest") {
+                EXPECT_EQ(summed(result.digest()), right.digest());
+            }
+        }
+    }
+}
+
+/// A rank may own nothing at all.
+TEST_F(RankSessions, MoreRanksThanBodies) {
+    const auto scene = procession(3, 2, 0.1);
+    const auto& traversal = algorithm("gproximity");
+    const auto session = traversal.prepare(device("host"), scene, settings_of(traversal), *job);
+    const auto one = alone(traversal, scene);
+    for (const std::size_t i : {0u, 1u, 0u}) expect_equal(scene, *session, *one, i);
+}
+
+/// The first rank's device has too little memory: all are told, by name, and go on when it has enough.
+TEST_F(RankSessions, AnErrorOfOneRankIsOneOfAll) {
+    const auto scene = procession(40, 2, 5);
+    const auto& traversal = algorithm("tiled");
+    auto& on = device("host");
+    const auto session = traversal.prepare(on, scene, settings_of(traversal), *job);
+    const auto one = alone(traversal, scene);
+    expect_equal(scene, *session, *one, 0);
+    last_ = {};
+    if (job->is_first()) on.set_memory_limit(1);
+    std::string said;
+    try {
+        session->run(of_own(scene, *session, 1));
+    } catch (const OutOfMemory& error) {
+        said = error.what();
+    }
+    on.set_memory_limit(Device::no_memory_limit);
+    EXPECT_THAT(said, testing::HasSubstr("rank 0: "));
+    expect_equal(scene, *session, *one, 1);
+    expect_equal(scene, *session, *one, 0);
+}
+
+TEST_F(RankSessions, RefuseWhatOneRankCannotDo) {
+    const auto scene = procession(5, 1, 0);
+    const auto refusal = [&](const char* name, const SettingTexts& given) -> std::string {
+        const auto& traversal = algorithm(name);
+        try {
+            const auto session =
+                traversal.prepare(device("host"), scene, settings_of(traversal, given), *job);
+            const std::vector<BodyPair> pairs{{1, 2}};
+            session->run(scene.frame(0), pairs);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_THAT(refusal("tiled", {{"broad", "tight"}}), testing::HasSubstr("choose broad=device"));
+    EXPECT_THAT(refusal("chunked", {{"residency", "published"}}), testing::HasSubstr("cannot share a frame"));
+    EXPECT_THAT(refusal("tiled", {}), testing::HasSubstr("which ranks of a job find themselves"));
+}
+
+} // namespace
+} // namespace tandem
+
+int main(int argc, char** argv) {
+    testing::InitGoogleTest(&argc, argv);
+    MPI_Init(nullptr, nullptr);
+    tandem::job = tandem::mpi_ranks(MPI_COMM_WORLD);
+    if (!tandem::job->is_first()) { // one report; failures of the others end the job
+        auto& listeners = testing::UnitTest::GetInstance()->listeners();
+        delete listeners.Release(listeners.default_result_printer());
+    }
+    const int failed = RUN_ALL_TESTS();
+    if (failed != 0 && !tandem::job->is_first())
+        fmt::print(stderr, "rank {}: a test failed\n", tandem::job->rank());
+    tandem::job.reset();
+    MPI_Finalize();
+    return failed;
+}
