@@ -2,6 +2,7 @@
 #include "harness/key.h"
 
 #include "harness/environment.h"
+#include "harness/ranks/companions.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -12,7 +13,7 @@ namespace {
 
 std::string models_of(const DeviceGroup& devices) {
     std::string models;
-    for (const auto* device : devices) models += (models.empty() ? "" : "+") + model_of(device->info());
+    for (const auto& info : infos_of(devices)) models += (models.empty() ? "" : "+") + model_of(info);
     return models;
 }
 

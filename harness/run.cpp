@@ -11,6 +11,8 @@
 #include "harness/key.h"
 #include "harness/plans/cell_groups.h"
 #include "harness/progress.h"
+#include "harness/ranks/companions.h"
+#include "harness/ranks/launched.h"
 #include "harness/sampling/replays.h"
 #include "harness/standard_streams.h"
 #include "harness/table/table.h"
@@ -29,8 +31,9 @@ namespace {
 /// Writes what was asked for in a replay of its own: files take longer than frames.
 void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts) {
     if (!pairs && !contacts) return;
-    const auto session = cell.algorithm->prepare(cell.devices, job.scene, cell.settings);
+    const auto session = prepare_session(cell, job.scene);
     for (std::size_t i = 0; i < job.range.size(); ++i) {
+        announce_frame(i);
         const auto result = session->run(*job.range.frame(i));
         if (pairs) pairs.pairs(job.range.first() + i, result.download());
         if (contacts) contacts.contacts(job.range.first() + i, result.download_contacts());
@@ -253,6 +256,7 @@ int Run::go() {
     int code = 0;
     for (const auto& group : all_.groups) {
         auto job = open(group, tell_skipped);
+        if (companions() != nullptr) companions()->open(job.options, *job.cells.front().devices.front());
         open_files();
         leave_out_finished(job);
         if (job.cells.empty()) continue;
@@ -287,6 +291,12 @@ int Run::list_all() {
 
 } // namespace
 
-int run_command(const RunOptions& options) { return Run(options).go(); }
+int run_command(const RunOptions& options) {
+    auto* ranks = launched_ranks();
+    if (ranks == nullptr) return Run(options).go();
+    if (!ranks->is_first()) return serve_companion(*ranks);
+    Companions companions(*ranks, options);
+    return Run(companions.own_options(options)).go();
+}
 
 } // namespace tandem

@@ -5,6 +5,7 @@
 #include "harness/choosing/choice.h"
 #include "harness/environment.h"
 #include "harness/key.h"
+#include "harness/ranks/companions.h"
 #include "harness/record/parts.h"
 
 #include <fmt/format.h>
@@ -77,6 +78,11 @@ Json record_timed_device(const Device& device) {
 
 Json record_devices(const DeviceGroup& devices) {
     Json json = Json::array();
+    if (companions() != nullptr) {
+        for (const auto& info : infos_of(devices)) json.push_back(record_device(info));
+        json.front()["clock"] = devices.front()->clock();
+        return json;
+    }
     for (const auto* device : devices) json.push_back(record_timed_device(*device));
     return json;
 }
@@ -184,6 +190,7 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["scene"] = record_scene(scene);
     json["frames"] = {{"first", range.first()}, {"last", range.last()}};
     json["devices"] = devices_json(m, cell);
+    json["ranks"] = companions() != nullptr ? Json(infos_of(cell.devices).size()) : Json();
     const bool measured = failure.empty();
     json["sampling"] = record_parts::sampling_json(m, cell, outcome, sampling);
     json["conditions"] = record_parts::conditions_json(m);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "harness/ranks/companions.h"
 #include "harness/record/parts.h"
 #include "harness/statistics.h"
 
@@ -61,9 +62,10 @@ Json shares_json(const Measurement& m, const Cell& cell) {
     std::vector<double> imbalances;
     for (const auto& sample : m.samples) imbalances.push_back(sample.imbalance().value_or(1));
     std::ranges::sort(imbalances);
+    const auto infos = infos_of(cell.devices);
     Json devices = Json::array();
     for (std::size_t i = 0; i < m.shared.front().size(); ++i)
-        devices.push_back({{"device", cell.devices[i % cell.devices.size()]->info().id},
+        devices.push_back({{"device", infos[i].id},
                            {"ns", times_json(m, i)},
                            {"bodies", by_frame(m, i, &SharedWork::bodies)},
                            {"body_pairs", by_frame(m, i, &SharedWork::body_pairs)},

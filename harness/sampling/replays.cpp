@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampling/replays.h"
 
+#include "harness/ranks/companions.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <limits>
@@ -48,6 +50,17 @@ void add_host_work(const Trace& trace, std::map<std::string, HostWorkSample>& wo
     }
 }
 
+/// What the other ranks of a job did of a frame.
+void add_companions(InstrumentedReplay& replay, StageSamples& sum) {
+    if (companions() == nullptr) return;
+    const auto all = companions()->stages();
+    for (std::size_t rank = 1; rank < all.size(); ++rank)
+        for (std::size_t stage = 0; stage < sum.size(); ++stage) {
+            sum[stage] += all[rank][stage];
+            replay.by_device[rank][stage] += all[rank][stage];
+        }
+}
+
 } // namespace
 
 Replays::Replays(const Cell& cell, const Scene& scene, const FrameRange& range)
@@ -58,7 +71,7 @@ Replays::Replays(const Cell& cell, const Scene& scene, const FrameRange& range)
             frame_names_[i] = fmt::format("frame {}", range.first() + i);
     for (auto* device : cell.devices) device->set_clocks(Clocks::off);
     const auto begin = Clock::now();
-    session_ = cell.algorithm->prepare(cell.devices, scene, cell.settings);
+    session_ = prepare_session(cell, scene);
     wait();
     prepare_ns_ = since(begin);
 }
@@ -78,10 +91,12 @@ InstrumentedReplay Replays::instrumented() {
     for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
     const ranges::Range cell(name_.c_str());
     InstrumentedReplay replay;
-    replay.by_device.resize(cell_.devices.size());
+    replay.by_device.resize(infos_of(cell_.devices).size());
+    if (companions() != nullptr) companions()->set_clocks(Clocks::on);
     for (std::size_t i = 0; i < range_.size(); ++i) {
         const auto frame = range_.frame(i);
         const ranges::Range stretch(frame_names_[i].c_str());
+        announce_frame(i);
         wait();
         const auto begin = Clock::now();
         const auto result = session_->run(*frame);
@@ -100,8 +115,10 @@ InstrumentedReplay Replays::instrumented() {
             const auto own_span = device_span(trace);
             span = span < 0 || own_span < 0 ? -1 : std::max(span, own_span);
         }
+        add_companions(replay, sum);
         replay.span_ns.push_back(span);
     }
+    if (companions() != nullptr) companions()->set_clocks(Clocks::off);
     for (auto* device : cell_.devices) {
         replay.clocks.push_back(device->clock());
         device->set_clocks(Clocks::off);
@@ -112,8 +129,12 @@ InstrumentedReplay Replays::instrumented() {
 std::vector<Trace> Replays::traced(std::size_t index) {
     const ranges::Range cell(name_.c_str());
     session_->reset();
-    for (std::size_t i = 0; i < index; ++i) session_->run(*range_.frame(i));
+    for (std::size_t i = 0; i < index; ++i) {
+        announce_frame(i);
+        session_->run(*range_.frame(i));
+    }
     const auto frame = range_.frame(index);
+    announce_frame(index);
     session_->run(*frame);
     for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
     const ranges::Range stretch(frame_names_[index].c_str());
@@ -129,6 +150,7 @@ std::map<std::string_view, std::uint64_t> Replays::counted() {
     session_->reset();
     session_->count_work(true);
     for (std::size_t i = 0; i < range_.size(); ++i) {
+        announce_frame(i);
         const auto result = session_->run(*range_.frame(i));
         for (const auto& counter : cell_.algorithm->counters()) {
             const auto found = result.work.find(counter.name);

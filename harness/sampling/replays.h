@@ -3,6 +3,7 @@
 
 #include "backends/ranges.h"
 #include "harness/frames.h"
+#include "harness/ranks/companions.h"
 #include "harness/sampling/measurement.h"
 
 namespace tandem {
@@ -29,6 +30,7 @@ public:
         for (std::size_t i = 0; i < range_.size(); ++i) {
             const auto frame = range_.frame(i);
             const ranges::Range stretch(frame_names_[i].c_str());
+            announce_frame(i);
             wait();
             const auto begin = std::chrono::steady_clock::now();
             const auto result = session_->run(*frame);

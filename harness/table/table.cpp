@@ -2,6 +2,7 @@
 #include "harness/table/table.h"
 
 #include "harness/compare/ratio.h"
+#include "harness/ranks/companions.h"
 #include "harness/statistics.h"
 #include "harness/table/columns.h"
 #include "harness/table/labels.h"
@@ -194,12 +195,13 @@ double share_ms(const Measurement& m, std::size_t device) {
 std::string shares_table(const Row& row, const std::string& label) {
     const auto& m = *row.measurement;
     if (m.shared.empty() || m.samples.empty() || m.breakdowns.empty()) return {};
+    const auto infos = infos_of(row.cell->devices);
     std::vector<std::string> devices;
     std::vector<Column> columns{{"bodies", {}}, {"body pairs", {}}, {"pairs", {}}, {"ms/frame", {}}};
     for (const auto stage : all_stages())
         columns.push_back({std::string(stage_names[static_cast<std::size_t>(stage)]), {}});
     for (std::size_t i = 0; i < m.shared.front().size(); ++i) {
-        devices.push_back(row.cell->devices[i % row.cell->devices.size()]->info().id);
+        devices.push_back(companions() != nullptr ? fmt::format("rank {}, {}", i, infos[i].id) : infos[i].id);
         columns[0].texts.push_back(short_count(mean_over_frames(m, i, &SharedWork::bodies)));
         columns[1].texts.push_back(short_count(mean_over_frames(m, i, &SharedWork::body_pairs)));
         columns[2].texts.push_back(short_count(mean_over_frames(m, i, &SharedWork::pairs)));

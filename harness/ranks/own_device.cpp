@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "harness/ranks/own_device.h"
+
+#include "algorithms/ranks/bytes.h"
+#include "backends/registry.h"
+#include "scenes/error.h"
+
+#include <array>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace tandem {
+
+namespace {
+
+std::vector<std::string> split(const std::string& names) {
+    std::vector<std::string> parts;
+    for (std::size_t begin = 0; begin <= names.size();) {
+        const auto end = std::min(names.find('+', begin), names.size());
+        parts.push_back(names.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return parts;
+}
+
+} // namespace
+
+PlaceOnMachine place_on_machine(Ranks& ranks) {
+    std::array<char, 256> name{}; // compared, and kept nowhere
+    gethostname(name.data(), name.size() - 1);
+    const auto all = ranks.gather_to_all(std::as_bytes(std::span(name)));
+    const auto& own = all[static_cast<std::size_t>(ranks.rank())];
+    PlaceOnMachine place;
+    for (std::size_t rank = 0; rank < all.size(); ++rank) {
+        if (all[rank] != own) continue;
+        ++place.count;
+        place.before += rank < static_cast<std::size_t>(ranks.rank()) ? 1 : 0;
+    }
+    return place;
+}
+
+std::string device_of_rank(const std::string& names, const PlaceOnMachine& place) {
+    const auto count = place.count;
+    const auto parts = split(names);
+    if (parts.size() > count)
+        throw InputError(
+            fmt::format("--device {} names {} devices for {} rank{} on a machine, and a rank has one; start "
+                        "as many ranks as devices",
+                        names, parts.size(), count, count == 1 ? "" : "s"));
+    if (parts.size() == count) return parts[place.before];
+    // Processors can be shared; of GPUs each rank has its own, or times are of nothing.
+    const auto own = parts[place.before % parts.size()];
+    const auto backends = discover(std::array{own});
+    for (const auto& backend : backends)
+        for (const auto& device : backend.devices)
+            if (device->info().id == own && device->info().is_gpu)
+                throw InputError(fmt::format(
+                    "{} ranks on a machine have {} GPU{} in --device {}; name one for each, as in "
+                    "cuda:0+cuda:1, or start fewer ranks a machine",
+                    count, parts.size(), parts.size() == 1 ? "" : "s", names));
+    return own;
+}
+
+std::vector<DeviceInfo> devices_of_ranks(Ranks& ranks, const DeviceInfo& own) {
+    Ranks::Bytes message;
+    for (const auto& text : {own.id, own.name, own.driver, own.compiler, own.hardware})
+        append_text(message, text);
+    append(message, std::span(&own.is_gpu, 1));
+    append(message, std::span(&own.compute_units, 1));
+    append(message, std::span(&own.global_bytes, 1));
+    std::vector<DeviceInfo> all;
+    for (const auto& bytes : ranks.gather_to_all(message)) {
+        MessageReader reader(bytes);
+        auto& info = all.emplace_back();
+        for (auto* text : {&info.id, &info.name, &info.driver, &info.compiler, &info.hardware})
+            *text = reader.read_text();
+        info.is_gpu = reader.read<bool>();
+        reader.read(std::span(&info.compute_units, 1));
+        reader.read(std::span(&info.global_bytes, 1));
+    }
+    return all;
+}
+
+} // namespace tandem

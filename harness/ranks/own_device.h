@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "backends/device.h"
+#include "backends/ranks.h"
+
+#include <string>
+
+namespace tandem {
+
+/// A rank among those of its machine.
+struct PlaceOnMachine {
+    std::size_t before = 0; ///< ranks of lower numbers
+    std::size_t count = 0;  ///< ranks, this one included
+};
+
+/// By all ranks together.
+PlaceOnMachine place_on_machine(Ranks& ranks);
+
+/// Which of the devices "cuda:0+cuda:1" is the rank's. Processors can be shared; of GPUs every rank has its
+/// own, or times would say nothing. Throws InputError where there are more devices than ranks, or fewer GPUs.
+std::string device_of_rank(const std::string& names, const PlaceOnMachine& place);
+
+/// By all ranks together: what each has.
+std::vector<DeviceInfo> devices_of_ranks(Ranks& ranks, const DeviceInfo& own);
+
+} // namespace tandem
