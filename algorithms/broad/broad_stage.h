@@ -18,6 +18,9 @@ public:
     /// Puts the bodies in order of where `frame` has them. Neighbours in space should be neighbours there
     /// whenever pairs are sought: that decides how fast they are found, never which.
     void sort(const Frame& frame);
+    /// The same of where the last refit has left the bodies' volumes, for frames that the host does not have;
+    /// waits for it.
+    void sort_by_volumes();
     /// Enqueues the search. Pairs go to `pairs`, 2 words each, in no order, as far as its `capacity` reaches;
     /// their number goes to `status`, which has been cleared.
     void launch(const Buffer& pairs, std::uint32_t capacity, const Buffer& status);
@@ -26,6 +29,9 @@ public:
 
 private:
     std::vector<Eigen::Vector3d> centres(const Frame& frame) const;
+    template<class Real>
+    std::vector<Eigen::Vector3d> centres_of_volumes() const;
+    void sort(const std::vector<Eigen::Vector3d>& centres);
 
     const Bodies& bodies_;
     const Hierarchy& hierarchy_;

@@ -2,9 +2,13 @@
 #include "python/core/collider.h"
 
 #include "algorithms/bodies/range.h"
+#include "backends/cuda/cuda_device.h"
+#include "harness/choosing/candidates.h"
 #include "python/core/answer.h"
 #include "scenes/error.h"
 
+#include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
@@ -20,6 +24,8 @@ namespace nb = nanobind;
 namespace tandem::python {
 
 namespace {
+
+constexpr double seconds_of_choosing = 2; ///< by a first frame that nothing was tuned to
 
 /// Every body at the identity, deformable ones with their mesh's vertices.
 Frame rest(const Scene& scene) {
@@ -45,76 +51,159 @@ Scene scene_of(std::vector<Mesh> meshes, const ColliderOptions& options) {
     return scene;
 }
 
-Settings settings_of(const Traversal& traversal, const ColliderOptions& options) {
-    const auto& chosen =
-        options.preset.empty() ? traversal.presets().front() : preset(traversal, options.preset);
-    return resolve(traversal.parameters(), chosen.values, options.settings, traversal.name());
-}
-
-/// As --pose: the bounds on the squared norm keep normalising clear of overflow and of 0 / 0.
-Pose pose_of(const double* row, std::size_t body) {
-    const Eigen::Quaterniond rotation(row[3], row[4], row[5], row[6]);
-    const double norm = rotation.squaredNorm();
-    if (!(norm > 1e-300 && norm < 1e300))
-        throw InputError(fmt::format("poses: row {} has no rotation; give tx ty tz qw qx qy qz with a "
-                                     "quaternion that is finite and not 0",
-                                     body));
-    const Eigen::Vector3d translation(row[0], row[1], row[2]);
-    if (!translation.allFinite())
-        throw InputError(fmt::format("poses: row {} is not finite; give tx ty tz qw qx qy qz", body));
-    return {rotation.normalized(), translation};
+/// The number of a device "cuda:N".
+std::size_t cuda_number(const std::string& device) {
+    constexpr std::string_view cuda = "cuda:";
+    std::size_t number = 0;
+    const auto* const end = device.data() + device.size();
+    if (!device.starts_with(cuda) || std::from_chars(device.data() + cuda.size(), end, number).ptr != end)
+        throw InputError(
+            fmt::format("stream: device {} is not one of CUDA's, which streams belong to; name one as "
+                        "cuda:0",
+                        device));
+    return number;
 }
 
 } // namespace
 
-Collider::Collider(std::vector<Mesh> meshes, const ColliderOptions& options) {
-    const auto& traversal = tandem::algorithm(options.algorithm);
-    const auto resolved = settings_of(traversal, options);
+Collider::Collider(std::vector<Mesh> meshes, const ColliderOptions& options) : algorithm_(options.algorithm) {
+    if (algorithm_ != automatic) tandem::algorithm(algorithm_); // the first word that may be wrong
+    open_devices(options);
+    scene_ = scene_of(std::move(meshes), options);
+    scene_.frame = [this](std::size_t) { return rest(scene_); };
+    frame_ = rest(scene_);
+    prepare(options);
+}
+
+void Collider::open_devices(const ColliderOptions& options) {
+    if (options.stream) {
+        BackendReport cuda{.name = "cuda", .devices = {}, .reason = {}};
+        cuda.devices.push_back(
+            cuda::on_stream(cuda_number(options.device), reinterpret_cast<void*>(*options.stream)));
+        devices_ = {cuda.devices.front().get()};
+        backends_.push_back(std::move(cuda));
+        return;
+    }
     const std::vector<std::string> names{options.device};
     backends_ = open_backends(names, {});
     auto groups = choose_devices(backends_, names);
     if (groups.size() != 1)
         throw InputError("device=all names several; give one, or several that share the work as D+E");
     devices_ = std::move(groups.front());
-    scene_ = scene_of(std::move(meshes), options);
-    scene_.frame = [this](std::size_t) { return rest(scene_); };
-    frame_ = rest(scene_);
-    check_range(scene_, frame_, geometry_of(resolved).precision);
-    session_ = traversal.prepare(devices_, scene_, resolved);
 }
 
-std::pair<FrameResult, double> Collider::run(const std::optional<Poses>& poses,
-                                             const std::vector<std::optional<Points>>& vertices) {
-    const std::lock_guard lock(mutex_);
-    if (poses)
-        set_poses(*poses);
-    else
-        std::ranges::fill(frame_.poses, Pose{});
-    for (std::size_t body = 0; body < bodies(); ++body) {
-        if (!scene_.bodies[body].deformable) continue;
-        if (body < vertices.size() && vertices[body])
-            set_vertices(body, *vertices[body]);
-        else
-            frame_.deformed[body] = scene_.meshes[scene_.bodies[body].mesh].vertices;
+/// Meshes are looked at once, here.
+void Collider::prepare(const ColliderOptions& options) {
+    Settings settings;
+    const Traversal* traversal = nullptr;
+    if (algorithm_ == automatic) {
+        Request request;
+        if (!options.preset.empty()) request.presets = {options.preset};
+        candidates_ = candidates(request, options.settings, devices_);
+        settings = candidates_.front().settings;
+    } else {
+        traversal = &tandem::algorithm(algorithm_);
+        const auto& chosen =
+            options.preset.empty() ? traversal->presets().front() : preset(*traversal, options.preset);
+        settings = resolve(traversal->parameters(), chosen.values, options.settings, traversal->name());
     }
-    check_coordinates();
+    precision_ = geometry_of(settings).precision;
+    limit_ = largest_coordinate(precision_);
+    check_range(scene_, frame_, precision_);
+    if (traversal != nullptr) session_ = traversal->prepare(devices_, scene_, settings);
+}
+
+template<class Input>
+std::pair<FrameResult, double> Collider::run_frame(const Input& input) {
+    const std::lock_guard lock(mutex_);
+    const auto& frame = frame_of(input);
+    if (!session_) choose_for(frame, seconds_of_choosing);
     const auto begin = std::chrono::steady_clock::now();
-    auto result = session_->run(frame_);
+    auto result = session_->run(frame);
     return {std::move(result),
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
 }
 
+std::pair<FrameResult, double> Collider::run(const HostInput& input) { return run_frame(input); }
+std::pair<FrameResult, double> Collider::run(const MixedInput& input) { return run_frame(input); }
+
+template<class AnyFrame>
+std::vector<Trial> Collider::choose_for(const AnyFrame& frame, double seconds) {
+    auto chosen = choose(
+        candidates_, scene_, [&](Session& session) { return session.run(frame); }, seconds);
+    session_ = std::move(chosen.session);
+    algorithm_ = chosen.algorithm->name();
+    return std::move(chosen.trials);
+}
+
+template<class Input>
+std::vector<Trial> Collider::tune_to(const Input& input, double seconds) {
+    const std::lock_guard lock(mutex_);
+    if (candidates_.empty())
+        throw InputError(
+            fmt::format("tune: algorithm {} was named; make the collider with algorithm=auto", algorithm_));
+    return choose_for(frame_of(input), seconds);
+}
+
+std::vector<Trial> Collider::tune(const HostInput& input, double seconds) { return tune_to(input, seconds); }
+std::vector<Trial> Collider::tune(const MixedInput& input, double seconds) { return tune_to(input, seconds); }
+
 void Collider::reset() {
     const std::lock_guard lock(mutex_);
-    session_->reset();
+    if (session_) session_->reset();
+}
+
+std::string Collider::algorithm() {
+    const std::lock_guard lock(mutex_);
+    return algorithm_;
+}
+
+SettingTexts Collider::setting_texts() {
+    const std::lock_guard lock(mutex_);
+    return session_ ? session_->settings().texts() : SettingTexts{};
+}
+
+std::vector<std::uintptr_t> Collider::addresses() {
+    const std::lock_guard lock(mutex_);
+    return device_input_ ? device_input_->addresses() : std::vector<std::uintptr_t>{};
+}
+
+/// What is out of range is counted on the way, not looked for; the library's own check, which looks at meshes
+/// as well, has the sentence.
+const Frame& Collider::frame_of(const HostInput& input) {
+    beyond_ = 0;
+    if (input.poses)
+        set_poses(*input.poses);
+    else
+        std::ranges::fill(frame_.poses, Pose{});
+    for (std::size_t body = 0; body < bodies(); ++body) {
+        if (!scene_.bodies[body].deformable) continue;
+        if (body < input.vertices.size() && input.vertices[body])
+            set_vertices(body, *input.vertices[body]);
+        else
+            frame_.deformed[body] = scene_.meshes[scene_.bodies[body].mesh].vertices;
+    }
+    if (beyond_ > 0) check_range(scene_, frame_, precision_);
+    return frame_;
+}
+
+const DeviceFrame& Collider::frame_of(const MixedInput& input) {
+    if (!device_input_) device_input_ = std::make_unique<DeviceInput>(*devices_.front(), scene_);
+    return device_input_->frame(input.poses, input.vertices);
 }
 
 void Collider::set_poses(const Poses& poses) {
     if (poses.shape(0) != bodies())
         throw InputError(
             fmt::format("poses: {} rows for {} bodies; give each body its row", poses.shape(0), bodies()));
-    for (std::size_t body = 0; body < bodies(); ++body)
-        frame_.poses[body] = scene_.bodies[body].deformable ? Pose{} : pose_of(poses.data() + 7 * body, body);
+    for (std::size_t body = 0; body < bodies(); ++body) {
+        if (scene_.bodies[body].deformable) {
+            frame_.poses[body] = {};
+            continue;
+        }
+        frame_.poses[body] = pose_of_row(poses.data() + 7 * body, body);
+        for (const double x : frame_.poses[body].translation) beyond_ += !(std::abs(x) <= limit_);
+    }
 }
 
 void Collider::set_vertices(std::size_t body, const Points& vertices) {
@@ -122,21 +211,17 @@ void Collider::set_vertices(std::size_t body, const Points& vertices) {
     if (vertices.shape(0) != count)
         throw InputError(fmt::format("vertices: {} rows for body {}, whose mesh has {} vertices",
                                      vertices.shape(0), body, count));
-    copy_points(vertices, frame_.deformed[body]);
-}
-
-/// Meshes were looked at once; the library's own check, which looks at them again, has the sentence.
-void Collider::check_coordinates() const {
-    const auto precision = geometry_of(session_->settings()).precision;
-    const double limit = largest_coordinate(precision);
-    std::size_t beyond = 0; // counted, not looked for: a loop of vector code
-    for (const auto& pose : frame_.poses)
-        for (const double x : pose.translation) beyond += !(std::abs(x) <= limit);
-    for (const auto& points : frame_.deformed) {
-        const auto* const numbers = reinterpret_cast<const double*>(points.data());
-        for (std::size_t i = 0; i < 3 * points.size(); ++i) beyond += !(std::abs(numbers[i]) <= limit);
+    auto& points = frame_.deformed[body];
+    points.resize(count);
+    static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
+    const auto* const from = vertices.data();
+    auto* const to = reinterpret_cast<double*>(points.data());
+    std::size_t beyond = 0; // a local: the loop is vector code
+    for (std::size_t i = 0; i < 3 * count; ++i) {
+        beyond += !(std::abs(from[i]) <= limit_);
+        to[i] = from[i];
     }
-    if (beyond > 0) check_range(scene_, frame_, precision);
+    beyond_ += beyond;
 }
 
 namespace {
@@ -155,33 +240,98 @@ std::vector<std::string> device_names(const Collider& collider) {
 
 std::shared_ptr<Collider> make(const std::vector<const Mesh*>& meshes, std::vector<std::uint32_t> bodies,
                                std::vector<bool> deformable, std::string algorithm, std::string preset,
-                               std::string device, SettingTexts settings) {
+                               std::string device, SettingTexts settings,
+                               std::optional<std::uintptr_t> stream) {
     const nb::gil_scoped_release released;
     std::vector<Mesh> copies;
     for (const auto* mesh : meshes) copies.push_back(*mesh);
-    return std::make_shared<Collider>(
-        std::move(copies), ColliderOptions{std::move(bodies), std::move(deformable), std::move(algorithm),
-                                           std::move(preset), std::move(device), std::move(settings)});
+    return std::make_shared<Collider>(std::move(copies),
+                                      ColliderOptions{std::move(bodies), std::move(deformable),
+                                                      std::move(algorithm), std::move(preset),
+                                                      std::move(device), std::move(settings), stream});
 }
 
-std::unique_ptr<Answer> run(const std::shared_ptr<Collider>& collider, const std::optional<Poses>& poses,
-                            const std::vector<std::optional<Points>>& vertices) {
+/// Of arrays as given_rows takes them, one a body.
+MixedInput mixed_input(const Collider& collider, nb::handle poses, const nb::list& vertices) {
+    const auto& device = *collider.devices().front();
+    MixedInput input{given_rows(poses, 7, "poses", device), {}};
+    for (std::size_t body = 0; body < vertices.size(); ++body)
+        input.vertices.push_back(
+            given_rows(vertices[body], 3, fmt::format("vertices of body {}", body), device));
+    return input;
+}
+
+template<class Input>
+std::unique_ptr<Answer> run(const std::shared_ptr<Collider>& collider, const Input& input) {
     const nb::gil_scoped_release released;
-    auto [result, seconds] = collider->run(poses, vertices);
+    auto [result, seconds] = collider->run(input);
     return std::make_unique<Answer>(collider, std::move(result), seconds);
+}
+
+/// A tuple (algorithm, changed settings, seconds) a trial, the fastest first.
+template<class Input>
+nb::list tune(Collider& collider, const Input& input, double seconds) {
+    const auto trials = [&] {
+        const nb::gil_scoped_release released;
+        return collider.tune(input, seconds);
+    }();
+    nb::list all;
+    for (const auto& trial : trials)
+        all.append(nb::make_tuple(trial.algorithm, trial.changes, trial.seconds));
+    return all;
+}
+
+/// What producers of arrays are told (DLPack), which have another name for the default stream.
+std::uintptr_t queue(const Collider& collider) {
+    return reinterpret_cast<std::uintptr_t>(collider.devices().front()->queue());
+}
+
+/// Number of the CUDA device that the collider works on; none where it works elsewhere, or on several.
+std::optional<int> cuda_device(const Collider& collider) {
+    if (collider.devices().size() != 1) return std::nullopt;
+    const auto there = dlpack_device(*collider.devices().front());
+    return there && there->first == nb::device::cuda::value ? std::optional(there->second) : std::nullopt;
 }
 
 } // namespace
 
 void bind_collider(nb::module_& module) {
-    module.def("algorithms", &algorithm_names, "Names that Collider takes as its algorithm.");
+    module.def("algorithms", &algorithm_names, "Names that Collider takes as its algorithm, beside auto.");
+    const auto released = nb::call_guard<nb::gil_scoped_release>();
+    const auto run_here = [](const std::shared_ptr<Collider>& self, const std::optional<Poses>& poses,
+                             const std::vector<std::optional<Points>>& vertices) {
+        return run(self, HostInput{poses, vertices});
+    };
+    const auto run_there = [](const std::shared_ptr<Collider>& self, nb::handle poses,
+                              const nb::list& vertices) {
+        return run(self, mixed_input(*self, poses, vertices));
+    };
+    const auto tune_here = [](Collider& self, const std::optional<Poses>& poses,
+                              const std::vector<std::optional<Points>>& vertices, double seconds) {
+        return tune(self, HostInput{poses, vertices}, seconds);
+    };
+    const auto tune_there = [](Collider& self, nb::handle poses, const nb::list& vertices, double seconds) {
+        return tune(self, mixed_input(self, poses, vertices), seconds);
+    };
     nb::class_<Collider>(module, "Collider", "What tandem.Collider, which checks its input, hands it to.")
         .def(nb::new_(&make), nb::arg("meshes"), nb::arg("bodies"), nb::arg("deformable"),
-             nb::arg("algorithm"), nb::arg("preset"), nb::arg("device"), nb::arg("settings"))
-        .def("run", &run, nb::arg("poses").none(), nb::arg("vertices"))
-        .def("reset", &Collider::reset, nb::call_guard<nb::gil_scoped_release>())
-        .def_prop_ro("settings", [](const Collider& self) { return self.settings().texts(); })
-        .def_prop_ro("devices", &device_names);
+             nb::arg("algorithm"), nb::arg("preset"), nb::arg("device"), nb::arg("settings"),
+             nb::arg("stream").none())
+        .def("run", run_here, nb::arg("poses").none(), nb::arg("vertices"))
+        .def("run_there", run_there, nb::arg("poses").none(), nb::arg("vertices"),
+             "The same of arrays some of which are in memory of the device: capsules of DLPack, or (address, "
+             "rows, bits, stream) of __cuda_array_interface__.")
+        .def("tune", tune_here, nb::arg("poses").none(), nb::arg("vertices"), nb::arg("seconds"))
+        .def("tune_there", tune_there, nb::arg("poses").none(), nb::arg("vertices"), nb::arg("seconds"))
+        .def("reset", &Collider::reset, released)
+        .def_prop_ro("algorithm", &Collider::algorithm, released)
+        .def_prop_ro("settings", &Collider::setting_texts, released)
+        .def_prop_ro("devices", &device_names)
+        .def_prop_ro("queue", &queue)
+        .def_prop_ro("cuda_device", &cuda_device)
+        .def_prop_ro("addresses", &Collider::addresses, released,
+                     "Where kernels read the last frame of run_there: poses, 0 for none, then vertices of "
+                     "each deformable body.");
 }
 
 } // namespace tandem::python
