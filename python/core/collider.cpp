@@ -3,7 +3,6 @@
 
 #include "algorithms/bodies/range.h"
 #include "backends/cuda/cuda_device.h"
-#include "harness/choosing/candidates.h"
 #include "python/core/answer.h"
 #include "scenes/error.h"
 
@@ -49,6 +48,15 @@ Scene scene_of(std::vector<Mesh> meshes, const ColliderOptions& options) {
         scene.bodies.push_back({.mesh = mesh, .fixed = false, .deformable = options.deformable[body]});
     }
     return scene;
+}
+
+/// What algorithm auto may become, by the program's own rules.
+std::vector<Cell> candidates_of(const ColliderOptions& options, const DeviceGroup& devices) {
+    Request request{
+        .algorithms = {std::string(automatic)}, .presets = {}, .devices = {}, .sets = {}, .may_choose = true};
+    if (!options.preset.empty()) request.presets = {options.preset};
+    for (const auto& [name, value] : options.settings) request.sets.emplace_back(name, std::vector{value});
+    return std::move(plan(request, {&devices, 1}).front().candidates);
 }
 
 /// The number of a device "cuda:N".
@@ -97,9 +105,7 @@ void Collider::prepare(const ColliderOptions& options) {
     Settings settings;
     const Traversal* traversal = nullptr;
     if (algorithm_ == automatic) {
-        Request request;
-        if (!options.preset.empty()) request.presets = {options.preset};
-        candidates_ = candidates(request, options.settings, devices_);
+        candidates_ = candidates_of(options, devices_);
         settings = candidates_.front().settings;
     } else {
         traversal = &tandem::algorithm(algorithm_);
