@@ -4,6 +4,7 @@
 #include "algorithms/bodies/range.h"
 #include "backends/cuda/cuda_device.h"
 #include "python/core/answer.h"
+#include "python/core/plain_input.h"
 #include "scenes/error.h"
 
 #include <algorithm>
@@ -198,29 +199,29 @@ const DeviceFrame& Collider::frame_of(const MixedInput& input) {
     return device_input_->frame(input.poses, input.vertices);
 }
 
-void Collider::set_poses(const Poses& poses) {
-    if (poses.shape(0) != bodies())
+void Collider::set_poses(HostRows poses) {
+    if (poses.rows != bodies())
         throw InputError(
-            fmt::format("poses: {} rows for {} bodies; give each body its row", poses.shape(0), bodies()));
+            fmt::format("poses: {} rows for {} bodies; give each body its row", poses.rows, bodies()));
     for (std::size_t body = 0; body < bodies(); ++body) {
         if (scene_.bodies[body].deformable) {
             frame_.poses[body] = {};
             continue;
         }
-        frame_.poses[body] = pose_of_row(poses.data() + 7 * body, body);
+        frame_.poses[body] = pose_of_row(poses.data + 7 * body, body);
         for (const double x : frame_.poses[body].translation) beyond_ += !(std::abs(x) <= limit_);
     }
 }
 
-void Collider::set_vertices(std::size_t body, const Points& vertices) {
+void Collider::set_vertices(std::size_t body, HostRows vertices) {
     const auto count = scene_.meshes[scene_.bodies[body].mesh].vertices.size();
-    if (vertices.shape(0) != count)
+    if (vertices.rows != count)
         throw InputError(fmt::format("vertices: {} rows for body {}, whose mesh has {} vertices",
-                                     vertices.shape(0), body, count));
+                                     vertices.rows, body, count));
     auto& points = frame_.deformed[body];
     points.resize(count);
     static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
-    const auto* const from = vertices.data();
+    const auto* const from = vertices.data;
     auto* const to = reinterpret_cast<double*>(points.data());
     std::size_t beyond = 0; // a local: the loop is vector code
     for (std::size_t i = 0; i < 3 * count; ++i) {
@@ -255,6 +256,14 @@ std::shared_ptr<Collider> make(const std::vector<const Mesh*>& meshes, std::vect
                                       ColliderOptions{std::move(bodies), std::move(deformable),
                                                       std::move(algorithm), std::move(preset),
                                                       std::move(device), std::move(settings), stream});
+}
+
+HostInput host_input(const std::optional<Poses>& poses, const std::vector<std::optional<Points>>& vertices) {
+    HostInput input;
+    if (poses) input.poses = rows_of(*poses);
+    for (const auto& rows : vertices)
+        input.vertices.push_back(rows ? std::optional(rows_of(*rows)) : std::nullopt);
+    return input;
 }
 
 /// Of arrays as given_rows takes them, one a body.
@@ -306,24 +315,32 @@ void bind_collider(nb::module_& module) {
     const auto released = nb::call_guard<nb::gil_scoped_release>();
     const auto run_here = [](const std::shared_ptr<Collider>& self, const std::optional<Poses>& poses,
                              const std::vector<std::optional<Points>>& vertices) {
-        return run(self, HostInput{poses, vertices});
+        return run(self, host_input(poses, vertices));
     };
     const auto run_there = [](const std::shared_ptr<Collider>& self, nb::handle poses,
                               const nb::list& vertices) {
         return run(self, mixed_input(*self, poses, vertices));
     };
     const auto tune_here = [](Collider& self, const std::optional<Poses>& poses,
-                              const std::vector<std::optional<Points>>& vertices, double seconds) {
-        return tune(self, HostInput{poses, vertices}, seconds);
-    };
+                              const std::vector<std::optional<Points>>& vertices,
+                              double seconds) { return tune(self, host_input(poses, vertices), seconds); };
     const auto tune_there = [](Collider& self, nb::handle poses, const nb::list& vertices, double seconds) {
         return tune(self, mixed_input(self, poses, vertices), seconds);
+    };
+    const auto run_plain = [](const std::shared_ptr<Collider>& self, nb::handle poses,
+                              nb::handle vertices) -> std::unique_ptr<Answer> {
+        PlainInput plain;
+        return plain.hold(*self, poses, vertices) ? run(self, plain.input()) : nullptr;
     };
     nb::class_<Collider>(module, "Collider", "What tandem.Collider, which checks its input, hands it to.")
         .def(nb::new_(&make), nb::arg("meshes"), nb::arg("bodies"), nb::arg("deformable"),
              nb::arg("algorithm"), nb::arg("preset"), nb::arg("device"), nb::arg("settings"),
              nb::arg("stream").none())
         .def("run", run_here, nb::arg("poses").none(), nb::arg("vertices"))
+        .def("run_plain", run_plain, nb::arg("poses").none(), nb::arg("vertices").none(),
+             nb::sig("def run_plain(self, poses: object | None, vertices: object | None) -> Answer | None"),
+             "The same of what is as it has to be already: float64 with rows beside each other by the buffer "
+             "protocol, in a list or a dict. None where anything is something else.")
         .def("run_there", run_there, nb::arg("poses").none(), nb::arg("vertices"),
              "The same of arrays some of which are in memory of the device: capsules of DLPack, or (address, "
              "rows, bits, stream) of __cuda_array_interface__.")

@@ -26,8 +26,8 @@ struct ColliderOptions {
 /// A frame's numbers in the host's memory: without poses every body is at the identity, and deformable ones
 /// without vertices have their mesh's.
 struct HostInput {
-    std::optional<Poses> poses;
-    std::vector<std::optional<Points>> vertices; ///< one a body, or none at all
+    std::optional<HostRows> poses;
+    std::vector<std::optional<HostRows>> vertices; ///< one a body, or none at all
 };
 
 /// The same where some of it is in memory of the collider's device.
@@ -53,6 +53,7 @@ public:
     void reset();
 
     std::size_t bodies() const { return scene_.bodies.size(); }
+    bool is_deformable(std::size_t body) const { return scene_.bodies[body].deformable; }
     /// "auto" until one is chosen.
     std::string algorithm();
     /// As the devices took them; none until an algorithm is chosen.
@@ -77,8 +78,8 @@ private:
     std::vector<Trial> tune_to(const Input& input, double seconds);
     template<class AnyFrame>
     std::vector<Trial> choose_for(const AnyFrame& frame, double seconds);
-    void set_poses(const Poses& poses);
-    void set_vertices(std::size_t body, const Points& vertices);
+    void set_poses(HostRows poses);
+    void set_vertices(std::size_t body, HostRows vertices);
 
     std::vector<BackendReport> backends_; ///< these outlive what lies on their devices
     DeviceGroup devices_;

@@ -131,6 +131,11 @@ class Collider:
 
     def run(self, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C', device='cpu', writable=False)] | None, vertices: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)] | None]) -> Answer: ...
 
+    def run_plain(self, poses: object | None, vertices: object | None) -> Answer | None:
+        """
+        The same of what is as it has to be already: float64 with rows beside each other by the buffer protocol, in a list or a dict. None where anything is something else.
+        """
+
     def run_there(self, poses: object | None, vertices: list) -> Answer:
         """
         The same of arrays some of which are in memory of the device: capsules of DLPack, or (address, rows, bits, stream) of __cuda_array_interface__.

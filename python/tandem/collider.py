@@ -37,6 +37,7 @@ class Trial(NamedTuple):
 
 class Answer:
     """What one run found. It stays what it is when the collider runs again, and keeps the collider's memory until it is gone."""
+    __slots__ = ("_core", "__weakref__")
 
     def __init__(self, core: _core.Answer) -> None:
         self._core = core
@@ -149,6 +150,9 @@ class Collider:
         before this returns. Both kinds may be mixed, and give the same answer to the bit; with the latter body pairs are found on the device,
         whatever broad says. Raises ValueError or TypeError for wrong shapes, types and numbers that are not finite, tandem.DeviceError
         otherwise."""
+        plain = self._core.run_plain(poses, vertices)
+        if plain is not None:
+            return Answer(plain)
         vertices = _by_number(vertices)
         if not _any_on_gpu(poses, vertices):
             return Answer(self._core.run(None if poses is None else host_array(poses, "poses", 7),
