@@ -4,11 +4,13 @@
 TANDEM_NVRTC name it): which stream their library is told, that kernels are given the very addresses, that what was borrowed is given
 back, and what is refused in which words. Kernels of the stub find nothing; what they make of numbers is tests/conformance's."""
 import ctypes
+import gc
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
+import weakref
 
 import numpy
 
@@ -160,6 +162,11 @@ class Arrays(Case):
             collider.run(poses)
             self.assertEqual(poses.streams, [address])
             self.assertGreater(DRIVER.stub_calls(address, context), before + 7)
+        kept, stream = self.collider(stream=stream).run(POSES), weakref.ref(stream)
+        self.assertIsNotNone(stream(), "an answer has its collider, which has its stream")
+        del kept, collider
+        gc.collect()
+        self.assertIsNone(stream())
         for default in (0, 1):
             poses = OnGpu(POSES)
             self.collider(stream=default).run(poses)

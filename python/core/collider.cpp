@@ -248,14 +248,15 @@ std::vector<std::string> device_names(const Collider& collider) {
 std::shared_ptr<Collider> make(const std::vector<const Mesh*>& meshes, std::vector<std::uint32_t> bodies,
                                std::vector<bool> deformable, std::string algorithm, std::string preset,
                                std::string device, SettingTexts settings,
-                               std::optional<std::uintptr_t> stream) {
+                               std::optional<std::uintptr_t> stream, nb::object owner) {
     const nb::gil_scoped_release released;
     std::vector<Mesh> copies;
     for (const auto* mesh : meshes) copies.push_back(*mesh);
-    return std::make_shared<Collider>(std::move(copies),
-                                      ColliderOptions{std::move(bodies), std::move(deformable),
-                                                      std::move(algorithm), std::move(preset),
-                                                      std::move(device), std::move(settings), stream});
+    auto collider = std::make_shared<Collider>(
+        std::move(copies), ColliderOptions{std::move(bodies), std::move(deformable), std::move(algorithm),
+                                           std::move(preset), std::move(device), std::move(settings), stream});
+    collider->keep(std::move(owner));
+    return collider;
 }
 
 HostInput host_input(const std::optional<Poses>& poses, const std::vector<std::optional<Points>>& vertices) {
@@ -335,7 +336,7 @@ void bind_collider(nb::module_& module) {
     nb::class_<Collider>(module, "Collider", "What tandem.Collider, which checks its input, hands it to.")
         .def(nb::new_(&make), nb::arg("meshes"), nb::arg("bodies"), nb::arg("deformable"),
              nb::arg("algorithm"), nb::arg("preset"), nb::arg("device"), nb::arg("settings"),
-             nb::arg("stream").none())
+             nb::arg("stream").none(), nb::arg("owner").none())
         .def("run", run_here, nb::arg("poses").none(), nb::arg("vertices"))
         .def("run_plain", run_plain, nb::arg("poses").none(), nb::arg("vertices").none(),
              nb::sig("def run_plain(self, poses: object | None, vertices: object | None) -> Answer | None"),

@@ -63,6 +63,8 @@ public:
     const DeviceGroup& devices() const { return devices_; }
     /// Where kernels read the last frame that was in memory of the device.
     std::vector<std::uintptr_t> addresses();
+    /// Whose stream its commands go by: lives as long as the devices.
+    void keep(nanobind::object owner) { kept_ = std::move(owner); }
     /// Around every use of its devices, answers' included. Taken without the interpreter's lock.
     std::mutex& mutex() { return mutex_; }
 
@@ -81,6 +83,7 @@ private:
     void set_poses(HostRows poses);
     void set_vertices(std::size_t body, HostRows vertices);
 
+    nanobind::object kept_;
     std::vector<BackendReport> backends_; ///< these outlive what lies on their devices
     DeviceGroup devices_;
     Scene scene_;

@@ -113,7 +113,7 @@ class Collider:
     bodies: the mesh of each body, numbered from 0; by default each mesh is one body.
     deformable: True, or numbers of bodies, whose vertices come with every frame.
     stream: a CUDA stream of the device, by which the collider's commands go, in order with the application's: cupy.cuda.get_current_stream(),
-        torch.cuda.current_stream(), or its address. It must live as long as the collider. None: a stream of its own.
+        torch.cuda.current_stream(), which are kept as long as the collider, or an address, whose stream must live as long. None: one of its own.
     preset, settings: as --preset and --set of the program, with its defaults (`tandem algorithms NAME` lists them): k=8, precision="double",
         output="count".
 
@@ -133,7 +133,7 @@ class Collider:
                 raise TypeError(f"{what}: type {type(text).__name__}, and a name is wanted")
         texts = {name: _text(value, name) for name, value in settings.items()}
         address = None if stream is None else stream_address(stream)
-        self._core = _core.Collider(made, of, flags, algorithm, preset, device, texts, address)
+        self._core = _core.Collider(made, of, flags, algorithm, preset, device, texts, address, stream)
         self._gpu = self._core.cuda_device
 
     def run(self, poses: Any = None, vertices: Any = None) -> Answer:
