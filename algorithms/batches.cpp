@@ -24,14 +24,14 @@ struct Part {
 
 class BatchRun {
 public:
-    BatchRun(Pipeline& steps, const Frame& frame, std::optional<std::span<const BodyPair>> given);
+    BatchRun(Pipeline& steps, const Frame* frame, std::optional<std::span<const BodyPair>> given);
 
     FrameResult run(std::uint64_t batches);
     /// After it: whether all of its pairs and contacts would fit at once by now.
     bool fits() const { return fits_; }
 
 private:
-    void search(const Frame& frame);
+    void search(const Frame* frame);
     void split(const Part& part, std::uint64_t ways);
     void split_items(const Part& part, std::uint64_t ways);
     void run_part(const Part& part);
@@ -49,7 +49,7 @@ private:
     bool fits_ = false;
 };
 
-BatchRun::BatchRun(Pipeline& steps, const Frame& frame, std::optional<std::span<const BodyPair>> given)
+BatchRun::BatchRun(Pipeline& steps, const Frame* frame, std::optional<std::span<const BodyPair>> given)
     : steps_(steps) {
     const auto least = [&](const auto& setting) {
         return static_cast<std::uint64_t>(steps.settings[setting]);
@@ -67,7 +67,7 @@ BatchRun::BatchRun(Pipeline& steps, const Frame& frame, std::optional<std::span<
 }
 
 /// All body pairs of the frame, wherever they are found.
-void BatchRun::search(const Frame& frame) {
+void BatchRun::search(const Frame* frame) {
     if (steps_.body_pairs->searched()) {
         steps_.status.begin(0);
         steps_.body_pairs->launch(steps_.status);
@@ -227,7 +227,7 @@ FrameResult BatchRun::run(std::uint64_t batches) {
 
 } // namespace
 
-FrameResult run_in_batches(Pipeline& steps, const Frame& frame,
+FrameResult run_in_batches(Pipeline& steps, const Frame* frame,
                            std::optional<std::span<const BodyPair>> given, std::uint64_t& batches) {
     BatchRun run(steps, frame, given);
     auto result = run.run(batches);

@@ -9,8 +9,9 @@ namespace tandem {
 /// by body pairs into `batches` at first, and where that is not enough into more (`batches` is then what a
 /// like frame should begin with); a body pair that alone does not fit is split by the items of its body a.
 /// Pairs and contacts of a part that has ended move to the host's memory. Bodies and hierarchy are those of
-/// `frame` already. Throws OutOfMemory when not even one item's pairs fit.
-FrameResult run_in_batches(Pipeline& steps, const Frame& frame,
+/// `frame` already; null: the frame is in the device's memory. Throws OutOfMemory when not even one item's
+/// pairs fit.
+FrameResult run_in_batches(Pipeline& steps, const Frame* frame,
                            std::optional<std::span<const BodyPair>> given, std::uint64_t& batches);
 
 } // namespace tandem

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // From resolved settings to a session: what fits a device, and which data path runs it.
+#include "algorithms/bodies/frame_on_device.h"
 #include "algorithms/bodies/origin.h"
 #include "algorithms/pipeline.h"
 #include "algorithms/published/published_session.h"
@@ -40,14 +41,39 @@ std::string names_of(std::span<Device* const> devices) {
 
 } // namespace
 
-FrameResult Session::run_among(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
-    // Other sessions may have used the devices otherwise.
+void Session::set_threads() const {
     const auto threads = static_cast<std::uint32_t>(settings()[parameters::threads]);
     for (auto* device : devices()) device->set_threads(threads);
+}
+
+FrameResult Session::run_among(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
+    set_threads();
     if (origin_ == Eigen::Vector3d::Zero()) return do_run(frame, body_pairs);
     auto result = do_run(counted_from(origin_, frame), body_pairs);
     result.origin = {origin_.x(), origin_.y(), origin_.z()};
     return result;
+}
+
+FrameResult Session::run_among(const DeviceFrame& frame,
+                               std::optional<std::span<const BodyPair>> body_pairs) {
+    set_threads();
+    check_fits(*scene_, frame);
+    auto result = do_run_there(frame, body_pairs);
+    result.origin = {origin_.x(), origin_.y(), origin_.z()};
+    return result;
+}
+
+FrameResult Session::do_run_there(const DeviceFrame&, std::optional<std::span<const BodyPair>>) {
+    const auto* const why = devices().size() > 1
+                                ? "several devices share a frame, which the host deals out; name one device"
+                                : "residency=published converts every frame on the host; leave it out";
+    throw InputError(fmt::format("{}: {}, or give the frame in the host's memory", names_of(devices()), why));
+}
+
+FrameResult Session::run(const DeviceFrame& frame) { return run_among(frame, std::nullopt); }
+
+FrameResult Session::run(const DeviceFrame& frame, std::span<const BodyPair> body_pairs) {
+    return run_among(frame, body_pairs);
 }
 
 FrameResult Session::run(const Frame& frame) { return run_among(frame, std::nullopt); }
@@ -118,6 +144,7 @@ std::unique_ptr<Session> Traversal::prepare(Device& device, const Scene& scene, 
     auto session =
         std::make_unique<RankSession>(*this, device, scene, fitted(settings, device.info(), &scene), ranks);
     session->origin_ = origin_of(scene, geometry_of(settings).origin);
+    session->scene_ = &scene;
     return session;
 }
 

@@ -2,6 +2,7 @@
 #include "algorithms/resident_session.h"
 
 #include "algorithms/batches.h"
+#include "algorithms/bodies/frame_on_device.h"
 
 #include <utility>
 
@@ -19,17 +20,56 @@ void ResidentSession::do_reset() {
     batches_ = 1;
 }
 
+FrameResult ResidentSession::do_run_there(const DeviceFrame& frame,
+                                          std::optional<std::span<const BodyPair>> body_pairs) {
+    if (!pack_) pack_ = std::make_unique<PackStage>(*steps_.bodies, steps_.shape);
+    return run_given({.there = &frame, .body_pairs = body_pairs});
+}
+
 /// Bodies and hierarchy as the frame has them; also those that do not move, unless a frame with them is known
 /// to have run.
-void ResidentSession::refresh(const Frame& frame) {
+void ResidentSession::refresh(const Given& given) {
     const bool all = std::exchange(stale_, true);
-    steps_.bodies->update(frame, all);
-    steps_.steps.hierarchy->refit(frame, all);
+    if (given.here != nullptr) {
+        steps_.bodies->update(*given.here, all);
+        steps_.steps.hierarchy->refit(*given.here, all);
+        return;
+    }
+    pack_->launch(*given.there, origin(), steps_.status.buffer());
+    steps_.steps.hierarchy->refit({.poses = {}, .deformed = {}, .skipped = given.there->skipped}, all);
+}
+
+void ResidentSession::find_body_pairs(const Given& given) {
+    if (given.here != nullptr)
+        steps_.body_pairs->begin(*given.here, given.body_pairs);
+    else
+        steps_.body_pairs->begin_there(given.body_pairs);
+}
+
+/// Whether the device would be idle while the host works or waits before the end of the frame's commands.
+bool ResidentSession::waits_on_way(const Given& given) const {
+    const bool has_pairs = given.body_pairs.has_value();
+    return given.here != nullptr ? steps_.body_pairs->works_on_host(has_pairs)
+                                 : steps_.body_pairs->sorts_there(has_pairs);
+}
+
+/// Throws InputError when packing counted rows out of range, which stand in bounds as something else.
+void ResidentSession::refuse_flaws(const Given& given) {
+    if (given.there == nullptr) return;
+    const auto flawed = steps_.status.counter(STATUS_FLAWED);
+    if (flawed == 0) return;
+    stale_ = true;
+    refuse_flawed(steps_.device, scene_, *given.there, steps_.bodies->geometry().precision, flawed);
 }
 
 /// The frame's commands from body pairs to contacts.
 void ResidentSession::launch(const AnswerBuffers& answer) {
     steps_.status.begin(steps_.body_pairs->on_host().size());
+    walk(answer);
+}
+
+/// The same with counters that have begun.
+void ResidentSession::walk(const AnswerBuffers& answer) {
     steps_.body_pairs->launch(steps_.status);
     const auto task = steps_.task(answer);
     if (task.most_pairs() == 0) return;
@@ -58,26 +98,29 @@ bool ResidentSession::grow(AnswerBuffers& answer) {
 }
 
 /// Everything of a frame up to its one wait, as one submission unless the device would be idle meanwhile.
-void ResidentSession::begin(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs,
-                            const AnswerBuffers& answer) {
+/// Packing counts in the status, which therefore begins before it.
+void ResidentSession::begin(const Given& given, const AnswerBuffers& answer) {
     const auto all = [&] {
-        refresh(frame);
-        steps_.body_pairs->begin(frame, body_pairs);
-        launch(answer);
+        if (given.there != nullptr) steps_.status.begin(given.body_pairs ? given.body_pairs->size() : 0);
+        refresh(given);
+        find_body_pairs(given);
+        if (given.there != nullptr)
+            walk(answer);
+        else
+            launch(answer);
         steps_.status.read();
     };
-    if (steps_.settings[parameters::submission] == Submission::one
-        && !steps_.body_pairs->works_on_host(body_pairs.has_value()))
+    if (steps_.settings[parameters::submission] == Submission::one && !waits_on_way(given))
         steps_.device.as_one(all);
     else
         all();
     stale_ = false;
+    refuse_flaws(given);
 }
 
-FrameResult ResidentSession::run_whole(const Frame& frame,
-                                       std::optional<std::span<const BodyPair>> body_pairs) {
+FrameResult ResidentSession::run_whole(const Given& given) {
     auto answer = steps_.answers->take();
-    begin(frame, body_pairs, *answer);
+    begin(given, *answer);
     std::uint64_t retries = 0;
     for (;; ++retries) {
         if (steps_.contacts) steps_.contacts->expect(steps_.status.counter(STATUS_PAIRS));
@@ -92,19 +135,29 @@ FrameResult ResidentSession::run_whole(const Frame& frame,
     return result;
 }
 
-FrameResult ResidentSession::do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
+/// From the beginning: how far the frame came is not known.
+FrameResult ResidentSession::run_parts(const Given& given) {
+    if (given.there != nullptr) steps_.status.begin(0);
+    refresh(given);
+    if (given.there != nullptr) {
+        steps_.status.read();
+        refuse_flaws(given);
+    }
     try {
-        if (batches_ == 1) return run_whole(frame, body_pairs);
+        find_body_pairs(given);
+    } catch (const OutOfMemory&) {} // its parts need less
+    auto result = run_in_batches(steps_, given.here, given.body_pairs, batches_);
+    stale_ = false;
+    return result;
+}
+
+FrameResult ResidentSession::run_given(const Given& given) {
+    try {
+        if (batches_ == 1) return run_whole(given);
     } catch (const OutOfMemory&) {
         batches_ = 2;
     }
-    refresh(frame); // how far the frame came is not known
-    try {
-        steps_.body_pairs->begin(frame, body_pairs);
-    } catch (const OutOfMemory&) {} // its parts need less
-    auto result = run_in_batches(steps_, frame, body_pairs, batches_);
-    stale_ = false;
-    return result;
+    return run_parts(given);
 }
 
 } // namespace tandem

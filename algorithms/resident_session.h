@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/bodies/pack_stage.h"
 #include "algorithms/pipeline.h"
 #include "algorithms/shares/share.h"
 
@@ -15,30 +16,48 @@ class ResidentSession final : public Session {
 public:
     /// `fitted`: Traversal::fitted.
     ResidentSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted)
-        : steps_(traversal, device, scene, std::move(fitted)), devices_{&device} {}
+        : scene_(scene), steps_(traversal, device, scene, std::move(fitted)), devices_{&device} {}
 
     /// From now on finds the pairs of a share of each frame, and looks at nothing else of it. Body pairs that
     /// run() is given are of bodies that have a part in the share.
     void take(const Share& share);
 
 private:
+    /// A frame in the host's memory or in the device's, and the body pairs that were given with it.
+    struct Given {
+        const Frame* here = nullptr;
+        const DeviceFrame* there = nullptr;
+        std::optional<std::span<const BodyPair>> body_pairs{};
+    };
+
     void do_reset() override;
-    FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override;
+    FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override {
+        return run_given({.here = &frame, .body_pairs = body_pairs});
+    }
+    FrameResult do_run_there(const DeviceFrame& frame,
+                             std::optional<std::span<const BodyPair>> body_pairs) override;
     void do_count_work(bool on) override { steps_.count(on); }
     std::span<Device* const> do_devices() const override { return devices_; }
     const Settings& do_settings() const override { return steps_.settings; }
 
-    void refresh(const Frame& frame);
+    void refresh(const Given& given);
+    void find_body_pairs(const Given& given);
+    bool waits_on_way(const Given& given) const;
+    void refuse_flaws(const Given& given);
     void launch(const AnswerBuffers& answer);
-    void begin(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs,
-               const AnswerBuffers& answer);
+    void walk(const AnswerBuffers& answer);
+    void begin(const Given& given, const AnswerBuffers& answer);
     bool grow(AnswerBuffers& answer);
-    FrameResult run_whole(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs);
+    FrameResult run_whole(const Given& given);
+    FrameResult run_parts(const Given& given);
+    FrameResult run_given(const Given& given);
 
+    const Scene& scene_;
     Pipeline steps_;
     std::array<Device*, 1> devices_;
-    std::uint64_t batches_ = 1; ///< to begin a frame with
-    bool stale_ = true;         ///< whether all commands so far have run is not known
+    std::unique_ptr<PackStage> pack_; ///< from the first frame in the device's memory on
+    std::uint64_t batches_ = 1;       ///< to begin a frame with
+    bool stale_ = true;               ///< whether all commands so far have run is not known
 };
 
 } // namespace tandem

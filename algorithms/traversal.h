@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/answer/frame_result.h"
+#include "algorithms/device_frame.h"
 #include "algorithms/parameters/parameter.h"
 #include "backends/device.h"
 #include "scenes/scene.h"
@@ -40,6 +41,14 @@ public:
     FrameResult run(const Frame& frame);
     /// The same among these body pairs, of which there may be 2^32 - 1.
     FrameResult run(const Frame& frame, std::span<const BodyPair> body_pairs);
+    /// The same of a frame whose numbers are in memory of the session's one device, where kernels read them:
+    /// with the same bits, the answer of the same frame in the host's memory. Body pairs that are not given
+    /// are found on the device, whatever broad says. Throws InputError where a buffer is missing or too
+    /// small, for coordinates that do not pass check_range and rotations of no length (the sentences of the
+    /// host's memory), and where the host needs the numbers: several devices, residency=published,
+    /// placement=exact, a device without double.
+    FrameResult run(const DeviceFrame& frame);
+    FrameResult run(const DeviceFrame& frame, std::span<const BodyPair> body_pairs);
     /// Switches to kernels that count their work and make no contacts (and back); such runs are never timed.
     void count_work(bool on) { do_count_work(on); }
     std::span<Device* const> devices() const { return do_devices(); }
@@ -53,16 +62,23 @@ public:
 
 private:
     friend class Traversal; // which knows the scene
+    /// Other sessions may have used the devices otherwise.
+    void set_threads() const;
     FrameResult run_among(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs);
+    FrameResult run_among(const DeviceFrame& frame, std::optional<std::span<const BodyPair>> body_pairs);
 
     virtual void do_reset() = 0;
     virtual FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) = 0;
+    /// Of a checked frame; refuses unless a session knows how.
+    virtual FrameResult do_run_there(const DeviceFrame& frame,
+                                     std::optional<std::span<const BodyPair>> body_pairs);
     virtual void do_count_work(bool on) = 0;
     virtual std::span<Device* const> do_devices() const = 0;
     virtual const Settings& do_settings() const = 0;
     virtual std::optional<std::span<const std::uint32_t>> do_owned() const { return std::nullopt; }
 
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+    const Scene* scene_ = nullptr; ///< as prepare() was given it
 };
 
 /// Something that an algorithm counts about its work, by name.

@@ -175,6 +175,12 @@ public:
     /// for something better, why. Certain once clocks have been on: a library that only they need is opened
     /// then. It may change while they are on, after a failure.
     virtual std::string clock() const = 0;
+    /// What commands go to, by the vendor's own handle: a CUstream of CUDA's, whose default stream is null; a
+    /// cl_command_queue of OpenCL's; null of the host's.
+    virtual void* queue() const = 0;
+    /// Commands from now on come after what was given to `queue` so far, a vendor's handle of this device's
+    /// context. Waits for it.
+    void follow(void* queue) { do_follow(queue); }
 
     /// Memory of at least `bytes` bytes, their values unknown. Throws OutOfMemory that says how much was
     /// asked for, what is in use and how much there is.
@@ -287,6 +293,7 @@ private:
                                                      const Defines& defines) = 0;
     virtual std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) = 0;
     virtual void do_finish() = 0;
+    virtual void do_follow(void* queue) = 0;
     /// From here on commands may be kept back until the end, or until one that waits; false: they are not.
     virtual bool do_begin_collecting() { return false; }
     /// Submits what was kept back. Counts with count_submissions what was handed over since the begin.

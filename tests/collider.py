@@ -182,6 +182,76 @@ class Answers(ColliderCase):
         self.assertIn("tiled", tandem.algorithms())
 
 
+class Auto(ColliderCase):
+    def test_keeps_the_fastest_and_names_it(self):
+        collider = tandem.Collider(self.meshes, "auto", precision="double", pair_capacity=65536, contact_capacity=65536, queue_bytes=65536)
+        self.assertEqual((collider.algorithm, collider.settings), ("auto", {}))
+        collider.reset()
+        trials = collider.tune(POSES, seconds=0.3)
+        self.assertGreater(len(trials), 3)
+        self.assertEqual([trial.seconds for trial in trials[:1]], [min(trial.seconds for trial in trials[:2])])
+        self.assertIn(collider.algorithm, tandem.algorithms())
+        self.assertEqual((collider.algorithm, collider.settings["precision"]), (trials[0].algorithm, "double"))
+        for name, value in trials[0].changes.items():
+            self.assertEqual(collider.settings[name], value)
+        self.assertEqual(collider.digest(POSES), self.collider(precision="double").digest(POSES))
+        print(f"\n  auto: {trials[0]} of {len(trials)}", end="", file=sys.stderr)
+
+    def test_a_first_frame_chooses(self):
+        soft = tandem.Collider(self.meshes, "auto", deformable=True, output="count", pair_capacity=65536, queue_bytes=65536)
+        self.assertEqual(soft.count(), self.collider(deformable=True, output="count").count())
+        self.assertNotEqual(soft.algorithm, "auto")
+
+    def test_what_is_refused(self):
+        for words, options in (("unknown setting 'kk'", {"kk": 8}), ("k=7", {"k": 7}), ("unknown preset 'fairest'", {"preset": "fairest"})):
+            with self.subTest(words), self.assertRaisesRegex(ValueError, words):
+                tandem.Collider(self.meshes, "auto", **options)
+        with self.assertRaisesRegex(ValueError, "tune: algorithm tiled was named; make the collider with algorithm=auto"):
+            self.collider().tune(POSES)
+        undecided = tandem.Collider(self.meshes, "auto")
+        with self.assertRaisesRegex(ValueError, "poses: 1 rows for 2 bodies"):
+            undecided.run(POSES[:1])
+        self.assertEqual(undecided.algorithm, "auto")
+
+
+class There(ColliderCase):
+    """What is done with arrays on a GPU, done with the host's, which are in memory of device host and are brought to others."""
+    def test_frames_have_the_answers_of_the_hosts_memory(self):
+        moved = [numpy.array(points) * [1.0, 0.75, 1.25] + [0.125 * i, 0, 0] for i, (points, _) in enumerate(self.parts)]
+        for device in DEVICES:
+            with self.subTest(device=device):
+                collider, soft = self.collider(device=device), self.collider(device=device, deformable=True)
+                mixed = self.collider(device=device, deformable=[1])
+                for dtype in (float, numpy.float32):
+                    rows, points = numpy.array(POSES, dtype), [part.astype(dtype) for part in moved]
+                    for mine, here in ((collider._core.run_there(rows, []), collider.run(rows)), (soft._core.run_there(None, points), soft.run(vertices=points)),
+                                       (soft._core.run_there(None, [None, points[1]]), soft.run(vertices={1: points[1]})),
+                                       (mixed._core.run_there(rows, [None, points[1]]), mixed.run(rows, [points[1]]))):
+                        self.assertGreater(here.contact_count, 10)
+                        self.assertEqual(mine.digest(), tuple(here.digest()))
+                        self.assertEqual(mine.contact_digest(), tuple(here.contact_digest()))
+                        self.assertTrue((mine.pairs() == here.pairs()).all())
+                    if device == "host":
+                        self.assertEqual(mixed._core.addresses, [address(rows), address(points[1])])
+
+    def test_what_is_out_of_range_has_the_same_sentence(self):
+        collider, soft = self.collider(), self.collider(deformable=[1])
+        for at, value in (((0, 0), numpy.inf), ((1, 3), numpy.nan), ((1, slice(3, 7)), 0), ((1, 2), -1e37)):
+            rows = numpy.array(POSES)
+            rows[at] = value
+            said = []
+            for run in (collider.run, lambda given: collider._core.run_there(given, [])):
+                with self.assertRaises(ValueError) as caught:
+                    run(rows)
+                said.append(str(caught.exception))
+            self.assertEqual(said[0], said[1])
+        points = self.meshes[1][0].copy()
+        points[3, 2] = numpy.nan
+        with self.assertRaisesRegex(ValueError, "body 1: vertex 3 is not finite"):
+            soft._core.run_there(None, [None, points])
+        self.assertEqual(soft._core.run_there(None, [None, self.meshes[1][0]]).digest(), tuple(soft.digest()))
+
+
 class Memory(ColliderCase):
     def test_pairs_on_the_device_are_no_copy(self):
         collider = self.collider()

@@ -11,20 +11,27 @@
 namespace tandem {
 
 BodyPairs::BodyPairs(const Ground& ground, const Hierarchy& hierarchy, Status::Writes writes)
-    : device_(ground.device),
+    : hierarchy_(hierarchy),
+      shape_(ground.shape),
+      bodies_(ground.bodies),
+      first_capacity_(static_cast<std::uint64_t>(ground.settings[parameters::body_pair_capacity])),
+      device_(ground.device),
       scene_(ground.scene),
       geometry_(ground.bodies.geometry()),
       writes_(writes),
       room_(ground.device, "body pairs", sizeof(BodyPair), 0) {
     const auto who = ground.settings[parameters::broad];
-    if (who != Broad::device) {
+    if (who == Broad::device)
+        make_stage();
+    else
         broad_.emplace(ground.scene, geometry_, who);
-        return;
-    }
-    stage_ = std::make_unique<BroadStage>(ground.bodies, hierarchy, ground.shape);
-    const auto first = static_cast<std::uint64_t>(ground.settings[parameters::body_pair_capacity]);
-    room_ = Room(device_, "body pairs", sizeof(BodyPair),
-                 std::clamp<std::uint64_t>(stage_->most_pairs(), 1, first));
+}
+
+void BodyPairs::make_stage() {
+    if (stage_) return;
+    stage_ = std::make_unique<BroadStage>(bodies_, hierarchy_, shape_);
+    const auto rows = std::clamp<std::uint64_t>(stage_->most_pairs(), 1, first_capacity_);
+    if (rows > room_.rows()) room_ = Room(device_, "body pairs", sizeof(BodyPair), rows);
 }
 
 void BodyPairs::upload(std::span<const BodyPair> pairs) {
@@ -35,13 +42,29 @@ void BodyPairs::upload(std::span<const BodyPair> pairs) {
     device_.upload(room_.buffer(), std::as_bytes(pairs), 0, writes_ == Status::Writes::blocking);
 }
 
-void BodyPairs::begin(const Frame& frame, std::optional<std::span<const BodyPair>> given) {
-    if (given && given->size() > Room::most)
+void BodyPairs::upload_given(std::span<const BodyPair> given) {
+    if (given.size() > Room::most)
         throw InputError(
-            fmt::format("run() was given {} body pairs; kernels number at most 2^32 - 1", given->size()));
+            fmt::format("run() was given {} body pairs; kernels number at most 2^32 - 1", given.size()));
+    upload(given);
+}
+
+void BodyPairs::begin_there(std::optional<std::span<const BodyPair>> given) {
     if (given) {
-        upload(*given);
-    } else if (stage_) {
+        upload_given(*given);
+        return;
+    }
+    make_stage();
+    on_host_ = {};
+    searches_ = true;
+    if (!sorted_) stage_->sort_by_volumes();
+    sorted_ = true;
+}
+
+void BodyPairs::begin(const Frame& frame, std::optional<std::span<const BodyPair>> given) {
+    if (given) {
+        upload_given(*given);
+    } else if (!broad_) {
         on_host_ = {};
         searches_ = true;
         // Once a session: bodies move little from frame to frame, and a stale order costs time, not pairs.
@@ -83,12 +106,16 @@ bool BodyPairs::grow(const Status& status) {
     return true;
 }
 
-std::vector<BodyPair> BodyPairs::list(const Frame& frame, const Status& status) const {
+std::vector<BodyPair> BodyPairs::list(const Frame* frame, const Status& status) const {
     if (!searches_) return {on_host_.begin(), on_host_.end()};
     const auto found = status.counter(STATUS_BODY_PAIRS);
     if (found > room_.rows()) {
+        if (frame == nullptr)
+            throw OutOfMemory(fmt::format("{}: there is no memory left for {} body pairs; raise --memory, or "
+                                          "take fewer bodies",
+                                          device_.info().id, found));
         const HostWork work(device_, Stage::broad, "body pairs");
-        auto all = BroadSweep(scene_, geometry_, Broad::tight).pairs(frame);
+        auto all = BroadSweep(scene_, geometry_, Broad::tight).pairs(*frame);
         std::erase_if(all, [this](BodyPair pair) { return !has(pair); });
         return all;
     }

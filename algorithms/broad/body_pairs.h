@@ -21,9 +21,14 @@ public:
     /// The next launches are of `frame`: uploads the pairs that are given or that the host finds. Throws
     /// InputError for more than kernels number.
     void begin(const Frame& frame, std::optional<std::span<const BodyPair>> given);
+    /// The same of a frame that is in the device's memory, after its refit: the device finds the pairs that
+    /// are not given, whatever setting broad says.
+    void begin_there(std::optional<std::span<const BodyPair>> given);
     /// Whether begin() makes the host work for so long that a device had better have something to do
     /// meanwhile.
-    bool works_on_host(bool given) const { return !given && (!stage_ || !sorted_); }
+    bool works_on_host(bool given) const { return !given && (broad_ || !sorted_); }
+    /// Whether begin_there() has the host wait for where the bodies are.
+    bool sorts_there(bool given) const { return !given && !sorted_; }
     /// The same with a part of the frame's pairs.
     void begin_part(std::span<const BodyPair> part);
     /// Enqueues the device's search, if it is the device that finds the frame's pairs.
@@ -33,7 +38,8 @@ public:
     bool grow(const Status& status);
     /// The frame's pairs in ascending order, after a launch; they are downloaded when the device has found
     /// them, and found by the host where there is no room for them on the device.
-    std::vector<BodyPair> list(const Frame& frame, const Status& status) const;
+    /// `frame`: null where it is in the device's memory, so that the host cannot: throws OutOfMemory.
+    std::vector<BodyPair> list(const Frame* frame, const Status& status) const;
     /// Forgets the order in which bodies stand, unless it is that of a share.
     void reset() { sorted_ = !roles_.empty(); }
     /// From now on finds the pairs of `share`, which has them all where the host does not tell otherwise.
@@ -49,13 +55,19 @@ public:
 private:
     void upload(std::span<const BodyPair> pairs);
     bool has(BodyPair pair) const;
+    void upload_given(std::span<const BodyPair> given);
+    void make_stage();
 
+    const Hierarchy& hierarchy_;
+    LaunchShape shape_;
+    const Bodies& bodies_;
+    std::uint64_t first_capacity_; ///< of pairs that the device finds
     Device& device_;
     const Scene& scene_;
     Geometry geometry_;
     Status::Writes writes_;
-    std::optional<BroadSweep> broad_;   ///< the host's search
-    std::unique_ptr<BroadStage> stage_; ///< the device's
+    std::optional<BroadSweep> broad_;   ///< the host's search; none where setting broad says device
+    std::unique_ptr<BroadStage> stage_; ///< the device's, once it has to find any
     bool searches_ = false;             ///< the device searches in this frame
     bool sorted_ = false;               ///< bodies stand in the order of some frame
     std::vector<Role> roles_;           ///< by body, in a share; none without one

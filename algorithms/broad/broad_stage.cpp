@@ -59,11 +59,37 @@ std::vector<Eigen::Vector3d> BroadStage::centres(const Frame& frame) const {
     return centres;
 }
 
-void BroadStage::sort(const Frame& frame) {
+/// Along the first three directions, which span space.
+template<class Real>
+std::vector<Eigen::Vector3d> BroadStage::centres_of_volumes() const {
+    const auto k = static_cast<std::size_t>(bodies_.geometry().k);
+    std::vector<Real> slabs(bodies_.count() * k);
+    {
+        const StageScope scope(bodies_.device(), Stage::read);
+        bodies_.device().download(hierarchy_.volumes(), std::as_writable_bytes(std::span(slabs)));
+    }
+    std::vector<Eigen::Vector3d> centres(bodies_.count());
+    for (std::size_t body = 0; body < centres.size(); ++body)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto lower = static_cast<double>(slabs[body * k + i]);
+            const auto upper = static_cast<double>(slabs[body * k + k / 2 + i]);
+            centres[body][static_cast<Eigen::Index>(i)] = 0.5 * (lower + upper);
+        }
+    return centres;
+}
+
+void BroadStage::sort(const Frame& frame) { sort(centres(frame)); }
+
+void BroadStage::sort_by_volumes() {
+    sort(bodies_.geometry().precision == Precision::fp64 ? centres_of_volumes<double>()
+                                                         : centres_of_volumes<float>());
+}
+
+void BroadStage::sort(const std::vector<Eigen::Vector3d>& centres) {
     std::vector<std::uint32_t> order;
     {
         const HostWork work(bodies_.device(), Stage::broad, "sort bodies");
-        order = morton_order(centres(frame));
+        order = morton_order(centres);
         const auto moving = [&](std::uint32_t body) { return !bodies_.scene().bodies[body].fixed; };
         const auto fixed = std::stable_partition(order.begin(), order.end(), moving);
         moving_count_ = static_cast<std::uint32_t>(fixed - order.begin());

@@ -20,6 +20,9 @@ public:
     void sort(const Frame& frame);
     /// From now on finds the pairs of a share, in whose order bodies stand.
     void take(const Share& share);
+    /// The same of where the last refit has left the bodies' volumes, for frames that the host does not have;
+    /// waits for it.
+    void sort_by_volumes();
     /// Enqueues the search. Pairs go to `pairs`, 2 words each, in no order, as far as its `capacity` reaches;
     /// their number goes to `status`, which has been cleared.
     void launch(const Buffer& pairs, std::uint32_t capacity, const Buffer& status);
@@ -29,6 +32,9 @@ public:
 private:
     std::vector<Eigen::Vector3d> centres(const Frame& frame) const;
     void upload(const std::vector<std::uint32_t>& order);
+    template<class Real>
+    std::vector<Eigen::Vector3d> centres_of_volumes() const;
+    void sort(const std::vector<Eigen::Vector3d>& centres);
 
     const Bodies& bodies_;
     const Hierarchy& hierarchy_;

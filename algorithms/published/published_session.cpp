@@ -136,7 +136,7 @@ FrameResult PublishedSession::do_run(const Frame& frame,
     } catch (const OutOfMemory&) {
         batches_ = std::max<std::uint64_t>(batches_, 2);
     }
-    return run_in_batches(steps_, frame, body_pairs, batches_);
+    return run_in_batches(steps_, &frame, body_pairs, batches_);
 }
 
 } // namespace

@@ -17,7 +17,8 @@ Result Command::submit(const Driver& driver, Stream stream) const {
     case Kind::launch:
         break;
     }
-    std::array<void*, most_arguments> places; // the driver copies what they point to before it returns
+    // The driver copies what they point to before it returns. The last is followed by null.
+    std::array<void*, most_arguments + 1> places{};
     for (std::size_t i = 0; i < arguments; ++i) places[i] = const_cast<std::uint64_t*>(&values[i]);
     return driver.cuLaunchKernel(function, groups, 1, 1, group_size, 1, 1, 0, stream, places.data(), nullptr);
 }

@@ -75,12 +75,15 @@ Staging::Source page_locked(const Driver& driver) {
 
 class CudaDevice : public Device {
 public:
-    CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index);
+    /// In the device's primary context; on a stream of its own, or on one of others where `stream` names it.
+    CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index,
+               std::optional<Stream> stream = std::nullopt);
     CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, Context context, Stream stream);
     ~CudaDevice() override;
 
     const DeviceInfo& info() const override { return info_; }
     std::string clock() const override { return clock_ ? clock_->name() : expected_clock(driver()); }
+    void* queue() const override { return stream_; }
 
 private:
     std::shared_ptr<Buffer::Impl> do_allocate(std::size_t bytes) override;
@@ -93,6 +96,7 @@ private:
                                              const Defines& defines) override;
     std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) override;
     void do_finish() override;
+    void do_follow(void* queue) override;
     bool do_begin_collecting() override;
     void do_end_collecting() override;
     void do_set_clocks(Clocks clocks) override;
@@ -158,11 +162,16 @@ private:
     std::uint64_t frees_seen_ = 0;                                              ///< by the graphs
 };
 
-CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index)
-    : libraries_(std::move(libraries)), handle_(handle) {
+CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index,
+                       std::optional<Stream> stream)
+    : libraries_(std::move(libraries)), handle_(handle), owned_(!stream) {
     info_.id = fmt::format("cuda:{}", index);
     describe();
     check(primary_.retain(driver(), handle_, context_), "cuDevicePrimaryCtxRetain", "opening the device");
+    if (stream) {
+        stream_ = *stream;
+        return;
+    }
     const Scope scope(*this);
     constexpr unsigned non_blocking = 1; // CU_STREAM_NON_BLOCKING: no ordering with the default stream
     check(driver().cuStreamCreate(&stream_, non_blocking), "cuStreamCreate", "opening the device");
@@ -504,11 +513,26 @@ void CudaDevice::do_finish() {
     if (timed_) clock_->collect();
 }
 
+void CudaDevice::do_follow(void* queue) {
+    const Scope scope(*this);
+    check(driver().cuStreamSynchronize(static_cast<Stream>(queue)), "cuStreamSynchronize",
+          "waiting for another stream");
+}
+
 std::pair<std::int64_t, std::int64_t> CudaDevice::do_interval(std::uint64_t ticket) {
     const Scope scope(*this);
     const auto interval = clock_->interval(ticket);
     if (clock_->spent()) clock_ = started_clock(std::move(clock_), driver(), stream_);
     return interval;
+}
+
+} // namespace
+
+namespace {
+
+/// CU_STREAM_LEGACY is another name of the default stream, which null is everywhere else.
+Stream legacy_is_null(void* stream) {
+    return reinterpret_cast<std::uintptr_t>(stream) == 1 ? nullptr : static_cast<Stream>(stream);
 }
 
 } // namespace
@@ -534,6 +558,17 @@ Found discover() {
         found.reason = error.what();
     }
     return found;
+}
+
+std::unique_ptr<Device> on_stream(std::size_t index, void* stream) {
+    const auto loaded = libraries();
+    int count = 0;
+    loaded->driver.cuDeviceGetCount(&count);
+    if (index >= static_cast<std::size_t>(count))
+        throw DeviceError(fmt::format("cuda:{}: the driver has {} devices, numbered from 0", index, count));
+    DeviceHandle handle = 0;
+    loaded->driver.cuDeviceGet(&handle, static_cast<int>(index));
+    return std::make_unique<CudaDevice>(loaded, handle, index, legacy_is_null(stream));
 }
 
 std::unique_ptr<Device> adopt(void* context, void* stream) {

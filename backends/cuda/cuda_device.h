@@ -16,4 +16,9 @@ Found discover();
 /// A device over a host application's CUcontext and CUstream, which must outlive it. Throws DeviceError.
 std::unique_ptr<Device> adopt(void* context, void* stream);
 
+/// A device by its number over a host application's CUstream of its primary context, which is what the CUDA
+/// runtime works in; null and CU_STREAM_LEGACY: the default stream. The stream must outlive it. Throws
+/// DeviceError.
+std::unique_ptr<Device> on_stream(std::size_t index, void* stream);
+
 } // namespace tandem::cuda

@@ -72,6 +72,7 @@ public:
 
     const DeviceInfo& info() const override { return info_; }
     std::string clock() const override { return "steady clock"; }
+    void* queue() const override { return nullptr; }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -174,6 +175,7 @@ private:
         arena_.initialize(wanted);
     }
 
+    void do_follow(void*) override {} // what is called has been done
     void do_finish() override {}
     void do_set_clocks(Clocks) override {}
 

@@ -132,6 +132,7 @@ public:
 
     const DeviceInfo& info() const override { return info_; }
     std::string clock() const override { return "OpenCL profiling"; }
+    void* queue() const override { return active_; }
 
 private:
     std::shared_ptr<Buffer::Impl> do_allocate(std::size_t bytes) override;
@@ -144,6 +145,9 @@ private:
                                              const Defines& defines) override;
     std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) override;
     void do_finish() override;
+    void do_follow(void* queue) override {
+        check(clFinish(static_cast<cl_command_queue>(queue)), "clFinish", "waiting for another queue");
+    }
     void do_set_clocks(Clocks clocks) override { active_ = clocks == Clocks::on ? timed_queue() : queue_; }
     std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) override;
 

@@ -4,7 +4,6 @@
 #include "algorithms/parameters/table.h"
 #include "scenes/error.h"
 
-#include <charconv>
 #include <fmt/format.h>
 #include <nanobind/stl/vector.h>
 
@@ -15,16 +14,6 @@ namespace tandem::python {
 namespace {
 
 static_assert(sizeof(Pair) == 4 * sizeof(std::int32_t) && sizeof(ContactPoint) % sizeof(double) == 0);
-
-/// The kind that DLPack has for a device's memory, and the device's number; none for OpenCL's.
-std::optional<std::pair<int, int>> dlpack_device(const std::string& id) {
-    if (id == "host") return std::pair(nb::device::cpu::value, 0);
-    constexpr std::string_view cuda = "cuda:";
-    int number = 0;
-    if (!id.starts_with(cuda)) return std::nullopt;
-    std::from_chars(id.data() + cuda.size(), id.data() + id.size(), number);
-    return std::pair(nb::device::cuda::value, number);
-}
 
 } // namespace
 
@@ -53,25 +42,25 @@ void Answer::check_kept() const {
 }
 
 std::vector<Pair> Answer::pairs() const {
-    check_kept();
     const std::lock_guard lock(collider_->mutex());
+    check_kept();
     return result_.download();
 }
 
 std::vector<ContactPoint> Answer::contacts() const {
+    const std::lock_guard lock(collider_->mutex());
     check_kept();
     if (collider_->settings()[parameters::contact_rule] == ContactRule::none)
         throw InputError("setting contact_rule=none makes no contacts; make the collider without it");
-    const std::lock_guard lock(collider_->mutex());
     return result_.download_contacts();
 }
 
 const Answer::OnDevice& Answer::on_device() const {
-    check_kept();
     const std::lock_guard lock(collider_->mutex());
+    check_kept();
     if (on_device_) return *on_device_;
     auto& device = *collider_->devices().front();
-    const auto kind = dlpack_device(device.info().id);
+    const auto kind = dlpack_device(device);
     if (!kind)
         throw InputError(fmt::format("on_device: no array library takes OpenCL's memory by DLPack, and the "
                                      "pairs are on {}; leave on_device out",

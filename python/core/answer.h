@@ -34,7 +34,7 @@ public:
     const OnDevice& on_device() const;
 
 private:
-    /// Throws InputError where the settings keep no pairs.
+    /// Throws InputError where the settings keep no pairs. With the collider's lock.
     void check_kept() const;
 
     std::shared_ptr<Collider> collider_;

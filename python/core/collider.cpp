@@ -2,24 +2,20 @@
 #include "python/core/collider.h"
 
 #include "algorithms/bodies/range.h"
-#include "python/core/answer.h"
+#include "backends/cuda/cuda_device.h"
 #include "scenes/error.h"
 
+#include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
-#include <nanobind/stl/map.h>
-#include <nanobind/stl/optional.h>
-#include <nanobind/stl/shared_ptr.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/unique_ptr.h>
-#include <nanobind/stl/vector.h>
-
-namespace nb = nanobind;
 
 namespace tandem::python {
 
 namespace {
+
+constexpr double seconds_of_choosing = 2; ///< by a first frame that nothing was tuned to
 
 /// Every body at the identity, deformable ones with their mesh's vertices.
 Frame rest(const Scene& scene) {
@@ -45,143 +41,184 @@ Scene scene_of(std::vector<Mesh> meshes, const ColliderOptions& options) {
     return scene;
 }
 
-Settings settings_of(const Traversal& traversal, const ColliderOptions& options) {
-    const auto& chosen =
-        options.preset.empty() ? traversal.presets().front() : preset(traversal, options.preset);
-    return resolve(traversal.parameters(), chosen.values, options.settings, traversal.name());
+/// What algorithm auto may become, by the program's own rules.
+std::vector<Cell> candidates_of(const ColliderOptions& options, const DeviceGroup& devices) {
+    Request request{
+        .algorithms = {std::string(automatic)}, .presets = {}, .devices = {}, .sets = {}, .may_choose = true};
+    if (!options.preset.empty()) request.presets = {options.preset};
+    for (const auto& [name, value] : options.settings) request.sets.emplace_back(name, std::vector{value});
+    return std::move(plan(request, {&devices, 1}).front().candidates);
 }
 
-/// As --pose: the bounds on the squared norm keep normalising clear of overflow and of 0 / 0.
-Pose pose_of(const double* row, std::size_t body) {
-    const Eigen::Quaterniond rotation(row[3], row[4], row[5], row[6]);
-    const double norm = rotation.squaredNorm();
-    if (!(norm > 1e-300 && norm < 1e300))
-        throw InputError(fmt::format("poses: row {} has no rotation; give tx ty tz qw qx qy qz with a "
-                                     "quaternion that is finite and not 0",
-                                     body));
-    const Eigen::Vector3d translation(row[0], row[1], row[2]);
-    if (!translation.allFinite())
-        throw InputError(fmt::format("poses: row {} is not finite; give tx ty tz qw qx qy qz", body));
-    return {rotation.normalized(), translation};
+/// The number of a device "cuda:N".
+std::size_t cuda_number(const std::string& device) {
+    constexpr std::string_view cuda = "cuda:";
+    std::size_t number = 0;
+    const auto* const end = device.data() + device.size();
+    if (!device.starts_with(cuda) || std::from_chars(device.data() + cuda.size(), end, number).ptr != end)
+        throw InputError(
+            fmt::format("stream: device {} is not one of CUDA's, which streams belong to; name one as "
+                        "cuda:0",
+                        device));
+    return number;
 }
 
 } // namespace
 
-Collider::Collider(std::vector<Mesh> meshes, const ColliderOptions& options) {
-    const auto& traversal = tandem::algorithm(options.algorithm);
-    const auto resolved = settings_of(traversal, options);
+Collider::Collider(std::vector<Mesh> meshes, const ColliderOptions& options) : algorithm_(options.algorithm) {
+    if (algorithm_ != automatic) tandem::algorithm(algorithm_); // the first word that may be wrong
+    open_devices(options);
+    scene_ = scene_of(std::move(meshes), options);
+    scene_.frame = [this](std::size_t) { return rest(scene_); };
+    frame_ = rest(scene_);
+    prepare(options);
+}
+
+void Collider::open_devices(const ColliderOptions& options) {
+    if (options.stream) {
+        BackendReport cuda{.name = "cuda", .devices = {}, .reason = {}};
+        cuda.devices.push_back(
+            cuda::on_stream(cuda_number(options.device), reinterpret_cast<void*>(*options.stream)));
+        devices_ = {cuda.devices.front().get()};
+        backends_.push_back(std::move(cuda));
+        return;
+    }
     const std::vector<std::string> names{options.device};
     backends_ = open_backends(names, {});
     auto groups = choose_devices(backends_, names);
     if (groups.size() != 1)
         throw InputError("device=all names several; give one, or several that share the work as D+E");
     devices_ = std::move(groups.front());
-    scene_ = scene_of(std::move(meshes), options);
-    scene_.frame = [this](std::size_t) { return rest(scene_); };
-    frame_ = rest(scene_);
-    check_range(scene_, frame_, geometry_of(resolved).precision);
-    session_ = traversal.prepare(devices_, scene_, resolved);
 }
 
-std::pair<FrameResult, double> Collider::run(const std::optional<Poses>& poses,
-                                             const std::vector<std::optional<Points>>& vertices) {
-    const std::lock_guard lock(mutex_);
-    if (poses)
-        set_poses(*poses);
-    else
-        std::ranges::fill(frame_.poses, Pose{});
-    for (std::size_t body = 0; body < bodies(); ++body) {
-        if (!scene_.bodies[body].deformable) continue;
-        if (body < vertices.size() && vertices[body])
-            set_vertices(body, *vertices[body]);
-        else
-            frame_.deformed[body] = scene_.meshes[scene_.bodies[body].mesh].vertices;
+/// Meshes are looked at once, here.
+void Collider::prepare(const ColliderOptions& options) {
+    Settings settings;
+    const Traversal* traversal = nullptr;
+    if (algorithm_ == automatic) {
+        candidates_ = candidates_of(options, devices_);
+        settings = candidates_.front().settings;
+    } else {
+        traversal = &tandem::algorithm(algorithm_);
+        const auto& chosen =
+            options.preset.empty() ? traversal->presets().front() : preset(*traversal, options.preset);
+        settings = resolve(traversal->parameters(), chosen.values, options.settings, traversal->name());
     }
-    check_coordinates();
+    precision_ = geometry_of(settings).precision;
+    limit_ = largest_coordinate(precision_);
+    check_range(scene_, frame_, precision_);
+    if (traversal != nullptr) session_ = traversal->prepare(devices_, scene_, settings);
+}
+
+template<class Input>
+std::pair<FrameResult, double> Collider::run_frame(const Input& input) {
+    const std::lock_guard lock(mutex_);
+    const auto& frame = frame_of(input);
+    if (!session_) choose_for(frame, seconds_of_choosing);
     const auto begin = std::chrono::steady_clock::now();
-    auto result = session_->run(frame_);
+    auto result = session_->run(frame);
     return {std::move(result),
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
 }
 
+std::pair<FrameResult, double> Collider::run(const HostInput& input) { return run_frame(input); }
+std::pair<FrameResult, double> Collider::run(const MixedInput& input) { return run_frame(input); }
+
+template<class AnyFrame>
+std::vector<Trial> Collider::choose_for(const AnyFrame& frame, double seconds) {
+    auto chosen = choose(
+        candidates_, scene_, [&](Session& session) { return session.run(frame); }, seconds);
+    session_ = std::move(chosen.session);
+    algorithm_ = chosen.algorithm->name();
+    return std::move(chosen.trials);
+}
+
+template<class Input>
+std::vector<Trial> Collider::tune_to(const Input& input, double seconds) {
+    const std::lock_guard lock(mutex_);
+    if (candidates_.empty())
+        throw InputError(
+            fmt::format("tune: algorithm {} was named; make the collider with algorithm=auto", algorithm_));
+    return choose_for(frame_of(input), seconds);
+}
+
+std::vector<Trial> Collider::tune(const HostInput& input, double seconds) { return tune_to(input, seconds); }
+std::vector<Trial> Collider::tune(const MixedInput& input, double seconds) { return tune_to(input, seconds); }
+
 void Collider::reset() {
     const std::lock_guard lock(mutex_);
-    session_->reset();
+    if (session_) session_->reset();
 }
 
-void Collider::set_poses(const Poses& poses) {
-    if (poses.shape(0) != bodies())
-        throw InputError(
-            fmt::format("poses: {} rows for {} bodies; give each body its row", poses.shape(0), bodies()));
-    for (std::size_t body = 0; body < bodies(); ++body)
-        frame_.poses[body] = scene_.bodies[body].deformable ? Pose{} : pose_of(poses.data() + 7 * body, body);
+std::string Collider::algorithm() {
+    const std::lock_guard lock(mutex_);
+    return algorithm_;
 }
 
-void Collider::set_vertices(std::size_t body, const Points& vertices) {
-    const auto count = scene_.meshes[scene_.bodies[body].mesh].vertices.size();
-    if (vertices.shape(0) != count)
-        throw InputError(fmt::format("vertices: {} rows for body {}, whose mesh has {} vertices",
-                                     vertices.shape(0), body, count));
-    copy_points(vertices, frame_.deformed[body]);
+SettingTexts Collider::setting_texts() {
+    const std::lock_guard lock(mutex_);
+    return session_ ? session_->settings().texts() : SettingTexts{};
 }
 
-/// Meshes were looked at once; the library's own check, which looks at them again, has the sentence.
-void Collider::check_coordinates() const {
-    const auto precision = geometry_of(session_->settings()).precision;
-    const double limit = largest_coordinate(precision);
-    std::size_t beyond = 0; // counted, not looked for: a loop of vector code
-    for (const auto& pose : frame_.poses)
-        for (const double x : pose.translation) beyond += !(std::abs(x) <= limit);
-    for (const auto& points : frame_.deformed) {
-        const auto* const numbers = reinterpret_cast<const double*>(points.data());
-        for (std::size_t i = 0; i < 3 * points.size(); ++i) beyond += !(std::abs(numbers[i]) <= limit);
+std::vector<std::uintptr_t> Collider::addresses() {
+    const std::lock_guard lock(mutex_);
+    return device_input_ ? device_input_->addresses() : std::vector<std::uintptr_t>{};
+}
+
+/// What is out of range is counted on the way, not looked for; the library's own check, which looks at meshes
+/// as well, has the sentence.
+const Frame& Collider::frame_of(const HostInput& input) {
+    beyond_ = 0;
+    if (input.poses)
+        set_poses(*input.poses);
+    else
+        std::ranges::fill(frame_.poses, Pose{});
+    for (std::size_t body = 0; body < bodies(); ++body) {
+        if (!scene_.bodies[body].deformable) continue;
+        if (body < input.vertices.size() && input.vertices[body])
+            set_vertices(body, *input.vertices[body]);
+        else
+            frame_.deformed[body] = scene_.meshes[scene_.bodies[body].mesh].vertices;
     }
-    if (beyond > 0) check_range(scene_, frame_, precision);
+    if (beyond_ > 0) check_range(scene_, frame_, precision_);
+    return frame_;
 }
 
-namespace {
-
-std::vector<std::string> algorithm_names() {
-    std::vector<std::string> names;
-    for (const auto* traversal : algorithms()) names.emplace_back(traversal->name());
-    return names;
+const DeviceFrame& Collider::frame_of(const MixedInput& input) {
+    if (!device_input_) device_input_ = std::make_unique<DeviceInput>(*devices_.front(), scene_);
+    return device_input_->frame(input.poses, input.vertices);
 }
 
-std::vector<std::string> device_names(const Collider& collider) {
-    std::vector<std::string> names;
-    for (const auto* device : collider.devices()) names.push_back(device->info().id);
-    return names;
+void Collider::set_poses(HostRows poses) {
+    if (poses.rows != bodies())
+        throw InputError(
+            fmt::format("poses: {} rows for {} bodies; give each body its row", poses.rows, bodies()));
+    for (std::size_t body = 0; body < bodies(); ++body) {
+        if (scene_.bodies[body].deformable) {
+            frame_.poses[body] = {};
+            continue;
+        }
+        frame_.poses[body] = pose_of_row(poses.data + 7 * body, body);
+        for (const double x : frame_.poses[body].translation) beyond_ += !(std::abs(x) <= limit_);
+    }
 }
 
-std::shared_ptr<Collider> make(const std::vector<const Mesh*>& meshes, std::vector<std::uint32_t> bodies,
-                               std::vector<bool> deformable, std::string algorithm, std::string preset,
-                               std::string device, SettingTexts settings) {
-    const nb::gil_scoped_release released;
-    std::vector<Mesh> copies;
-    for (const auto* mesh : meshes) copies.push_back(*mesh);
-    return std::make_shared<Collider>(
-        std::move(copies), ColliderOptions{std::move(bodies), std::move(deformable), std::move(algorithm),
-                                           std::move(preset), std::move(device), std::move(settings)});
-}
-
-std::unique_ptr<Answer> run(const std::shared_ptr<Collider>& collider, const std::optional<Poses>& poses,
-                            const std::vector<std::optional<Points>>& vertices) {
-    const nb::gil_scoped_release released;
-    auto [result, seconds] = collider->run(poses, vertices);
-    return std::make_unique<Answer>(collider, std::move(result), seconds);
-}
-
-} // namespace
-
-void bind_collider(nb::module_& module) {
-    module.def("algorithms", &algorithm_names, "Names that Collider takes as its algorithm.");
-    nb::class_<Collider>(module, "Collider", "What tandem.Collider, which checks its input, hands it to.")
-        .def(nb::new_(&make), nb::arg("meshes"), nb::arg("bodies"), nb::arg("deformable"),
-             nb::arg("algorithm"), nb::arg("preset"), nb::arg("device"), nb::arg("settings"))
-        .def("run", &run, nb::arg("poses").none(), nb::arg("vertices"))
-        .def("reset", &Collider::reset, nb::call_guard<nb::gil_scoped_release>())
-        .def_prop_ro("settings", [](const Collider& self) { return self.settings().texts(); })
-        .def_prop_ro("devices", &device_names);
+void Collider::set_vertices(std::size_t body, HostRows vertices) {
+    const auto count = scene_.meshes[scene_.bodies[body].mesh].vertices.size();
+    if (vertices.rows != count)
+        throw InputError(fmt::format("vertices: {} rows for body {}, whose mesh has {} vertices",
+                                     vertices.rows, body, count));
+    auto& points = frame_.deformed[body];
+    points.resize(count);
+    static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
+    const auto* const from = vertices.data;
+    auto* const to = reinterpret_cast<double*>(points.data());
+    std::size_t beyond = 0; // a local: the loop is vector code
+    for (std::size_t i = 0; i < 3 * count; ++i) {
+        beyond += !(std::abs(from[i]) <= limit_);
+        to[i] = from[i];
+    }
+    beyond_ += beyond;
 }
 
 } // namespace tandem::python

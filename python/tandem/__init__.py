@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ._core import DeviceError, Mesh, OutOfMemory, Scene, algorithms, devices, make_scene
-    from .collider import Answer, Collider, Contacts, Digest, make_mesh, read_mesh
+    from .collider import Answer, Collider, Contacts, Digest, Trial, make_mesh, read_mesh
     from .comparison import Comparison, compare
     from .lines import RecordError
     from .plots import plot_cells, plot_errors, plot_frames, plot_stages, plot_sweep
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _PLACES = {
     "_core": ("DeviceError", "Mesh", "OutOfMemory", "Scene", "algorithms", "devices", "make_scene"),
-    "collider": ("Answer", "Collider", "Contacts", "Digest", "make_mesh", "read_mesh"),
+    "collider": ("Answer", "Collider", "Contacts", "Digest", "Trial", "make_mesh", "read_mesh"),
     "comparison": ("Comparison", "compare"),
     "lines": ("RecordError",),
     "plots": ("plot_cells", "plot_errors", "plot_frames", "plot_stages", "plot_sweep"),

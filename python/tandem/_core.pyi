@@ -122,19 +122,48 @@ class Answer:
     def pairs_on_device(self) -> Annotated[Any, dict(dtype='int32', shape=(None, 4))]: ...
 
 def algorithms() -> list[str]:
-    """Names that Collider takes as its algorithm."""
+    """Names that Collider takes as its algorithm, beside auto."""
 
 class Collider:
     """What tandem.Collider, which checks its input, hands it to."""
 
-    def __init__(self, meshes: Sequence[Mesh], bodies: Sequence[int], deformable: Sequence[bool], algorithm: str, preset: str, device: str, settings: Mapping[str, str]) -> None: ...
+    def __init__(self, meshes: Sequence[Mesh], bodies: Sequence[int], deformable: Sequence[bool], algorithm: str, preset: str, device: str, settings: Mapping[str, str], stream: int | None, owner: object | None) -> None: ...
 
     def run(self, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C', device='cpu', writable=False)] | None, vertices: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)] | None]) -> Answer: ...
 
+    def run_plain(self, poses: object | None, vertices: object | None) -> Answer | None:
+        """
+        The same of what is as it has to be already: float64 with rows beside each other by the buffer protocol, in a list or a dict. None where anything is something else.
+        """
+
+    def run_there(self, poses: object | None, vertices: list) -> Answer:
+        """
+        The same of arrays some of which are in memory of the device: capsules of DLPack, or (address, rows, bits, stream) of __cuda_array_interface__.
+        """
+
+    def tune(self, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C', device='cpu', writable=False)] | None, vertices: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)] | None], seconds: float) -> list: ...
+
+    def tune_there(self, poses: object | None, vertices: list, seconds: float) -> list: ...
+
     def reset(self) -> None: ...
+
+    @property
+    def algorithm(self) -> str: ...
 
     @property
     def settings(self) -> dict[str, str]: ...
 
     @property
     def devices(self) -> list[str]: ...
+
+    @property
+    def queue(self) -> int: ...
+
+    @property
+    def cuda_device(self) -> int | None: ...
+
+    @property
+    def addresses(self) -> list[int]:
+        """
+        Where kernels read the last frame of run_there: poses, 0 for none, then vertices of each deformable body.
+        """

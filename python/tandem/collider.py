@@ -9,7 +9,7 @@ import numpy
 
 from . import _core
 from ._core import Mesh
-from .arrays import host_array
+from .arrays import gpu_rows, host_array, on_gpu, stream_address
 
 
 class Digest(NamedTuple):
@@ -28,8 +28,16 @@ class Contacts(NamedTuple):
     depths: numpy.ndarray    #: (n,) float64: in the meshes' unit, < 0 inside
 
 
+class Trial(NamedTuple):
+    """A candidate of algorithm="auto" that was timed."""
+    algorithm: str
+    changes: dict[str, str]  #: settings that are not as its preset has them
+    seconds: float           #: a frame, the median
+
+
 class Answer:
     """What one run found. It stays what it is when the collider runs again, and keeps the collider's memory until it is gone."""
+    __slots__ = ("_core", "__weakref__")
 
     def __init__(self, core: _core.Answer) -> None:
         self._core = core
@@ -99,10 +107,13 @@ class Collider:
 
     meshes: a list of what each is a tandem.Mesh, the path of a mesh file, or (vertices, tetrahedra): (n, 3) float64 and (m, 4) integers.
         They are copied, and share one unit, whichever.
-    algorithm: one of tandem.algorithms().
+    algorithm: one of tandem.algorithms(), or "auto": whichever of them, with whichever settings that change no answer, is fastest on the first
+        frame, or on the one given to tune().
     device: "host", "opencl:0", "cuda:0" as tandem.devices() lists them, or several that share a frame, "cuda:0+cuda:1".
     bodies: the mesh of each body, numbered from 0; by default each mesh is one body.
     deformable: True, or numbers of bodies, whose vertices come with every frame.
+    stream: a CUDA stream of the device, by which the collider's commands go, in order with the application's: cupy.cuda.get_current_stream(),
+        torch.cuda.current_stream(), which are kept as long as the collider, or an address, whose stream must live as long. None: one of its own.
     preset, settings: as --preset and --set of the program, with its defaults (`tandem algorithms NAME` lists them): k=8, precision="double",
         output="count".
 
@@ -112,7 +123,7 @@ class Collider:
 
     # `self` is the name of a setting as well, which positions alone leave free.
     def __init__(self, meshes: Sequence[Any], /, algorithm: str = "tiled", device: str = "host", *, bodies: Iterable[int] | None = None,
-                 deformable: bool | Iterable[int] = False, preset: str = "", **settings: Any) -> None:
+                 deformable: bool | Iterable[int] = False, preset: str = "", stream: Any = None, **settings: Any) -> None:
         made = [_mesh(mesh, f"meshes[{i}]") for i, mesh in enumerate(_list(meshes, "meshes"))]
         of = list(range(len(made))) if bodies is None else [_number(value, f"bodies[{i}]") for i, value in enumerate(_list(bodies, "bodies"))]
         flags = _flags(deformable, len(of))
@@ -121,7 +132,9 @@ class Collider:
             if not isinstance(text, str):
                 raise TypeError(f"{what}: type {type(text).__name__}, and a name is wanted")
         texts = {name: _text(value, name) for name, value in settings.items()}
-        self._core = _core.Collider(made, of, flags, algorithm, preset, device, texts)
+        address = None if stream is None else stream_address(stream)
+        self._core = _core.Collider(made, of, flags, algorithm, preset, device, texts, address, stream)
+        self._gpu = self._core.cuda_device
 
     def run(self, poses: Any = None, vertices: Any = None) -> Answer:
         """Finds the candidate pairs and contacts of a frame.
@@ -131,12 +144,32 @@ class Collider:
         vertices: for deformable bodies, in the world: a list with one (n, 3) array for each of them, in their order, or {body: array}. None: those
             of their meshes.
 
-        Arrays are NumPy's or anything of the host's memory that has __dlpack__; float64 with its rows beside each other is read where it is, and goes
-        to the device from there. Raises ValueError or TypeError for wrong shapes, types and numbers that are not finite, tandem.DeviceError
+        Arrays of the host's memory are NumPy's or anything that has __dlpack__; float64 with its rows beside each other is read where it is, and goes
+        to the device from there. Arrays on the collider's GPU (CuPy, PyTorch, JAX; __dlpack__ or __cuda_array_interface__), float64 or float32
+        with rows beside each other, are read there by the device's kernels, without a copy: after what their library has enqueued for them, and
+        before this returns. Both kinds may be mixed, and give the same answer to the bit; with the latter body pairs are found on the device,
+        whatever broad says. Raises ValueError or TypeError for wrong shapes, types and numbers that are not finite, tandem.DeviceError
         otherwise."""
-        if poses is not None:
-            poses = host_array(poses, "poses", 7)
-        return Answer(self._core.run(poses, [] if vertices is None else self._vertices(vertices)))
+        plain = self._core.run_plain(poses, vertices)
+        if plain is not None:
+            return Answer(plain)
+        vertices = _by_number(vertices)
+        if not _any_on_gpu(poses, vertices):
+            return Answer(self._core.run(None if poses is None else host_array(poses, "poses", 7),
+                                         [] if vertices is None else self._by_body(vertices, host_array)))
+        return Answer(self._core.run_there(*self._rows_there(poses, vertices)))
+
+    def tune(self, poses: Any = None, vertices: Any = None, seconds: float = 2.0) -> list[Trial]:
+        """Of algorithm="auto": times its candidates on that frame, given as to run(), for about `seconds` of frames (compiling them may take six
+        times as long), and keeps the fastest, which `algorithm` and `settings` then name. Returns those timed, the fastest first. Without it the
+        first run() does so. Raises ValueError where an algorithm was named, or every candidate fails."""
+        vertices = _by_number(vertices)
+        if not _any_on_gpu(poses, vertices):
+            trials = self._core.tune(None if poses is None else host_array(poses, "poses", 7),
+                                     [] if vertices is None else self._by_body(vertices, host_array), seconds)
+        else:
+            trials = self._core.tune_there(*self._rows_there(poses, vertices), seconds)
+        return [Trial(*trial) for trial in trials]
 
     def pairs(self, poses: Any = None, vertices: Any = None, on_device: bool = False) -> Any:
         """run(poses, vertices).pairs(on_device): (n, 4) int32, sorted."""
@@ -159,8 +192,13 @@ class Collider:
         self._core.reset()
 
     @property
+    def algorithm(self) -> str:
+        """Its name; "auto" until one is chosen."""
+        return self._core.algorithm
+
+    @property
     def settings(self) -> dict[str, str]:
-        """Every setting as the device took it."""
+        """Every setting as the device took it; none until an algorithm is chosen."""
         return self._core.settings
 
     @property
@@ -168,12 +206,24 @@ class Collider:
         """The ids of the devices that share each frame."""
         return self._core.devices
 
-    def _vertices(self, vertices):
+    def _rows_there(self, poses, vertices):
+        """Both as _core takes them where some are on its GPU."""
+        return (None if poses is None else self._rows(poses, "poses", 7)), [] if vertices is None else self._by_body(vertices, self._rows)
+
+    def _rows(self, value, what, columns):
+        if not on_gpu(value):
+            return host_array(value, what, columns)
+        if self._gpu is None:
+            raise ValueError(f"{what}: is in CUDA's memory, and the collider works on {'+'.join(self.devices)}; make it on that GPU, or copy the array to "
+                             "the host's memory (.cpu() or .get())")
+        return gpu_rows(value, what, columns, self._core.queue)
+
+    def _by_body(self, vertices, taken):
         """One entry for each body: its array, or None."""
         if not self._soft:
             raise ValueError("vertices: no body is deformable; make the collider with deformable=True or numbers of bodies")
         if not isinstance(vertices, (dict, Mapping)):
-            rows = _list(vertices, "vertices")
+            rows = vertices
             if len(rows) != len(self._soft):
                 raise ValueError(f"vertices: {len(rows)} arrays for {len(self._soft)} deformable bodies; give each its array")
             vertices = dict(zip(self._soft, rows))
@@ -181,8 +231,17 @@ class Collider:
         for body, rows in vertices.items():
             if body not in self._soft:
                 raise ValueError(f"vertices: {body!r} is no deformable body (there are: {', '.join(map(str, self._soft))})")
-            given[body] = host_array(rows, f"vertices of body {body}", 3)
+            given[body] = taken(rows, f"vertices of body {body}", 3)
         return given
+
+
+def _by_number(vertices):
+    """None, a mapping, or a list; also of an array of all bodies' arrays."""
+    return vertices if vertices is None or isinstance(vertices, (list, dict, Mapping)) else _list(vertices, "vertices")
+
+
+def _any_on_gpu(poses, vertices):
+    return on_gpu(poses) or (bool(vertices) and any(map(on_gpu, vertices.values() if isinstance(vertices, (dict, Mapping)) else vertices)))
 
 
 def _list(value, what):

@@ -46,6 +46,7 @@ unsigned long graph_launches = 0, commands_in_graphs = 0;
 unsigned long profiler_starts = 0, profiler_stops = 0;
 unsigned long event_records = 0;
 void (*watcher)(int) = nullptr;
+std::map<std::uint64_t, unsigned long> launches_with, copies_of; ///< by address
 
 void watched(int kind) {
     if (watcher != nullptr && !capturing) watcher(kind);
@@ -206,12 +207,14 @@ Result cuMemFreeHost(void* memory) {
     return in_context();
 }
 Result cuMemcpyHtoDAsync_v2(DevicePointer to, const void* from, std::size_t bytes, Stream stream) {
+    ++copies_of[to];
     if (const auto code = in_memory(to, bytes); code != 0) return code;
     watched(1);
     run([=] { std::memcpy(reinterpret_cast<void*>(to), from, bytes); });
     return on(stream);
 }
 Result cuMemcpyDtoHAsync_v2(void* to, DevicePointer from, std::size_t bytes, Stream stream) {
+    ++copies_of[from];
     if (const auto code = in_memory(from, bytes); code != 0) return code;
     watched(1);
     run([=] { std::memcpy(to, reinterpret_cast<const void*>(from), bytes); });
@@ -304,8 +307,10 @@ Result cuProfilerStop() {
     return in_context();
 }
 Result cuLaunchKernel(Function, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned,
-                      Stream stream, void**, void**) {
+                      Stream stream, void** arguments, void**) {
     watched(10);
+    for (; *arguments != nullptr; ++arguments)
+        ++launches_with[*static_cast<const std::uint64_t*>(*arguments)];
     run([] { launched = true; });
     const auto code = on(stream);
     return code != 0 ? code : static_cast<Result>(number("STUB_LAUNCH", 0));
@@ -317,6 +322,8 @@ unsigned long stub_calls(Stream stream, Context context) {
     return found == calls.end() ? 0 : found->second;
 }
 unsigned long stub_waits() { return waits; }
+unsigned long stub_launches_with(unsigned long long address) { return launches_with[address]; }
+unsigned long stub_copies_of(unsigned long long address) { return copies_of[address]; }
 unsigned long stub_event_records() { return event_records; }
 void stub_watch(void (*by)(int)) { watcher = by; }
 unsigned long stub_profiler_starts() { return profiler_starts; }

@@ -22,6 +22,9 @@ unsigned long stub_event_records();
 /// From here on `watcher` is called at every command that a stream is told, with its kind as CUPTI numbers it
 /// (1 copy, 2 clear, 10 kernel); null: no longer.
 void stub_watch(void (*watcher)(int kind));
+/// Launches so far one of whose arguments is this address, and copies so far to or from it.
+unsigned long stub_launches_with(unsigned long long address);
+unsigned long stub_copies_of(unsigned long long address);
 /// How often a profiler was told to begin and to end.
 unsigned long stub_profiler_starts();
 unsigned long stub_profiler_stops();

@@ -25,6 +25,7 @@ public:
     const std::map<std::pair<std::string, Defines>, std::set<std::string>>& asked() const { return asked_; }
     const DeviceInfo& info() const override { return info_; }
     std::string clock() const override { return "none"; }
+    void* queue() const override { return nullptr; }
 
 private:
     struct Nothing : Buffer::Impl {
@@ -49,6 +50,7 @@ private:
     }
     std::uint64_t do_launch(Kernel::Impl&, Grid, std::span<const Argument>) override { return 0; }
     void do_finish() override {}
+    void do_follow(void*) override {}
     void do_set_clocks(Clocks) override {}
     std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t) override { return {-1, -1}; }
 

@@ -2,6 +2,7 @@
 // nvrtc [--require nvrtc]: compiles every kernel of the plan with NVRTC, which needs no GPU: all define sets
 // for sm_90, the defaults for the other architectures. Without NVRTC it says how many kernels it did not
 // compile.
+#include "algorithms/bodies/pack_stage.h"
 #include "algorithms/hierarchy/pair_list.h"
 #include "tests/support/prepared_trees.h"
 #include "algorithms/sources.h"
@@ -64,11 +65,12 @@ void prepare(Device& device, const Traversal& traversal, std::span<const Assignm
     session->count_work(true);
 }
 
-/// Compiles the test of an explicit list of pairs.
-void prepare_list(Device& device, Precision precision) {
+/// Compiles the test of an explicit list of pairs, and the packing of frames in the device's memory.
+void prepare_apart(Device& device, Precision precision) {
     const auto scene = make_scene("hard:touch:pairs=2,together=2");
     const testing_support::PreparedTrees on_device(device, scene, {.precision = precision}, 32, 128);
     const PairList list(on_device.trees, std::vector<Pair>{{0, 0, 1, 0}, {0, 1, 1, 1}});
+    const PackStage pack(on_device.bodies, {128, 1});
 }
 
 /// Every contact rule without verdicts and, in long form, with them; every decision.
@@ -107,7 +109,7 @@ Programs plan() {
             for (const std::string output : {"pairs", "count", "digest"})
                 prepare(device, *traversal, preset.values, {{"output", output}});
     }
-    for (const auto precision : {Precision::fp32, Precision::fp64}) prepare_list(device, precision);
+    for (const auto precision : {Precision::fp32, Precision::fp64}) prepare_apart(device, precision);
     return device.asked();
 }
 
@@ -118,7 +120,7 @@ Programs defaults() {
             prepare(device, *traversal, traversal->presets().front().values, {{"precision", precision}});
     for (const std::string most_seeds : {"1", "16384"}) // from tops, and from below them
         prepare(device, algorithm("tiled"), {}, {{"most_seeds", most_seeds}});
-    for (const auto precision : {Precision::fp32, Precision::fp64}) prepare_list(device, precision);
+    for (const auto precision : {Precision::fp32, Precision::fp64}) prepare_apart(device, precision);
     return device.asked();
 }
 

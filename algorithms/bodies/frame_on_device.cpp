@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/bodies/frame_on_device.h"
+
+#include "algorithms/bodies/range.h"
+#include "scenes/error.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+constexpr std::size_t pose_numbers = 7;
+
+std::size_t bytes_of_number(const DeviceRows& rows) { return rows.precision == Precision::fp64 ? 8 : 4; }
+
+std::vector<double> numbers_of(Device& device, const DeviceRows& rows, std::size_t count) {
+    const StageScope scope(device, Stage::read);
+    std::vector<double> numbers(count);
+    if (rows.precision == Precision::fp64) {
+        device.download(rows.buffer, std::as_writable_bytes(std::span(numbers)));
+        return numbers;
+    }
+    std::vector<float> floats(count);
+    device.download(rows.buffer, std::as_writable_bytes(std::span(floats)));
+    numbers.assign(floats.begin(), floats.end());
+    return numbers;
+}
+
+void check_room(const DeviceRows& rows, std::size_t numbers, const std::string& whose) {
+    const auto bytes = numbers * bytes_of_number(rows);
+    if (rows.buffer.bytes() < bytes)
+        throw InputError(fmt::format("{}: a buffer of {} bytes, and {} numbers of {} bytes are wanted", whose,
+                                     rows.buffer.bytes(), numbers, bytes_of_number(rows)));
+}
+
+} // namespace
+
+/// As --pose: the bounds on the squared norm keep normalising clear of overflow and of 0 / 0. The sum is in
+/// the order of Eigen's normalized() where vectors have two doubles, so that --pose has the same bits.
+Pose pose_of_row(const double* row, std::size_t body) {
+    const double w = row[3], x = row[4], y = row[5], z = row[6];
+    const double norm = (x * x + z * z) + (y * y + w * w);
+    if (!(norm > 1e-300 && norm < 1e300))
+        throw InputError(fmt::format("poses: row {} has no rotation; give tx ty tz qw qx qy qz with a "
+                                     "quaternion that is finite and not 0",
+                                     body));
+    const Eigen::Vector3d translation(row[0], row[1], row[2]);
+    if (!translation.allFinite())
+        throw InputError(fmt::format("poses: row {} is not finite; give tx ty tz qw qx qy qz", body));
+    const double length = std::sqrt(norm);
+    return {Eigen::Quaterniond(w / length, x / length, y / length, z / length), translation};
+}
+
+void check_fits(const Scene& scene, const DeviceFrame& frame) {
+    if (frame.poses.buffer) check_room(frame.poses, scene.bodies.size() * pose_numbers, "poses");
+    if (frame.deformed.size() != scene.bodies.size())
+        throw InputError(fmt::format("the frame has {} entries of vertices for {} bodies; give each body one",
+                                     frame.deformed.size(), scene.bodies.size()));
+    for (std::size_t body = 0; body < scene.bodies.size(); ++body)
+        if (scene.bodies[body].deformable)
+            check_room(frame.deformed[body], 3 * scene.meshes[scene.bodies[body].mesh].vertices.size(),
+                       fmt::format("vertices of body {}", body));
+}
+
+Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame) {
+    const auto bodies = scene.bodies.size();
+    Frame here{std::vector<Pose>(bodies), std::vector<std::vector<Eigen::Vector3d>>(bodies), frame.skipped};
+    std::vector<double> rows;
+    if (frame.poses.buffer) rows = numbers_of(device, frame.poses, bodies * pose_numbers);
+    for (std::size_t body = 0; body < bodies; ++body) {
+        if (!scene.bodies[body].deformable) {
+            if (!rows.empty()) here.poses[body] = pose_of_row(&rows[body * pose_numbers], body);
+            continue;
+        }
+        const auto count = scene.meshes[scene.bodies[body].mesh].vertices.size();
+        const auto numbers = numbers_of(device, frame.deformed[body], 3 * count);
+        for (std::size_t v = 0; v < count; ++v) here.deformed[body].emplace_back(&numbers[3 * v]);
+    }
+    return here;
+}
+
+void refuse_flawed(Device& device, const Scene& scene, const DeviceFrame& frame, Precision precision,
+                   std::uint64_t flawed) {
+    check_range(scene, downloaded(device, scene, frame), precision);
+    throw InputError(fmt::format("{} rows of the frame were out of range on {}, and have changed since; they "
+                                 "must not be written before run() returns",
+                                 flawed, device.info().id));
+}
+
+} // namespace tandem

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/bodies/pack_stage.h"
+
+#include "algorithms/bodies/range.h"
+#include "algorithms/sources.h"
+#include "backends/upload.h"
+#include "scenes/error.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+constexpr std::string_view remedy = "give the frame in the host's memory";
+
+/// ROWS_FLOAT, ROWS_DOUBLE or ROWS_NONE of pack_frame.cl.
+std::uint32_t kind_of(const DeviceRows& rows) {
+    if (!rows.buffer) return 2;
+    return rows.precision == Precision::fp64 ? 1 : 0;
+}
+
+void check_device(const DeviceInfo& info, const Geometry& geometry) {
+    if (!info.has_double)
+        throw InputError(
+            fmt::format("{} has no double, in which a frame in its memory is packed; {}", info.id, remedy));
+    if (geometry.placement == Placement::exact)
+        throw InputError(fmt::format("setting placement=exact bounds on the host how far vertices drift, and "
+                                     "the frame is in the memory of {}; {}",
+                                     info.id, remedy));
+}
+
+} // namespace
+
+PackStage::PackStage(const Bodies& bodies, LaunchShape shape)
+    : bodies_(bodies), shape_(shape), limit_(largest_coordinate(bodies.geometry().precision)) {
+    auto& device = bodies.device();
+    const auto& scene = bodies.scene();
+    check_device(device.info(), bodies.geometry());
+    const auto defines = row_defines(bodies.geometry(), shape.group_size);
+    const auto& source = kernel_source("algorithms/bodies/pack_frame.cl");
+    poses_ = device.compile(source, "pack_poses", defines);
+    vertices_ = device.compile(source, "pack_vertices", defines);
+    std::vector<std::uint32_t> places;
+    for (std::uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+        first_places_.push_back(static_cast<std::uint32_t>(places.size()));
+        const auto deforms = [&](const Body& body) { return body.deformable && body.mesh == mesh; };
+        if (std::ranges::none_of(scene.bodies, deforms)) continue;
+        const auto& numbers = bodies.ordered_mesh(mesh).numbers;
+        places.insert(places.end(), numbers.begin(), numbers.end());
+    }
+    places_ = uploaded(device, bytes_of(places), "places of vertices");
+}
+
+Grid PackStage::grid_over(std::uint64_t count) const {
+    const auto groups = (count + shape_.group_size - 1) / shape_.group_size;
+    return {std::clamp<std::uint64_t>(groups, 1, shape_.groups), shape_.group_size};
+}
+
+void PackStage::pack_poses(const DeviceRows& rows, const Eigen::Vector3d& origin,
+                           const Buffer& status) const {
+    const std::array<Argument, 10> arguments{bodies_.poses(), rows.buffer ? rows.buffer : bodies_.row_table(),
+                                             kind_of(rows),   bodies_.row_table(),
+                                             bodies_.count(), limit_,
+                                             origin.x(),      origin.y(),
+                                             origin.z(),      status};
+    bodies_.device().launch(poses_, grid_over(bodies_.count()), arguments);
+}
+
+void PackStage::pack_vertices(std::size_t body, const DeviceRows& rows, const Eigen::Vector3d& origin,
+                              const Buffer& status) const {
+    const auto count = static_cast<std::uint32_t>(bodies_.mesh(body).numbers.size());
+    const auto first_place = first_places_[bodies_.scene().bodies[body].mesh];
+    const std::array<Argument, 12> arguments{bodies_.vertices(),
+                                             bodies_.row(body).vertices,
+                                             places_,
+                                             first_place,
+                                             rows.buffer,
+                                             kind_of(rows),
+                                             count,
+                                             limit_,
+                                             origin.x(),
+                                             origin.y(),
+                                             origin.z(),
+                                             status};
+    bodies_.device().launch(vertices_, grid_over(count), arguments);
+}
+
+void PackStage::launch(const DeviceFrame& frame, const Eigen::Vector3d& origin, const Buffer& status) const {
+    const StageScope scope(bodies_.device(), Stage::preprocess);
+    pack_poses(frame.poses, origin, status);
+    for (std::size_t body = 0; body < frame.deformed.size(); ++body)
+        if (bodies_.scene().bodies[body].deformable)
+            pack_vertices(body, frame.deformed[body], origin, status);
+}
+
+} // namespace tandem

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+// Frames whose numbers are in a device's memory: the bits and the answer of the same frame in the host's, the
+// same sentences for what cannot be, and one line for what needs the host.
+#include "algorithms/answer/status.h"
+#include "algorithms/bodies/frame_on_device.h"
+#include "algorithms/bodies/pack_stage.h"
+#include "algorithms/bodies/range.h"
+#include "tests/support/cells.h"
+#include "tests/support/frames_there.h"
+#include "tests/support/scenes.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+using ::testing::HasSubstr;
+
+/// The InputError of `work`; empty without one.
+template<class Work>
+std::string refusal(const Work& work) {
+    try {
+        work();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+class DeviceFrames : public testing::TestWithParam<std::string> {
+protected:
+    std::unique_ptr<Session> prepare(std::string_view name, const Scene& scene, const SettingTexts& given) {
+        const std::array devices{&on};
+        const auto& traversal = algorithm(name);
+        return traversal.prepare(devices, scene,
+                                 resolve(traversal.parameters(), {}, given, traversal.name()));
+    }
+
+    static void expect_equal(const FrameResult& there, const FrameResult& here) {
+        EXPECT_GT(here.count, 50u);
+        EXPECT_EQ(there.download(), here.download());
+        EXPECT_EQ(there.digest(), here.digest());
+        EXPECT_EQ(there.contacts, here.contacts);
+        EXPECT_EQ(there.contact_digest(), here.contact_digest());
+        EXPECT_EQ(there.download_contacts().size(), here.download_contacts().size());
+    }
+
+    /// Frames of the scene from both memories, each by a session of its own and in turns by a third.
+    void expect_same_answers(std::string_view name, const Scene& scene, const SettingTexts& given) {
+        SCOPED_TRACE(fmt::format("{}{}", name, text(given)));
+        const auto here = prepare(name, scene, given);
+        const auto there = prepare(name, scene, given);
+        const auto both = prepare(name, scene, given);
+        for (std::size_t i = 0; i < 4; ++i) {
+            const Rows rows(scene.frame(i % scene.frame_count), i % 2 == 1);
+            const auto right = here->run(rows.here);
+            const auto frame = rows.there(on);
+            expect_equal(there->run(frame), right);
+            expect_equal(i % 3 == 0 ? both->run(rows.here) : both->run(frame), right);
+            expect_equal(there->run(frame, all_pairs(scene)), right);
+        }
+    }
+
+    template<class Real>
+    std::vector<Real> reals(const Buffer& from, std::size_t count) {
+        std::vector<Real> values(count);
+        const StageScope scope(on, Stage::read);
+        on.download(from, std::as_writable_bytes(std::span(values)));
+        return values;
+    }
+
+    Device& on = device(GetParam());
+};
+
+TEST_P(DeviceFrames, HaveTheAnswerOfFramesInTheHostsMemory) {
+    const auto scene = crowd(3, 12, 1.5);
+    for (const auto* traversal : algorithms())
+        for (const auto& given :
+             {SettingTexts{{"k", "18"}}, {{"k", "8"}, {"precision", "double"}, {"broad", "device"}}})
+            expect_same_answers(traversal->name(), scene, given);
+    expect_same_answers("tiled", scene, {{"k", "18"}, {"submission", "each"}, {"pair_layout", "items"}});
+}
+
+TEST_P(DeviceFrames, CountCoordinatesFromTheSessionsOrigin) {
+    auto scene = crowd(5, 8, 1.2);
+    scene.frame = [inner = scene.frame](std::size_t i) {
+        auto frame = inner(i);
+        for (auto& pose : frame.poses) pose.translation += Eigen::Vector3d(1e5, -3e5, 7);
+        for (auto& vertex : frame.deformed[1]) vertex += Eigen::Vector3d(1e5, -3e5, 7);
+        frame.poses[1] = {};
+        return frame;
+    };
+    expect_same_answers("tiled", scene, {{"k", "18"}, {"origin", "auto"}, {"precision", "double"}});
+}
+
+TEST_P(DeviceFrames, LeaveOutWhatAFrameSkips) {
+    const auto scene = crowd(4, 9, 1.2);
+    const auto here = prepare("chunked", scene, {}), there = prepare("chunked", scene, {});
+    for (std::size_t i = 0; i < 3; ++i) {
+        auto frame = scene.frame(0);
+        if (i == 1) {
+            frame.skipped.resize(scene.bodies.size());
+            for (std::uint32_t t = 0; t < 40; ++t) frame.skipped[0].push_back(t);
+        }
+        const Rows rows(frame, false);
+        expect_equal(there->run(rows.there(on)), here->run(rows.here));
+    }
+}
+
+/// Every room begins with one row, and memory with so little that the frame runs in batches.
+TEST_P(DeviceFrames, RunAgainAndInBatches) {
+    const auto scene = crowd(6, 16, 1.5);
+    const SettingTexts least{{"pair_capacity", "1"}, {"contact_capacity", "1"}, {"body_pair_capacity", "1"}};
+    const Rows rows(scene.frame(0), false);
+    const auto right = prepare("chunked", scene, {})->run(rows.here);
+    const auto session = prepare("chunked", scene, least);
+    const auto frame = rows.there(on);
+    const auto again = session->run(frame);
+    expect_equal(again, right);
+    EXPECT_GT(again.retries, 0u);
+    const auto small = prepare("chunked", scene, least);
+    small->run(frame);
+    const auto little = prepare("chunked", scene, least);
+    on.set_memory_limit(on.bytes_allocated() + 20000);
+    const auto parts = little->run(frame);
+    on.set_memory_limit(Device::no_memory_limit);
+    EXPECT_GT(parts.batches, 1u);
+    expect_equal(parts, right);
+}
+
+/// Poses and vertices as Bodies::update uploads them, of quaternions of every length and direction.
+TEST_P(DeviceFrames, ArePackedToTheBitsOfTheHost) {
+    Random random(11);
+    Scene scene = crowd(7, 2, 1);
+    for (std::uint32_t i = 0; i < 2000; ++i) scene.bodies.push_back({.mesh = 2});
+    auto frame = scene.frame(0);
+    frame.deformed.resize(scene.bodies.size());
+    for (auto& v : frame.deformed[1]) v *= std::exp2(random.uniform(-60, 60));
+    while (frame.poses.size() < scene.bodies.size())
+        frame.poses.push_back({random.rotation(), Eigen::Vector3d(random.uniform(-1, 1), -0.0, 0.0)
+                                                      * std::exp2(random.uniform(-60, 60))});
+    Rows rows(frame, false);
+    for (std::size_t body = 2; body < scene.bodies.size(); ++body) {
+        const double length = std::exp2(random.uniform(-400, 400));
+        for (std::size_t i = 3; i < 7; ++i) rows.poses[7 * body + i] *= length;
+        rows.here.poses[body] = pose_of_row(&rows.poses[7 * body], body);
+        const auto& q = rows.poses;
+        const auto eigen =
+            Eigen::Quaterniond(q[7 * body + 3], q[7 * body + 4], q[7 * body + 5], q[7 * body + 6]);
+        EXPECT_EQ(rows.here.poses[body].rotation.coeffs(), eigen.normalized().coeffs()) << "as --pose";
+    }
+    auto other = rows.here; // leaves nothing of the frame before
+    for (auto& v : other.deformed[1]) v *= 2;
+    std::ranges::fill(other.poses, Pose{});
+    for (const auto precision : {Precision::fp32, Precision::fp64}) {
+        const Geometry geometry{.precision = precision};
+        Bodies bodies(on, scene, geometry, Bodies::Sharing::by_mesh);
+        const Status status(on, Status::Writes::queued);
+        const PackStage pack(bodies, {on.info().max_group_size == 1 ? 1u : 64u, 3});
+        const auto words = [&](const Buffer& buffer, std::size_t count) {
+            return reals<std::uint32_t>(buffer, count * real_bytes(geometry) / 4);
+        };
+        bodies.update(rows.here);
+        const auto poses = words(bodies.poses(), 12 * scene.bodies.size());
+        const auto vertices = words(bodies.vertices(), 4 * bodies.vertex_total());
+        bodies.update(other);
+        EXPECT_NE(words(bodies.vertices(), 4 * bodies.vertex_total()), vertices);
+        pack.launch(rows.there(on), Eigen::Vector3d::Zero(), status.buffer());
+        EXPECT_EQ(words(bodies.poses(), 12 * scene.bodies.size()), poses);
+        EXPECT_EQ(words(bodies.vertices(), 4 * bodies.vertex_total()), vertices);
+    }
+}
+
+/// What is out of range ends in the sentence that it has in the host's memory, and the next frame runs.
+TEST_P(DeviceFrames, OutOfRangeAreTheSentencesOfTheHost) {
+    const auto scene = crowd(3, 12, 1.5);
+    const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+    const auto session = prepare("tiled", scene, {});
+    const auto good = session->run(Rows(scene.frame(0), false).here);
+    for (const auto& [at, value, words] :
+         {std::tuple{7 * 3 + 0, nan, "poses: row 3 is not finite"},
+          {7 * 0 + 2, -infinity, "poses: row 0 is not finite"},
+          {7 * 5 + 4, nan, "poses: row 5 has no rotation"},
+          {7 * 5 + 4, 1e200, "poses: row 5 has no rotation"},
+          {7 * 11 + 1, 2e36, "body 11 has a coordinate of 2e+36, and precision=float takes at most 1e+36"},
+          {-1, nan, "body 1: vertex 9 is not finite; repair the frame"},
+          {-1, -1e37, "body 1 has a coordinate of 1e+37"}}) {
+        SCOPED_TRACE(words);
+        Rows rows(scene.frame(0), false);
+        if (at < 0)
+            rows.here.deformed[1][9].y() = value;
+        else
+            rows.poses[static_cast<std::size_t>(at)] = value;
+        const auto frame = rows.there(on);
+        EXPECT_THAT(refusal([&] { session->run(frame); }), HasSubstr(words));
+        EXPECT_EQ(refusal([&] {
+                      for (std::size_t body = 0; body < scene.bodies.size(); ++body)
+                          if (!scene.bodies[body].deformable)
+                              rows.here.poses[body] = pose_of_row(&rows.poses[7 * body], body);
+                      check_range(scene, rows.here, Precision::fp32);
+                  }),
+                  refusal([&] { session->run(frame); }));
+        expect_equal(session->run(Rows(scene.frame(0), false).there(on)), good);
+    }
+    for (int i = 3; i < 7; ++i) {
+        Rows rows(scene.frame(0), false);
+        for (std::size_t j = 3; j < 7; ++j) rows.poses[7 * 4 + j] = 0;
+        EXPECT_THAT(refusal([&] { session->run(rows.there(on)); }),
+                    HasSubstr("poses: row 4 has no rotation"));
+    }
+}
+
+TEST_P(DeviceFrames, AreRefusedInOneLineWhereTheHostNeedsThem) {
+    const auto scene = crowd(3, 6, 1.5);
+    const auto frame = Rows(scene.frame(0), false).there(on);
+    const auto refused = [&](const SettingTexts& given) {
+        const auto session = prepare("chunked", scene, given);
+        return refusal([&] { session->run(frame); });
+    };
+    EXPECT_THAT(refused({{"residency", "published"}, {"broad", "sphere"}}),
+                HasSubstr("residency=published converts every frame"));
+    EXPECT_THAT(refused({{"placement", "exact"}}), HasSubstr("placement=exact bounds on the host"));
+    const auto session = prepare("tiled", scene, {});
+    const auto without = [&](const auto& change) {
+        auto changed = frame;
+        change(changed);
+        return refusal([&] { session->run(changed); });
+    };
+    EXPECT_THAT(without([](auto& f) { f.deformed[1] = {}; }),
+                HasSubstr("vertices of body 1: a buffer of 0 bytes"));
+    EXPECT_THAT(without([](auto& f) { f.deformed.clear(); }),
+                HasSubstr("0 entries of vertices for 6 bodies"));
+    EXPECT_THAT(without([&](auto& f) { f.poses.buffer = on.allocate(80, "few"); }),
+                HasSubstr("poses: a buffer of 80 bytes"));
+    EXPECT_EQ(without([](auto& f) { f.poses = {}; }), "") << "all at the identity";
+    const std::array both{&device("host"), &device("opencl:0")};
+    const auto& tiled = algorithm("tiled");
+    const auto split = tiled.prepare(both, scene, resolve(tiled.parameters(), {}, {}, "tiled"));
+    EXPECT_THAT(refusal([&] { split->run(frame); }), HasSubstr("several devices share a frame"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, DeviceFrames, testing::ValuesIn(device_names()),
+                         [](const auto& each) { return device_label(each.param); });
+
+} // namespace
+} // namespace tandem

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// Frames in an application's memory of a GPU, on the stub of the driver: kernels are given the application's
+// own addresses, nothing is copied, such frames go to the driver as one, and the device follows other streams
+// or works on one.
+#include "tests/cuda/stubbed.h"
+#include "tests/support/cells.h"
+#include "tests/support/scenes.h"
+#include "tests/unit/device_support.h"
+
+#include <gmock/gmock.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+class CudaFrames : public CudaDevice {
+protected:
+    using Numbers = std::vector<double>;
+
+    std::unique_ptr<Session> prepare(Device& on) {
+        const std::array devices{&on};
+        const auto& tiled = algorithm("tiled");
+        return tiled.prepare(devices, scene, resolve(tiled.parameters(), {}, {}, "tiled"));
+    }
+    /// What of the application's memory a session may be given.
+    DeviceFrame frame(Device& on, Numbers& of_poses, Numbers& of_vertices) {
+        DeviceFrame frame{{on.adopt(of_poses.data(), of_poses.size() * 8, "poses"), Precision::fp64},
+                          std::vector<DeviceRows>(scene.bodies.size())};
+        frame.deformed[1] = {on.adopt(of_vertices.data(), of_vertices.size() * 8, "vertices"),
+                             Precision::fp64};
+        return frame;
+    }
+    static unsigned long launches_with(const void* address) { return ask("stub_launches_with", address); }
+    static unsigned long copies_of(const void* address) { return ask("stub_copies_of", address); }
+    static unsigned long ask(const char* name, const void* address) {
+        return entry_of_stub<unsigned long(unsigned long long)>(name)(
+            reinterpret_cast<unsigned long long>(address));
+    }
+    CUstream_st* stream_of(Context context) {
+        make_current(context);
+        CUstream_st* stream = nullptr;
+        entry<CUstream_st**, unsigned>("cuStreamCreate")(&stream, 0);
+        make_current(nullptr);
+        return stream;
+    }
+    static unsigned long calls(CUstream_st* stream, Context context) {
+        return entry_of_stub<unsigned long(CUstream_st*, Context)>("stub_calls")(stream, context);
+    }
+    static Context primary() {
+        Context context = nullptr;
+        entry<Context*, int>("cuDevicePrimaryCtxRetain")(&context, 0);
+        return context;
+    }
+
+    Scene scene = crowd(81, 6, 0.9);
+    Numbers poses = Numbers(6 * 7, 0.5), vertices = Numbers(3 * scene.meshes[1].vertices.size(), 0.5);
+};
+
+/// Counted from where other tests have left the count of an address.
+TEST_F(CudaFrames, KernelsReadTheApplicationsOwnMemory) {
+    const auto session = prepare(*device);
+    const auto given = frame(*device, poses, vertices);
+    EXPECT_EQ(given.poses.buffer.native(), poses.data());
+    const auto packed = launches_with(poses.data()), packed_vertices = launches_with(vertices.data());
+    const auto copies = copies_of(poses.data()) + copies_of(vertices.data());
+    for (unsigned long i = 1; i < 3; ++i) {
+        session->run(given);
+        EXPECT_EQ(launches_with(poses.data()), packed + i) << "one launch packs all poses";
+        EXPECT_EQ(launches_with(vertices.data()), packed_vertices + i);
+    }
+    EXPECT_EQ(copies_of(poses.data()) + copies_of(vertices.data()), copies);
+}
+
+TEST_F(CudaFrames, GoToTheDriverAsOneFromTheThirdTimeOn) {
+    const auto session = prepare(*device);
+    const auto given = frame(*device, poses, vertices);
+    const auto submissions = [&](const DeviceFrame& of) {
+        const auto before = device->submissions();
+        session->run(of);
+        return device->submissions() - before;
+    };
+    EXPECT_GT(submissions(given), 7u) << "sorts bodies";
+    EXPECT_GT(submissions(given), 7u) << "is not known yet";
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(submissions(given), 1u);
+    Numbers others(poses);
+    const auto before = launches_with(others.data());
+    const auto elsewhere = frame(*device, others, vertices);
+    EXPECT_GT(submissions(elsewhere), 7u);
+    EXPECT_EQ(submissions(elsewhere), 1u);
+    EXPECT_EQ(submissions(given), 1u);
+    EXPECT_EQ(launches_with(others.data()), before + 2) << "at once, and when the graph was captured";
+}
+
+TEST_F(CudaFrames, WorkOnTheApplicationsStream) {
+    auto* const stream = stream_of(primary());
+    auto on = cuda::on_stream(0, stream);
+    EXPECT_EQ(on->info().id, "cuda:0");
+    EXPECT_EQ(on->queue(), stream);
+    const auto before = calls(stream, primary());
+    {
+        const auto session = prepare(*on);
+        session->run(frame(*on, poses, vertices));
+    }
+    EXPECT_GT(calls(stream, primary()), before + 7);
+    on.reset(); // the stream stays the application's
+    make_current(primary());
+    EXPECT_EQ(entry<CUstream_st*>("cuStreamSynchronize")(stream), 0);
+    entry<CUstream_st*>("cuStreamDestroy_v2")(stream);
+    make_current(nullptr);
+    EXPECT_EQ(cuda::on_stream(0, nullptr)->queue(), nullptr);
+    EXPECT_EQ(cuda::on_stream(0, reinterpret_cast<void*>(1))->queue(), nullptr) << "CU_STREAM_LEGACY";
+    EXPECT_THAT(test::message_of([] { cuda::on_stream(3, nullptr); }),
+                testing::HasSubstr("cuda:3: the driver has 1 devices, numbered from 0"));
+}
+
+TEST_F(CudaFrames, FollowOtherStreams) {
+    auto* const stream = stream_of(primary());
+    const auto before = calls(stream, primary());
+    device->follow(stream);
+    EXPECT_EQ(calls(stream, primary()), before + 1);
+    EXPECT_EQ(current(), nullptr);
+}
+
+} // namespace
+} // namespace tandem

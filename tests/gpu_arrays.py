@@ -1,0 +1,291 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""gpu_arrays.py LIBRARY [DEVICE]: tandem.Collider with arrays of cupy, torch or jax on a CUDA device (cuda:0): frames are read where
+they lie and have the answers of NumPy's to the bit, after what the library has enqueued; work goes by the library's stream; pairs stay
+on the device; what is wrong ends in the sentences of the host's memory. For a machine with a GPU: scripts/gpu/run python."""
+import sys
+import unittest
+
+import numpy
+
+import tandem
+
+if len(sys.argv) not in (2, 3) or sys.argv[1] not in ("cupy", "torch", "jax"):
+    sys.exit(__doc__)
+LIBRARY, DEVICE = sys.argv[1], (sys.argv[2:] or ["cuda:0"])[0]
+SIDE = 4096  # of the matrices whose products keep the GPU busy for tens of milliseconds
+
+
+class Cupy:
+    """What the tests need of a library."""
+    def __init__(self):
+        import cupy
+        self.library = cupy
+
+    def array(self, values, dtype=numpy.float64):
+        return self.library.asarray(numpy.asarray(values, dtype))
+
+    def empty_like(self, array):
+        return self.library.zeros_like(array)
+
+    def address(self, array):
+        return array.data.ptr
+
+    def host(self, array):
+        return self.library.asnumpy(array)
+
+    def taken(self, given):
+        return self.library.from_dlpack(given)
+
+    def matrix(self):
+        return self.library.ones((SIDE, SIDE), self.library.float32)
+
+    def written_late(self, target, values, matrix, products=60):
+        """`target`, which is `values` once the GPU has done much else; whether it was so already when this returned."""
+        for _ in range(products):
+            matrix = matrix @ matrix * numpy.float32(1 / SIDE)
+        target[...] = values + 0 * matrix[0, 0].astype(target.dtype)
+        event = self.library.cuda.Event()
+        event.record()
+        return target, event.done
+
+    def stream(self):
+        return self.library.cuda.Stream(non_blocking=True)
+
+    def on(self, stream):
+        return stream
+
+    def stream_address(self, stream):
+        return stream.ptr
+
+    def finish(self):
+        self.library.cuda.Device().synchronize()
+
+
+class Torch(Cupy):
+    def __init__(self):
+        import torch
+        self.library = torch
+
+    def array(self, values, dtype=numpy.float64):
+        return self.library.from_numpy(numpy.array(values, dtype)).cuda()
+
+    def address(self, array):
+        return array.data_ptr()
+
+    def host(self, array):
+        return array.cpu().numpy()
+
+    def matrix(self):
+        return self.library.ones((SIDE, SIDE), dtype=self.library.float32, device="cuda")
+
+    def written_late(self, target, values, matrix, products=60):
+        for _ in range(products):
+            matrix = matrix @ matrix * (1 / SIDE)
+        target.copy_(values + 0 * matrix[0, 0].to(target.dtype))
+        event = self.library.cuda.Event()
+        event.record()
+        return target, event.query()
+
+    def stream(self):
+        return self.library.cuda.Stream()
+
+    def on(self, stream):
+        return self.library.cuda.stream(stream)
+
+    def stream_address(self, stream):
+        return stream.cuda_stream
+
+    def finish(self):
+        self.library.cuda.synchronize()
+
+
+class Jax(Cupy):
+    def __init__(self):
+        import jax
+        jax.config.update("jax_enable_x64", True)
+        self.library = jax
+
+    def array(self, values, dtype=numpy.float64):
+        return self.library.block_until_ready(self.library.numpy.asarray(numpy.asarray(values, dtype)))
+
+    def address(self, array):
+        return array.unsafe_buffer_pointer()
+
+    def empty_like(self, array):
+        return self.library.numpy.zeros_like(array)
+
+    def host(self, array):
+        return numpy.asarray(array)
+
+    def taken(self, given):
+        return self.library.dlpack.from_dlpack(given)
+
+    def matrix(self):
+        return self.library.numpy.ones((SIDE, SIDE), numpy.float32)
+
+    def written_late(self, target, values, matrix, products=60):
+        """A new array: those of JAX never change."""
+        for _ in range(products):
+            matrix = matrix @ matrix * numpy.float32(1 / SIDE)
+        late = values + 0 * matrix[0, 0].astype(values.dtype)
+        return late, late.is_ready()
+
+    def stream(self):
+        raise unittest.SkipTest("jax has no streams of its users'")
+
+    def finish(self):
+        self.library.block_until_ready(self.library.numpy.zeros(1) + 1)
+
+
+def setUpModule():
+    global ON
+    ON = {"cupy": Cupy, "torch": Torch, "jax": Jax}[LIBRARY]()
+    print(f"{LIBRARY} {ON.library.__version__}, {DEVICE}: {next(d['name'] for d in tandem.devices() if d['id'] == DEVICE)}", file=sys.stderr)
+
+
+class InterfaceAlone:
+    """An array by its __cuda_array_interface__ and nothing else."""
+    def __init__(self, array):
+        self.__cuda_array_interface__ = array.__cuda_array_interface__
+        self.kept = array
+
+
+class Arrays(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.plates, cls.pile = tandem.make_scene("plates"), tandem.make_scene("pile:bodies=64,frames=3")
+        cls.soft = cls.collider(cls.plates)
+        cls.rigid = cls.collider(cls.pile)
+
+    @staticmethod
+    def collider(scene, **options):
+        return tandem.Collider(scene.meshes, device=DEVICE, bodies=scene.bodies, deformable=scene.deformable, **options)
+
+    def expect_same(self, there, here):
+        self.assertGreater(here.count, 100)
+        self.assertEqual((there.count, there.contact_count), (here.count, here.contact_count))
+        self.assertEqual((there.digest(), there.contact_digest()), (here.digest(), here.contact_digest()))
+        self.assertTrue((there.pairs() == here.pairs()).all())
+
+    def test_poses_are_read_where_they_are(self):
+        for dtype in (numpy.float64, numpy.float32):
+            for frame in (0, 1, 0, 1, 0, 1):  # as one submission from the third time on
+                rows = self.pile.poses(frame % self.pile.frame_count).astype(dtype)
+                poses = ON.array(rows, dtype)
+                answer = self.rigid.run(poses)
+                self.assertEqual(self.rigid._core.addresses, [ON.address(poses)])
+                self.expect_same(answer, self.rigid.run(rows))
+
+    def test_vertices_are_read_where_they_are(self):
+        buffers = None
+        for frame in (60, 61, 62, 63):
+            rows = self.plates.vertices(frame)
+            moved = {body: ON.array(points) for body, points in rows.items()}
+            answer = self.soft.run(vertices=moved)
+            self.assertEqual(self.soft._core.addresses, [0, *map(ON.address, moved.values())])
+            self.expect_same(answer, self.soft.run(vertices=rows))
+            mixed = self.soft.run(vertices={body: moved[body] if body % 2 else points for body, points in rows.items()})
+            self.expect_same(mixed, answer)
+            buffers = moved
+        for _ in range(5):  # the same commands again and again
+            self.expect_same(self.soft.run(vertices=buffers), answer)
+
+    def test_arrays_by_the_cuda_array_interface(self):
+        poses = ON.array(self.pile.poses(0))
+        if not hasattr(poses, "__cuda_array_interface__"):
+            self.skipTest(f"{LIBRARY} has none")
+        self.expect_same(self.rigid.run(InterfaceAlone(poses)), self.rigid.run(self.pile.poses(0)))
+        self.assertEqual(self.rigid._core.addresses, [ON.address(poses)])
+
+    def test_frames_come_after_what_was_enqueued_for_them(self):
+        """The library's stream is busy when the collider is called, and only then writes the frame."""
+        here = self.soft.run(vertices=self.plates.vertices(64))
+        values = {body: ON.array(points) for body, points in self.plates.vertices(64).items()}
+        targets = {body: ON.empty_like(array) for body, array in values.items()}
+        matrix = ON.matrix()
+        ON.written_late(targets[0], values[0], matrix, 2)  # compiles
+        late = False
+        for _ in range(3):
+            ON.finish()
+            body = next(iter(targets))
+            if LIBRARY != "jax":
+                targets[body][...] = 0
+            array, was_done = ON.written_late(targets[body], values[body], matrix)
+            late |= not was_done
+            self.expect_same(self.soft.run(vertices={**values, body: array}), here)
+        self.assertTrue(late, "nothing was under way: the test says nothing")
+
+    def test_work_goes_by_the_librarys_stream(self):
+        stream = ON.stream()
+        collider = self.collider(self.pile, stream=stream)
+        self.assertEqual(collider._core.queue, ON.stream_address(stream))
+        here = self.rigid.run(self.pile.poses(1))
+        matrix, values = ON.matrix(), ON.array(self.pile.poses(1))
+        ON.finish()
+        with ON.on(stream):
+            poses, was_done = ON.written_late(ON.empty_like(values), values, matrix)
+            self.assertFalse(was_done)
+            answer = collider.run(poses)
+            self.assertEqual(collider._core.addresses, [ON.address(poses)])
+            self.expect_same(answer, here)
+            rows = ON.taken(answer.pairs(on_device=True))
+            self.assertEqual(sorted(map(tuple, ON.host(rows).tolist())), sorted(map(tuple, here.pairs().tolist())))
+        by_default_stream = self.collider(self.pile, stream=0)
+        self.expect_same(by_default_stream.run(values), here)
+
+    def test_pairs_stay_on_the_device(self):
+        answer = self.rigid.run(ON.array(self.pile.poses(0)))
+        first, second = ON.taken(answer.pairs(on_device=True)), ON.taken(answer.pairs(on_device=True))
+        self.assertEqual(ON.address(first), ON.address(second))
+        self.assertEqual(tuple(first.shape), (answer.count, 4))
+        self.assertEqual(tuple(map(int, answer.pairs(on_device=True).__dlpack_device__())), (2, int(DEVICE[5:])))
+        kept = ON.host(first).copy()
+        self.assertTrue((kept[numpy.lexsort(kept.T[::-1])] == answer.pairs()).all())
+        del answer
+        for frame in (1, 2, 1):
+            self.rigid.run(self.pile.poses(frame))
+        self.assertTrue((ON.host(first) == kept).all(), "the memory lives as long as an array over it")
+
+    def failure(self, kind, function, *arguments, **named):
+        with self.assertRaises(kind) as caught:
+            function(*arguments, **named)
+        self.assertNotIn("\n", str(caught.exception))
+        return str(caught.exception)
+
+    def test_what_is_wrong_has_the_sentences_of_the_hosts_memory(self):
+        for at, value in (((3, 0), numpy.nan), ((5, 4), numpy.inf), ((6, slice(3, 7)), 0), ((2, 1), 1e37)):
+            rows = self.pile.poses(0).copy()
+            rows[at] = value
+            said = self.failure(ValueError, self.rigid.run, ON.array(rows))
+            self.assertEqual(said, self.failure(ValueError, self.rigid.run, rows))
+            print(f"\n  ValueError: {said}", end="", file=sys.stderr)
+        rows = self.plates.vertices(60)
+        rows[1][7, 2] = numpy.nan
+        said = self.failure(ValueError, self.soft.run, vertices={1: ON.array(rows[1])})
+        self.assertEqual((said, self.failure(ValueError, self.soft.run, vertices={1: rows[1]})), (said, said))
+        self.assertIn("body 1: vertex 7 is not finite", said)
+        good = self.pile.poses(0)
+        self.expect_same(self.rigid.run(ON.array(good)), self.rigid.run(good))
+
+    def test_what_is_refused(self):
+        good = self.pile.poses(0)
+        for kind, words, value in ((ValueError, "and (n, 7) is wanted", ON.array(good[:, :6])), (ValueError, "rows for 64 bodies", ON.array(good[1:])),
+                                   (TypeError, "neither float64 nor float32", ON.array(good, numpy.int32))):
+            self.assertIn(words, self.failure(kind, self.rigid.run, value))
+        if LIBRARY != "jax":  # whose arrays are always contiguous
+            self.assertIn("rows are not beside each other", self.failure(ValueError, self.rigid.run, ON.array(numpy.repeat(good, 2, axis=1))[:, ::2]))
+        if LIBRARY == "torch":
+            self.assertIn("is not given by DLPack", self.failure(ValueError, self.rigid.run, ON.array(good).requires_grad_()))
+        host = tandem.Collider(self.pile.meshes, bodies=self.pile.bodies)
+        self.assertIn("the collider works on host", self.failure(ValueError, host.run, ON.array(good)))
+
+    def test_auto_measures_on_frames_there(self):
+        collider = self.collider(self.pile, algorithm="auto")
+        trials = collider.tune(ON.array(self.pile.poses(0)), seconds=0.2)
+        self.assertEqual(collider.algorithm, trials[0].algorithm)
+        self.expect_same(collider.run(ON.array(self.pile.poses(1))), self.rigid.run(self.pile.poses(1)))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
