@@ -54,6 +54,12 @@ double separation_bias(double depth, double size, double time) {
     return -std::min(gap_reduction * -depth, greatest_correction * size) / time;
 }
 
+double settling(double depth, double layer, double time) {
+    // A part of the way a step: normal forces, and friction with them, stay nearly what they are.
+    constexpr double part = 0.1;
+    return part * std::max(0.0, layer + depth) / time;
+}
+
 double correct_positions(const Model& model, Problem problem, std::span<const ContactPoint> contacts,
                          double half, Motion& motion) {
     for (std::size_t i = 0; i < problem.rows.size(); ++i) {

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/simulate/cone.h"
+
+#include "scenes/simulate/algebra.h"
+
+#include <algorithm>
+
+namespace tandem::simulate {
+
+namespace {
+
+using Rays = std::span<const Eigen::Vector3d>;
+
+constexpr double rounding = 1e-14; ///< of products of directions
+constexpr int most_turns = 64;     ///< of projections; those onto planes that cross need one or two
+
+/// Keeps of two points the one nearer to x.
+void keep_nearer(const Eigen::Vector3d& x, const Eigen::Vector3d& candidate, Eigen::Vector3d& best) {
+    if (dot(x - candidate, x - candidate) < dot(x - best, x - best)) best = candidate;
+}
+
+/// Of the part of the plane through rays g and h that lies between them, where x is above it.
+void try_between(const Eigen::Vector3d& g, const Eigen::Vector3d& h, const Eigen::Vector3d& x,
+                 Eigen::Vector3d& best) {
+    const double gh = dot(g, h), gx = dot(g, x), hx = dot(h, x);
+    const double area = 1 - gh * gh;
+    if (area < rounding) return;
+    const double along_g = (gx - gh * hx) / area, along_h = (hx - gh * gx) / area;
+    if (along_g > 0 && along_h > 0) keep_nearer(x, along_g * g + along_h * h, best);
+}
+
+/// The ray that turns away least.
+Eigen::Vector3d closest_ray(Rays rays, const Eigen::Vector3d& x) {
+    return *std::max_element(rays.begin(), rays.end(),
+                             [&](const auto& a, const auto& b) { return dot(a, x) < dot(b, x); });
+}
+
+/// Projected and of length 1 again; onto a ray where the cone lies all behind x.
+Eigen::Vector3d turned_into(Rays rays, const Eigen::Vector3d& x) {
+    if (rays.empty()) return x;
+    const auto nearest = nearest_in_cone(rays, x);
+    const double size = length(nearest);
+    return size > 1e-6 ? Eigen::Vector3d(nearest / size) : closest_ray(rays, x);
+}
+
+} // namespace
+
+Eigen::Vector3d nearest_in_cone(Rays rays, const Eigen::Vector3d& direction) {
+    // The nearest point of the cone's edges and sides is the answer unless some ray leads from it nearer to
+    // x: then x lies inside.
+    Eigen::Vector3d best = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const double along = dot(rays[i], direction);
+        if (along > 0) keep_nearer(direction, along * rays[i], best);
+        for (std::size_t j = 0; j < i; ++j) try_between(rays[i], rays[j], direction, best);
+    }
+    const Eigen::Vector3d rest = direction - best;
+    const bool inside = std::any_of(rays.begin(), rays.end(),
+                                    [&](const auto& ray) { return dot(ray, rest) > rounding; });
+    return inside ? direction : best;
+}
+
+double outside(Rays one, Rays other, const Eigen::Vector3d& direction) {
+    double farthest = 0;
+    for (const auto& rays : {one, other})
+        if (!rays.empty())
+            farthest = std::max(farthest, length(direction - nearest_in_cone(rays, direction)));
+    return farthest;
+}
+
+Eigen::Vector3d brought_into(Rays one, Rays other, const Eigen::Vector3d& direction) {
+    Eigen::Vector3d x = direction;
+    for (int turn = 0; turn < most_turns; ++turn) {
+        const Eigen::Vector3d before = x;
+        x = turned_into(other, turned_into(one, x));
+        if (length(x - before) < rounding) break;
+    }
+    return x;
+}
+
+} // namespace tandem::simulate
