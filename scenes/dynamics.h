@@ -90,7 +90,7 @@ struct StepSettings {
     bool surface_normals = true;
     /// How deep bodies that rest lie in each other, times the smaller one's size, so that rounding does not
     /// part them; 0: not at all.
-    double contact_layer = 1e-4;
+    double contact_layer = 2e-5;
     double linear_damping = 0;  ///< 1/s
     double angular_damping = 0; ///< 1/s
     /// Deformables: the step is halved until the difference to two half steps is below this (m), and doubled

@@ -55,9 +55,11 @@ double separation_bias(double depth, double size, double time) {
 }
 
 double settling(double depth, double layer, double time) {
-    // A part of the way a step: normal forces, and friction with them, stay nearly what they are.
-    constexpr double part = 0.1;
-    return part * std::max(0.0, layer + depth) / time;
+    // A part of the way a step: normal forces, and friction with them, stay nearly what they are. The same for
+    // all contacts, since speeds that differ by what their depths are rounded by ask a flat face for what it
+    // cannot do: the solver finds out slowly which of them carry.
+    constexpr double part = 0.15;
+    return depth > -layer ? part * layer / time : 0;
 }
 
 double correct_positions(const Model& model, Problem problem, std::span<const ContactPoint> contacts,

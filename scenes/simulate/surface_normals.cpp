@@ -14,7 +14,7 @@ namespace tandem::simulate {
 namespace {
 
 constexpr double nearness = 1e-3;  ///< of faces to a contact, times the smaller body's size
-constexpr double normal_rounding = 1e-5; ///< of a normal in single precision, with room for slivers
+constexpr double normal_rounding = 1e-6; ///< of a normal in single precision
 constexpr double in_parallel = 0.1; ///< cosine; a face nearer to parallel gives no depth along a direction
 
 /// What bounds one body of a contact there, in world axes and pointing out of body a.
