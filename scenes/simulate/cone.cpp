@@ -11,12 +11,12 @@ namespace {
 
 using Rays = std::span<const Eigen::Vector3d>;
 
-constexpr double rounding = 1e-14; ///< of products of directions
+constexpr double rounding = 1e-8;  ///< of directions that sums of rays some 1e-7 apart are taken from
 constexpr int most_turns = 64;     ///< of projections; those onto planes that cross need one or two
 
-/// Keeps of two points the one nearer to x.
-void keep_nearer(const Eigen::Vector3d& x, const Eigen::Vector3d& candidate, Eigen::Vector3d& best) {
-    if (dot(x - candidate, x - candidate) < dot(x - best, x - best)) best = candidate;
+/// Keeps of two points that x is projected to the nearer one: the longer, which distances near 1 cannot tell.
+void keep_nearer(const Eigen::Vector3d& candidate, Eigen::Vector3d& best) {
+    if (dot(candidate, candidate) > dot(best, best)) best = candidate;
 }
 
 /// Of the part of the plane through rays g and h that lies between them, where x is above it.
@@ -24,9 +24,9 @@ void try_between(const Eigen::Vector3d& g, const Eigen::Vector3d& h, const Eigen
                  Eigen::Vector3d& best) {
     const double gh = dot(g, h), gx = dot(g, x), hx = dot(h, x);
     const double area = 1 - gh * gh;
-    if (area < rounding) return;
+    if (!(area > 0)) return;
     const double along_g = (gx - gh * hx) / area, along_h = (hx - gh * gx) / area;
-    if (along_g > 0 && along_h > 0) keep_nearer(x, along_g * g + along_h * h, best);
+    if (along_g > 0 && along_h > 0) keep_nearer(along_g * g + along_h * h, best);
 }
 
 /// The ray that turns away least.
@@ -51,7 +51,7 @@ Eigen::Vector3d nearest_in_cone(Rays rays, const Eigen::Vector3d& direction) {
     Eigen::Vector3d best = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const double along = dot(rays[i], direction);
-        if (along > 0) keep_nearer(direction, along * rays[i], best);
+        if (along > 0) keep_nearer(along * rays[i], best);
         for (std::size_t j = 0; j < i; ++j) try_between(rays[i], rays[j], direction, best);
     }
     const Eigen::Vector3d rest = direction - best;
@@ -73,7 +73,7 @@ Eigen::Vector3d brought_into(Rays one, Rays other, const Eigen::Vector3d& direct
     for (int turn = 0; turn < most_turns; ++turn) {
         const Eigen::Vector3d before = x;
         x = turned_into(other, turned_into(one, x));
-        if (length(x - before) < rounding) break;
+        if (length(x - before) < 1e-12) break;
     }
     return x;
 }

@@ -8,6 +8,7 @@
 #include "scenes/simulate/stabilize.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace tandem::simulate {
 
@@ -51,17 +52,33 @@ struct Surroundings {
     }
 };
 
+std::uint64_t bodies_of(const Pair& pair) { return std::uint64_t{pair.body_a} << 32 | pair.body_b; }
+
+/// m, of every two bodies: the greatest of their contacts' depths.
+using Depths = std::unordered_map<std::uint64_t, double>;
+
+Depths deepest_of(std::span<const ContactPoint> contacts) {
+    Depths depths;
+    for (const auto& contact : contacts) {
+        auto& depth = depths[bodies_of(contact.pair)];
+        depth = std::max(depth, -contact.depth);
+    }
+    return depths;
+}
+
 /// Of one thread.
 struct Mender {
     const Model& model;
     const Frame& frame;
+    const Depths& depths;
     Surroundings a, b;
 
     void mend(ContactPoint& contact) {
         const auto& pair = contact.pair;
         const Eigen::Vector3d point(contact.point[0], contact.point[1], contact.point[2]);
         const Eigen::Vector3d given(contact.normal[0], contact.normal[1], contact.normal[2]);
-        const double slack = nearness * pair_size(model, pair);
+        // A point on the surface of one is as far below the other's as the bodies are in each other.
+        const double slack = nearness * pair_size(model, pair) + depths.at(bodies_of(pair));
         a.find(model, frame, pair.body_a, pair.tet_a, point, slack, 1);
         b.find(model, frame, pair.body_b, pair.tet_b, point, slack, -1);
         const double off = outside(a.rays, b.rays, given);
@@ -78,8 +95,9 @@ struct Mender {
 void set_surface_normals(const Model& model, const Frame& frame, std::span<ContactPoint> contacts) {
     constexpr std::size_t part = 256; // contacts a core takes at a time
     const auto deforms = [&](std::uint32_t body) { return model.bodies[body].kind == Kind::soft; };
+    const auto depths = deepest_of(contacts);
     parallel_for((contacts.size() + part - 1) / part, [&](std::size_t i) {
-        Mender mender{model, frame, {}, {}};
+        Mender mender{model, frame, depths, {}, {}};
         for (auto& contact : contacts.subspan(i * part, std::min(part, contacts.size() - i * part)))
             if (!deforms(contact.pair.body_a) && !deforms(contact.pair.body_b)) mender.mend(contact);
     });
