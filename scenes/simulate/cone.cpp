@@ -43,6 +43,24 @@ Eigen::Vector3d turned_into(Rays rays, const Eigen::Vector3d& x) {
     return size > 1e-6 ? Eigen::Vector3d(nearest / size) : closest_ray(rays, x);
 }
 
+Eigen::Vector3d in_turn(Rays one, Rays other, const Eigen::Vector3d& start) {
+    Eigen::Vector3d x = start;
+    for (int turn = 0; turn < most_turns; ++turn) {
+        const Eigen::Vector3d before = x;
+        x = turned_into(other, turned_into(one, x));
+        if (length(x - before) < 1e-12) break;
+    }
+    return x;
+}
+
+/// The sum of all rays: of two cones that oppose each other what they have in common is left.
+Eigen::Vector3d middle_of(Rays one, Rays other) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const auto& ray : one) sum += ray;
+    for (const auto& ray : other) sum += ray;
+    return sum;
+}
+
 } // namespace
 
 Eigen::Vector3d nearest_in_cone(Rays rays, const Eigen::Vector3d& direction) {
@@ -69,13 +87,13 @@ double outside(Rays one, Rays other, const Eigen::Vector3d& direction) {
 }
 
 Eigen::Vector3d brought_into(Rays one, Rays other, const Eigen::Vector3d& direction) {
-    Eigen::Vector3d x = direction;
-    for (int turn = 0; turn < most_turns; ++turn) {
-        const Eigen::Vector3d before = x;
-        x = turned_into(other, turned_into(one, x));
-        if (length(x - before) < 1e-12) break;
-    }
-    return x;
+    const auto nearest = in_turn(one, other, direction);
+    const double off = outside(one, other, nearest);
+    const auto middle = middle_of(one, other);
+    if (off < rounding || !(length(middle) > rounding)) return nearest;
+    // Between sides that oppose each other, those of bodies that stand flush, projections go to and fro.
+    const auto second = in_turn(one, other, middle / length(middle));
+    return outside(one, other, second) < off ? second : nearest;
 }
 
 } // namespace tandem::simulate
