@@ -16,6 +16,7 @@ namespace {
 
 constexpr double nearness = 1e-3;  ///< of faces to a contact, times the smaller body's size
 constexpr double normal_rounding = 1e-6; ///< of a normal in single precision
+constexpr double tilt = 0.1;              ///< radians, of faces that lie on each other
 constexpr double in_parallel = 0.1; ///< cosine; a face nearer to parallel gives no depth along a direction
 
 /// What bounds one body of a contact there, in world axes and pointing out of body a.
@@ -83,8 +84,15 @@ struct Mender {
         b.find(model, frame, pair.body_b, pair.tet_b, point, slack, -1);
         const double off = outside(a.rays, b.rays, given);
         if (off <= normal_rounding) return;
-        const auto normal = brought_into(a.rays, b.rays, given);
-        if (off <= 2 * outside(a.rays, b.rays, normal) + normal_rounding) return;
+        auto normal = brought_into(a.rays, b.rays, given);
+        const double left = outside(a.rays, b.rays, normal);
+        // Nothing in common: bodies that are in each other and tilted, or curved. Where that is by little a face
+        // decides for the corner or edge that is in it, as where they just touch; otherwise the point may be
+        // off the edge that carries, whose normal no face has.
+        if (left > normal_rounding && off < tilt && (a.rays.size() == 1) != (b.rays.size() == 1))
+            normal = a.rays.size() == 1 ? a.rays[0] : b.rays[0];
+        else if (off <= 2 * left + normal_rounding)
+            return;
         for (int i = 0; i < 3; ++i) contact.normal[static_cast<std::size_t>(i)] = normal[i];
         contact.depth = -(a.way_out(normal) + b.way_out(normal));
     }

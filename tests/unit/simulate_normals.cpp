@@ -16,8 +16,6 @@ namespace {
 
 using namespace test;
 
-constexpr ContactSettings least_translation{ContactRule::sat, DecisionPrecision::recheck};
-
 Eigen::Vector3d any_direction(Random& random) {
     return random.direction();
 }

@@ -30,6 +30,9 @@ struct World {
 
 Pose at(double x, double y, double z);
 
+/// What `tandem simulate` asks for unless told otherwise.
+constexpr ContactSettings least_translation{ContactRule::sat, DecisionPrecision::recheck};
+
 /// Contacts by the reference over all pairs of tetrahedra whose boxes overlap.
 Detect detector(const Scene& scene, const ContactSettings& settings = {});
 void no_contacts(const Frame&, std::vector<ContactPoint>& contacts);
