@@ -11,8 +11,8 @@ namespace {
 
 using Rays = std::span<const Eigen::Vector3d>;
 
-constexpr double rounding = 1e-8;  ///< of directions that sums of rays some 1e-7 apart are taken from
-constexpr int most_turns = 64;     ///< of projections; those onto planes that cross need one or two
+constexpr double rounding = 1e-8; ///< of directions that sums of rays some 1e-7 apart are taken from
+constexpr int most_turns = 64;    ///< of projections; those onto planes that cross need one or two
 
 /// Keeps of two points that x is projected to the nearer one: the longer, which distances near 1 cannot tell.
 void keep_nearer(const Eigen::Vector3d& candidate, Eigen::Vector3d& best) {
@@ -73,8 +73,8 @@ Eigen::Vector3d nearest_in_cone(Rays rays, const Eigen::Vector3d& direction) {
         for (std::size_t j = 0; j < i; ++j) try_between(rays[i], rays[j], direction, best);
     }
     const Eigen::Vector3d rest = direction - best;
-    const bool inside = std::any_of(rays.begin(), rays.end(),
-                                    [&](const auto& ray) { return dot(ray, rest) > rounding; });
+    const bool inside =
+        std::any_of(rays.begin(), rays.end(), [&](const auto& ray) { return dot(ray, rest) > rounding; });
     return inside ? direction : best;
 }
 

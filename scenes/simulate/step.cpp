@@ -61,13 +61,11 @@ double deepest(std::span<const ContactPoint> contacts) {
 
 /// Rows of rigid bodies that are not yet as deep as they are to lie; a bounce that is faster stays one.
 void let_settle(const Model& model, std::span<const ContactPoint> kept, double length, Problem& problem) {
-    const double layer = model.dynamics->stepping.contact_layer;
-    if (!(layer > 0)) return;
     for (std::size_t i = 0; i < problem.rows.size(); ++i) {
         auto& row = problem.rows[i];
         const auto& contact = kept[problem.sources[i]];
         if (row.a.attached || row.b.attached) continue;
-        const double speed = settling(contact.depth, layer * pair_size(model, contact.pair), length);
+        const double speed = settling(contact.depth, layer_of(model, contact.pair, length), length);
         if (speed <= -row.bounce || speed == 0) continue;
         row.bias += speed - row.bounce;
         row.bounce = 0;

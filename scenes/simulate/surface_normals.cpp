@@ -14,9 +14,9 @@ namespace tandem::simulate {
 
 namespace {
 
-constexpr double nearness = 1e-3;  ///< of faces to a contact, times the smaller body's size
+constexpr double nearness = 1e-3;        ///< of faces to a contact, times the smaller body's size
 constexpr double normal_rounding = 1e-6; ///< of a normal in single precision
-constexpr double tilt = 0.1;              ///< radians, of faces that lie on each other
+constexpr double tilt = 0.1;             ///< radians, of faces that lie on each other
 constexpr double in_parallel = 0.1; ///< cosine; a face nearer to parallel gives no depth along a direction
 
 /// What bounds one body of a contact there, in world axes and pointing out of body a.
@@ -86,9 +86,9 @@ struct Mender {
         if (off <= normal_rounding) return;
         auto normal = brought_into(a.rays, b.rays, given);
         const double left = outside(a.rays, b.rays, normal);
-        // Nothing in common: bodies that are in each other and tilted, or curved. Where that is by little a face
-        // decides for the corner or edge that is in it, as where they just touch; otherwise the point may be
-        // off the edge that carries, whose normal no face has.
+        // Nothing in common: bodies that are in each other and tilted, or curved. Where that is by little a
+        // face decides for the corner or edge that is in it, as where they just touch; otherwise the point
+        // may be off the edge that carries, whose normal no face has.
         if (left > normal_rounding && off < tilt && (a.rays.size() == 1) != (b.rays.size() == 1))
             normal = a.rays.size() == 1 ? a.rays[0] : b.rays[0];
         else if (off <= 2 * left + normal_rounding)

@@ -16,9 +16,7 @@ namespace {
 
 using namespace test;
 
-Eigen::Vector3d any_direction(Random& random) {
-    return random.direction();
-}
+Eigen::Vector3d any_direction(Random& random) { return random.direction(); }
 
 TEST(SimulateCone, NoSumOfRaysIsNearerThanTheNearest) {
     Random random(5);
@@ -92,7 +90,8 @@ TEST(SimulateBoundary, DistanceFromATriangleIsThatOfItsNearestPoint) {
         constexpr int steps = 60;
         for (int i = 0; i <= steps; ++i)
             for (int j = 0; j <= steps - i; ++j)
-                sampled = std::min(sampled, (p[0] + (p[1] - p[0]) * i / steps + (p[2] - p[0]) * j / steps - p[3]).norm());
+                sampled = std::min(
+                    sampled, (p[0] + (p[1] - p[0]) * i / steps + (p[2] - p[0]) * j / steps - p[3]).norm());
         EXPECT_LE(found, sampled + 1e-12);
         EXPECT_GT(found, sampled - 0.06);
     }
@@ -186,9 +185,8 @@ ContactPoint sideways(const Scene& scene) {
     const auto& mesh = scene.meshes[1];
     // The first tetrahedron at the corner, whichever that is.
     std::uint32_t at_corner = 0;
-    while (std::none_of(mesh.tetrahedra[at_corner].begin(), mesh.tetrahedra[at_corner].end(), [&](auto v) {
-        return mesh.vertices[v] == Eigen::Vector3d(0.5, -0.5, 0.5);
-    }))
+    while (std::none_of(mesh.tetrahedra[at_corner].begin(), mesh.tetrahedra[at_corner].end(),
+                        [&](auto v) { return mesh.vertices[v] == Eigen::Vector3d(0.5, -0.5, 0.5); }))
         ++at_corner;
     return {.pair = {0, 6, 1, at_corner},
             .feature = 4,
