@@ -120,8 +120,8 @@ Outcome advance(const Model& model, const Motion& from, double length, std::size
     std::vector<ContactPoint> found;
     detect(midway, found);
     check_contacts(model, found, step);
-    if (model.dynamics->stepping.surface_normals) set_surface_normals(model, midway, found);
     watch.lap(report.detect_ns);
+    if (model.dynamics->stepping.surface_normals) set_surface_normals(model, midway, found);
     const auto kept = reduce(model, found);
     report.found = found.size();
     report.kept = kept.size();
