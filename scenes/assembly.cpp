@@ -10,7 +10,12 @@
 namespace tandem {
 
 StepSettings measured_stepping() {
-    return {.post_stabilize = false, .bound_energy = false, .linear_damping = 0.01, .angular_damping = 0.01};
+    return {.post_stabilize = false,
+            .bound_energy = false,
+            .surface_normals = false,
+            .contact_layer = 0,
+            .linear_damping = 0.01,
+            .angular_damping = 0.01};
 }
 
 SolverSettings measured_solver() { return {.iterations = 150, .absolute_tolerance = 0.01}; }

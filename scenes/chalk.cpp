@@ -27,6 +27,8 @@ void set_solver(Dynamics& dynamics) {
                          .post_stabilize = true,
                          .bounce = false,
                          .bound_energy = false,
+                         .surface_normals = false,
+                         .contact_layer = 0,
                          .linear_damping = 0.001,
                          .angular_damping = 0.001};
     dynamics.solver = {.iterations = 1000, .absolute_tolerance = 1e-5};

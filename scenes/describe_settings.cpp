@@ -28,6 +28,8 @@ const std::vector<Group>& groups() {
           {"post_stabilize", "post_stabilize"},
           {"bounce", "bounce"},
           {"bound_energy", "bound_energy"},
+          {"surface_normals", "surface_normals"},
+          {"contact_layer", "contact_layer"},
           {"linear_damping", "linear_damping"},
           {"angular_damping", "angular_damping"},
           {"adaptive_tolerance", "adaptive_tolerance"},

@@ -86,6 +86,11 @@ struct StepSettings {
     bool post_stabilize = true; ///< positions corrected after the step
     bool bounce = true;         ///< Newton's restitution
     bool bound_energy = true;   ///< a step whose bounces would add energy is taken without them
+    /// Normals that no surface near the contact has are replaced by the nearest that one has (rigid bodies).
+    bool surface_normals = true;
+    /// How deep bodies that rest lie in each other, times the smaller one's size, so that rounding does not
+    /// part them; 0: not at all.
+    double contact_layer = 2e-5;
     double linear_damping = 0;  ///< 1/s
     double angular_damping = 0; ///< 1/s
     /// Deformables: the step is halved until the difference to two half steps is below this (m), and doubled

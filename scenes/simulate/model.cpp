@@ -166,7 +166,11 @@ Model make_model(const Scene& scene) {
     if (!scene.dynamics)
         refuse(scene,
                "has no dynamics, its frames are scripted: simulate a scene whose bodies have materials");
-    Model model{.scene = &scene, .dynamics = scene.dynamics.get(), .bodies = {}, .start = scene.frame(0)};
+    Model model{.scene = &scene,
+                .dynamics = scene.dynamics.get(),
+                .bodies = {},
+                .boundaries = {},
+                .start = scene.frame(0)};
     check_materials(scene, model.dynamics->materials);
     check_stepping(scene, *model.dynamics);
     for (const auto& elastic : model.dynamics->elastics) check_elastic(scene, elastic);
@@ -180,6 +184,8 @@ Model make_model(const Scene& scene) {
         refuse(scene, fmt::format("has no surface for materials {} and {}, which can meet",
                                   materials.names[missing->first], materials.names[missing->second]));
     set_scales(model);
+    if (model.dynamics->stepping.surface_normals)
+        for (const auto& mesh : scene.meshes) model.boundaries.emplace_back(mesh);
     return model;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scenes/scene.h"
+#include "scenes/simulate/boundary.h"
 #include "scenes/simulate/elastic.h"
 #include "scenes/simulate/mass.h"
 
@@ -24,6 +25,7 @@ struct Model {
     const Scene* scene = nullptr;
     const Dynamics* dynamics = nullptr;
     std::vector<BodyModel> bodies;
+    std::vector<Boundary> boundaries; ///< one a mesh; none without surface_normals
     Frame start;
     /// Of what impulses move, rigid bodies and vertices of deformable ones: kg, m, m/s at the start.
     double lightest = 0, smallest = 0, fastest = 0;

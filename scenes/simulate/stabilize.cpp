@@ -54,6 +54,25 @@ double separation_bias(double depth, double size, double time) {
     return -std::min(gap_reduction * -depth, greatest_correction * size) / time;
 }
 
+double layer_of(const Model& model, const Pair& pair, double time) {
+    const double share = model.dynamics->stepping.contact_layer;
+    if (!(share > 0)) return 0;
+    // A solver moves a load from one contact to another by what their velocities differ: where that is less
+    // than a hundredth of what weight gives in a step, it takes hundreds of passes.
+    constexpr double part_of_fall = 0.01;
+    const double size = pair_size(model, pair);
+    const double fall = length(model.dynamics->gravity) * time * time;
+    return std::max(share * size, std::min(part_of_fall * fall, 0.5 * tolerated_gap * size));
+}
+
+double settling(double depth, double layer, double time) {
+    // The same for all contacts: speeds that differ by what their depths are rounded by ask a flat face for
+    // what it cannot do. Two steps from a touch, and beyond: no whole number of them ends where rounding
+    // decides.
+    constexpr double part = 0.6;
+    return depth > -layer ? part * layer / time : 0;
+}
+
 double correct_positions(const Model& model, Problem problem, std::span<const ContactPoint> contacts,
                          double half, Motion& motion) {
     for (std::size_t i = 0; i < problem.rows.size(); ++i) {

@@ -17,6 +17,16 @@ double pair_size(const Model& model, const Pair& pair);
 /// Velocity (m/s, <= 0) added to a normal row so that a step of `time` lessens the penetration.
 double separation_bias(double depth, double size, double time);
 
+/// m, how deep bodies that rest are to lie in each other: contact_layer of the smaller body's size, more of
+/// small ones; 0 without.
+double layer_of(const Model& model, const Pair& pair, double time);
+
+/// Velocity (m/s, >= 0) at which a contact less deep than `layer` (m) may still close: bodies that touch
+/// exactly would lose some of their contacts by rounding from step to step, and fall over the others; those
+/// that lie in each other by more than rounding keep them (Smith, "Open Dynamics Engine user guide", 2006,
+/// contact surface layer).
+double settling(double depth, double layer, double time);
+
 /// Moves positions so that penetrations of rigid bodies left after the step lessen; no velocity changes. The
 /// same contacts without friction, solved for displacements. `motion` is at the end of the step, `half` its
 /// second part (s).

@@ -6,6 +6,7 @@
 #include "scenes/simulate/reduce.h"
 #include "scenes/simulate/solve.h"
 #include "scenes/simulate/stabilize.h"
+#include "scenes/simulate/surface_normals.h"
 
 #include <chrono>
 #include <cmath>
@@ -58,6 +59,19 @@ double deepest(std::span<const ContactPoint> contacts) {
     return depth;
 }
 
+/// Rows of rigid bodies that are not yet as deep as they are to lie; a bounce that is faster stays one.
+void let_settle(const Model& model, std::span<const ContactPoint> kept, double length, Problem& problem) {
+    for (std::size_t i = 0; i < problem.rows.size(); ++i) {
+        auto& row = problem.rows[i];
+        const auto& contact = kept[problem.sources[i]];
+        if (row.a.attached || row.b.attached) continue;
+        const double speed = settling(contact.depth, layer_of(model, contact.pair, length), length);
+        if (speed <= -row.bounce || speed == 0) continue;
+        row.bias += speed - row.bounce;
+        row.bounce = 0;
+    }
+}
+
 /// Rows with everything that the solver starts from; `motion` gets the velocities without contacts.
 Problem assemble(const Model& model, const Motion& from, std::span<const ContactPoint> kept, double length,
                  Motion& motion) {
@@ -69,6 +83,7 @@ Problem assemble(const Model& model, const Motion& from, std::span<const Contact
             const auto& contact = kept[problem.sources[i]];
             problem.rows[i].bias += separation_bias(contact.depth, pair_size(model, contact.pair), length);
         }
+    let_settle(model, kept, length, problem);
     if (model.dynamics->solver.warm_start && from.length > 0)
         reuse_impulses(from.impulses, length / from.length, kept, problem);
     return problem;
@@ -106,6 +121,7 @@ Outcome advance(const Model& model, const Motion& from, double length, std::size
     detect(midway, found);
     check_contacts(model, found, step);
     watch.lap(report.detect_ns);
+    if (model.dynamics->stepping.surface_normals) set_surface_normals(model, midway, found);
     const auto kept = reduce(model, found);
     report.found = found.size();
     report.kept = kept.size();

@@ -137,6 +137,7 @@ TEST_F(ScenesDescription, DynamicsAreRead) {
         R"(, "gravity": [0, -1.6, 0], "step": 0.005, "steps": 7,
            "solver": {"method": "jacobi", "iterations": 20, "absolute_tolerance": 0.5, "relative_tolerance": 0.25, "warm_start": true},
            "stepping": {"pre_stabilize": true, "post_stabilize": true, "bounce": false, "linear_damping": 0.125,
+                        "surface_normals": false, "contact_layer": 0.0625,
                         "angular_damping": 0.25, "adaptive_tolerance": 0.001, "least_step": 0.0001, "couple_contacts": false},
            "reduction": {"distance": 0.001, "per_pair": 4})",
         "", R"(, "velocity": [1, 2, 3], "spin": [0, 0, 2, 1.5])"));
@@ -161,6 +162,8 @@ TEST_F(ScenesDescription, DynamicsAreRead) {
     EXPECT_TRUE(d.solver.warm_start);
     EXPECT_EQ(d.stepping.step, 0.005);
     EXPECT_TRUE(d.stepping.pre_stabilize && d.stepping.post_stabilize && !d.stepping.bounce);
+    EXPECT_FALSE(d.stepping.surface_normals);
+    EXPECT_EQ(d.stepping.contact_layer, 0.0625);
     EXPECT_EQ(d.stepping.linear_damping, 0.125);
     EXPECT_EQ(d.stepping.angular_damping, 0.25);
     EXPECT_EQ(d.stepping.adaptive_tolerance, 0.001);
@@ -173,7 +176,8 @@ TEST_F(ScenesDescription, DynamicsAreRead) {
     const auto plain = load(dynamic_scene(""));
     EXPECT_EQ(plain.dynamics->solver.iterations, 1000u);
     EXPECT_EQ(plain.dynamics->solver.absolute_tolerance, 0);
-    EXPECT_TRUE(plain.dynamics->stepping.post_stabilize);
+    EXPECT_TRUE(plain.dynamics->stepping.post_stabilize && plain.dynamics->stepping.surface_normals);
+    EXPECT_EQ(plain.dynamics->stepping.contact_layer, 2e-5);
     EXPECT_EQ(plain.dynamics->gravity, Eigen::Vector3d(0, -9.82, 0));
 }
 

@@ -18,6 +18,7 @@ World exact_world(Surface surface) {
     world.dynamics.solver.iterations = 2000;
     world.dynamics.solver.absolute_tolerance = 1e-9;
     world.dynamics.solver.relative_tolerance = 0;
+    world.dynamics.stepping.contact_layer = 0;
     world.dynamics.stepping.linear_damping = world.dynamics.stepping.angular_damping = 0;
     return world;
 }

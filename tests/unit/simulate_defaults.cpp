@@ -36,10 +36,10 @@ struct Ended {
     double deepest = 0; ///< in the last step
 };
 
-Ended ended(World& world, int steps) {
+Ended ended(World& world, int steps, const ContactSettings& contacts = least_translation) {
     const auto& scene = world.finish();
     Simulation simulation(scene);
-    const auto detect = detector(scene);
+    const auto detect = detector(scene, contacts);
     Ended result;
     for (int i = 0; i < steps; ++i) {
         const auto report = simulation.step(detect);
@@ -65,6 +65,63 @@ TEST(SimulateDefaults, BlockSlidesDownASlopeThatHardlyTilts) {
         EXPECT_EQ(end.not_converged, 0u) << side;
         EXPECT_LT(end.iterations, 200u * 30) << side;
     }
+}
+
+/// By how much of what it must a block slides too far down a slope that hardly tilts; at the start it is
+/// `sunk` of its size deep in a ground 100 times as wide.
+double too_far(double side, bool ground_first, double sunk = 0, const StepSettings& stepping = {}) {
+    World world({0.5, 0});
+    world.dynamics.stepping = stepping;
+    tilt(world, 27);
+    const auto add_ground = [&] { world.add(box({100 * side, 1, 100 * side}), at(0, -0.5, 0), true); };
+    if (ground_first) add_ground();
+    world.add(box({side, side, side}), at(0, (0.5 - sunk) * side, 0));
+    if (!ground_first) add_ground();
+    const auto& scene = world.finish();
+    Simulation simulation(scene);
+    const auto detect = detector(scene, least_translation);
+    for (int i = 0; i < 200; ++i) simulation.step(detect);
+    const double expected = 0.5 * earth * (std::sin(27 * radians) - 0.5 * std::cos(27 * radians)) * 2 * 2;
+    return simulation.frame().poses[ground_first ? 1 : 0].translation.x() / expected - 1;
+}
+
+TEST(SimulateDefaults, BlockOfAnySizeSlidesWhicheverBodyIsFirst) {
+    for (const double side : {0.05, 0.125, 0.3, 0.5, 1.0, 20.0})
+        for (const bool ground_first : {true, false})
+            EXPECT_NEAR(too_far(side, ground_first), 0, within) << side << " " << ground_first;
+}
+
+/// What each of the two is for.
+TEST(SimulateDefaults, WithoutSurfaceNormalsOrALayerItSticksOrGoesTooFar) {
+    for (const double sunk : {1e-4, 1e-3}) {
+        EXPECT_LT(too_far(1, true, sunk, {.surface_normals = false}), -0.9);
+        EXPECT_NEAR(too_far(1, true, sunk), 0, within);
+    }
+    double farthest = 0;
+    for (const double side : {0.05, 0.125, 0.3, 0.5, 1.0, 20.0})
+        farthest = std::max(farthest, std::fabs(too_far(side, true, 0, {.contact_layer = 0})));
+    EXPECT_GT(farthest, 0.05);
+}
+
+/// It sinks by the layer, and all its corners keep touching.
+TEST(SimulateDefaults, BlockSettlesInTheLayerAndKeepsItsCorners) {
+    for (const double side : {0.01, 0.1, 1.0, 10.0}) {
+        World world({0.5, 0});
+        world.add(box({20 * side, 1, 20 * side}), at(0, -0.5, 0), true);
+        world.add(box({side, side, side}), at(0, 0.5 * side, 0));
+        const auto& scene = world.finish();
+        Simulation simulation(scene);
+        const auto detect = detector(scene, least_translation);
+        for (int i = 0; i < 100; ++i) EXPECT_GE(simulation.step(detect).kept, 4u);
+        const double layer = simulate::layer_of(simulate::make_model(scene), {0, 0, 1, 0}, 0.01);
+        EXPECT_GE(layer, world.dynamics.stepping.contact_layer * side);
+        EXPECT_LE(layer, 0.5 * simulate::tolerated_gap * side);
+        const double sunk = 0.5 * side - simulation.frame().poses[1].translation.y();
+        EXPECT_TRUE(sunk > 0.99 * layer && sunk < 1.6 * layer) << sunk << " " << layer;
+    }
+    EXPECT_EQ(simulate::settling(0, 1, 0.1), simulate::settling(-0.999, 1, 0.1)); // one speed for all
+    EXPECT_GT(simulate::settling(0, 1, 0.1), 0);
+    EXPECT_EQ(simulate::settling(-1.001, 1, 0.1), 0);
 }
 
 TEST(SimulateDefaults, BlockStaysOnASlopeThatIsNotSteepEnough) {
@@ -119,7 +176,7 @@ TEST(SimulateDefaults, BounceKeepsTheSquareOfRestitution) {
     world.add(box({1, 1, 1}), at(0, 1.5, 0));
     const auto& scene = world.finish();
     Simulation simulation(scene);
-    const auto detect = detector(scene);
+    const auto detect = detector(scene, least_translation);
     double before = 0;
     for (int i = 0; i < 60; ++i) {
         const auto report = simulation.step(detect);
@@ -140,7 +197,7 @@ TEST(SimulateDefaults, EqualBallsSwapTheirVelocities) {
     moves.velocity = {3, 0, 0};
     world.add(ball(0.5, 1), at(-1.2, 0, 0), false, moves);
     world.add(ball(0.5, 1), at(0.2, 0, 0));
-    const auto end = ended(world, 100);
+    const auto end = ended(world, 100, {});
     const double met = (1.4 - 1) / 3; // s
     EXPECT_NEAR(end.place.x(), 0.2 + 3 * (1 - met), within * 3);
     EXPECT_EQ(end.not_converged, 0u);
@@ -166,7 +223,7 @@ TEST(SimulateDefaults, StackStaysAtRest) {
     for (int i = 0; i < 5; ++i) world.add(box({1, 1, 1}), at(0, 0.5 + i, 0));
     const auto& scene = world.finish();
     Simulation simulation(scene);
-    const auto detect = detector(scene);
+    const auto detect = detector(scene, least_translation);
     for (int i = 0; i < 200; ++i) simulation.step(detect);
     const auto frame = simulation.frame();
     for (std::size_t i = 1; i < frame.poses.size(); ++i)

@@ -49,7 +49,7 @@ Energetic energies(World world, int steps) {
 }
 
 TEST(SimulateHeap, EnergyOnlyFallsButForWhatCorrectionsLift) {
-    const auto heaped = energies(heap({0.5, 0}), 250);
+    const auto heaped = energies(heap({0.5, 0}), 450);
     EXPECT_LT(heaped.rise, 1e-4 * heaped.start);
     EXPECT_LT(heaped.kinetic, 0.02 * heaped.fastest);
     EXPECT_GT(heaped.lifted, 0);

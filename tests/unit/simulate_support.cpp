@@ -54,13 +54,14 @@ Placed place(const Mesh& mesh, const Pose& pose, const std::vector<Eigen::Vector
 }
 
 void contacts_of(const Mesh& mesh_a, const Mesh& mesh_b, const Placed& a, const Placed& b,
-                 std::uint32_t body_a, std::uint32_t body_b, std::vector<ContactPoint>& contacts) {
+                 std::uint32_t body_a, std::uint32_t body_b, const ContactSettings& settings,
+                 std::vector<ContactPoint>& contacts) {
     ContactCounts counts;
     for (std::uint32_t i = 0; i < a.corners.size(); ++i)
         for (std::uint32_t j = 0; j < b.corners.size(); ++j) {
             if (!a.boxes[i].intersects(b.boxes[j])) continue;
             for (const auto& c : reference_contacts<double>(a.corners[i], b.corners[j], mesh_a.boundary[i],
-                                                            mesh_b.boundary[j], counts))
+                                                            mesh_b.boundary[j], counts, settings))
                 contacts.push_back({{body_a, i, body_b, j}, c.feature, c.point, c.normal, c.depth});
         }
 }
@@ -182,8 +183,8 @@ const Scene& World::finish() {
 
 Pose at(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), {x, y, z}}; }
 
-Detect detector(const Scene& scene) {
-    return [&scene](const Frame& frame, std::vector<ContactPoint>& contacts) {
+Detect detector(const Scene& scene, const ContactSettings& settings) {
+    return [&scene, settings](const Frame& frame, std::vector<ContactPoint>& contacts) {
         std::vector<Placed> placed;
         for (std::size_t i = 0; i < scene.bodies.size(); ++i)
             placed.push_back(place(scene.meshes[scene.bodies[i].mesh], frame.poses[i],
@@ -194,7 +195,7 @@ Detect detector(const Scene& scene) {
                 if (placed[a].box.intersects(placed[b].box)
                     && !(scene.bodies[a].fixed && scene.bodies[b].fixed))
                     contacts_of(scene.meshes[scene.bodies[a].mesh], scene.meshes[scene.bodies[b].mesh],
-                                placed[a], placed[b], a, b, contacts);
+                                placed[a], placed[b], a, b, settings, contacts);
         std::sort(contacts.begin(), contacts.end(), [](const ContactPoint& a, const ContactPoint& b) {
             return std::tie(a.pair, a.feature) < std::tie(b.pair, b.feature);
         });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/contacts/contact_settings.h"
 #include "scenes/simulate/simulation.h"
 
 namespace tandem::test {
@@ -29,8 +30,11 @@ struct World {
 
 Pose at(double x, double y, double z);
 
-/// Contacts by the reference rule over all pairs of tetrahedra whose boxes overlap.
-Detect detector(const Scene& scene);
+/// What `tandem simulate` asks for unless told otherwise.
+constexpr ContactSettings least_translation{ContactRule::sat, DecisionPrecision::recheck};
+
+/// Contacts by the reference over all pairs of tetrahedra whose boxes overlap.
+Detect detector(const Scene& scene, const ContactSettings& settings = {});
 void no_contacts(const Frame&, std::vector<ContactPoint>& contacts);
 
 } // namespace tandem::test
