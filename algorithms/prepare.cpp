@@ -141,7 +141,7 @@ std::unique_ptr<Session> Traversal::prepare(Device& device, const Scene& scene, 
             fmt::format("setting broad={} does not go with ranks of a job, none of which has all "
                         "bodies; choose broad=device",
                         settings.text("broad")));
-    auto session =
+    std::unique_ptr<Session> session =
         std::make_unique<RankSession>(*this, device, scene, fitted(settings, device.info(), &scene), ranks);
     session->origin_ = origin_of(scene, geometry_of(settings).origin);
     session->scene_ = &scene;
