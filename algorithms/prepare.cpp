@@ -125,6 +125,7 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
                        ? published_session(*this, device, scene, fitting.front())
                        : std::make_unique<ResidentSession>(*this, device, scene, fitting.front());
     session->origin_ = origin_of(scene, geometry_of(settings).origin);
+    session->scene_ = &scene;
     return session;
 }
 
