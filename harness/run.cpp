@@ -136,8 +136,8 @@ Run::Run(const RunOptions& options) : options_(options), progress_(options.quiet
     const auto names = devices_of(plan);
     backends_ = open_backends(names, options.require);
     check_required(backends_, options.require);
-    open_devices(options, backends_, names);
-    all_ = make_groups(plan, backends_);
+    limit_memory(options, backends_);
+    all_ = make_groups(plan, [&](const auto& asked) { return choose_devices(backends_, asked); });
     tell_left_out(all_);
     check_one_group();
 }
