@@ -123,14 +123,9 @@ std::vector<BackendReport> open_backends(std::span<const std::string> names,
     std::vector<std::string> wanted(names.begin(), names.end());
     wanted.insert(wanted.end(), require.begin(), require.end());
     auto backends = discover(wanted);
-    const auto is_backend = [&](const std::string& name) {
-        return std::ranges::any_of(backends,
-                                   [&](const auto& b) { return b.name == name && !b.devices.empty(); });
-    };
-    const bool known = std::ranges::all_of(names, [&](const auto& name) { return all_there(name, backends); })
-                       && std::ranges::all_of(require, [&](const auto& name) {
-                              return is_backend(name) || all_there(name, backends);
-                          });
+    const bool known =
+        std::ranges::all_of(names, [&](const auto& name) { return all_there(name, backends); })
+        && std::ranges::all_of(require, [&](const auto& name) { return is_there(name, backends); });
     return known ? std::move(backends) : discover();
 }
 
@@ -151,7 +146,10 @@ std::vector<DeviceGroup> choose_devices(const std::vector<BackendReport>& backen
 }
 
 bool is_there(const std::string& name, const std::vector<BackendReport>& backends) {
-    return all_there(name, backends);
+    const auto is_backend = [&](const auto& backend) {
+        return backend.name == name && !backend.devices.empty();
+    };
+    return std::ranges::any_of(backends, is_backend) || all_there(name, backends);
 }
 
 } // namespace tandem

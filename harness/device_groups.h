@@ -25,7 +25,7 @@ std::vector<BackendReport> open_backends(std::span<const std::string> names,
 std::vector<DeviceGroup> choose_devices(const std::vector<BackendReport>& backends,
                                         std::span<const std::string> names);
 
-/// Whether all devices of "D+E+..." are there.
+/// Whether all devices of "D+E+..." are there, or the back end of that name has any.
 bool is_there(const std::string& name, const std::vector<BackendReport>& backends);
 
 } // namespace tandem

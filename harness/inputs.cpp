@@ -93,7 +93,6 @@ void check_required(const std::vector<BackendReport>& backends, const std::vecto
         if (is_there(wanted, backends)) continue;
         const auto backend = std::find_if(backends.begin(), backends.end(),
                                           [&](const auto& report) { return report.name == wanted; });
-        if (backend != backends.end() && !backend->devices.empty()) continue;
         const auto reason = backend != backends.end() ? backend->reason : "no such backend or device";
         throw InputError(
             fmt::format("--require {}: {} (there are: {})", wanted, reason, fmt::join(there, ", ")));

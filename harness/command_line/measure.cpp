@@ -243,6 +243,17 @@ Action add_run(CLI::App& app) {
         ->needs(isolate)
         ->check(CLI::Range(0.001, 1e7))
         ->option_text("S");
+    app.add_option_function<std::string>(
+           "--deal",
+           [&options](const std::string& text) {
+               if (text != "compared" && text != "cells")
+                   throw InputError(fmt::format("--deal {}: give compared or cells", text));
+               options.deal_cells = text == "cells";
+           },
+           "under mpirun or srun, which cells of a plan go to a rank together: those whose times are "
+           "compared "
+           "(the default), or each by itself")
+        ->option_text("compared|cells");
     app.add_option("--profile", options.profile, "only replay the frames N times, for a profiler")
         ->check(CLI::Range(1, 1000000));
     app.add_option("--dump-pairs", options.dump_pairs,

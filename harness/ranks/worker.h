@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/ranks/mail.h"
+
+namespace tandem {
+
+/// What a rank does for the first one, message by message, until it is told to end: says what devices it has
+/// and measures the cells that it is dealt, each in a process of its own. Returns the exit code that it is
+/// told. An Interrupt must live: once a signal has come, what is being measured is given up.
+int obey(Mail& mail);
+
+} // namespace tandem
