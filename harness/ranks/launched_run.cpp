@@ -43,6 +43,7 @@ std::string disagreement(Ranks& ranks, const std::vector<std::string>& words) {
 /// The others end with the first.
 int lead(Ranks& ranks, const std::function<int()>& command) {
     const int code = command();
+    flush_output(); // a launcher may end all ranks once one has ended
     const auto text = json{{"do", "end"}, {"code", code}}.dump();
     for (int rank = 1; rank < ranks.size(); ++rank) ranks.send(rank, std::as_bytes(std::span(text)));
     return code;
