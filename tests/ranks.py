@@ -237,16 +237,20 @@ class Models(RanksCase):
         """Rank 1 has no OpenCL; each model is measured where there is one."""
         out = self.work / "models.jsonl"
         both = job((*on_core(0),), (*on_core(1), *NO_OPENCL))
-        plan = self.plan(devices=["host:each", "opencl:PTHREAD"], algorithms="tiled", settings={"k": 8}, scenes=SCENES[0], frames=[0, 1, 2])
+        plan = self.plan(devices=["host:each", "opencl:PTHREAD"], settings={"k": 8, **ROOMS}, scenes=SCENES[0])
         status, text, errors = launch(both("run", plan, "--dry-run"))
         self.assertEqual(status, 0, errors)
-        listed = re.findall(r"(?m)^ +\d+  tiled .* on (\S+); ranks? ([\d, ]+)$", text)
+        listed = re.findall(r"(?m)^ +\d+  (?:tiled|chunked) .* on (\S+); ranks? ([\d, ]+)$", text)
         host = ("host", "0, 1" if len(CORES) > 1 else "0")
-        self.assertEqual(listed, [host, ("opencl:0", "0")] * 3)
+        self.assertEqual(listed, [host] * 2 + [("opencl:0", "0")] * 2)
         status, text, errors = launch(both("run", plan, "--out", out))
         self.assertEqual((status, errors), (0, [] if len(CORES) > 1 else errors), text)
         records = self.records(out)
-        self.assertEqual(len(records), 6)
+        self.assertEqual(len(records), 4)
+        # The paper's Table 4: a column for each model.
+        by_model = text.split("times as long, by model")[1]
+        self.assertEqual(len(re.findall(r"(?m)^tiled resident \S+ / chunked resident \S+ .*\d", by_model)), 2, by_model)
+        self.assertRegex(by_model, r"(?m)^ +pthread-")
         self.assertEqual({r["rank"]["number"] for r in records if r["devices"][0]["id"] == "opencl:0"}, {0})
 
     def test_absent_models(self):

@@ -7,6 +7,7 @@
 #include "harness/isolation/request.h"
 #include "harness/ranks/hand_message.h"
 #include "harness/ranks/mail.h"
+#include "harness/ranks/model_table.h"
 #include "harness/ranks/swept_groups.h"
 #include "harness/ranks/worker.h"
 #include "harness/standard_streams.h"
@@ -309,6 +310,7 @@ void Sweep::run_until_all_ended() {
 /// What is said last.
 int Sweep::end() {
     for (; printed_ < groups_.size(); ++printed_) print_group(groups_[printed_]);
+    put_text(model_tables(groups_));
     if (left_out_ > 0) put("{} cells are in {} already\n", left_out_, options_.out);
     if (!options_.out.empty()) put("{} records appended to {}\n", file_->appended(), options_.out);
     const bool all_ended = std::ranges::all_of(groups_, [](const auto& group) {

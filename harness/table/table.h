@@ -24,6 +24,10 @@ struct Row {
 /// marks the fastest of comparable cells and wrong ones.
 std::string result_tables(std::span<const Row> rows, bool colour);
 
+/// How many times as long the first takes, with its 95 % interval where there are rounds; "≈" before it where
+/// that has 1 in it, "-" without samples.
+std::string ratio_text(const Measurement& above, const Measurement& below);
+
 /// Whether times of the two may be divided: one scene, devices, bounds (k, axes, precision, rounding,
 /// placement) and output, both right and with pairs.
 bool comparable(const Row& a, const Row& b);
