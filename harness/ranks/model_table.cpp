@@ -3,6 +3,7 @@
 
 #include "harness/device_models.h"
 #include "harness/table/columns.h"
+#include "harness/table/labels.h"
 #include "harness/table/table.h"
 
 #include <algorithm>
@@ -20,12 +21,6 @@ std::string model_text(const DeviceGroup& devices) {
     return text;
 }
 
-/// Without the device.
-std::string cell_text(const Cell& cell) {
-    const auto text = describe(cell);
-    return text.substr(0, text.rfind(" on "));
-}
-
 /// Ratios of a scene: by what is divided by what, then by model.
 struct Ratios {
     std::vector<std::string> labels, models; ///< each once, in the order of the plan
@@ -38,18 +33,21 @@ struct Ratios {
     }
 };
 
+/// Labels have what tells cells apart on whatever model.
 Ratios ratios_of(const SweptGroup& group) {
-    Ratios ratios;
     std::vector<Row> rows;
-    for (std::size_t i = 0; i < group.cells.size(); ++i) {
-        if (!group.results[i] || !group.results[i]->measured) continue;
-        const Row row{&group.cells[i], &group.results[i]->measurement};
-        const auto base =
-            std::ranges::find_if(rows, [&](const Row& other) { return comparable(other, row); });
-        if (base != rows.end())
-            ratios.add(cell_text(*row.cell) + " / " + cell_text(*base->cell), model_text(row.cell->devices),
-                       ratio_text(*row.measurement, *base->measurement));
-        rows.push_back(row);
+    for (std::size_t i = 0; i < group.cells.size(); ++i)
+        if (group.results[i] && group.results[i]->measured)
+            rows.push_back({&group.cells[i], &group.results[i]->measurement, {}, "any"});
+    const auto labels = row_labels(rows).of;
+    Ratios ratios;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto* base = std::ranges::find_if(rows.data(), rows.data() + i,
+                                                [&](const Row& other) { return comparable(other, rows[i]); });
+        if (base != rows.data() + i)
+            ratios.add(labels[i] + " / " + labels[static_cast<std::size_t>(base - rows.data())],
+                       model_text(rows[i].cell->devices),
+                       ratio_text(*rows[i].measurement, *base->measurement));
     }
     return ratios;
 }
