@@ -43,12 +43,12 @@ BackendReport guarded(const Backend& backend) {
     }
 }
 
-/// Whether one of "D+E+..." is the backend, a device of it, or all.
+/// Whether one of "D+E+..." is the backend, something of it, or of all.
 bool names(std::string_view wanted, std::string_view backend) {
     for (std::size_t begin = 0; begin <= wanted.size();) {
         const auto end = std::min(wanted.find('+', begin), wanted.size());
         const auto part = wanted.substr(begin, end - begin);
-        if (part == "all" || part.substr(0, part.find(':')) == backend) return true;
+        if (part == "all" || part == "each" || part.substr(0, part.find(':')) == backend) return true;
         begin = end + 1;
     }
     return false;

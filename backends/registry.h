@@ -17,8 +17,9 @@ struct BackendReport {
 /// Looks for the devices of every backend. Never throws.
 std::vector<BackendReport> discover();
 
-/// The same of those backends only that `wanted` names: by a device ("cuda:0"), among the devices of a cell
-/// ("host+cuda:0"), by the backend's own name, or as "all". Of the others nothing is loaded or reported.
+/// The same of those backends only that `wanted` names: by a device or a model ("cuda:0", "cuda:H100"), among
+/// the devices of a cell ("host+cuda:0"), by the backend's own name, or as "all" or "each". Of the others
+/// nothing is loaded or reported.
 std::vector<BackendReport> discover(std::span<const std::string> wanted);
 
 } // namespace tandem

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "harness/device_groups.h"
 
+#include "harness/device_models.h"
+#include "harness/key.h"
 #include "scenes/error.h"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <sstream>
+#include <fmt/ranges.h>
+#include <set>
 
 namespace tandem {
 
@@ -26,21 +29,48 @@ std::vector<std::string> ids_of(const std::vector<BackendReport>& backends) {
     return ids;
 }
 
-/// The device of that id; throws InputError that names the reason of absence and what there is.
-Device* named_device(const std::vector<BackendReport>& backends, const std::string& name) {
+/// "cuda:0 (NVIDIA H100)" for messages.
+std::vector<std::string> models_of(const std::vector<BackendReport>& backends) {
+    std::vector<std::string> models;
     for (const auto& backend : backends)
         for (const auto& device : backend.devices)
-            if (device->info().id == name) return device.get();
-    throw InputError(unknown("device", name, ids_of(backends)) + reasons(backends));
+            models.push_back(fmt::format("{} ({})", device->info().id, model_name(device->info())));
+    return models;
+}
+
+/// The first device that the word asks for and that the group has not; throws InputError that names the
+/// reason of absence and what there is.
+Device* asked_device(const std::vector<BackendReport>& backends, const std::string& word,
+                     const DeviceGroup& group) {
+    const bool by_model = asks_for_model(word);
+    for (const auto& backend : backends)
+        for (const auto& device : backend.devices) {
+            const auto& info = device->info();
+            if (!by_model && info.id == word) return device.get();
+            if (by_model && is_of_model(info, word) && std::ranges::find(group, device.get()) == group.end())
+                return device.get();
+        }
+    if (!by_model) throw InputError(unknown("device", word, ids_of(backends)) + reasons(backends));
+    throw InputError(fmt::format("no {}device {}: no such model of that back end; there are: {}{}",
+                                 group.empty() ? "" : "other ", word, fmt::join(models_of(backends), ", "),
+                                 reasons(backends)));
+}
+
+std::vector<std::string> parts_of(const std::string& name) {
+    std::vector<std::string> parts;
+    for (std::size_t begin = 0; begin <= name.size();) {
+        const auto end = std::min(name.find('+', begin), name.size());
+        parts.push_back(name.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return parts;
 }
 
 /// "D" or "D+E+..." as a group.
 DeviceGroup named_group(const std::vector<BackendReport>& backends, const std::string& name) {
     DeviceGroup group;
-    std::size_t begin = 0;
-    for (auto end = name.find('+'); begin <= name.size(); begin = end + 1, end = name.find('+', begin)) {
-        end = std::min(end, name.size());
-        auto* device = named_device(backends, name.substr(begin, end - begin));
+    for (const auto& part : parts_of(name)) {
+        auto* device = asked_device(backends, part, group);
         if (std::find(group.begin(), group.end(), device) != group.end())
             throw InputError(fmt::format("device {}: {} is named twice; a device works for a cell once", name,
                                          device->info().id));
@@ -50,16 +80,34 @@ DeviceGroup named_group(const std::vector<BackendReport>& backends, const std::s
 }
 
 /// Whether every device of "D+E+..." is there.
-bool all_there(const std::string& group, std::span<const std::string> ids) {
-    if (group.empty() || group.ends_with('+')) return false;
-    std::istringstream parts(group);
-    for (std::string part; std::getline(parts, part, '+');)
-        if (part != "all" && std::ranges::find(ids, part) == ids.end()) return false;
-    return true;
+bool all_there(const std::string& group, const std::vector<BackendReport>& backends) {
+    const auto is_there = [&](const std::string& part) {
+        return part == "all" || part == each_model || std::ranges::any_of(backends, [&](const auto& backend) {
+                   return std::ranges::any_of(backend.devices, [&](const auto& device) {
+                       const auto& info = device->info();
+                       return info.id == part || is_of_model(info, part)
+                              || (asks_for_each(part) && is_among(info, part));
+                   });
+               });
+    };
+    return std::ranges::all_of(parts_of(group), is_there);
 }
 
 void add_once(std::vector<DeviceGroup>& groups, DeviceGroup group) {
     if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(std::move(group));
+}
+
+/// The first device of each model. Throws InputError where there is none.
+void add_each_model(std::vector<DeviceGroup>& chosen, const std::vector<BackendReport>& backends,
+                    const std::string& name) {
+    std::set<std::string> models;
+    for (const auto& backend : backends)
+        for (const auto& device : backend.devices)
+            if (is_among(device->info(), name) && models.insert(model_of(device->info())).second)
+                add_once(chosen, DeviceGroup{device.get()});
+    if (models.empty())
+        throw InputError(fmt::format("--device {}: there is no device of that back end; there are: {}{}",
+                                     name, fmt::join(models_of(backends), ", "), reasons(backends)));
 }
 
 } // namespace
@@ -75,15 +123,9 @@ std::vector<BackendReport> open_backends(std::span<const std::string> names,
     std::vector<std::string> wanted(names.begin(), names.end());
     wanted.insert(wanted.end(), require.begin(), require.end());
     auto backends = discover(wanted);
-    const auto ids = ids_of(backends);
-    const auto is_backend = [&](const std::string& name) {
-        return std::ranges::any_of(backends,
-                                   [&](const auto& b) { return b.name == name && !b.devices.empty(); });
-    };
-    const bool known = std::ranges::all_of(names, [&](const auto& name) { return all_there(name, ids); })
-                       && std::ranges::all_of(require, [&](const auto& name) {
-                              return is_backend(name) || all_there(name, ids);
-                          });
+    const bool known =
+        std::ranges::all_of(names, [&](const auto& name) { return all_there(name, backends); })
+        && std::ranges::all_of(require, [&](const auto& name) { return is_there(name, backends); });
     return known ? std::move(backends) : discover();
 }
 
@@ -91,14 +133,23 @@ std::vector<DeviceGroup> choose_devices(const std::vector<BackendReport>& backen
                                         std::span<const std::string> names) {
     std::vector<DeviceGroup> chosen;
     for (const auto& name : names) {
-        if (name != "all") {
+        if (name == "all") {
+            for (const auto& backend : backends)
+                for (const auto& device : backend.devices) add_once(chosen, DeviceGroup{device.get()});
+        } else if (asks_for_each(name)) {
+            add_each_model(chosen, backends, name);
+        } else {
             add_once(chosen, named_group(backends, name));
-            continue;
         }
-        for (const auto& backend : backends)
-            for (const auto& device : backend.devices) add_once(chosen, DeviceGroup{device.get()});
     }
     return chosen;
+}
+
+bool is_there(const std::string& name, const std::vector<BackendReport>& backends) {
+    const auto is_backend = [&](const auto& backend) {
+        return backend.name == name && !backend.devices.empty();
+    };
+    return std::ranges::any_of(backends, is_backend) || all_there(name, backends);
 }
 
 } // namespace tandem

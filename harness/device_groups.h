@@ -20,9 +20,12 @@ std::string name_of(const DeviceGroup& devices);
 std::vector<BackendReport> open_backends(std::span<const std::string> names,
                                          std::span<const std::string> require);
 
-/// Devices of the request, in its order. Throws InputError that names the reason of absence and what there
-/// is.
+/// Devices of the request, in its order: by number, by model or one of each model (device_models.h), "all".
+/// Throws InputError that names the reason of absence and what there is.
 std::vector<DeviceGroup> choose_devices(const std::vector<BackendReport>& backends,
                                         std::span<const std::string> names);
+
+/// Whether all devices of "D+E+..." are there, or the back end of that name has any.
+bool is_there(const std::string& name, const std::vector<BackendReport>& backends);
 
 } // namespace tandem

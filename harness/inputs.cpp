@@ -75,11 +75,14 @@ std::pair<std::size_t, std::size_t> named_frames(const std::string& frames, cons
 
 std::vector<DeviceGroup> open_devices(const RunOptions& options, const std::vector<BackendReport>& backends,
                                       std::span<const std::string> names) {
-    auto chosen = choose_devices(backends, names);
-    for (const auto& group : chosen)
-        for (auto* device : group)
-            if (options.memory > 0) device->set_memory_limit(options.memory);
-    return chosen;
+    limit_memory(options, backends);
+    return choose_devices(backends, names);
+}
+
+void limit_memory(const RunOptions& options, const std::vector<BackendReport>& backends) {
+    if (options.memory == 0) return;
+    for (const auto& backend : backends)
+        for (const auto& device : backend.devices) device->set_memory_limit(options.memory);
 }
 
 void check_required(const std::vector<BackendReport>& backends, const std::vector<std::string>& require) {
@@ -87,10 +90,9 @@ void check_required(const std::vector<BackendReport>& backends, const std::vecto
     for (const auto& backend : backends)
         for (const auto& device : backend.devices) there.push_back(device->info().id);
     for (const auto& wanted : require) {
-        if (std::find(there.begin(), there.end(), wanted) != there.end()) continue;
+        if (is_there(wanted, backends)) continue;
         const auto backend = std::find_if(backends.begin(), backends.end(),
                                           [&](const auto& report) { return report.name == wanted; });
-        if (backend != backends.end() && !backend->devices.empty()) continue;
         const auto reason = backend != backends.end() ? backend->reason : "no such backend or device";
         throw InputError(
             fmt::format("--require {}: {} (there are: {})", wanted, reason, fmt::join(there, ", ")));

@@ -20,6 +20,9 @@ std::pair<std::size_t, std::size_t> named_frames(const std::string& frames, cons
 std::vector<DeviceGroup> open_devices(const RunOptions& options, const std::vector<BackendReport>& backends,
                                       std::span<const std::string> names);
 
+/// Limits all devices to --memory.
+void limit_memory(const RunOptions& options, const std::vector<BackendReport>& backends);
+
 /// Throws InputError for each name that is no backend with devices and no device.
 void check_required(const std::vector<BackendReport>& backends, const std::vector<std::string>& require);
 

@@ -52,15 +52,15 @@ Job::Job(Scene opened, const RunOptions& given, std::vector<Cell> planned, const
 namespace {
 
 /// A device that fails costs its own cell: the record says why, and the others go on.
-CellResult end_cell(const Outcome& outcome, const Sampling& sampling, const Job& job, RecordFile& file) {
+CellResult end_cell(const Outcome& outcome, const Sampling& sampling, const Job& job, CellKeeper& keeper) {
     CellResult result;
     result.cell = &outcome.sampler->cell();
     result.measurement = outcome.sampler->measurement();
     result.measured = outcome.failure.empty();
     result.converged = outcome.converged;
-    const bool recorded = file.append_or_tell(
-        make_record(*result.cell, job.scene, job.range, result.measurement, outcome, sampling));
-    if (!result.measured) tell("tandem: {}: {}\n", describe(*result.cell), outcome.failure);
+    const bool recorded = keeper.end(
+        result, make_record(*result.cell, job.scene, job.range, result.measurement, outcome, sampling),
+        outcome.failure);
     if (!result.measured || !recorded)
         result.code = 3;
     else
@@ -73,36 +73,66 @@ std::string asked_key(const Cell& cell, const Job& job) {
 }
 
 std::unique_ptr<CellSampler> make_sampler(const Cell& cell, const Job& job, References& references,
-                                          const Measuring& measuring) {
-    CellState state;
-    if (measuring.unfinished != nullptr) state = measuring.unfinished->state(cell, asked_key(cell, job));
-    if (job.options.isolate) return std::make_unique<IsolatedSampler>(cell, job.options, std::move(state));
+                                          const Measuring& measuring, CellKeeper& keeper) {
+    auto state = keeper.state(cell, asked_key(cell, job));
+    if (job.options.isolate)
+        return std::make_unique<IsolatedSampler>(cell, job.options, std::move(state), measuring.give_up);
     return std::make_unique<LocalSampler>(cell, job.scene, job.range, references, std::move(state));
 }
+
+/// Records in a file, and rounds where there is a place for them. A cell that fails is said.
+class FileKeeper final : public CellKeeper {
+public:
+    FileKeeper(RecordFile& file, Unfinished* unfinished) : file_(file), unfinished_(unfinished) {}
+
+    CellState state(const Cell& cell, const std::string& key) override {
+        return unfinished_ == nullptr ? CellState() : unfinished_->state(cell, key);
+    }
+    void keep(const CellSampler& sampler, const std::string& key, bool whole) override {
+        if (unfinished_ != nullptr) unfinished_->keep(key, sampler.state(), whole);
+    }
+    bool end(const CellResult& result, const nlohmann::ordered_json& record,
+             const std::string& failure) override {
+        const bool recorded = file_.append_or_tell(record);
+        if (!failure.empty()) tell("tandem: {}: {}\n", describe(*result.cell), failure);
+        return recorded;
+    }
+    bool failed() const override { return file_.failed(); }
+
+private:
+    RecordFile& file_;
+    Unfinished* unfinished_;
+};
 
 } // namespace
 
 bool measure_cells(const Job& job, std::span<const Cell> cells, References& references,
                    const Measuring& measuring, RecordFile& file, const Progress& progress,
                    const std::function<void(const CellResult&)>& ended) {
+    FileKeeper keeper(file, measuring.unfinished);
+    return measure_cells(job, cells, references, measuring, keeper, progress, ended);
+}
+
+bool measure_cells(const Job& job, std::span<const Cell> cells, References& references,
+                   const Measuring& measuring, CellKeeper& keeper, const Progress& progress,
+                   const std::function<void(const CellResult&)>& ended) {
     std::vector<std::unique_ptr<CellSampler>> samplers;
     std::vector<CellSampler*> group;
     for (const auto& cell : cells)
-        group.push_back(samplers.emplace_back(make_sampler(cell, job, references, measuring)).get());
+        group.push_back(samplers.emplace_back(make_sampler(cell, job, references, measuring, keeper)).get());
     RoundsListener listener;
     std::size_t done = 0;
     listener.progress = [&](std::string_view text) {
         progress.show(fmt::format("[{}/{}] {}", done, cells.size(), text));
     };
-    listener.stop = [&] { return file.failed() || measuring.stop(); };
-    if (measuring.unfinished != nullptr)
-        listener.kept = [&](const CellSampler& sampler, bool is_first) {
-            measuring.unfinished->keep(asked_key(sampler.cell(), job), sampler.state(), is_first);
-        };
+    listener.stop = [&] { return keeper.failed() || measuring.stop(); };
+    listener.kept = [&](const CellSampler& sampler, bool is_first) {
+        keeper.keep(sampler, asked_key(sampler.cell(), job), is_first);
+    };
     listener.finished = [&](const Outcome& outcome, const Sampling& sampling) {
         ++done;
         progress.clear();
-        ended(end_cell(outcome, sampling, job, file));
+        ended(end_cell(outcome, sampling, job, keeper));
     };
     auto check = measuring.check;
     check.progress = listener.progress;
@@ -113,17 +143,22 @@ std::filesystem::path checks_folder(const RunOptions& options) {
     return options.check_afresh ? std::filesystem::path() : ChoiceCache::default_folder();
 }
 
-void print_scene(const Scene& scene, const FrameRange& range) {
-    put("scene {}: {} bodies, {} vertices, {} tetrahedra, frames {}:{}, digest {:016x}\n", scene.key,
-        scene.bodies.size(), vertex_count(scene), tetrahedron_count(scene), range.first(), range.last(),
-        scene.digest);
+std::string scene_text(const Scene& scene, const FrameRange& range) {
+    auto text = fmt::format("scene {}: {} bodies, {} vertices, {} tetrahedra, frames {}:{}, digest {:016x}\n",
+                            scene.key, scene.bodies.size(), vertex_count(scene), tetrahedron_count(scene),
+                            range.first(), range.last(), scene.digest);
     std::size_t inverted = 0;
     for (const auto& mesh : scene.meshes) inverted += mesh.inverted;
-    if (inverted > 0) put("its meshes have {} inverted tetrahedra; they are kept\n", inverted);
+    if (inverted > 0)
+        text += fmt::format("its meshes have {} inverted tetrahedra; they are kept\n", inverted);
     if (range.flaws().any())
-        put("tetrahedra {}; they {}\n", describe(range.flaws(), scene),
-            range.flaws().handling == Degenerate::skip ? "take no part" : "take part as flat sets");
+        text += fmt::format("tetrahedra {}; they {}\n", describe(range.flaws(), scene),
+                            range.flaws().handling == Degenerate::skip ? "take no part"
+                                                                       : "take part as flat sets");
+    return text;
 }
+
+void print_scene(const Scene& scene, const FrameRange& range) { put_text(scene_text(scene, range)); }
 
 bool misses_against_its_promise(const Measurement& m) {
     const auto rounding = m.settings[parameters::rounding];

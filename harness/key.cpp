@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/key.h"
 
-#include "harness/environment.h"
+#include "harness/device_models.h"
 #include "harness/ranks/companions.h"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ std::string handling_key(const Flaws& flaws) {
 std::string model_of(const DeviceInfo& info) {
     const auto backend = info.id.substr(0, info.id.find(':'));
     const bool is_host = backend == "host"; // which is no product of anyone
-    auto model = fmt::format("{}:{}{}, {}", backend, is_host ? environment().processor : info.name,
+    auto model = fmt::format("{}:{}{}, {}", backend, model_name(info),
                              info.is_gpu ? "" : fmt::format(" x{}", info.compute_units),
                              is_host ? info.compiler : info.driver);
     std::replace(model.begin(), model.end(), '|', '/');

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "backends/device.h"
 #include "harness/command_line/command_line.h"
 #include "harness/memory_reserve.h"
 #include "harness/ranks/launched.h"
+#include "harness/ranks/launched_run.h"
 #include "harness/standard_streams.h"
 #include "harness/text_lines.h"
 #include "scenes/error.h"
 
-#include <fmt/format.h>
+#include <algorithm>
+#include <functional>
 #include <new>
 
 namespace {
@@ -16,17 +17,12 @@ using tandem::InputError;
 
 /// Exit codes: 0 ok, 1 a check failed (from the command), 2 bad use or bad input, 3 a device or the machine
 /// failed.
-int run(int argc, char** argv) {
+int guarded(const std::function<int()>& work) {
     try {
-        const tandem::MemoryReserve reserve;
-        const tandem::Launched launched;
-        return tandem::read_command_line(argc, argv)();
+        return work();
     } catch (const InputError& error) {
         tandem::tell("tandem: {}\n", tandem::visible(error.what()));
         return 2;
-    } catch (const tandem::DeviceError& error) {
-        tandem::tell("tandem: {}\n", tandem::visible(error.what()));
-        return 3;
     } catch (const std::bad_alloc&) {
         tandem::tell("tandem: out of memory; use fewer bodies or frames\n");
         return 3;
@@ -34,6 +30,17 @@ int run(int argc, char** argv) {
         tandem::tell("tandem: {}\n", tandem::visible(error.what()));
         return 3;
     }
+}
+
+int run(int argc, char** argv) {
+    const auto command = [=] { return guarded([=] { return tandem::read_command_line(argc, argv)(); }); };
+    return guarded([&] {
+        const tandem::MemoryReserve reserve;
+        const tandem::Launched launched;
+        auto* ranks = tandem::launched_ranks();
+        if (ranks == nullptr) return command();
+        return tandem::run_launched(*ranks, {argv + std::min(argc, 1), argv + argc}, command);
+    });
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "harness/programs.h"
 
 #include "harness/interrupt.h"
+#include "harness/ranks/environment.h"
 #include "scenes/error.h"
 
 #include <cerrno>
@@ -54,7 +55,9 @@ int run_program(const std::vector<std::string>& words, const ProgramPlace& place
     arguments.push_back(nullptr);
     const Actions actions(place);
     pid_t process = 0;
-    if (posix_spawnp(&process, arguments[0], actions.get(), nullptr, arguments.data(), environ) != 0)
+    const auto environment = environment_without_launcher();
+    if (posix_spawnp(&process, arguments[0], actions.get(), nullptr, arguments.data(), environment.data())
+        != 0)
         return 127;
     // Signals interrupt no call here (Interrupt), so that its end is asked for again and again.
     bool told = false;

@@ -13,9 +13,9 @@ struct ProgramPlace {
     std::string output, errors;
 };
 
-/// Runs a program of PATH, or of a path, and waits until it ends. A signal that asks this process to end
-/// while an Interrupt lives is handed to it. Returns its exit code, 127 where there is no such program, or
-/// 128 and the signal that ended it.
+/// Runs a program of PATH, outside of any job of MPI, or of a path, and waits until it ends. A signal that
+/// asks this process to end while an Interrupt lives is handed to it. Returns its exit code, 127 where there
+/// is no such program, or 128 and the signal that ended it.
 int run_program(const std::vector<std::string>& words, const ProgramPlace& place = {});
 
 /// A Python 3 that has a module, the system's first, which has the system's packages. Throws InputError:

@@ -13,16 +13,15 @@
 #include "harness/progress.h"
 #include "harness/ranks/companions.h"
 #include "harness/ranks/launched.h"
+#include "harness/ranks/sweep.h"
+#include "harness/run_parts.h"
 #include "harness/sampling/replays.h"
 #include "harness/standard_streams.h"
-#include "harness/table/table.h"
-#include "harness/verdict.h"
 #include "harness/timeline/trace_frame.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <map>
-#include <random>
 
 namespace tandem {
 
@@ -69,40 +68,6 @@ void choose_cells(Job& job, const RunOptions& options, const Progress& progress)
     }
 }
 
-/// What of the options says how cells are measured.
-Measuring measuring_of(const RunOptions& options, Truths* truths) {
-    Measuring measuring;
-    measuring.check = {options.check, options.count, truths};
-    measuring.enough = {options.repeat, options.noise, options.seconds};
-    measuring.seed = options.seed ? *options.seed : std::random_device{}();
-    return measuring;
-}
-
-/// The plan of the options, or one of a single product.
-PlanFile plan_of(const RunOptions& options) {
-    Product given{options.scenes, {}, options.request};
-    if (!options.frames.empty()) given.frames = {options.frames};
-    if (given.scenes.empty()) given.scenes.emplace_back(); // of --mesh, or the message that there is none
-    PlanFile plan;
-    if (options.plan) {
-        plan = *options.plan;
-        replace(plan, given);
-    } else {
-        plan.products = {given};
-    }
-    return plan;
-}
-
-/// What is not measured, and why.
-void tell_left_out(const CellGroups& all) {
-    if (all.repeated > 0)
-        tell("tandem: {} cells are named more than once; each is measured once\n", all.repeated);
-    for (const auto& [why, count] : all.impossible)
-        tell("tandem: skipped {} impossible combination{}: {}\n", count, count == 1 ? "" : "s", why);
-}
-
-void tell_skipped(const InputError& error) { tell("tandem: skipped a cell: {}\n", error.what()); }
-
 /// A run of the command: its groups of cells, one after the other.
 class Run {
 public:
@@ -139,8 +104,8 @@ Run::Run(const RunOptions& options) : options_(options), progress_(options.quiet
     const auto names = devices_of(plan);
     backends_ = open_backends(names, options.require);
     check_required(backends_, options.require);
-    open_devices(options, backends_, names);
-    all_ = make_groups(plan, backends_);
+    limit_memory(options, backends_);
+    all_ = make_groups(plan, [&](const auto& asked) { return choose_devices(backends_, asked); });
     tell_left_out(all_);
     check_one_group();
 }
@@ -187,7 +152,8 @@ void Run::list(const Job& job) {
 
 int Run::measure(Job& job) {
     Truths truths(job.scene, job.range, options_.truth, options_.truth_contacts, checks_folder(options_));
-    auto measuring = measuring_of(options_, options_.truth == TruthAmount::none ? nullptr : &truths);
+    auto measuring = measuring_of(options_);
+    if (options_.truth != TruthAmount::none) measuring.check.truths = &truths;
     measuring.unfinished = &unfinished_;
     measuring.stop = Interrupt::asked;
     References references(job.scene, job.range, checks_folder(options_));
@@ -211,19 +177,11 @@ int Run::measure(Job& job) {
 }
 
 void Run::print(const Job& job, const std::map<const Cell*, CellResult>& results) const {
-    std::vector<Row> rows;
-    for (const auto& cell : job.cells) {
-        const auto found = results.find(&cell);
-        if (found != results.end() && found->second.measured)
-            rows.push_back({&cell, &found->second.measurement, {}});
-    }
-    if (rows.empty()) return;
-    put("\n{}\n", result_tables(rows, prints_colour()));
-    for (const auto& row : rows) {
-        const auto doubt = doubts(results.at(row.cell));
-        put("{}: {}{}\n", describe(*row.cell), verdict(*row.measurement),
-            doubt.empty() ? "" : "\n  " + doubt);
-    }
+    std::vector<const CellResult*> in_order;
+    for (const auto& cell : job.cells)
+        if (const auto found = results.find(&cell); found != results.end())
+            in_order.push_back(&found->second);
+    print_results(in_order);
 }
 
 /// What is said last.
@@ -291,10 +249,11 @@ int Run::list_all() {
 
 } // namespace
 
+/// Of several processes a plan's cells go to one each, and a scene's frames are shared by all.
 int run_command(const RunOptions& options) {
     auto* ranks = launched_ranks();
     if (ranks == nullptr) return Run(options).go();
-    if (!ranks->is_first()) return serve_companion(*ranks);
+    if (options.plan) return sweep_command(options, *ranks);
     Companions companions(*ranks, options);
     return Run(companions.own_options(options)).go();
 }

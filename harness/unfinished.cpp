@@ -64,12 +64,19 @@ void Unfinished::append(nlohmann::ordered_json line) {
     }
 }
 
+nlohmann::ordered_json unfinished_json(const CellState& state, bool whole) {
+    if (whole) return {{"checked", checked_json(state)}, {"rounds", rounds_json(state, 0)}};
+    return {{"rounds", rounds_json(state, state.rounds - 1)}};
+}
+
 void Unfinished::keep(const std::string& key, const CellState& state, bool whole) {
+    if (!path_.empty()) keep(key, unfinished_json(state, whole));
+}
+
+void Unfinished::keep(const std::string& key, nlohmann::ordered_json line) {
     if (path_.empty()) return;
-    if (whole)
-        append({{"key", key}, {"checked", checked_json(state)}, {"rounds", rounds_json(state, 0)}});
-    else
-        append({{"key", key}, {"rounds", rounds_json(state, state.rounds - 1)}});
+    line["key"] = key;
+    append(std::move(line));
 }
 
 void Unfinished::remove() {

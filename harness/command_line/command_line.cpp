@@ -5,6 +5,7 @@
 #include "harness/command_line/contradictions.h"
 #include "harness/command_line/unknown_words.h"
 #include "harness/environment.h"
+#include "harness/ranks/launched_run.h"
 #include "harness/standard_streams.h"
 #include "scenes/error.h"
 
@@ -87,7 +88,11 @@ Action read_command_line(int argc, const char* const* argv) {
     const auto given =
         std::ranges::find_if(actions, [](const auto& action) { return action.first->parsed(); });
     refuse_contradictions(*given->first);
-    return [app, act = given->second] { return act(); };
+    return [app, act = given->second] {
+        const auto& name = app->get_subcommands().front()->get_name();
+        if (name != "run") tell_others_wait(name);
+        return act();
+    };
 }
 
 } // namespace tandem

@@ -95,7 +95,9 @@ void refuse_idle_threads(const CLI::App& command) {
     const bool all = devices.empty() && command.get_name() == "check";
     const auto is_host = [](const std::string& group) {
         const auto parts = CLI::detail::split(group, '+');
-        return std::ranges::any_of(parts, [](const auto& part) { return part == "host" || part == "all"; });
+        return std::ranges::any_of(parts, [](const auto& part) {
+            return part == "host" || part.starts_with("host:") || part == "all" || part == "each";
+        });
     };
     if (!all && std::ranges::none_of(devices, is_host))
         throw InputError("--threads goes with --device host; other devices have none to set");

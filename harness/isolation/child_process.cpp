@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/isolation/child_process.h"
 
+#include "harness/ranks/environment.h"
 #include "scenes/error.h"
 
 #include <array>
@@ -73,19 +74,43 @@ pid_t start(std::span<const std::string> arguments, const Descriptor& input, con
     posix_spawn_file_actions_adddup2(&actions, output.number(), STDOUT_FILENO);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
     pid_t child = 0;
-    const int error = posix_spawn(&child, program.c_str(), &actions, &attributes, words.data(), environ);
+    const auto environment = environment_without_launcher();
+    const int error =
+        posix_spawn(&child, program.c_str(), &actions, &attributes, words.data(), environment.data());
     posix_spawn_file_actions_destroy(&actions);
     posix_spawnattr_destroy(&attributes);
     if (error != 0) fail("posix_spawn", error);
     return child;
 }
 
-/// Milliseconds for poll(); -1: no limit.
-int left_ms(Clock::time_point begin, double seconds) {
-    if (seconds <= 0) return -1;
-    const std::chrono::duration<double> left = begin + std::chrono::duration<double>(seconds) - Clock::now();
-    return std::max(0, static_cast<int>(std::min(left.count() * 1e3 + 1, 1e9)));
-}
+enum class End { of_output, of_time, given_up };
+
+/// The limits of a child from now on.
+class Deadline {
+public:
+    explicit Deadline(const ChildLimits& limits) : limits_(limits), begin_(Clock::now()) {}
+
+    /// Milliseconds for poll(); -1: no limit.
+    int wait_ms() const {
+        constexpr int between_asking = 100;
+        const int left = left_ms();
+        if (!limits_.give_up) return left;
+        return left < 0 ? between_asking : std::min(left, between_asking);
+    }
+    bool is_over() const { return left_ms() == 0; }
+    bool is_given_up() const { return limits_.give_up && limits_.give_up(); }
+
+private:
+    int left_ms() const {
+        if (limits_.seconds <= 0) return -1;
+        const std::chrono::duration<double> left =
+            begin_ + std::chrono::duration<double>(limits_.seconds) - Clock::now();
+        return std::max(0, static_cast<int>(std::min(left.count() * 1e3 + 1, 1e9)));
+    }
+
+    const ChildLimits& limits_;
+    Clock::time_point begin_;
+};
 
 /// A part of the input into the pipe, which is closed behind the last one, and where nobody reads it.
 void feed(Descriptor& pipe, std::string_view& input) {
@@ -104,20 +129,21 @@ bool take(const Descriptor& pipe, std::string& output) {
     return count > 0;
 }
 
-/// Until the child has closed its output; false when time was over first.
-bool converse(Descriptor to, const Descriptor& from, std::string_view input, std::string& output,
-              double seconds) {
-    const auto begin = Clock::now();
+/// Until the child has closed its output, or a limit is reached.
+End converse(Descriptor to, const Descriptor& from, std::string_view input, std::string& output,
+             const ChildLimits& limits) {
+    const Deadline deadline(limits);
     fcntl(to.number(), F_SETFL, O_NONBLOCK);
     if (input.empty()) to.close();
     for (;;) {
         std::array<pollfd, 2> ends{{{from.number(), POLLIN, 0}, {to.number(), POLLOUT, 0}}};
-        const int ready = poll(ends.data(), ends.size(), left_ms(begin, seconds));
-        if (ready == 0) return false;
+        const int ready = poll(ends.data(), ends.size(), deadline.wait_ms());
+        if (deadline.is_over()) return End::of_time;
+        if (deadline.is_given_up()) return End::given_up;
         if (ready < 0 && errno != EINTR) fail("poll", errno);
         if (ready < 0) continue;
         if (ends[1].revents != 0) feed(to, input);
-        if (ends[0].revents != 0 && !take(from, output)) return true;
+        if (ends[0].revents != 0 && !take(from, output)) return End::of_output;
     }
 }
 
@@ -129,18 +155,21 @@ std::string described(int status) {
 
 } // namespace
 
-ChildResult run_child(std::span<const std::string> arguments, const std::string& input, double seconds) {
+ChildResult run_child(std::span<const std::string> arguments, const std::string& input,
+                      const ChildLimits& limits) {
     Pipe in, out;
     const auto child = start(arguments, in.read, out.write);
     in.read.close();
     out.write.close();
     ChildResult result;
-    const bool in_time = converse(std::move(in.write), out.read, input, result.output, seconds);
-    if (!in_time) kill(child, SIGKILL);
+    const auto end = converse(std::move(in.write), out.read, input, result.output, limits);
+    if (end != End::of_output) kill(child, SIGKILL);
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
-    result.failure =
-        in_time ? described(status) : fmt::format("took longer than {:g} s and was ended", seconds);
+    result.given_up = end == End::given_up;
+    result.failure = end == End::of_time
+                         ? fmt::format("took longer than {:g} s and was ended", limits.seconds)
+                         : described(status);
     return result;
 }
 

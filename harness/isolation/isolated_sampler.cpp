@@ -27,6 +27,14 @@ nlohmann::json answer_of(const ChildResult& result) {
 
 } // namespace
 
+nlohmann::json ask_isolated(const nlohmann::json& request, const ChildLimits& limits) {
+    const auto result = run_child(std::array<std::string, 1>{"isolated"}, request.dump(), limits);
+    if (result.given_up) throw GivenUp();
+    auto answer = answer_of(result);
+    if (answer.contains("input_error")) throw InputError(answer["input_error"].get<std::string>());
+    return answer;
+}
+
 void leave_out_this_process(std::span<RoundConditions> rounds, std::uint32_t first) {
     for (auto& round : rounds)
         if (round.round >= first)
@@ -37,9 +45,7 @@ void leave_out_this_process(std::span<RoundConditions> rounds, std::uint32_t fir
 
 void IsolatedSampler::ask(const char* work, const CheckOptions& options, std::size_t samples) {
     const auto request = request_json(options_, *this, {work, samples, options});
-    const auto answer =
-        answer_of(run_child(std::array<std::string, 1>{"isolated"}, request.dump(), options_.timeout));
-    if (answer.contains("input_error")) throw InputError(answer["input_error"].get<std::string>());
+    const auto answer = ask_isolated(request, {options_.timeout, give_up_});
     if (answer.contains("checked") && !answer["checked"].is_null()) {
         take_checked(state_, answer["checked"], cell_);
         const auto first = state_.rounds;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "harness/commands.h"
+#include "harness/isolation/child_process.h"
 #include "harness/sampling/cell_sampler.h"
 
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 
 namespace tandem {
@@ -14,8 +16,10 @@ namespace tandem {
 class IsolatedSampler : public CellSampler {
 public:
     /// `options` are those of the scene, its frames and the check; both must outlive this.
-    IsolatedSampler(const Cell& cell, const RunOptions& options, CellState state = {})
-        : CellSampler(cell, std::move(state)), options_(options) {}
+    /// Work that nobody waits for, as `give_up` says, throws GivenUp.
+    IsolatedSampler(const Cell& cell, const RunOptions& options, CellState state = {},
+                    std::function<bool()> give_up = {})
+        : CellSampler(cell, std::move(state)), options_(options), give_up_(std::move(give_up)) {}
 
 private:
     void do_check(const CheckOptions& options) override;
@@ -26,7 +30,12 @@ private:
     void ask(const char* work, const CheckOptions& options, std::size_t samples);
 
     const RunOptions& options_;
+    std::function<bool()> give_up_;
 };
+
+/// What `tandem isolated` answers to a request. Throws DeviceError where it ended without an answer,
+/// InputError where the request was wrong, and GivenUp.
+nlohmann::json ask_isolated(const nlohmann::json& request, const ChildLimits& limits);
 
 /// Of rounds from number `first` on that another process took: this one has the GPU open as well, and leaves
 /// it alone meanwhile, so that it is none of those that compute on it.

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "harness/isolation/request.h"
 
+#include "harness/choosing/choice.h"
+
 #include <nlohmann/json.hpp>
 
 namespace tandem {
 
-nlohmann::json request_json(const RunOptions& options, const CellSampler& sampler, const IsolatedWork& work) {
-    const auto& cell = sampler.cell();
-    const auto& state = sampler.state();
+nlohmann::json options_json(const RunOptions& options) {
     return {{"scene", options.scene},
             {"meshes", options.meshes},
             {"poses", options.poses},
@@ -16,22 +16,10 @@ nlohmann::json request_json(const RunOptions& options, const CellSampler& sample
             {"memory", options.memory},
             {"truth", static_cast<int>(options.truth)},
             {"truth_contacts", options.truth_contacts},
-            {"algorithm", cell.algorithm->name()},
-            {"preset", cell.preset},
-            {"settings", cell.settings.texts()},
-            {"devices", name_of(cell.devices)},
-            {"work", work.work},
-            {"samples", work.samples},
-            {"check", work.check.check},
-            {"check_afresh", options.check_afresh},
-            {"count", work.check.count_work},
-            {"checked", state.is_checked() ? checked_json(state) : nlohmann::json()},
-            {"rounds", rounds_json(state, state.rounds)}}; // none of them, but how many there are
+            {"check_afresh", options.check_afresh}};
 }
 
-IsolatedRequest request_of(const nlohmann::json& json) {
-    IsolatedRequest request;
-    auto& options = request.options;
+void take_options(RunOptions& options, const nlohmann::json& json) {
     json.at("scene").get_to(options.scene);
     json.at("meshes").get_to(options.meshes);
     json.at("poses").get_to(options.poses);
@@ -40,6 +28,60 @@ IsolatedRequest request_of(const nlohmann::json& json) {
     json.at("memory").get_to(options.memory);
     options.truth = static_cast<TruthAmount>(json.at("truth").get<int>());
     json.at("truth_contacts").get_to(options.truth_contacts);
+    json.at("check_afresh").get_to(options.check_afresh);
+}
+
+nlohmann::json cell_json(const Cell& cell) {
+    auto candidates = nlohmann::json::array();
+    for (const auto& candidate : cell.candidates) candidates.push_back(cell_json(candidate));
+    return {{"algorithm", cell.algorithm->name()},
+            {"preset", cell.preset},
+            {"settings", cell.settings.texts()},
+            {"candidates", candidates},
+            {"chosen", cell.chosen ? nlohmann::json(choice_json(*cell.chosen)) : nlohmann::json()}};
+}
+
+Cell cell_of(const nlohmann::json& json, const DeviceGroup& devices) {
+    const auto& traversal = algorithm(json.at("algorithm").get<std::string>());
+    auto cell = make_cell(traversal, preset(traversal, json.at("preset").get<std::string>()),
+                          json.at("settings").get<SettingTexts>(), devices);
+    for (const auto& candidate : json.at("candidates"))
+        cell.candidates.push_back(cell_of(candidate, devices));
+    if (!json.at("chosen").is_null())
+        cell.chosen = std::make_shared<const Choice>(choice_of(json.at("chosen")));
+    return cell;
+}
+
+nlohmann::json choosing_json(const RunOptions& options, const Cell& cell) {
+    auto request = options_json(options);
+    request.update({{"work", "choose"},
+                    {"cell", cell_json(cell)},
+                    {"devices", name_of(cell.devices)},
+                    {"seconds", options.choose_seconds},
+                    {"afresh", options.choose_afresh}});
+    return request;
+}
+
+nlohmann::json request_json(const RunOptions& options, const CellSampler& sampler, const IsolatedWork& work) {
+    const auto& cell = sampler.cell();
+    const auto& state = sampler.state();
+    auto request = options_json(options);
+    request.update({{"algorithm", cell.algorithm->name()},
+                    {"preset", cell.preset},
+                    {"settings", cell.settings.texts()},
+                    {"devices", name_of(cell.devices)},
+                    {"work", work.work},
+                    {"samples", work.samples},
+                    {"check", work.check.check},
+                    {"count", work.check.count_work},
+                    {"checked", state.is_checked() ? checked_json(state) : nlohmann::json()},
+                    {"rounds", rounds_json(state, state.rounds)}}); // none of them, but how many there are
+    return request;
+}
+
+IsolatedRequest request_of(const nlohmann::json& json) {
+    IsolatedRequest request;
+    take_options(request.options, json);
     json.at("algorithm").get_to(request.algorithm);
     json.at("preset").get_to(request.preset);
     json.at("settings").get_to(request.settings);
@@ -47,7 +89,6 @@ IsolatedRequest request_of(const nlohmann::json& json) {
     json.at("work").get_to(request.work.work);
     json.at("samples").get_to(request.work.samples);
     json.at("check").get_to(request.work.check.check);
-    json.at("check_afresh").get_to(options.check_afresh);
     json.at("count").get_to(request.work.check.count_work);
     return request;
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The side of the process that answers.
+#include "harness/choosing/choose.h"
 #include "harness/inputs.h"
 #include "harness/isolation/child_process.h"
+#include "harness/isolation/described.h"
 #include "harness/isolation/isolated_sampler.h"
 #include "harness/isolation/request.h"
 #include "harness/job.h"
@@ -33,7 +35,29 @@ void work(LocalSampler& sampler, const IsolatedWork& asked, json& answer) {
     }
 }
 
+json describe(const json& asked) {
+    return {
+        {"backends", backends_json(open_backends(asked.at("devices").get<std::vector<std::string>>(), {}))}};
+}
+
+/// A cell of auto, decided.
+json choose(const json& asked) {
+    RunOptions options;
+    take_options(options, asked);
+    const std::array names{asked.at("devices").get<std::string>()};
+    const auto backends = open_backends(names, {});
+    const auto group = open_devices(options, backends, names).front();
+    auto job = open_job(options, {cell_of(asked.at("cell"), group)});
+    ChoosingOptions choosing;
+    asked.at("seconds").get_to(choosing.seconds);
+    asked.at("afresh").get_to(choosing.afresh);
+    choose(job.cells.front(), job.scene, job.range, choosing);
+    return {{"cell", cell_json(job.cells.front())}};
+}
+
 json answer_to(const json& asked) {
+    if (asked.at("work") == "describe") return describe(asked);
+    if (asked.at("work") == "choose") return choose(asked);
     auto request = request_of(asked);
     const auto backends = open_backends(std::array{request.devices}, {});
     const auto group = open_devices(request.options, backends, std::array{request.devices}).front();

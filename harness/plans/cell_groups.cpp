@@ -29,12 +29,24 @@ bool has_settings(const Cell& cell, const Request& request) {
     });
 }
 
-bool matches(const Product& excluded, const CellGroup& group, const Cell& cell) {
+/// Whether a list of devices, which is empty where it does not matter, has those of the cell.
+bool has_devices(const std::vector<std::string>& names, const Cell& cell, const ChooseDevices& choose) {
+    return names.empty() || std::ranges::any_of(names, [&](const std::string& name) {
+               try {
+                   const auto named = choose({name});
+                   return std::ranges::find(named, cell.devices) != named.end();
+               } catch (const InputError&) {
+                   return false; // not here
+               }
+           });
+}
+
+bool matches(const Product& excluded, const CellGroup& group, const Cell& cell, const ChooseDevices& choose) {
     const auto& request = excluded.request;
     const auto algorithm = cell.candidates.empty() ? cell.algorithm->name() : automatic;
     return has(excluded.scenes, group.scene) && has(excluded.frames, group.frames)
            && has(request.algorithms, algorithm) && has(request.presets, cell.preset)
-           && has(request.devices, name_of(cell.devices)) && has_settings(cell, request);
+           && has_devices(request.devices, cell, choose) && has_settings(cell, request);
 }
 
 CellGroup& group_of(std::vector<CellGroup>& groups, const std::string& scene, const std::string& frames) {
@@ -43,12 +55,23 @@ CellGroup& group_of(std::vector<CellGroup>& groups, const std::string& scene, co
     return groups.emplace_back(CellGroup{scene, frames, {}});
 }
 
-void add_product(CellGroups& all, const Product& product, const std::vector<BackendReport>& backends,
-                 const Unfit& unfit) {
+/// Those of all names, each once; names of what there is not are unfit.
+std::vector<DeviceGroup> chosen(const std::vector<std::string>& names, const ChooseDevices& choose,
+                                const Unfit& unfit) {
+    std::vector<DeviceGroup> all;
+    for (const auto& name : names) try {
+            for (auto& group : choose({name}))
+                if (std::ranges::find(all, group) == all.end()) all.push_back(std::move(group));
+        } catch (const InputError& error) {
+            unfit(error);
+        }
+    return all;
+}
+
+void add_product(CellGroups& all, const Product& product, const ChooseDevices& choose, const Unfit& unfit) {
     auto request = product.request;
     request.may_choose = true;
-    const auto names = devices_of(product);
-    const auto cells = plan(request, choose_devices(backends, names), unfit);
+    const auto cells = plan(request, chosen(devices_of(product), choose, unfit), unfit);
     const auto frames = product.frames.empty() ? std::vector<std::string>{""} : product.frames;
     for (const auto& scene : product.scenes)
         for (const auto& range : frames) {
@@ -57,11 +80,11 @@ void add_product(CellGroups& all, const Product& product, const std::vector<Back
         }
 }
 
-void exclude(CellGroups& all, const Exclusion& exclusion) {
+void exclude(CellGroups& all, const Exclusion& exclusion, const ChooseDevices& choose) {
     std::size_t matched = 0;
     for (auto& group : all.groups)
-        matched += std::erase_if(group.cells,
-                                 [&](const Cell& cell) { return matches(exclusion.product, group, cell); });
+        matched += std::erase_if(
+            group.cells, [&](const Cell& cell) { return matches(exclusion.product, group, cell, choose); });
     if (matched == 0 && !exclusion.may_be_empty)
         throw InputError(
             fmt::format("{}: matches no cell of the plan; mend it or leave it out", exclusion.place));
@@ -98,13 +121,13 @@ std::vector<std::string> devices_of(const PlanFile& plan) {
     return names;
 }
 
-CellGroups make_groups(const PlanFile& plan, const std::vector<BackendReport>& backends) {
+CellGroups make_groups(const PlanFile& plan, const ChooseDevices& choose) {
     CellGroups all;
     Unfit unfit = refuse;
     if (plan.skips_impossible) unfit = [&](const InputError& error) { ++all.impossible[error.what()]; };
-    for (const auto& product : plan.products) add_product(all, product, backends, unfit);
+    for (const auto& product : plan.products) add_product(all, product, choose, unfit);
     for (auto& group : all.groups) all.repeated += drop_repeated(group.cells);
-    for (const auto& exclusion : plan.exclusions) exclude(all, exclusion);
+    for (const auto& exclusion : plan.exclusions) exclude(all, exclusion, choose);
     std::erase_if(all.groups, [](const auto& group) { return group.cells.empty(); });
     return all;
 }

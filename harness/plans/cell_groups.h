@@ -26,8 +26,11 @@ void replace(PlanFile& plan, const Product& given);
 /// Devices that products name, each once; opencl:0 where one names none.
 std::vector<std::string> devices_of(const PlanFile& plan);
 
+/// The devices that names ask for, as choose_devices().
+using ChooseDevices = std::function<std::vector<DeviceGroup>(const std::vector<std::string>& names)>;
+
 /// The cells of all products less the exclusions, by scene and frames in the order in which these come. Each
 /// group has a cell once. Throws InputError as plan(), and for an exclusion that matches no cell.
-CellGroups make_groups(const PlanFile& plan, const std::vector<BackendReport>& backends);
+CellGroups make_groups(const PlanFile& plan, const ChooseDevices& choose);
 
 } // namespace tandem

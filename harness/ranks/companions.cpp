@@ -72,6 +72,8 @@ Companions* companions() { return current; }
 
 Companions::Companions(Ranks& ranks, const RunOptions& options) : ranks_(ranks) {
     refuse_what_ranks_cannot(options);
+    const auto call = json{{"do", "share"}}.dump();
+    for (int rank = 1; rank < ranks.size(); ++rank) ranks.send(rank, std::as_bytes(std::span(call)));
     current = this;
 }
 

@@ -16,7 +16,8 @@ namespace tandem {
 /// told. One at a time; other ranks are in serve_companion() meanwhile.
 class Companions {
 public:
-    /// Throws InputError when options ask for what ranks cannot do together.
+    /// Calls the others from what they wait in. Throws InputError when options ask for what ranks cannot do
+    /// together.
     Companions(Ranks& ranks, const RunOptions& options);
     /// Sends the others home.
     ~Companions();
@@ -48,8 +49,8 @@ private:
 /// Those of this process; null where it works alone.
 Companions* companions();
 
-/// The work of the other ranks, until the first one sends them home; the exit code.
-int serve_companion(Ranks& ranks);
+/// The work of the other ranks, until the first one sends them home. Who cannot go on ends the job.
+void serve_companion(Ranks& ranks);
 
 /// A session of a cell: of this process alone, or of all ranks.
 std::unique_ptr<Session> prepare_session(const Cell& cell, const Scene& scene);

@@ -3,11 +3,11 @@
 
 #include "algorithms/ranks/bytes.h"
 #include "backends/registry.h"
+#include "harness/ranks/machine.h"
 #include "scenes/error.h"
 
 #include <array>
 #include <fmt/format.h>
-#include <unistd.h>
 
 namespace tandem {
 
@@ -26,8 +26,7 @@ std::vector<std::string> split(const std::string& names) {
 } // namespace
 
 PlaceOnMachine place_on_machine(Ranks& ranks) {
-    std::array<char, 256> name{}; // compared, and kept nowhere
-    gethostname(name.data(), name.size() - 1);
+    const auto name = this_machine();
     const auto all = ranks.gather_to_all(std::as_bytes(std::span(name)));
     const auto& own = all[static_cast<std::size_t>(ranks.rank())];
     PlaceOnMachine place;

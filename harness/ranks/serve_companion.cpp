@@ -180,16 +180,15 @@ bool Companion::follow(const Told& told) {
 
 } // namespace
 
-int serve_companion(Ranks& ranks) {
+void serve_companion(Ranks& ranks) {
     try {
         Companion companion(ranks);
         while (companion.follow(receive_order(ranks))) {}
-        return 0;
+        return;
     } catch (const std::exception& error) {
-        tell("tandem: rank {}: {}\n", ranks.rank(), error.what());
+        tell("tandem: rank {}: {}; it ends the job\n", ranks.rank(), error.what());
     }
     ranks.abort(3); // the others would wait for it for ever
-    return 3;
 }
 
 } // namespace tandem

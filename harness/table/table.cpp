@@ -224,14 +224,6 @@ compare::Ratio ratio_of(const Measurement& above, const Measurement& below) {
     return compare::paired_ratio(logs);
 }
 
-std::string ratio_text(const Measurement& above, const Measurement& below) {
-    if (above.samples.empty() || below.samples.empty()) return "-";
-    const auto ratio = ratio_of(above, below);
-    if (std::min(above.round_count(), below.round_count()) < 2) return fmt::format("{:.2f}", ratio.value);
-    const bool is_one = ratio.low <= 1 && 1 <= ratio.high;
-    return fmt::format("{}{:.3g} [{:.3g}, {:.3g}]", is_one ? "≈ " : "", ratio.value, ratio.low, ratio.high);
-}
-
 std::string quotient(double above, double below) {
     return below > 0 ? fmt::format("{:.3g}", above / below) : std::string("-");
 }
@@ -277,6 +269,14 @@ std::string ratio_tables(std::span<const Row> rows, const RowLabels& labels) {
 }
 
 } // namespace
+
+std::string ratio_text(const Measurement& above, const Measurement& below) {
+    if (above.samples.empty() || below.samples.empty()) return "-";
+    const auto ratio = ratio_of(above, below);
+    if (std::min(above.round_count(), below.round_count()) < 2) return fmt::format("{:.2f}", ratio.value);
+    const bool is_one = ratio.low <= 1 && 1 <= ratio.high;
+    return fmt::format("{}{:.3g} [{:.3g}, {:.3g}]", is_one ? "≈ " : "", ratio.value, ratio.low, ratio.high);
+}
 
 bool comparable(const Row& a, const Row& b) {
     const auto takes_part = [](const Row& row) {

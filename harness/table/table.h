@@ -13,6 +13,7 @@ struct Row {
     const Cell* cell;
     const Measurement* measurement;
     std::string scene = {}; ///< with frames; cells of one are comparable
+    std::string where = {}; ///< on what; empty: the devices' name
 };
 
 /// Cells in at most 100 columns, in milliseconds a frame: medians with half the width of their 95 % intervals
@@ -22,6 +23,10 @@ struct Row {
 /// cell each takes, in the columns of the paper's Table 4. Labels have what differs among the cells. `colour`
 /// marks the fastest of comparable cells and wrong ones.
 std::string result_tables(std::span<const Row> rows, bool colour);
+
+/// How many times as long the first takes, with its 95 % interval where there are rounds; "≈" before it where
+/// that has 1 in it, "-" without samples.
+std::string ratio_text(const Measurement& above, const Measurement& below);
 
 /// Whether times of the two may be divided: one scene, devices, bounds (k, axes, precision, rounding,
 /// placement) and output, both right and with pairs.

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// Ranks as they pass messages: run by mpirun with 1, 2 and 4 processes.
+#include "backends/mpi/mpi_ranks.h"
+
+#include <cstring>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using Bytes = Ranks::Bytes;
+
+std::unique_ptr<Ranks> ranks;
+
+/// So many bytes that say who made them.
+Bytes bytes_of(int rank, std::size_t size) {
+    Bytes bytes(size);
+    for (std::size_t i = 0; i < size; ++i)
+        bytes[i] = static_cast<std::byte>((i * 31 + static_cast<std::size_t>(rank)) % 251);
+    return bytes;
+}
+
+TEST(Ranks, NumbersAreThoseOfTheJob) {
+    EXPECT_GE(ranks->rank(), 0);
+    EXPECT_LT(ranks->rank(), ranks->size());
+    EXPECT_EQ(ranks->is_first(), ranks->rank() == 0);
+    if (const auto* size = std::getenv("EXPECTED_RANKS")) {
+        EXPECT_EQ(ranks->size(), std::atoi(size));
+    }
+}
+
+TEST(Ranks, BroadcastGivesAllTheBytesOfOne) {
+    for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{5'000'000}})
+        for (int from = 0; from < ranks->size(); ++from) {
+            auto bytes = ranks->rank() == from ? bytes_of(from, size) : Bytes(3);
+            ranks->broadcast(bytes, from);
+            EXPECT_EQ(bytes, bytes_of(from, size));
+        }
+}
+
+TEST(Ranks, GatherGivesAllWhatEachGave) {
+    const auto size_of = [](int rank) {
+        return static_cast<std::size_t>(rank) * 70'000;
+    }; // the first gives none
+    const auto all = ranks->gather_to_all(bytes_of(ranks->rank(), size_of(ranks->rank())));
+    ASSERT_EQ(all.size(), static_cast<std::size_t>(ranks->size()));
+    for (int rank = 0; rank < ranks->size(); ++rank)
+        EXPECT_EQ(all[static_cast<std::size_t>(rank)], bytes_of(rank, size_of(rank)));
+}
+
+/// To itself as well; every third message is empty, one is of megabytes.
+TEST(Ranks, ExchangeBringsEachItsOwn) {
+    const auto size_of = [](int from, int to) {
+        const auto number = from * 4 + to;
+        return number % 3 == 0 ? std::size_t{0}
+               : number == 1   ? std::size_t{8'000'001}
+                               : static_cast<std::size_t>(number);
+    };
+    std::vector<Bytes> out;
+    for (int to = 0; to < ranks->size(); ++to)
+        out.push_back(bytes_of(ranks->rank() * 4 + to, size_of(ranks->rank(), to)));
+    for (int time = 0; time < 3; ++time) {
+        const auto in = ranks->exchange(out);
+        ASSERT_EQ(in.size(), out.size());
+        for (int from = 0; from < ranks->size(); ++from)
+            EXPECT_EQ(in[static_cast<std::size_t>(from)],
+                      bytes_of(from * 4 + ranks->rank(), size_of(from, ranks->rank())));
+    }
+}
+
+/// Those of one sender in order, an empty one and a large one among them.
+TEST(Ranks, MessagesArriveWholeAndInOrder) {
+    const std::vector<std::size_t> sizes{4, 0, 3'000'000, 1};
+    if (!ranks->is_first()) {
+        for (const auto size : sizes) ranks->send(0, bytes_of(ranks->rank(), size));
+    } else {
+        std::vector<std::size_t> next(static_cast<std::size_t>(ranks->size()));
+        for (std::size_t left = sizes.size() * (next.size() - 1); left > 0; --left) {
+            const auto message = ranks->receive();
+            auto& number = next[static_cast<std::size_t>(message.from)];
+            ASSERT_LT(number, sizes.size());
+            EXPECT_EQ(message.bytes, bytes_of(message.from, sizes[number++]));
+        }
+    }
+    Bytes together(1);
+    ranks->broadcast(together, 0);
+    EXPECT_FALSE(ranks->is_there());
+}
+
+TEST(Ranks, AMessageIsThereOnceItWasSent) {
+    if (ranks->size() == 1) GTEST_SKIP() << "nobody to send to";
+    EXPECT_FALSE(ranks->is_there());
+    ranks->gather_to_all({});
+    if (ranks->rank() == 1) ranks->send(0, bytes_of(1, 9));
+    if (!ranks->is_first()) return;
+    while (!ranks->is_there()) {}
+    const auto message = ranks->receive();
+    EXPECT_EQ(message.from, 1);
+    EXPECT_EQ(message.bytes, bytes_of(1, 9));
+    EXPECT_FALSE(ranks->is_there());
+}
+
+} // namespace
+} // namespace tandem
+
+int main(int argc, char** argv) {
+    int given = MPI_THREAD_SINGLE;
+    MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &given);
+    testing::InitGoogleTest(&argc, argv);
+    tandem::ranks = tandem::mpi_ranks(MPI_COMM_WORLD);
+    const int code = RUN_ALL_TESTS();
+    tandem::ranks.reset();
+    MPI_Finalize();
+    return code;
+}
