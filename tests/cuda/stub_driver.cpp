@@ -7,6 +7,7 @@
 #include "backends/cuda/driver.h"
 #include "tests/cuda/stub_driver.h"
 
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <functional>
