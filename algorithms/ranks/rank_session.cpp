@@ -3,6 +3,7 @@
 
 #include "algorithms/parameters/table.h"
 #include "algorithms/ranks/bytes.h"
+#include "algorithms/ranks/present.h"
 #include "scenes/error.h"
 
 #include <algorithm>
