@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "harness/device_models.h"
 
-#include "harness/environment.h"
+#include "harness/processor_name.h"
 
 #include <algorithm>
 #include <cctype>
+#include <fmt/format.h>
 
 namespace tandem {
 
@@ -24,7 +25,7 @@ std::string_view behind_backend(std::string_view word) {
 
 std::string model_name(const DeviceInfo& info) {
     if (info.id != "host") return info.name;
-    return info.processor.empty() ? environment().processor : info.processor;
+    return info.processor.empty() ? processor_name() : info.processor;
 }
 
 std::string_view backend_of(std::string_view name) { return name.substr(0, name.find(':')); }
@@ -45,6 +46,17 @@ bool asks_for_each(std::string_view word) { return word == each_model || behind_
 
 bool is_among(const DeviceInfo& info, std::string_view each) {
     return each == each_model || backend_of(each) == backend_of(info.id);
+}
+
+/// A bar would end the part.
+std::string model_of(const DeviceInfo& info) {
+    const auto backend = info.id.substr(0, info.id.find(':'));
+    const bool is_host = backend == "host"; // which is no product of anyone
+    auto model = fmt::format("{}:{}{}, {}", backend, model_name(info),
+                             info.is_gpu ? "" : fmt::format(" x{}", info.compute_units),
+                             is_host ? info.compiler : info.driver);
+    std::replace(model.begin(), model.end(), '|', '/');
+    return model;
 }
 
 } // namespace tandem

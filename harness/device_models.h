@@ -29,4 +29,8 @@ bool is_of_model(const DeviceInfo& info, std::string_view word);
 bool asks_for_each(std::string_view word);
 bool is_among(const DeviceInfo& info, std::string_view each);
 
+/// What stands for a device in a key: "cuda:NVIDIA H200, CUDA 13.0, 580.159.04"; a processor with the number
+/// of its cores, "host:AMD EPYC x2, g++ 12.2.0, lanes for x86-64-v3".
+std::string model_of(const DeviceInfo& info);
+
 } // namespace tandem

@@ -2,6 +2,7 @@
 #include "harness/environment.h"
 
 #include "commit.h"
+#include "harness/processor_name.h"
 
 #include <algorithm>
 #include <chrono>
@@ -16,13 +17,6 @@ namespace tandem {
 namespace {
 
 constexpr auto compiler = "g++ " __VERSION__;
-
-std::string processor_name() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);)
-        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-    return {};
-}
 
 } // namespace
 

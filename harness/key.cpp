@@ -32,17 +32,6 @@ std::string handling_key(const Flaws& flaws) {
 
 } // namespace
 
-/// A bar would end the part.
-std::string model_of(const DeviceInfo& info) {
-    const auto backend = info.id.substr(0, info.id.find(':'));
-    const bool is_host = backend == "host"; // which is no product of anyone
-    auto model = fmt::format("{}:{}{}, {}", backend, model_name(info),
-                             info.is_gpu ? "" : fmt::format(" x{}", info.compute_units),
-                             is_host ? info.compiler : info.driver);
-    std::replace(model.begin(), model.end(), '|', '/');
-    return model;
-}
-
 std::string with_settings(const std::string& before_settings, const SettingTexts& settings) {
     return before_settings + "|" + settings_key(settings);
 }
