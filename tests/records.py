@@ -146,13 +146,13 @@ class Records(Case):
                                                    "registers", "local_bytes", "spill_bytes", "missed_upper95", "candidate_ratio", "decisions",
                                                    "depth_relative", "depth_ulps", "normal_degrees", "point", "hausdorff", "volume_relative"}
         of_condition = ("cores", "quota_cores", "own_cores", "other_cores", "governor", "mhz", "throttled_periods", "pressure_percent")
-        nullable_paths = {("environment", "processor"), ("environment", "sources"), ("conditions",),
+        nullable_paths = {("environment", "processor"), ("environment", "sources"), ("conditions",), ("ranks",), ("shares",),
                           *(("conditions", when, "processor", name) for when in ("before", "after") for name in of_condition),
                           *(("conditions", when, "gpus", 0) for when in ("before", "after")), *(("sampling", name) for name in ("cells", "seed", "repeat", "noise", "seconds", "spent_seconds", "converged", "drift")), ("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift"),
                           *(("work", name) for name in ("undecided_by_filter", "undecided_by_double", "batches")),
                           *(("work", "counters", name) for name in record["work"]["counters"])}
         since = {"chosen", "truth", "inputs", "volume_relative", "no_volume"}  # records from before each lack it
-        since_paths = {("devices", 0, "clock"), ("work", "digest"), ("work", "contact_digest"), ("work", "submissions"), ("sampling", "continued"), ("host_work",)}
+        since_paths = {("devices", 0, "clock"), ("work", "digest"), ("work", "contact_digest"), ("work", "submissions"), ("sampling", "continued"), ("host_work",), ("ranks",), ("rank",), ("shares",)}
         seen = set()
         for path in places(record):
             shape = tuple(0 if isinstance(name, int) else name for name in path)

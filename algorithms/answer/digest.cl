@@ -38,25 +38,27 @@ KERNEL void count_by_body(GLOBAL const uint* found, uint count, GLOBAL const uin
                           GLOBAL uint* counts) {
     for (ulong first = (ulong)GLOBAL_ID * ROWS_AT_ONCE; first < count;
          first += (ulong)GLOBAL_COUNT * ROWS_AT_ONCE) {
-        const ulong end = first + ROWS_AT_ONCE < count ? first + ROWS_AT_ONCE : count;
-        Members last = members_of(found, first, owners);
+        const uint rows = count - first < ROWS_AT_ONCE ? (uint)(count - first) : ROWS_AT_ONCE;
+        uint a = 0;
+        uint b = 0;
         uint of_a = 0;
         uint of_b = 0;
-        for (ulong i = first; i < end; ++i) {
-            const Members pair = members_of(found, i, owners);
-            if (pair.a.body != last.a.body) {
-                add_count(counts, last.a.body, of_a);
+        NO_UNROLL for (uint i = 0; i < rows; ++i) {
+            const Members pair = members_of(found, first + i, owners);
+            if (pair.a.body != a) {
+                add_count(counts, a, of_a);
+                a = pair.a.body;
                 of_a = 0;
             }
-            if (pair.b.body != last.b.body) {
-                add_count(counts, last.b.body, of_b);
+            if (pair.b.body != b) {
+                add_count(counts, b, of_b);
+                b = pair.b.body;
                 of_b = 0;
             }
             ++of_a;
             ++of_b;
-            last = pair;
         }
-        add_count(counts, last.a.body, of_a);
-        add_count(counts, last.b.body, of_b);
+        add_count(counts, a, of_a);
+        add_count(counts, b, of_b);
     }
 }

@@ -158,6 +158,23 @@ TEST_F(Shares, FramesInBatches) {
     expect_equal(result, one);
 }
 
+/// On the device, and of pairs that were brought to the host.
+TEST_F(Shares, PairsAreCountedByBody) {
+    const auto scene = procession(12, 1, 0);
+    for (const std::string name : {"host", "opencl:0"}) {
+        const std::array one{&device(name)};
+        const auto& traversal = algorithm("tiled");
+        const auto result = traversal.prepare(one, scene, settings_of(traversal, {}))->run(scene.frame(0));
+        std::vector<std::uint64_t> right(12), counts;
+        for (const auto& pair : result.download()) {
+            ++right[pair.body_a];
+            ++right[pair.body_b];
+        }
+        for (const auto& part : result.parts) part->count_by_body(counts);
+        EXPECT_EQ(counts, right) << name;
+    }
+}
+
 TEST(Deals, EveryPairBelongsToOneShareThatHasBoth) {
     const auto scene = procession(40, 2, 0.05);
     for (const std::size_t count : {1u, 2u, 3u, 7u, 60u}) {

@@ -25,7 +25,8 @@ SMALL = {name: 4096 for name in ("pair_capacity", "contact_capacity")}
 SCENE = "pile:bodies=2,frames=1"
 # Calls of CUDA without which the program may go on: they free, put back, or tell what it can do without; anything where memory
 # is short, since frames are done in batches then.
-CAN_DO_WITHOUT = r"Destroy|Free|Unload|Release|Occupancy|GetAttribute|MemGetInfo|GetUuid|CtxGetCurrent|CtxSetCurrent|cuInit|MemHostAlloc|GetError"
+# A time or a version that is not told is unknown in a record.
+CAN_DO_WITHOUT = r"Destroy|Free|Unload|Release|Occupancy|GetAttribute|MemGetInfo|GetUuid|CtxGetCurrent|CtxSetCurrent|cuInit|MemHostAlloc|GetError|ElapsedTime|DriverGetVersion"
 LIBRARYS_WORDS = r"std::|::at\b|basic_string|bad_alloc|json\.exception|vector::"
 Kind = collections.namedtuple("Kind", "name code stays")
 NO_MEMORY = 2  # CUDA_ERROR_OUT_OF_MEMORY
