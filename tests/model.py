@@ -27,7 +27,8 @@ MODEL = importlib.util.module_from_spec(importlib.util.spec_from_loader(LOADER.n
 sys.modules[LOADER.name] = MODEL  # where dataclasses look for it
 LOADER.exec_module(MODEL)
 # Microseconds: of a frame, and of each count.
-KNOWN = {"refit": (15, {"tetrahedra": 2e-5}), "broad": (8, {"tile_pairs": 1e-4}), "walk": (30, {"body_pairs": 5e-3, "pairs": 4e-5}), "contact": (20, {"pairs": 1e-4}),
+KNOWN = {"refit": (15, {"tetrahedra": 2e-5}), "broad": (8, {"tile_pairs": 1e-4}), "walk": (30, {"body_pairs": 5e-3, "pairs": 4e-5}), "contact": (20,
+                                                                                                                                                 {"pairs": 1e-4}),
          "host": (40, {"bodies": 0.05, "scene_bodies": 0.03, "sorted": 0.02})}
 EXCHANGE = (50, {"messages": 3, "bytes": 2e-4})
 STAGE = {"refit": "refit", "broad": "broad", "walk": "traverse", "contact": "contact"}
@@ -42,15 +43,19 @@ def known_us(part, counts, chance):
 
 def stage_ns(us, counts, frames):
     packing = PLACED * counts["bodies"] + ABSENT * (counts["scene_bodies"] - counts["bodies"])
-    return {**{STAGE[part]: {"device_ns": us[part] * frames * 1e3, "host_ns": 0} for part in STAGE}, "preprocess": {"device_ns": 0, "host_ns": packing * frames}}
+    return {**{STAGE[part]: {"device_ns": us[part] * frames * 1e3, "host_ns": 0} for part in STAGE}, "preprocess": {"device_ns": 0,
+                                                                                                                    "host_ns": packing * frames}}
 
 
 def record(chance, bodies, devices, with_ranks=False, frames=2):
     """Of a scene shared evenly, as the known coefficients have it."""
     own, body_pairs, pairs = bodies // devices, int(bodies * chance.uniform(1, 12)), int(bodies * chance.uniform(500, 5000))
     scene = {"key": "made", "bodies": bodies, "tetrahedra": TETRAHEDRA * bodies}
-    line = {"status": "ok", "preset": "resident", "algorithm": "tiled", "settings": {"k": "18", "slabs": "three", "broad": "device"}, "scene": scene, "shares": None,
-            "devices": [{"name": "made", "clock": "made"}] * devices, "frames": {"first": 0, "last": frames - 1}, "work": {"body_pairs": [body_pairs] * frames, "candidate_pairs": [pairs] * frames},
+    line = {"status": "ok", "preset": "resident", "algorithm": "tiled", "settings": {"k": "18", "slabs": "three", "broad": "device"}, "scene": scene,
+            "shares": None,
+            "devices": [{"name": "made", "clock": "made"}] * devices, "frames": {"first": 0,
+                                                                                 "last": frames - 1}, "work": {"body_pairs": [body_pairs] * frames,
+                                                                                                               "candidate_pairs": [pairs] * frames},
             "preparation": {"device_bytes": 1e8 + 30 * TETRAHEDRA * bodies * devices + 45 * pairs}, "ranks": devices if with_ranks else None}
     loads = []
     for _ in range(devices):
@@ -147,12 +152,15 @@ class Fit(ModelCase):
         few = self.file("few.jsonl", good[:2])
         self.refused("2 records: too few", "--fit", few)
         self.refused("No such file", "--fit", self.work / "none.jsonl")
-        for name, lines, said_of in (("empty", [], "empty, no records"), ("text", [good[0], "no JSON\n"], "text.jsonl:2 is no record"), ("list", ["[]\n"], ":1 is no record"),
-                                     ("half", [{**good[0], "work": None}], ":1 is no record"), ("frames", [{**good[0], "frames": {"first": 1, "last": 0}}], ":1 is no record")):
+        for name, lines, said_of in (("empty", [], "empty, no records"), ("text", [good[0], "no JSON\n"], "text.jsonl:2 is no record"), ("list", ["[]\n"],
+                                                                                                                                         ":1 is no record"),
+                                     ("half", [{**good[0], "work": None}], ":1 is no record"), ("frames", [{**good[0], "frames": {"first": 1, "last": 0}}],
+                                                                                                ":1 is no record")):
             self.refused(said_of, "--fit", self.file(f"{name}.jsonl", lines))
         self.refused("no such group; there are: made", "--group", "none", self.file("good.jsonl", good))
         self.refused("no record of a pile", "--group", "made", self.file("good.jsonl", good))
-        alone = self.file("alone.jsonl", [{**line, "scene": {**line["scene"], "key": "pile:bodies=64,mesh=jack,density=0.2,seed=1,frames=2,far=0"}} for line in good[:10]])
+        alone = self.file("alone.jsonl", [{**line, "scene": {**line["scene"],
+                                                             "key": "pile:bodies=64,mesh=jack,density=0.2,seed=1,frames=2,far=0"}} for line in good[:10]])
         self.refused("no record of ranks", "--group", "made", alone)
         self.refused("--network", "--network", "fast", few)
         self.refused("--ranks", "--simulate", "--ranks", "0", "--counts", self.work / "no.csv")
@@ -161,12 +169,13 @@ class Fit(ModelCase):
         pile = {"key": "pile:bodies=64,mesh=jack,density=0.2,seed=1,frames=2,far=0", "bodies": 64, "tetrahedra": 64 * 2325}
         good = self.file("good.jsonl", [*records(), {**record(random.Random(2), 64, 1), "scene": pile}])
         self.refused("No such file or directory; scripts/model --simulate makes it", "--group", "made", "--counts", self.work / "none.csv", good)
-        for text, expected in (("", "empty, no counts"), ("study,bodies\nweak,1\n", "no counts of"), ("study,bodies,ranks,density,margin,held\nweak,1,x,0,0,1\n", "no counts of")):
+        for text, expected in (("", "empty, no counts"), ("study,bodies\nweak,1\n", "no counts of"),
+                               ("study,bodies,ranks,density,margin,held\nweak,1,x,0,0,1\n", "no counts of")):
             self.refused(expected, "--group", "made", "--counts", self.file("bad.csv", [text]), good)
         page = self.file("page.md", ["<!-- model: nothing -->\n<!-- end -->\n"])
         counts = self.work / "counts.csv"
         self.assertEqual(said("--simulate", "--counts", counts, "--ranks", "1,4", "--bodies", "20")[0], 0)
-        self.refused("no table 'nothing'; there are: coefficients", "--group", "made", "--counts", counts, good, "--write", page)
+        self.refused("no table 'nothing'; there are: line, coefficients", "--group", "made", "--counts", counts, good, "--write", page)
         self.assertEqual(said("--group", "made", "--counts", counts, good)[::2], (0, []))
 
 
@@ -206,7 +215,8 @@ class SimulatedRanks(ModelCase):
 
     def test_counts_are_what_ranks_of_the_program_recorded(self):
         """tandem run pile:bodies=N,density=D --frames 0:0 on four ranks: `bodies` of shares, and 64 bytes of a pose sent and one of a vote."""
-        for bodies, density, held, sent in ((256, 0.2, [252, 198, 145, 61], [1, 3777, 10497, 11329]), (1500, 0.05, [690, 576, 587, 385], [1, 9281, 14209, 23745])):
+        for bodies, density, held, sent in ((256, 0.2, [252, 198, 145, 61], [1, 3777, 10497, 11329]), (1500, 0.05, [690, 576, 587, 385], [1, 9281, 14209,
+                                                                                                                                          23745])):
             found = ranks.count(ranks.Pile(bodies, density), 4, 0.25)
             self.assertEqual((found["own"] + found["halo"]).tolist(), held)
             self.assertEqual((MODEL.POSE * found["sent"] + 1).tolist(), sent)
@@ -220,6 +230,23 @@ class SimulatedRanks(ModelCase):
         density = 100 / (4 * np.pi / 3)
         self.assertAlmostEqual(ranks.expected_pairs(1.0, mesh) / (5 * np.pi / 12 * density * 8), 1)  # two unit balls a radius apart
         self.assertEqual(ranks.expected_pairs(2.0, mesh), 0)
+
+
+class Paper(ModelCase):
+    def test_messages_by_hand(self):
+        """50 GB/s, 1.5 us, 1,024 ranks: ten rounds."""
+        network = MODEL.Network(50, 1.5, 1024)
+        self.assertAlmostEqual(network.gather_to_all(1), 2 * 10 * 1.5 + 1023 * 5 / 50e3)
+        self.assertAlmostEqual(network.broadcast(24), 2 * 10 * (1.5 + 24 / 50e3))
+        self.assertAlmostEqual(network.sizes_to_all(), 10 * (1.5 + 512 * 8 / 50e3))
+        self.assertAlmostEqual(network.passed(20, 1e6), 20 * 1.5 + 1e6 / 50e3)
+        self.assertEqual(MODEL.Network(50, 1.5, 1).gather_to_all(100), 0)
+
+    def test_a_body_meets_groups_of_lower_ranks(self):
+        """Of three ranks with 256, 300 and 512 bodies: 1 group of 32 boxes, 2 and 2; two nanoseconds a test on four cores."""
+        options = MODEL.parsed(["--box-ns", "2", "--cores", "4"])
+        case = type("Case", (), {"own": np.array([256.0, 300.0, 512.0])})
+        self.assertEqual(MODEL.near_us(case, options).tolist(), [0, 300 * 2 / 4e3, 512 * 3 * 2 / 4e3])
 
 
 class Page(ModelCase):
