@@ -15,7 +15,7 @@ LEAST_MARGIN, MOST_MARGIN, SOON = 0.25, 2.0, 8  # halo.cpp: of a radius; frames
 WORK_OF_A_PAIR = 6  # deal.cpp: in tetrahedra refitted
 SPIN, DRIFT = 0.03, 0.01  # pile.cpp: radians, and of a radius, a frame
 LATTICE = (1 << 21) - 1  # hierarchy/order.cpp
-MOST_EXACT = 2000  # bodies whose poses are the scene's own numbers: of more they are as random, and made faster
+MOST_EXACT = 2000  # bodies whose poses are the scene's own numbers unless asked for: of more they are as random, and made faster
 AT_ONCE = 100_000  # rows whose neighbours are looked for together: memory
 
 
@@ -108,9 +108,9 @@ def spread(x):
 class Pile:
     """Bodies of frame 0 in the order of the curve: `centres` and half `widths` along DIRECTIONS."""
 
-    def __init__(self, bodies, density, seed=1):
+    def __init__(self, bodies, density, seed=1, most_exact=MOST_EXACT):
         self.mesh = jack()
-        places, rotations = (scene_poses if bodies <= MOST_EXACT else random_poses)(bodies, seed)
+        places, rotations = (scene_poses if bodies <= most_exact else random_poses)(bodies, seed)
         centres = places * (bodies * self.mesh.volume / density) ** (1 / 3)
         order = np.argsort(hilbert_codes(centres), kind="stable")
         self.centres, rotations = centres[order], rotations[order]
