@@ -54,12 +54,26 @@ same() { # same NAME PROGRAM: runs it, and each of its lines has to be the host'
   echo "$1: $(sort -u <<<"$out")"
   [ "$(sort -u <<<"$out")" = "$expected" ] || { echo "$1: the host says $expected" >&2; exit 1; }
 }
-same opencl "$work/consumer/embed_opencl"
+same opencl "$work/consumer/opencl_queue"
 
 stubs=$build/tests/stubs
-LD_LIBRARY_PATH=$stubs/driver TANDEM_CUPTI= TANDEM_NVRTC=$stubs/nvrtc/libnvrtc.so "$work/consumer/embed_cuda"
+LD_LIBRARY_PATH=$stubs/driver TANDEM_CUPTI= TANDEM_NVRTC=$stubs/nvrtc/libnvrtc.so "$work/consumer/cuda_stream"
 if "$work/prefix/bin/tandem" devices | grep '^cuda:0' >/dev/null; then
-  same cuda "$work/consumer/embed_cuda"
+  same cuda "$work/consumer/cuda_stream"
 else
   echo "cuda: no driver here, so only its stub was asked"
+fi
+
+# Ranks of MPI, where the build found one: as many pairs on any number.
+if [ -x "$work/consumer/ranks" ]; then
+  launch=$(found MPIEXEC_EXECUTABLE)
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+  alone=$("$launch" -n 1 "$work/consumer/ranks" 2>"$work/said") || { cat "$work/said" >&2; exit 1; }
+  grep -q '^frame 2: [1-9]' <<<"$alone" || { echo "ranks: no pairs" >&2; exit 1; }
+  for ranks in 2 4; do
+    shared=$("$launch" -n $ranks "$work/consumer/ranks" 2>"$work/said") || { cat "$work/said" >&2; exit 1; }
+    [ "$shared" = "$alone" ] || { echo "ranks: $ranks of them say $shared, one says $alone" >&2; exit 1; }
+    grep -q "^frame 2, rank $((ranks - 1)): [1-9][0-9]* bodies, [1-9]" "$work/said" || { cat "$work/said" >&2; exit 1; }
+  done
+  echo "ranks: $(tail -1 <<<"$alone") on 1, 2 and 4"
 fi

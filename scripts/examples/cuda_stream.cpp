@@ -33,12 +33,12 @@ template<class... Arguments>
 bool call(const char* name, Arguments... arguments) {
     auto* const function = entry<int(Arguments...)>(name);
     const int code = function != nullptr ? function(arguments...) : -1;
-    if (code != 0) std::fprintf(stderr, "embed_cuda: %s failed with %d\n", name, code);
+    if (code != 0) std::fprintf(stderr, "cuda_stream: %s failed with %d\n", name, code);
     return code == 0;
 }
 
 bool check(bool good, const char* what) {
-    if (!good) std::fprintf(stderr, "embed_cuda: %s\n", what);
+    if (!good) std::fprintf(stderr, "cuda_stream: %s\n", what);
     return good;
 }
 

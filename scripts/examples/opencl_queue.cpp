@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t bytes = std::size_t{1} << 20;
 
 bool check(bool good, const char* what) {
-    if (!good) std::fprintf(stderr, "embed_opencl: %s\n", what);
+    if (!good) std::fprintf(stderr, "opencl_queue: %s\n", what);
     return good;
 }
 
