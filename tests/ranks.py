@@ -306,7 +306,6 @@ class Refusals(RanksCase):
         self.one_line(words, "rank 1 is a program of other sources than rank 0")
 
     def test_what_is_of_one_process(self):
-        self.assertEqual(self.one_line(of(2)("run", SCENES[0], "--device", "host"), "2 processes were started for scenes"), "")
         self.one_line(of(2)("run", self.plan(), "--dump-pairs", self.work / "of-one"), "--dump-pairs is of one process")
         self.one_line(of(2)("run", self.plan(scenes="plate")), "unknown scene 'plate'")
 

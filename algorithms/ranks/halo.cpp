@@ -124,16 +124,28 @@ std::vector<Ranks::Bytes> Halo::passed(const std::vector<Ranks::Bytes>& out, Tra
     return ranks_.exchange(out);
 }
 
-/// Sends every rank the numbers of the bodies that it will get, and keeps both lists.
-void Halo::tell(std::vector<Numbers> lists, Traffic& traffic) {
+/// Sends every rank a list of bodies; returns those that came.
+std::vector<Halo::Numbers> Halo::told(const std::vector<Numbers>& lists, Traffic& traffic) {
     std::vector<Ranks::Bytes> out;
     for (const auto& list : lists) out.push_back(as_message(std::span(list)));
-    sent_ = std::move(lists);
-    const auto in = passed(out, traffic);
-    for (std::size_t i = 0; i < in.size(); ++i) {
-        gotten_[i] = from_message<std::uint32_t>(in[i]);
-        share_.others.insert(share_.others.end(), gotten_[i].begin(), gotten_[i].end());
+    std::vector<Numbers> in;
+    for (const auto& message : passed(out, traffic)) in.push_back(from_message<std::uint32_t>(message));
+    return in;
+}
+
+/// Boxes go around several bodies: of those that meet one, the ones that meet a body are kept, and whoever
+/// sends them is told.
+void Halo::keep_near(const Frame& frame, const std::vector<double>& slabs, bool failed, Traffic& traffic) {
+    Frame known = frame;
+    trade(known, failed, traffic);
+    for (auto& list : gotten_) {
+        if (!failed) {
+            places_.keep(known, list);
+            list = near(list, slabs_of(list, known), slabs);
+        }
+        share_.others.insert(share_.others.end(), list.begin(), list.end());
     }
+    sent_ = told(gotten_, traffic);
 }
 
 void Halo::meet(const std::vector<std::uint32_t>& own, const Frame& frame, bool failed, Traffic& traffic) {
@@ -151,9 +163,11 @@ void Halo::meet(const std::vector<std::uint32_t>& own, const Frame& frame, bool 
     std::vector<Numbers> lists(all.size());
     for (std::size_t i = 0; i < static_cast<std::size_t>(ranks_.rank()) && !failed; ++i)
         lists[i] = near(own, slabs, from_message<double>(all[i]));
-    tell(std::move(lists), traffic);
+    gotten_ = told(lists, traffic);
+    sent_ = std::move(lists);
+    keep_near(frame, slabs, failed, traffic);
     if (!failed) {
-        const auto fixed = near(fixed_, slabs_of(fixed_, frame), boxes);
+        const auto fixed = near(fixed_, slabs_of(fixed_, frame), slabs);
         share_.others.insert(share_.others.end(), fixed.begin(), fixed.end());
     }
     is_met_ = true;

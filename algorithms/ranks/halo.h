@@ -40,7 +40,8 @@ private:
     std::vector<double> boxes_over(const std::vector<double>& slabs) const;
     Numbers near(const Numbers& bodies, const std::vector<double>& slabs,
                  std::span<const double> boxes) const;
-    void tell(std::vector<Numbers> lists, Traffic& traffic);
+    std::vector<Numbers> told(const std::vector<Numbers>& lists, Traffic& traffic);
+    void keep_near(const Frame& frame, const std::vector<double>& slabs, bool failed, Traffic& traffic);
     std::vector<Ranks::Bytes> passed(const std::vector<Ranks::Bytes>& out, Traffic& traffic);
 
     const Scene& scene_;

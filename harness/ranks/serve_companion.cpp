@@ -103,9 +103,8 @@ void Companion::prepare(const json& asked) {
     try {
         session_ = traversal.prepare(device(), opened_->scene, settings, ranks_);
         device().finish();
-    } catch (const DeviceError&) {
-        // What fails on one rank fails on all: the first one says so.
-    }
+    } catch (const DeviceError&) { // what fails on one rank fails on all: the first one says so
+    } catch (const InputError&) {}
 }
 
 /// What fails on one rank fails on all, so that nothing need be said of it here.

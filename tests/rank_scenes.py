@@ -1,0 +1,92 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""rank_scenes.py PROGRAM SOURCE: scenes whose frames the ranks of a job of MPI share."""
+import os
+import re
+import signal
+import subprocess
+import time
+import unittest
+
+from program import PROGRAM, SMALL, Case, sets, tandem
+from ranks import ENVIRONMENT, launch, of, processes, wait_for
+
+PILE = "pile:bodies=27,mesh=grain1,frames=2"
+ROOMS = sets({name: SMALL[name] for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")})
+CELL = ["--device", "host", "--algorithm", "tiled", *ROOMS]
+
+
+class RankScenes(Case):
+    def one_line(self, expected, *arguments, ranks=2, code=2):
+        status, text, errors = launch(of(ranks)("run", *arguments))
+        self.assertEqual((status, len(errors)), (code, 1), (text, errors))
+        self.assertIn(expected, errors[0])
+        self.assertNotIn("ms/frame", text)
+
+    def test_answers_and_records_are_those_of_one_process(self):
+        common = ["--repeat", 1, "--truth", "pairs", PILE, *CELL]
+        status, _, errors = tandem("run", *common, "--out", self.work / "one.jsonl", "--dump-pairs", self.work / "one.csv",
+                                   "--dump-contacts", self.work / "one-contacts.csv")
+        self.assertEqual((status, errors), (0, []))
+        (one,) = self.records(self.work / "one.jsonl")
+        for ranks in (2, 4):
+            name = f"{ranks}.jsonl"
+            status, text, errors = launch(of(ranks)("run", *common, "--out", self.work / name, "--dump-pairs", self.work / "all.csv",
+                                                    "--dump-contacts", self.work / "all-contacts.csv"))
+            self.assertEqual((status, errors), (0, []), text)
+            (record,) = self.records(self.work / name)
+            for field in ("status", "agreement", "error", "scene", "frames", "algorithm"):
+                self.assertEqual(record[field], one[field], field)
+            for field in ("body_pairs", "candidate_pairs", "contacts", "digest", "contact_digest", "rejected"):
+                self.assertEqual(record["work"][field], one["work"][field], field)
+            self.assertEqual((record["ranks"], len(record["devices"])), (ranks, ranks))
+            shares = record["shares"]["devices"]
+            self.assertEqual(len(shares), ranks)
+            self.assertEqual([sum(pairs) for pairs in zip(*(share["candidate_pairs"] for share in shares))], one["work"]["candidate_pairs"])
+            self.assertGreater(sum(share["exchange"]["bytes"] for share in shares), 0)
+            self.assertIn("exchange", record["stages"])
+            self.assertNotEqual(record["key"], one["key"])
+            for kind in ("", "-contacts"):
+                self.assertEqual((self.work / f"all{kind}.csv").read_text(), (self.work / f"one{kind}.csv").read_text())
+            self.assertRegex(text, rf"rank {ranks - 1}, host")
+
+    def test_a_scene_of_twice_the_memory_of_a_rank(self):
+        scene = ["pile:bodies=160,density=0.001,frames=1", "--repeat", 1, "--truth", "none", *CELL]
+        status, _, errors = tandem("run", *scene, "--memory", 1 << 20)
+        self.assertEqual(status, 3, errors)
+        needed = int(re.search(r"take (\d+) bytes", errors[0])[1])
+        self.assertEqual(tandem("run", *scene, "--memory", needed // 2)[0], 3)
+        status, text, errors = launch(of(4)("run", *scene, "--memory", needed // 2, "--out", self.work / "four.jsonl"))
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertIn("right: ", text)
+        status, _, errors = launch(of(4)("run", *scene, "--memory", 1 << 20))
+        self.assertEqual((status, len(errors)), (3, 1), errors)
+        self.assertRegex(errors[0], r"rank \d: .*raise --memory")
+
+    def test_what_is_refused_in_one_line(self):
+        self.one_line("names 3 devices for 2 ranks", PILE, "--device", "host+opencl:0+opencl:1")
+        self.one_line("--device all makes several cells", PILE, "--device", "all")
+        self.one_line("--isolate makes a process of each cell", PILE, "--device", "host", "--isolate")
+        self.one_line("--algorithm auto chooses on one process", PILE, "--device", "host", "--algorithm", "auto")
+        self.one_line("choose broad=device", PILE, "--device", "host", "--algorithm", "tiled", "--set", "broad=tight", "--truth", "none", "--no-check")
+        self.one_line("unknown scene 'pil'", "pil", "--device", "host")
+        self.one_line("frames", PILE, "--device", "host", "--frames", "5:9")
+
+    def test_a_rank_that_dies_ends_the_job_and_records_are_whole(self):
+        out = self.work / "killed.jsonl"
+        words = of(2)("run", PILE, "plates", *CELL, "--seconds", 60, "--noise", 1e-9, "--truth", "none", "--out", out)
+        job = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+        wait_for(lambda: len(processes(job.pid)[0]) == 2)
+        time.sleep(2)
+        begin = time.monotonic()
+        os.kill(processes(job.pid)[0][1], signal.SIGKILL)
+        text = job.communicate(timeout=10)[1]
+        self.assertLess(time.monotonic() - begin, 10)
+        self.assertNotEqual(job.returncode, 0)
+        self.assertRegex(text, r"rank 1\b.*\bsignal 9")
+        if out.exists():
+            self.records(out)  # whatever there is, whole and valid
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["rank_scenes.py"], verbosity=2)
