@@ -51,6 +51,7 @@ private:
     const Settings& do_settings() const override { return sessions_.front()->settings(); }
 
     bool deal(const Frame& frame);
+    void tell();
     void deal_pairs(std::span<const BodyPair> body_pairs);
     FrameResult run_share(std::size_t i, const Frame& frame, bool is_dealt_pairs);
     void look_back(const FrameResult& result);
@@ -61,7 +62,8 @@ private:
     std::optional<BroadSweep> broad_; ///< where the host finds body pairs
     Deal deal_;
     Balance balance_;
-    std::vector<Share> taken_;                 ///< by device: what its session has been told
+    std::vector<Share> taken_;                 ///< by device: what its session is to be told
+    std::vector<bool> is_told_;                ///< by device
     std::vector<std::vector<Role>> roles_;     ///< by device and body, of taken_
     std::vector<std::vector<BodyPair>> dealt_; ///< by device: pairs that the host has dealt out
 };
@@ -73,6 +75,7 @@ SplitSession::SplitSession(const Traversal& traversal, std::span<Device* const> 
       deal_(scene, geometry_of(fitted.front()), devices.size()),
       balance_(devices.size()),
       taken_(devices.size()),
+      is_told_(devices.size()),
       roles_(devices.size(), std::vector<Role>(scene.bodies.size(), Role::none)),
       dealt_(devices.size()) {
     for (std::size_t i = 0; i < devices.size(); ++i)
@@ -83,22 +86,33 @@ SplitSession::SplitSession(const Traversal& traversal, std::span<Device* const> 
 
 /// Deals the bodies anew where it has to be, or had better be; returns whether it has.
 bool SplitSession::deal(const Frame& frame) {
-    if (deal_.holds(frame) && !balance_.wants_a_deal()) return false;
+    const bool is_new = !deal_.holds(frame) || balance_.wants_a_deal();
     const HostWork work(*devices_.front(), Stage::broad, "deal bodies");
-    deal_.make(frame, balance_.speeds());
-    balance_.dealt();
-    for (std::size_t i = 0; i < sessions_.size(); ++i) {
-        taken_[i] = deal_.shares()[i];
-        roles_[i] = roles_in(taken_[i], roles_[i].size());
-        sessions_[i]->take(taken_[i]);
+    if (is_new) {
+        deal_.make(frame, balance_.speeds());
+        balance_.dealt();
+        for (std::size_t i = 0; i < sessions_.size(); ++i) {
+            taken_[i] = deal_.shares()[i];
+            roles_[i] = roles_in(taken_[i], roles_[i].size());
+            is_told_[i] = false;
+        }
     }
-    return true;
+    tell();
+    return is_new;
+}
+
+/// Tells sessions their shares, also those that a failure has kept from it before.
+void SplitSession::tell() {
+    for (std::size_t i = 0; i < sessions_.size(); ++i) {
+        if (is_told_[i]) continue;
+        sessions_[i]->take(taken_[i]);
+        is_told_[i] = true;
+    }
 }
 
 /// Deals pairs out by who owns their bodies. Pairs that are given may be of any bodies: shares that lack one
 /// get it.
 void SplitSession::deal_pairs(std::span<const BodyPair> body_pairs) {
-    std::vector<bool> lacks(sessions_.size());
     for (auto& pairs : dealt_) pairs.clear();
     for (const auto& pair : body_pairs) {
         const auto i = std::min(deal_.share_of(pair), sessions_.size() - 1);
@@ -107,11 +121,10 @@ void SplitSession::deal_pairs(std::span<const BodyPair> body_pairs) {
             if (roles_[i][body] != Role::none) continue;
             roles_[i][body] = Role::other;
             taken_[i].others.push_back(body);
-            lacks[i] = true;
+            is_told_[i] = false;
         }
     }
-    for (std::size_t i = 0; i < sessions_.size(); ++i)
-        if (lacks[i]) sessions_[i]->take(taken_[i]);
+    tell();
 }
 
 FrameResult SplitSession::run_share(std::size_t i, const Frame& frame, bool is_dealt_pairs) {

@@ -17,7 +17,8 @@ using tandem::InputError;
 
 /// Exit codes: 0 ok, 1 a check failed (from the command), 2 bad use or bad input, 3 a device or the machine
 /// failed.
-int guarded(const std::function<int()>& work) {
+template<class Work>
+int guarded(const Work& work) { // memory may be short before it begins: no std::function
     try {
         return work();
     } catch (const InputError& error) {

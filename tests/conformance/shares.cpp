@@ -16,6 +16,7 @@ namespace tandem {
 namespace {
 
 using namespace testing_support;
+using testing::HasSubstr;
 
 class Shares : public testing::Test {
 protected:
@@ -156,6 +157,25 @@ TEST_F(Shares, FramesInBatches) {
     little.set_memory_limit(Device::no_memory_limit);
     EXPECT_GT(result.batches, 2u);
     expect_equal(result, one);
+}
+
+/// A device that cannot go on says which it is; with memory again, the session goes on.
+TEST_F(Shares, ADeviceThatFailsIsNamed) {
+    const auto scene = procession(30, 2, 5);
+    const auto both = shared(algorithm("tiled"), scene);
+    const auto one = alone(algorithm("tiled"), scene);
+    expect_equal(both->run(scene.frame(0)), one->run(scene.frame(0)));
+    auto& little = device("opencl:0");
+    little.set_memory_limit(1);
+    std::string said;
+    try {
+        both->run(scene.frame(1));
+    } catch (const OutOfMemory& error) {
+        said = error.what();
+    }
+    little.set_memory_limit(Device::no_memory_limit);
+    EXPECT_THAT(said, HasSubstr("opencl:0"));
+    for (const std::size_t i : {1u, 0u}) expect_equal(both->run(scene.frame(i)), one->run(scene.frame(i)));
 }
 
 /// On the device, and of pairs that were brought to the host.
