@@ -39,7 +39,9 @@ bool asks_for_model(std::string_view word) {
 bool is_of_model(const DeviceInfo& info, std::string_view word) {
     if (!asks_for_model(word) || backend_of(info.id) != backend_of(word)) return false;
     const auto model = model_name(info);
-    return !std::ranges::search(model, behind_backend(word), same_letter).empty();
+    const auto text = behind_backend(word);
+    // Not that of std::ranges: clang 14 does not compile g++ 12's.
+    return std::search(model.begin(), model.end(), text.begin(), text.end(), same_letter) != model.end();
 }
 
 bool asks_for_each(std::string_view word) { return word == each_model || behind_backend(word) == each_model; }
