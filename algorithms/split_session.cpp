@@ -87,8 +87,8 @@ SplitSession::SplitSession(const Traversal& traversal, std::span<Device* const> 
 /// Deals the bodies anew where it has to be, or had better be; returns whether it has.
 bool SplitSession::deal(const Frame& frame) {
     const bool is_new = !deal_.holds(frame) || balance_.wants_a_deal();
-    const HostWork work(*devices_.front(), Stage::broad, "deal bodies");
     if (is_new) {
+        const HostWork work(*devices_.front(), Stage::broad, "deal bodies");
         deal_.make(frame, balance_.speeds());
         balance_.dealt();
         for (std::size_t i = 0; i < sessions_.size(); ++i) {

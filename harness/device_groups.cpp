@@ -12,6 +12,16 @@
 
 namespace tandem {
 
+std::vector<std::string> parts_of(const std::string& name) {
+    std::vector<std::string> parts;
+    for (std::size_t begin = 0; begin <= name.size();) {
+        const auto end = std::min(name.find('+', begin), name.size());
+        parts.push_back(name.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return parts;
+}
+
 namespace {
 
 /// Why backends have no devices, in brackets; empty when all have some.
@@ -54,16 +64,6 @@ Device* asked_device(const std::vector<BackendReport>& backends, const std::stri
     throw InputError(fmt::format("no {}device {}: no such model of that back end; there are: {}{}",
                                  group.empty() ? "" : "other ", word, fmt::join(models_of(backends), ", "),
                                  reasons(backends)));
-}
-
-std::vector<std::string> parts_of(const std::string& name) {
-    std::vector<std::string> parts;
-    for (std::size_t begin = 0; begin <= name.size();) {
-        const auto end = std::min(name.find('+', begin), name.size());
-        parts.push_back(name.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return parts;
 }
 
 /// "D" or "D+E+..." as a group.

@@ -12,6 +12,9 @@ namespace tandem {
 /// The devices of one cell, which share its work: one, or several named D+E.
 using DeviceGroup = std::vector<Device*>;
 
+/// The words between the pluses of "D+E".
+std::vector<std::string> parts_of(const std::string& name);
+
 /// Their names, "host" or "host+opencl:0".
 std::string name_of(const DeviceGroup& devices);
 

@@ -44,8 +44,8 @@ Halo::Halo(const Scene& scene, const Geometry& geometry, Ranks& ranks)
         if (scene.bodies[body].fixed) fixed_.push_back(body);
 }
 
-bool Halo::is_over(const Frame& frame, bool failed, Traffic& traffic) {
-    const bool over = !is_met_ || (!failed && !places_.all_within(frame, share_.own, margin_));
+bool Halo::is_over(const Frame& frame, Traffic& traffic) {
+    const bool over = !is_met_ || !places_.all_within(frame, share_.own, margin_);
     const auto said = std::array{std::byte{over ? std::uint8_t{1} : std::uint8_t{0}}};
     const auto all = ranks_.gather_to_all(said);
     traffic.bytes += said.size();
@@ -135,47 +135,40 @@ std::vector<Halo::Numbers> Halo::told(const std::vector<Numbers>& lists, Traffic
 
 /// Boxes go around several bodies: of those that meet one, the ones that meet a body are kept, and whoever
 /// sends them is told.
-void Halo::keep_near(const Frame& frame, const std::vector<double>& slabs, bool failed, Traffic& traffic) {
+void Halo::keep_near(const Frame& frame, const std::vector<double>& slabs, Traffic& traffic) {
     Frame known = frame;
-    trade(known, failed, traffic);
+    trade(known, traffic);
     for (auto& list : gotten_) {
-        if (!failed) {
-            places_.keep(known, list);
-            list = near(list, slabs_of(list, known), slabs);
-        }
+        places_.keep(known, list);
+        list = near(list, slabs_of(list, known), slabs);
         share_.others.insert(share_.others.end(), list.begin(), list.end());
     }
     sent_ = told(gotten_, traffic);
 }
 
-void Halo::meet(const std::vector<std::uint32_t>& own, const Frame& frame, bool failed, Traffic& traffic) {
+void Halo::meet(const std::vector<std::uint32_t>& own, const Frame& frame, Traffic& traffic) {
     share_ = {own, {}};
-    std::vector<double> slabs;
-    if (!failed) {
-        places_.keep(frame, own);
-        places_.keep(frame, fixed_);
-        slabs = slabs_of(own, frame);
-    }
+    places_.keep(frame, own);
+    places_.keep(frame, fixed_);
+    const auto slabs = slabs_of(own, frame);
     const auto boxes = boxes_over(slabs);
     const auto all = ranks_.gather_to_all(std::as_bytes(std::span(boxes)));
     traffic.bytes += boxes.size() * sizeof(double);
     ++traffic.messages;
     std::vector<Numbers> lists(all.size());
-    for (std::size_t i = 0; i < static_cast<std::size_t>(ranks_.rank()) && !failed; ++i)
+    for (std::size_t i = 0; i < static_cast<std::size_t>(ranks_.rank()); ++i)
         lists[i] = near(own, slabs, from_message<double>(all[i]));
     gotten_ = told(lists, traffic);
     sent_ = std::move(lists);
-    keep_near(frame, slabs, failed, traffic);
-    if (!failed) {
-        const auto fixed = near(fixed_, slabs_of(fixed_, frame), slabs);
-        share_.others.insert(share_.others.end(), fixed.begin(), fixed.end());
-    }
+    keep_near(frame, slabs, traffic);
+    const auto fixed = near(fixed_, slabs_of(fixed_, frame), slabs);
+    share_.others.insert(share_.others.end(), fixed.begin(), fixed.end());
     is_met_ = true;
 }
 
-void Halo::trade(Frame& frame, bool failed, Traffic& traffic) {
+void Halo::trade(Frame& frame, Traffic& traffic) {
     std::vector<Ranks::Bytes> out(sent_.size());
-    for (std::size_t i = 0; i < sent_.size() && !failed; ++i)
+    for (std::size_t i = 0; i < sent_.size(); ++i)
         for (const auto body : sent_[i]) {
             if (scene_.bodies[body].deformable)
                 append(out[i], std::span(frame.deformed[body]));
@@ -184,7 +177,7 @@ void Halo::trade(Frame& frame, bool failed, Traffic& traffic) {
         }
     const auto in = passed(out, traffic);
     for (std::size_t i = 0; i < in.size(); ++i) {
-        if (in[i].empty()) continue; // a rank that has failed sends nothing
+        if (in[i].empty()) continue;
         MessageReader message(in[i]);
         for (const auto body : gotten_[i]) {
             if (scene_.bodies[body].deformable) {

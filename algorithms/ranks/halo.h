@@ -10,7 +10,7 @@ namespace tandem {
 /// What ranks tell each other of bodies: those of a rank that come near bodies of a lower one are that one's
 /// to pair, and it is sent their poses or vertices in every frame. Who is near is found from bounds with a
 /// margin, and holds until a body has gone further. Functions that are marked so are called by all ranks
-/// together, in the same order, also by one that has failed (`failed`): the others must not wait for it.
+/// together, in the same order.
 class Halo {
 public:
     /// What a rank has sent.
@@ -22,12 +22,12 @@ public:
     Halo(const Scene& scene, const Geometry& geometry, Ranks& ranks);
 
     /// By all ranks: whether bodies of any of them have gone too far, or are others than before.
-    bool is_over(const Frame& frame, bool failed, Traffic& traffic);
+    bool is_over(const Frame& frame, Traffic& traffic);
     /// By all ranks: exchanges bounds, and finds who is near. `frame` has the poses or vertices of `own`, and
     /// of fixed bodies.
-    void meet(const std::vector<std::uint32_t>& own, const Frame& frame, bool failed, Traffic& traffic);
+    void meet(const std::vector<std::uint32_t>& own, const Frame& frame, Traffic& traffic);
     /// By all ranks: puts the poses and vertices of others into `frame`.
-    void trade(Frame& frame, bool failed, Traffic& traffic);
+    void trade(Frame& frame, Traffic& traffic);
     /// Of this rank: its own bodies, and the others that it gets or that are fixed and near.
     const Share& share() const { return share_; }
     /// The next is_over() is true.
@@ -41,7 +41,7 @@ private:
     Numbers near(const Numbers& bodies, const std::vector<double>& slabs,
                  std::span<const double> boxes) const;
     std::vector<Numbers> told(const std::vector<Numbers>& lists, Traffic& traffic);
-    void keep_near(const Frame& frame, const std::vector<double>& slabs, bool failed, Traffic& traffic);
+    void keep_near(const Frame& frame, const std::vector<double>& slabs, Traffic& traffic);
     std::vector<Ranks::Bytes> passed(const std::vector<Ranks::Bytes>& out, Traffic& traffic);
 
     const Scene& scene_;

@@ -101,8 +101,8 @@ void RankSession::exchange(Frame& frame, Report& own) {
     const HostWork work(*devices_.front(), Stage::exchange, "bodies of other ranks");
     const auto begin = Clock::now();
     Halo::Traffic traffic;
-    if (halo_.is_over(frame, false, traffic)) {
-        halo_.meet(own_bodies(), frame, false, traffic);
+    if (halo_.is_over(frame, traffic)) {
+        halo_.meet(own_bodies(), frame, traffic);
         try {
             take_share();
         } catch (const std::exception& error) {
@@ -113,7 +113,7 @@ void RankSession::exchange(Frame& frame, Report& own) {
             halo_.forget();
         }
     }
-    halo_.trade(frame, false, traffic);
+    halo_.trade(frame, traffic);
     own.work.exchange_ns = ns_since(begin);
     own.work.exchange_bytes = traffic.bytes;
     own.work.messages = traffic.messages;

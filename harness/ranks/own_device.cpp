@@ -2,7 +2,7 @@
 #include "harness/ranks/own_device.h"
 
 #include "algorithms/ranks/bytes.h"
-#include "backends/registry.h"
+#include "harness/device_groups.h"
 #include "harness/ranks/machine.h"
 #include "scenes/error.h"
 
@@ -10,20 +10,6 @@
 #include <fmt/format.h>
 
 namespace tandem {
-
-namespace {
-
-std::vector<std::string> split(const std::string& names) {
-    std::vector<std::string> parts;
-    for (std::size_t begin = 0; begin <= names.size();) {
-        const auto end = std::min(names.find('+', begin), names.size());
-        parts.push_back(names.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return parts;
-}
-
-} // namespace
 
 PlaceOnMachine place_on_machine(Ranks& ranks) {
     const auto name = this_machine();
@@ -40,7 +26,7 @@ PlaceOnMachine place_on_machine(Ranks& ranks) {
 
 std::string device_of_rank(const std::string& names, const PlaceOnMachine& place) {
     const auto count = place.count;
-    const auto parts = split(names);
+    const auto parts = parts_of(names);
     if (parts.size() > count)
         throw InputError(
             fmt::format("--device {} names {} devices for {} rank{} on a machine, and a rank has one; start "
@@ -49,14 +35,12 @@ std::string device_of_rank(const std::string& names, const PlaceOnMachine& place
     if (parts.size() == count) return parts[place.before];
     // Processors can be shared; of GPUs each rank has its own, or times are of nothing.
     const auto own = parts[place.before % parts.size()];
-    const auto backends = discover(std::array{own});
-    for (const auto& backend : backends)
-        for (const auto& device : backend.devices)
-            if (device->info().id == own && device->info().is_gpu)
-                throw InputError(fmt::format(
-                    "{} ranks on a machine have {} GPU{} in --device {}; name one for each, as in "
-                    "cuda:0+cuda:1, or start fewer ranks a machine",
-                    count, parts.size(), parts.size() == 1 ? "" : "s", names));
+    const auto backends = open_backends(std::array{own}, {});
+    if (choose_devices(backends, std::array{own}).front().front()->info().is_gpu)
+        throw InputError(
+            fmt::format("{} ranks on a machine have {} GPU{} in --device {}; name one for each, as in "
+                        "cuda:0+cuda:1, or start fewer ranks a machine",
+                        count, parts.size(), parts.size() == 1 ? "" : "s", names));
     return own;
 }
 
