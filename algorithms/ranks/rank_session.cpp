@@ -21,6 +21,18 @@ std::int64_t ns_since(Clock::time_point begin) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
 }
 
+/// Candidate pairs by body. None where the device fails: the others wait for this rank's message, a deal
+/// needs no counts, and the next frame will fail as well.
+std::vector<std::uint64_t> counts_of(const FrameResult& result, std::size_t bodies) {
+    std::vector<std::uint64_t> counts(bodies);
+    try {
+        for (const auto& part : result.parts) part->count_by_body(counts);
+    } catch (const DeviceError&) {
+        counts.assign(bodies, 0);
+    }
+    return counts;
+}
+
 /// Where frame 0 has them all.
 std::vector<Ball> balls_at_the_start(const Scene& scene) {
     Places places(scene);
@@ -178,8 +190,7 @@ void RankSession::deal_anew(const Frame& frame, FrameResult& result) {
     places_.keep(frame, own_bodies());
     Ranks::Bytes message;
     for (const auto body : own_bodies()) append(message, std::span(&places_.ball(body), 1));
-    std::vector<std::uint64_t> counts(scene_.bodies.size());
-    for (const auto& part : result.parts) part->count_by_body(counts);
+    auto counts = counts_of(result, scene_.bodies.size());
     append(message, std::span(counts));
     std::vector<Ball> balls = balls_at_the_start(scene_); // of fixed ones
     std::vector<std::uint64_t> sums(counts.size());
