@@ -89,8 +89,11 @@ TEST_F(RankSessions, AnswersTogetherAreThoseOfOneDevice) {
     }
 }
 
+/// Of bodies and of meshes, one for every body here.
 TEST_F(RankSessions, OnlyWhatIsNeededIsOnTheDevice) {
-    const auto scene = procession(400, 1, 0.35);
+    auto scene = procession(400, 1, 0.35);
+    scene.meshes.resize(scene.bodies.size(), scene.meshes.front());
+    for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) scene.bodies[body].mesh = body;
     const auto& traversal = algorithm("tiled");
     auto& on = device("host");
     const auto before = on.bytes_allocated();
