@@ -111,7 +111,7 @@ TEST_F(RankSessions, OnlyWhatIsNeededIsOnTheDevice) {
                                                                  {"tile_pair_capacity", "1"},
                                                                  {"body_pair_capacity", "1"}}));
     const auto all = on.bytes_allocated() - before - shared;
-    EXPECT_LT(static_cast<double>(shared), (0.3 + 1.0 / job->size()) * static_cast<double>(all));
+    EXPECT_LT(static_cast<double>(shared), (0.1 + 1.0 / job->size()) * static_cast<double>(all));
     expect_equal(scene, *session, *whole, 0);
     const auto& own = last_.shared[static_cast<std::size_t>(job->rank())];
     EXPECT_LT(own.bodies, 400u / static_cast<unsigned>(job->size()) + 20u);
