@@ -161,6 +161,8 @@ TEST_F(Shares, FramesInBatches) {
         const auto result = both->run(scene.frame(0));
         little.set_memory_limit(Device::no_memory_limit);
         EXPECT_GT(result.batches, 2u);
+        EXPECT_LE(result.body_pairs, BroadSweep(scene, {}, Broad::tight).pairs(scene.frame(0)).size())
+            << "no pair is of two shares";
         EXPECT_EQ(result.count, one.count);
         EXPECT_EQ(result.digest(), one.digest());
         EXPECT_EQ(result.contact_digest(), one.contact_digest());
