@@ -48,7 +48,14 @@ struct Scene {
     std::function<double(std::size_t)> time;  ///< s at frame i; null: frames have no times
     std::string end;          ///< why there are no more frames, one line; empty: there never were
     std::uint64_t digest = 0; ///< of meshes, bodies and motion; equal on every machine
+    /// Of a part of another scene: by body, ascending, the number that answers give it. None of a whole one.
+    std::vector<std::uint32_t> numbers{};
 };
+
+/// The number that answers give a body.
+inline std::uint32_t number_of(const Scene& scene, std::size_t body) {
+    return scene.numbers.empty() ? static_cast<std::uint32_t>(body) : scene.numbers[body];
+}
 
 /// A named parameter of a scene with its default, for listings.
 struct SceneParameter {

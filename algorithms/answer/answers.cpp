@@ -185,9 +185,8 @@ void AnswerTools::expand(const Buffer& pairs, std::uint64_t first, std::uint64_t
 
 void AnswerTools::count_by_body(const Buffer& pairs, std::uint64_t count,
                                 std::vector<std::uint64_t>& counts) const {
-    std::vector<std::uint32_t> words(bodies_->count());
-    counts.resize(words.size());
     if (count == 0) return;
+    std::vector<std::uint32_t> words(bodies_->count());
     const auto sums = device().allocate(words.size() * 4, "pairs by body");
     const StageScope scope(device(), Stage::postprocess);
     device().clear(sums, words.size() * 4);
@@ -195,7 +194,11 @@ void AnswerTools::count_by_body(const Buffer& pairs, std::uint64_t count,
                                             sums};
     device().launch(count_kernel_, {shape_.groups, shape_.group_size}, arguments);
     device().download(sums, std::as_writable_bytes(std::span(words)));
-    for (std::size_t body = 0; body < words.size(); ++body) counts[body] += words[body];
+    for (std::size_t body = 0; body < words.size(); ++body) {
+        const auto number = number_of(bodies_->scene(), body);
+        if (counts.size() <= number) counts.resize(number + std::size_t{1});
+        counts[number] += words[body];
+    }
 }
 
 /// Through a buffer for a part of them at a time: memory may be short where answers are large.
@@ -225,7 +228,9 @@ Pair AnswerTools::pair_of(const std::uint32_t* row) const {
     const bool slots = layout() == PairLayout::slots;
     const auto a = slots ? bodies_->place_of(row[0]) : Bodies::Place{row[0], row[2]};
     const auto b = slots ? bodies_->place_of(row[1]) : Bodies::Place{row[1], row[3]};
-    return {a.body, bodies_->mesh(a.body).ids[a.item], b.body, bodies_->mesh(b.body).ids[b.item]};
+    const auto& scene = bodies_->scene();
+    return {number_of(scene, a.body), bodies_->mesh(a.body).ids[a.item], number_of(scene, b.body),
+            bodies_->mesh(b.body).ids[b.item]};
 }
 
 std::shared_ptr<const AnswerPart> device_part(std::shared_ptr<const AnswerTools> tools,

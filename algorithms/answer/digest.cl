@@ -15,14 +15,13 @@ KERNEL void digest_pairs(GLOBAL const uint* found, uint count, GLOBAL const uint
     add_to_sums(sums, tally.a, tally.b);
 }
 
-// The rows first..first + count - 1 as four words each: body a, tetrahedron a, body b, tetrahedron b, in
-// input order's numbers.
+// The rows first..first + count - 1 as four words each: body a, tetrahedron a, body b, tetrahedron b, as the
+// scene numbers them.
 KERNEL void expand_pairs(GLOBAL const uint* found, uint first, uint count, GLOBAL const uint* owners,
                          GLOBAL const uint* ids, GLOBAL uint* expanded) {
     for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         const Members pair = members_of(found, first + i, owners);
-        const WordRow row = {pair.a.body, ids[pair.a.tetrahedron], pair.b.body, ids[pair.b.tetrahedron]};
-        ((GLOBAL WordRow*)expanded)[i] = row;
+        ((GLOBAL WordRow*)expanded)[i] = named(&pair, ids);
     }
 }
 

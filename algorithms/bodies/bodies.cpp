@@ -124,19 +124,20 @@ std::vector<std::byte> Bodies::shared_vertices() const {
 
 /// What never changes: tetrahedra, ids, boundary, rows, and the vertices of meshes in their own frames.
 void Bodies::upload_static() {
-    std::vector<std::uint32_t> tetrahedra, ids;
+    std::vector<std::uint32_t> tetrahedra, ids{count()};
     std::vector<std::uint8_t> boundary;
     const auto add = [&](const OrderedMesh& mesh) {
         tetrahedra.insert(tetrahedra.end(), mesh.tetrahedra.begin(), mesh.tetrahedra.end());
         ids.insert(ids.end(), mesh.ids.begin(), mesh.ids.end());
         boundary.insert(boundary.end(), mesh.boundary.begin(), mesh.boundary.end());
     };
+    for (std::size_t body = 0; body < scene_.bodies.size(); ++body) ids.push_back(number_of(scene_, body));
     if (sharing_ == Sharing::by_mesh)
         for (const auto& mesh : meshes_) add(mesh);
     else
         for (const auto& body : scene_.bodies) add(meshes_[body.mesh]);
     tetrahedra_ = uploaded(device_, bytes_of(tetrahedra), "tetrahedra");
-    ids_ = uploaded(device_, bytes_of(ids), "tetrahedron ids");
+    ids_ = uploaded(device_, bytes_of(ids), "numbers of bodies and tetrahedra");
     boundary_ = uploaded(device_, bytes_of(boundary), "boundary faces");
     row_table_ = uploaded(device_, bytes_of(rows_), "bodies");
     if (pair_layout_ == PairLayout::slots)

@@ -74,7 +74,7 @@ public:
     /// What members_of (pairs.clh) finds tetrahedra by: rows of blocks of slots, or row_table().
     const Buffer& owners() const { return pair_layout_ == PairLayout::slots ? blocks_ : row_table_; }
     const Buffer& tetrahedra() const { return tetrahedra_; } ///< 4 vertex numbers each
-    const Buffer& ids() const { return ids_; } ///< position -> tetrahedron in input order, a word each
+    const Buffer& ids() const { return ids_; } ///< how answers name bodies and tetrahedra (pairs.clh)
     const Buffer& boundary() const { return boundary_; } ///< a byte each: bit i, the face opposite corner i
     const Buffer& vertices() const { return vertices_; } ///< 4 reals each
     const Buffer& poses() const { return poses_; }       ///< POSE_REALS reals a body

@@ -3,6 +3,7 @@
 
 #include "algorithms/bodies/ball.h"
 #include "algorithms/bodies/drift.h"
+#include "algorithms/broad/slab_sweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,35 +22,6 @@ constexpr double rounding_steps = 24;
 /// What published rounding adds, in integer directions: its tolerance is one of unit directions, shared by
 /// two bodies; three times as much covers the roundings of the test.
 constexpr double published_slack = 3 * 0.5 * 10 * 0x1p-23;
-
-/// apart[j] != 0 for those bodies i + 1 .. end - 1 that some direction tells from body i.
-void mark_apart(const std::vector<std::vector<double>>& along, std::size_t i, std::size_t end,
-                std::vector<std::int64_t>& apart) {
-    std::fill(apart.begin() + static_cast<std::ptrdiff_t>(i),
-              apart.begin() + static_cast<std::ptrdiff_t>(end), 0);
-    for (std::size_t slab = 0; slab < along.size(); slab += 2) {
-        const double lower = along[slab][i];
-        const double upper = along[slab + 1][i];
-        const double* lowers = along[slab].data();
-        const double* uppers = along[slab + 1].data();
-        for (std::size_t j = i + 1; j < end; ++j)
-            apart[j] |=
-                static_cast<std::int64_t>(lowers[j] > upper) | static_cast<std::int64_t>(uppers[j] < lower);
-    }
-}
-
-/// The pairs ordered by a, then b: two passes of a counting sort.
-std::vector<BodyPair> ascending(std::vector<BodyPair> pairs, std::size_t bodies) {
-    std::vector<BodyPair> other(pairs.size());
-    for (const auto key : {&BodyPair::b, &BodyPair::a}) {
-        std::vector<std::size_t> next(bodies + 1);
-        for (const auto& pair : pairs) ++next[pair.*key + 1];
-        std::partial_sum(next.begin(), next.end(), next.begin());
-        for (const auto& pair : pairs) other[next[pair.*key]++] = pair;
-        pairs.swap(other);
-    }
-    return pairs;
-}
 
 } // namespace
 
@@ -165,31 +137,10 @@ std::vector<BodyPair> BroadSweep::pairs(std::span<const Ball> balls) const {
 
 /// Pairs of bodies whose slabs overlap along all directions.
 std::vector<BodyPair> BroadSweep::swept(const std::vector<double>& slabs) const {
-    const auto stride = 2 * directions_.size();
-    const auto bodies = scene_.bodies.size();
-    const auto sweep = 2 * sweep_direction(slabs);
-    std::vector<std::uint32_t> order(bodies);
-    std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(),
-              [&](auto a, auto b) { return slabs[a * stride + sweep] < slabs[b * stride + sweep]; });
-    std::vector<std::vector<double>> along(stride, std::vector<double>(bodies)); // by slab, in sweep order
-    for (std::size_t slab = 0; slab < stride; ++slab)
-        for (std::size_t i = 0; i < bodies; ++i) along[slab][i] = slabs[order[i] * stride + slab];
-    std::vector<BodyPair> pairs;
-    std::vector<std::int64_t> apart(bodies); // as wide as a slab, so that the compiler can use vectors
-    for (std::size_t i = 0; i < bodies; ++i) {
-        const auto& starts = along[sweep];
-        const auto end =
-            static_cast<std::size_t>(std::upper_bound(starts.begin() + static_cast<std::ptrdiff_t>(i) + 1,
-                                                      starts.end(), along[sweep + 1][i])
-                                     - starts.begin());
-        mark_apart(along, i, end, apart);
-        for (std::size_t j = i + 1; j < end; ++j) {
-            const auto [a, b] = std::minmax(order[i], order[j]);
-            if (apart[j] == 0 && !(scene_.bodies[a].fixed && scene_.bodies[b].fixed)) pairs.push_back({a, b});
-        }
-    }
-    return ascending(pairs, bodies);
+    auto pairs = overlapping(slabs, directions_.size(), sweep_direction(slabs));
+    std::erase_if(
+        pairs, [this](BodyPair pair) { return scene_.bodies[pair.a].fixed && scene_.bodies[pair.b].fixed; });
+    return pairs;
 }
 
 } // namespace tandem

@@ -15,7 +15,7 @@ DEVICE ulong contact_term(ulong pair_term, uint feature, GLOBAL const uint* bits
 }
 
 // Adds the terms of the first `count` contacts to `sums`. `value_bits`: their values as words. `ids`:
-// tetrahedra in input order.
+// how answers name bodies and tetrahedra.
 KERNEL void digest_contacts(GLOBAL const uint* found, GLOBAL const uint* owners, GLOBAL const uint* ids,
                             GLOBAL const uint* contact_ids, GLOBAL const uint* value_bits, uint count,
                             GLOBAL uint* sums) {

@@ -31,6 +31,20 @@ void widen(double* box, const double* by, std::size_t axes) {
     }
 }
 
+/// A box around every `many` boxes, one after the other.
+std::vector<double> around(std::span<const double> boxes, std::size_t many, std::size_t axes) {
+    const auto stride = 2 * axes;
+    std::vector<double> larger;
+    for (std::size_t i = 0; i * stride < boxes.size(); ++i) {
+        const auto* box = &boxes[i * stride];
+        if (i % many == 0)
+            larger.insert(larger.end(), box, box + stride);
+        else
+            widen(&larger[larger.size() - stride], box, axes);
+    }
+    return larger;
+}
+
 } // namespace
 
 Halo::Halo(const Scene& scene, const Geometry& geometry, Ranks& ranks)
@@ -39,7 +53,9 @@ Halo::Halo(const Scene& scene, const Geometry& geometry, Ranks& ranks)
       sweep_(scene, geometry, Broad::tight),
       places_(scene),
       sent_(static_cast<std::size_t>(ranks.size())),
-      gotten_(static_cast<std::size_t>(ranks.size())) {
+      gotten_(static_cast<std::size_t>(ranks.size())),
+      others_{std::vector<Pose>(scene.bodies.size()),
+              std::vector<std::vector<Eigen::Vector3d>>(scene.bodies.size())} {
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body)
         if (scene.bodies[body].fixed) fixed_.push_back(body);
 }
@@ -68,34 +84,13 @@ std::vector<double> Halo::slabs_of(const Numbers& bodies, const Frame& frame) co
     return slabs;
 }
 
-/// A box around every so many bodies, one after the other.
-std::vector<double> Halo::boxes_over(const std::vector<double>& slabs) const {
-    const auto stride = 2 * sweep_.axes();
-    std::vector<double> boxes;
-    for (std::size_t i = 0; i < slabs.size() / stride; ++i) {
-        if (i % in_a_box == 0)
-            boxes.insert(boxes.end(), slabs.begin() + static_cast<std::ptrdiff_t>(i * stride),
-                         slabs.begin() + static_cast<std::ptrdiff_t>((i + 1) * stride));
-        else
-            widen(&boxes[boxes.size() - stride], &slabs[i * stride], sweep_.axes());
-    }
-    return boxes;
-}
-
 /// Those of the bodies that meet one of the boxes: groups of boxes first, as neighbours stand together.
 Halo::Numbers Halo::near(const Numbers& bodies, const std::vector<double>& slabs,
                          std::span<const double> boxes) const {
     constexpr std::size_t in_a_group = 32;
     const auto axes = sweep_.axes(), stride = 2 * axes;
     const auto count = boxes.size() / stride;
-    std::vector<double> groups;
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto* box = &boxes[i * stride];
-        if (i % in_a_group == 0)
-            groups.insert(groups.end(), box, box + stride);
-        else
-            widen(&groups[groups.size() - stride], box, axes);
-    }
+    const auto groups = around(boxes, in_a_group, axes);
     std::vector<char> is_near(bodies.size());
     const auto meets = [&](const double* slab) {
         for (std::size_t group = 0; group * stride < groups.size(); ++group) {
@@ -133,14 +128,30 @@ std::vector<Halo::Numbers> Halo::told(const std::vector<Numbers>& lists, Traffic
     return in;
 }
 
+/// Sends the boxes to later ranks that they may meet, as one box around all of each tells; returns what came
+/// from earlier ones.
+std::vector<Ranks::Bytes> Halo::boxes_near(const std::vector<double>& boxes, Traffic& traffic) {
+    const auto axes = sweep_.axes();
+    const auto whole = around(boxes, std::max<std::size_t>(boxes.size(), 1), axes);
+    const auto wholes = ranks_.gather_to_all(std::as_bytes(std::span(whole)));
+    traffic.bytes += whole.size() * sizeof(double);
+    ++traffic.messages;
+    std::vector<Ranks::Bytes> out(wholes.size());
+    for (auto i = static_cast<std::size_t>(ranks_.rank()) + 1; i < wholes.size(); ++i) {
+        const auto theirs = from_message<double>(wholes[i]);
+        if (!whole.empty() && !theirs.empty() && overlap(whole.data(), theirs.data(), axes))
+            out[i] = as_message(std::span(boxes));
+    }
+    return passed(out, traffic);
+}
+
 /// Boxes go around several bodies: of those that meet one, the ones that meet a body are kept, and whoever
 /// sends them is told.
 void Halo::keep_near(const Frame& frame, const std::vector<double>& slabs, Traffic& traffic) {
-    Frame known = frame;
-    trade(known, traffic);
+    trade(frame, traffic);
     for (auto& list : gotten_) {
-        places_.keep(known, list);
-        list = near(list, slabs_of(list, known), slabs);
+        places_.keep(others_, list);
+        list = near(list, slabs_of(list, others_), slabs);
         share_.others.insert(share_.others.end(), list.begin(), list.end());
     }
     sent_ = told(gotten_, traffic);
@@ -151,13 +162,9 @@ void Halo::meet(const std::vector<std::uint32_t>& own, const Frame& frame, Traff
     places_.keep(frame, own);
     places_.keep(frame, fixed_);
     const auto slabs = slabs_of(own, frame);
-    const auto boxes = boxes_over(slabs);
-    const auto all = ranks_.gather_to_all(std::as_bytes(std::span(boxes)));
-    traffic.bytes += boxes.size() * sizeof(double);
-    ++traffic.messages;
-    std::vector<Numbers> lists(all.size());
-    for (std::size_t i = 0; i < static_cast<std::size_t>(ranks_.rank()); ++i)
-        lists[i] = near(own, slabs, from_message<double>(all[i]));
+    const auto boxes = boxes_near(around(slabs, in_a_box, sweep_.axes()), traffic);
+    std::vector<Numbers> lists;
+    for (const auto& theirs : boxes) lists.push_back(near(own, slabs, from_message<double>(theirs)));
     gotten_ = told(lists, traffic);
     sent_ = std::move(lists);
     keep_near(frame, slabs, traffic);
@@ -166,29 +173,49 @@ void Halo::meet(const std::vector<std::uint32_t>& own, const Frame& frame, Traff
     is_met_ = true;
 }
 
-void Halo::trade(Frame& frame, Traffic& traffic) {
-    std::vector<Ranks::Bytes> out(sent_.size());
-    for (std::size_t i = 0; i < sent_.size(); ++i)
-        for (const auto body : sent_[i]) {
-            if (scene_.bodies[body].deformable)
-                append(out[i], std::span(frame.deformed[body]));
-            else
-                append(out[i], std::span(&frame.poses[body], 1));
-        }
-    const auto in = passed(out, traffic);
-    for (std::size_t i = 0; i < in.size(); ++i) {
-        if (in[i].empty()) continue;
-        MessageReader message(in[i]);
-        for (const auto body : gotten_[i]) {
-            if (scene_.bodies[body].deformable) {
-                auto& vertices = frame.deformed[body];
-                vertices.resize(scene_.meshes[scene_.bodies[body].mesh].vertices.size());
-                message.read(std::span(vertices));
-            } else {
-                message.read(std::span(&frame.poses[body], 1));
-            }
+/// Poses or vertices of these bodies; then, where the frame skips tetrahedra, how many of each and which.
+Ranks::Bytes Halo::words_of(const Numbers& bodies, const Frame& frame) const {
+    Ranks::Bytes words;
+    for (const auto body : bodies) {
+        if (scene_.bodies[body].deformable)
+            append(words, std::span(frame.deformed[body]));
+        else
+            append(words, std::span(&frame.poses[body], 1));
+    }
+    if (frame.skipped.empty()) return words;
+    for (const auto body : bodies) {
+        const std::uint64_t count = frame.skipped[body].size();
+        append(words, std::span(&count, 1));
+        append(words, std::span(frame.skipped[body]));
+    }
+    return words;
+}
+
+void Halo::listen(const Ranks::Bytes& words, const Numbers& bodies) {
+    MessageReader message(words);
+    for (const auto body : bodies) {
+        if (scene_.bodies[body].deformable) {
+            auto& vertices = others_.deformed[body];
+            vertices.resize(scene_.meshes[scene_.bodies[body].mesh].vertices.size());
+            message.read(std::span(vertices));
+        } else {
+            message.read(std::span(&others_.poses[body], 1));
         }
     }
+    if (message.is_at_end() && others_.skipped.empty()) return;
+    others_.skipped.resize(scene_.bodies.size());
+    for (const auto body : bodies) {
+        auto& skipped = others_.skipped[body];
+        skipped.resize(message.is_at_end() ? 0 : message.read<std::uint64_t>());
+        message.read(std::span(skipped));
+    }
+}
+
+void Halo::trade(const Frame& frame, Traffic& traffic) {
+    std::vector<Ranks::Bytes> out;
+    for (const auto& bodies : sent_) out.push_back(words_of(bodies, frame));
+    const auto in = passed(out, traffic);
+    for (std::size_t i = 0; i < in.size(); ++i) listen(in[i], gotten_[i]);
 }
 
 } // namespace tandem

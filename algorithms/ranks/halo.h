@@ -26,8 +26,10 @@ public:
     /// By all ranks: exchanges bounds, and finds who is near. `frame` has the poses or vertices of `own`, and
     /// of fixed bodies.
     void meet(const std::vector<std::uint32_t>& own, const Frame& frame, Traffic& traffic);
-    /// By all ranks: puts the poses and vertices of others into `frame`.
-    void trade(Frame& frame, Traffic& traffic);
+    /// By all ranks: sends poses, vertices and skipped tetrahedra of own bodies to those that need them.
+    void trade(const Frame& frame, Traffic& traffic);
+    /// What came of others' bodies; of all else it has nothing.
+    const Frame& others() const { return others_; }
     /// Of this rank: its own bodies, and the others that it gets or that are fixed and near.
     const Share& share() const { return share_; }
     /// The next is_over() is true.
@@ -37,12 +39,14 @@ private:
     using Numbers = std::vector<std::uint32_t>;
 
     std::vector<double> slabs_of(const Numbers& bodies, const Frame& frame) const;
-    std::vector<double> boxes_over(const std::vector<double>& slabs) const;
     Numbers near(const Numbers& bodies, const std::vector<double>& slabs,
                  std::span<const double> boxes) const;
     std::vector<Numbers> told(const std::vector<Numbers>& lists, Traffic& traffic);
     void keep_near(const Frame& frame, const std::vector<double>& slabs, Traffic& traffic);
     std::vector<Ranks::Bytes> passed(const std::vector<Ranks::Bytes>& out, Traffic& traffic);
+    std::vector<Ranks::Bytes> boxes_near(const std::vector<double>& boxes, Traffic& traffic);
+    Ranks::Bytes words_of(const Numbers& bodies, const Frame& frame) const;
+    void listen(const Ranks::Bytes& words, const Numbers& bodies);
 
     const Scene& scene_;
     Ranks& ranks_;
@@ -51,8 +55,9 @@ private:
     Numbers fixed_; ///< bodies
     Share share_;
     std::vector<Numbers> sent_, gotten_; ///< by rank
-    double margin_ = 0.25;               ///< of a body's radius
-    std::size_t held_ = 0;               ///< frames since the last meet()
+    Frame others_;
+    double margin_ = 0.25; ///< of a body's radius
+    std::size_t held_ = 0; ///< frames since the last meet()
     bool is_met_ = false;
 };
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/ranks/present.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace tandem {
 
 namespace {
@@ -29,24 +32,39 @@ private:
 
 } // namespace
 
-std::shared_ptr<const Scene> scene_of(const Scene& scene, const std::vector<bool>& is_present) {
+std::shared_ptr<const Scene> part_of(const Scene& scene, const std::vector<std::uint32_t>& bodies) {
     auto part = std::make_shared<Scene>();
     part->name = scene.name;
     part->key = scene.key;
     part->units = scene.units;
     part->frame_count = scene.frame_count;
-    part->frame = scene.frame;
     part->digest = scene.digest;
-    std::vector<bool> is_used(scene.meshes.size());
-    for (std::size_t body = 0; body < scene.bodies.size(); ++body)
-        if (is_present[body]) is_used[scene.bodies[body].mesh] = true;
-    for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
-        part->meshes.push_back(is_used[mesh] ? scene.meshes[mesh] : Mesh{});
-    part->meshes.emplace_back();
-    const auto nothing = static_cast<std::uint32_t>(scene.meshes.size());
-    for (std::size_t body = 0; body < scene.bodies.size(); ++body)
-        part->bodies.push_back(is_present[body] ? scene.bodies[body] : Body{.mesh = nothing, .fixed = true});
+    part->numbers = bodies;
+    constexpr auto none = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> meshes(scene.meshes.size(), none); // by the scene's number of it: the part's
+    for (const auto number : bodies) {
+        auto body = scene.bodies[number];
+        auto& mesh = meshes[body.mesh];
+        if (mesh == none) {
+            mesh = static_cast<std::uint32_t>(part->meshes.size());
+            part->meshes.push_back(scene.meshes[body.mesh]);
+        }
+        body.mesh = mesh;
+        part->bodies.push_back(body);
+    }
     return part;
+}
+
+Share in_part(const Scene& part, const Share& share) {
+    const auto there = [&](const std::vector<std::uint32_t>& bodies) {
+        std::vector<std::uint32_t> numbers;
+        for (const auto body : bodies) {
+            const auto at = std::ranges::lower_bound(part.numbers, body);
+            numbers.push_back(static_cast<std::uint32_t>(at - part.numbers.begin()));
+        }
+        return numbers;
+    };
+    return {there(share.own), there(share.others)};
 }
 
 std::shared_ptr<const AnswerPart> kept_part(std::shared_ptr<const AnswerPart> part,

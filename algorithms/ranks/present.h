@@ -7,9 +7,12 @@
 
 namespace tandem {
 
-/// The scene with all of its bodies' numbers, of which only these are there: the others have a mesh without
-/// tetrahedra, and meshes that none of these has are left out. Its frames are the whole scene's.
-std::shared_ptr<const Scene> scene_of(const Scene& scene, const std::vector<bool>& is_present);
+/// The part of a scene that has these bodies alone, which are ascending, and their meshes. Numbered anew, so
+/// that whatever is kept by body is as large as the part; answers name bodies as the whole scene does.
+std::shared_ptr<const Scene> part_of(const Scene& scene, const std::vector<std::uint32_t>& bodies);
+
+/// A share of the whole scene's bodies, all of which are in the part, as the part numbers them.
+Share in_part(const Scene& part, const Share& share);
 
 /// The same part of an answer, which keeps that scene alive.
 std::shared_ptr<const AnswerPart> kept_part(std::shared_ptr<const AnswerPart> part,

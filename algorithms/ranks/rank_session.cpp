@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
+#include <iterator>
 #include <numeric>
 
 namespace tandem {
@@ -23,12 +24,12 @@ std::int64_t ns_since(Clock::time_point begin) {
 
 /// Candidate pairs by body. None where the device fails: the others wait for this rank's message, a deal
 /// needs no counts, and the next frame will fail as well.
-std::vector<std::uint64_t> counts_of(const FrameResult& result, std::size_t bodies) {
-    std::vector<std::uint64_t> counts(bodies);
+std::vector<std::uint64_t> counts_of(const FrameResult& result) {
+    std::vector<std::uint64_t> counts;
     try {
         for (const auto& part : result.parts) part->count_by_body(counts);
     } catch (const DeviceError&) {
-        counts.assign(bodies, 0);
+        counts.clear();
     }
     return counts;
 }
@@ -57,12 +58,11 @@ RankSession::RankSession(const Traversal& traversal, Device& device, const Scene
       balance_(static_cast<std::size_t>(ranks.size())),
       halo_(scene, geometry_of(settings_), ranks),
       places_(scene),
-      is_present_(scene.bodies.size()) {
-    deal_.make(balls_at_the_start(scene), balance_.speeds());
+      balls_(balls_at_the_start(scene)) {
+    deal_.make(balls_, balance_.speeds());
     // What compiles and allocates does so now, and not in the first frame.
-    auto frame = scene.frame(0);
     Report own;
-    exchange(frame, own);
+    exchange(scene.frame(0), own);
     fail(reports(own));
 }
 
@@ -75,29 +75,41 @@ void RankSession::do_count_work(bool on) {
     if (session_) session_->count_work(on);
 }
 
+FrameResult RankSession::do_run_there(const DeviceFrame&, std::optional<std::span<const BodyPair>>) {
+    throw InputError(
+        fmt::format("{}: ranks of a job tell each other where bodies are, from the host's memory; "
+                    "give the frame there",
+                    devices_.front()->info().id));
+}
+
+void RankSession::drop() {
+    session_.reset(); // which refers to the scene
+    present_.reset();
+}
+
 /// A session of those bodies alone.
-void RankSession::build(const std::vector<bool>& is_present) {
-    session_.reset(); // before the next takes memory
-    present_ = scene_of(scene_, is_present);
+void RankSession::build(const std::vector<std::uint32_t>& bodies) {
+    drop(); // before the next takes memory
+    present_ = part_of(scene_, bodies);
+    present_frame_ = {std::vector<Pose>(bodies.size()),
+                      std::vector<std::vector<Eigen::Vector3d>>(bodies.size())};
     session_ = std::make_unique<ResidentSession>(traversal_, *devices_.front(), *present_, settings_);
     if (counts_work_) session_->count_work(true);
-    is_present_ = is_present;
 }
 
 /// Bodies that were there stay, as long as there is room: those at the border come and go.
 void RankSession::take_share() {
     const auto& share = halo_.share();
-    if (share.own.empty()) {
-        session_.reset();
-        is_present_.assign(is_present_.size(), false);
-        return;
-    }
-    std::vector<bool> needed(is_present_.size());
-    for (const auto* bodies : {&share.own, &share.others})
-        for (const auto body : *bodies) needed[body] = true;
+    if (share.own.empty()) return drop();
+    auto needed = share.own;
+    needed.insert(needed.end(), share.others.begin(), share.others.end());
+    std::ranges::sort(needed);
     auto both = needed;
-    for (std::size_t body = 0; body < both.size(); ++body) both[body] = both[body] || is_present_[body];
-    if (!session_ || both != is_present_) {
+    if (session_) {
+        both.clear();
+        std::ranges::set_union(needed, present_->numbers, std::back_inserter(both));
+    }
+    if (!session_ || both != present_->numbers) {
         try {
             build(both);
         } catch (const OutOfMemory&) {
@@ -105,11 +117,31 @@ void RankSession::take_share() {
             build(needed);
         }
     }
-    session_->take(share);
+    session_->take(in_part(*present_, share));
+}
+
+/// Of bodies that have a part in this rank's share.
+void RankSession::take_frame(const Frame& frame) {
+    const auto& there = present_->numbers;
+    const auto take = [&](const std::vector<std::uint32_t>& bodies, bool are_own) {
+        for (const auto number : bodies) {
+            const auto& from = are_own || scene_.bodies[number].fixed ? frame : halo_.others();
+            const auto body =
+                static_cast<std::size_t>(std::ranges::lower_bound(there, number) - there.begin());
+            present_frame_.poses[body] = from.poses[number];
+            if (scene_.bodies[number].deformable) present_frame_.deformed[body] = from.deformed[number];
+            const bool skips = !from.skipped.empty() && !from.skipped[number].empty();
+            if (skips) present_frame_.skipped.resize(there.size());
+            if (!present_frame_.skipped.empty())
+                present_frame_.skipped[body] = skips ? from.skipped[number] : std::vector<std::uint32_t>{};
+        }
+    };
+    take(halo_.share().own, true);
+    take(halo_.share().others, false);
 }
 
 /// What others have to say of a frame. Every rank passes the same messages, whatever becomes of it.
-void RankSession::exchange(Frame& frame, Report& own) {
+void RankSession::exchange(const Frame& frame, Report& own) {
     const HostWork work(*devices_.front(), Stage::exchange, "bodies of other ranks");
     const auto begin = Clock::now();
     Halo::Traffic traffic;
@@ -120,8 +152,7 @@ void RankSession::exchange(Frame& frame, Report& own) {
         } catch (const std::exception& error) {
             own.failure = error.what();
             own.is_memory = dynamic_cast<const OutOfMemory*>(&error) != nullptr;
-            session_.reset();
-            is_present_.assign(is_present_.size(), false);
+            drop();
             halo_.forget();
         }
     }
@@ -135,7 +166,8 @@ void RankSession::walk(const Frame& frame, FrameResult& result, Report& own) {
     if (!own.failure.empty() || !session_) return;
     const auto begin = Clock::now();
     try {
-        result = session_->run(frame);
+        take_frame(frame);
+        result = session_->run(present_frame_);
     } catch (const std::exception& error) {
         own.failure = error.what();
         own.is_memory = dynamic_cast<const OutOfMemory*>(&error) != nullptr;
@@ -178,6 +210,19 @@ std::vector<RankSession::Report> RankSession::reports(const Report& own) {
     return all;
 }
 
+/// Where this rank's bodies are, and the candidate pairs of those that it has some of.
+Ranks::Bytes RankSession::seen_of(const Frame& frame, const FrameResult& result) {
+    places_.keep(frame, own_bodies());
+    Ranks::Bytes message;
+    for (const auto body : own_bodies()) append(message, std::span(&places_.ball(body), 1));
+    const auto counts = counts_of(result);
+    for (std::uint32_t body = 0; body < counts.size(); ++body) {
+        const std::array<std::uint64_t, 2> row{body, counts[body]};
+        if (counts[body] > 0) append(message, std::span<const std::uint64_t>(row));
+    }
+    return message;
+}
+
 /// All ranks see the same numbers and come to the same end.
 void RankSession::deal_anew(const Frame& frame, FrameResult& result) {
     std::vector<double> work;
@@ -186,31 +231,25 @@ void RankSession::deal_anew(const Frame& frame, FrameResult& result) {
     balance_.see(result.shared, work);
     if (!balance_.wants_a_deal()) return;
     const HostWork timed(*devices_.front(), Stage::exchange, "deal bodies");
-    // Places of own bodies and candidate pairs of all that pairs here are of.
-    places_.keep(frame, own_bodies());
-    Ranks::Bytes message;
-    for (const auto body : own_bodies()) append(message, std::span(&places_.ball(body), 1));
-    auto counts = counts_of(result, scene_.bodies.size());
-    append(message, std::span(counts));
-    std::vector<Ball> balls = balls_at_the_start(scene_); // of fixed ones
-    std::vector<std::uint64_t> sums(counts.size());
-    const auto all = ranks_.gather_to_all(message);
+    std::vector<std::uint64_t> counts(scene_.bodies.size());
+    const auto all = ranks_.gather_to_all(seen_of(frame, result));
     for (std::size_t rank = 0; rank < all.size(); ++rank) {
-        MessageReader reader(all[rank]);
-        for (const auto body : deal_.shares()[rank].own) reader.read(std::span(&balls[body], 1));
-        reader.read(std::span(counts));
-        for (std::size_t body = 0; body < sums.size(); ++body) sums[body] += counts[body];
+        MessageReader message(all[rank]);
+        for (const auto body : deal_.shares()[rank].own) message.read(std::span(&balls_[body], 1));
+        while (!message.is_at_end()) {
+            const auto [body, count] = message.read<std::array<std::uint64_t, 2>>();
+            counts[body] += count;
+        }
     }
-    if (settings_[parameters::output] == Output::pairs) deal_.learn(sums);
-    deal_.make(balls, balance_.speeds());
+    if (settings_[parameters::output] == Output::pairs) deal_.learn(counts);
+    deal_.make(balls_, balance_.speeds());
     balance_.dealt();
     halo_.forget();
     result.deals = 1;
 }
 
-FrameResult RankSession::do_run(const Frame& given, std::optional<std::span<const BodyPair>> body_pairs) {
+FrameResult RankSession::do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
     if (body_pairs) throw InputError("run() was given body pairs, which ranks of a job find themselves");
-    Frame frame = given;
     Report own;
     FrameResult result;
     exchange(frame, own);

@@ -30,6 +30,8 @@ private:
 
     void do_reset() override;
     FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override;
+    FrameResult do_run_there(const DeviceFrame& frame,
+                             std::optional<std::span<const BodyPair>> body_pairs) override;
     void do_count_work(bool on) override;
     std::span<Device* const> do_devices() const override { return devices_; }
     std::optional<std::span<const std::uint32_t>> do_owned() const override { return own_bodies(); }
@@ -39,11 +41,14 @@ private:
         return deal_.shares()[static_cast<std::size_t>(ranks_.rank())].own;
     }
     void take_share();
-    void build(const std::vector<bool>& is_present);
-    void exchange(Frame& frame, Report& own);
+    void build(const std::vector<std::uint32_t>& bodies);
+    void drop();
+    void exchange(const Frame& frame, Report& own);
+    void take_frame(const Frame& frame);
     void walk(const Frame& frame, FrameResult& result, Report& own);
     std::vector<Report> reports(const Report& own);
     void fail(const std::vector<Report>& all) const;
+    Ranks::Bytes seen_of(const Frame& frame, const FrameResult& result);
     void deal_anew(const Frame& frame, FrameResult& result);
 
     const Traversal& traversal_;
@@ -55,8 +60,9 @@ private:
     Balance balance_;
     Halo halo_;
     Places places_;
-    std::vector<bool> is_present_; ///< by body: on the device
-    std::shared_ptr<const Scene> present_;
+    std::vector<Ball> balls_;                  ///< by body, when they were dealt
+    std::shared_ptr<const Scene> present_;     ///< what is on the device; null without a session
+    Frame present_frame_;                      ///< of present_
     std::unique_ptr<ResidentSession> session_; ///< none where the share has no bodies
     bool counts_work_ = false;
 };

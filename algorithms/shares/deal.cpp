@@ -2,11 +2,13 @@
 #include "algorithms/shares/deal.h"
 
 #include "algorithms/hierarchy/order.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 namespace tandem {
 
@@ -67,8 +69,7 @@ double Deal::expected_pairs(BodyPair pair) const {
     const double volume = common_volume(a.radius, b.radius, (a.centre - b.centre).norm());
     if (!(volume > 0)) return 0;
     const auto density = [&](const Ball& ball, std::uint32_t body) {
-        const auto count = static_cast<double>(scene_.meshes[scene_.bodies[body].mesh].tetrahedra.size());
-        return count / (4 * std::numbers::pi / 3 * ball.radius * ball.radius * ball.radius);
+        return tetrahedra_of(body) / (4 * std::numbers::pi / 3 * ball.radius * ball.radius * ball.radius);
     };
     const double of_a = density(a, pair.a), of_b = density(b, pair.b);
     const double size = 1 / std::cbrt(of_a) + 1 / std::cbrt(of_b);
@@ -80,8 +81,7 @@ void Deal::expect_work(std::span<const BodyPair> near) {
     std::vector<std::uint32_t> positions(scene_.bodies.size(), std::numeric_limits<std::uint32_t>::max());
     for (std::uint32_t i = 0; i < order_.size(); ++i) positions[order_[i]] = i;
     work_.assign(order_.size(), 0);
-    for (std::size_t i = 0; i < order_.size(); ++i)
-        work_[i] = static_cast<double>(scene_.meshes[scene_.bodies[order_[i]].mesh].tetrahedra.size());
+    for (std::size_t i = 0; i < order_.size(); ++i) work_[i] = tetrahedra_of(order_[i]);
     std::fill(foreseen_.begin(), foreseen_.end(), 0);
     for (const auto& pair : near) {
         const double pairs = expected_pairs(pair);
@@ -92,41 +92,71 @@ void Deal::expect_work(std::span<const BodyPair> near) {
     }
 }
 
-/// Each share takes bodies up to where its part of all work ends.
-void Deal::cut(std::span<const double> speeds) {
+/// Each share takes bodies up to where its part of all work ends, which is less by what others' bodies
+/// `brought` it. Returns the work of its own bodies.
+std::vector<double> Deal::cut_once(std::span<const double> speeds, std::span<const double> brought) {
     const double all_work = std::accumulate(work_.begin(), work_.end(), 0.0);
+    const double all_brought = std::accumulate(brought.begin(), brought.end(), 0.0);
     const double all_speed = std::accumulate(speeds.begin(), speeds.end(), 0.0);
+    const auto part = [&](std::size_t share) {
+        return std::max(0.0, (all_work + all_brought) * speeds[share] / all_speed - brought[share]);
+    };
     std::fill(owners_.begin(), owners_.end(), shares_.size());
     for (auto& share : shares_) share = {};
+    std::vector<double> own(shares_.size());
     double done = 0, until = 0;
     std::size_t share = 0;
     for (std::size_t i = 0; i < order_.size(); ++i) {
         // A body goes to the share in whose part the middle of its work lies.
-        while (share + 1 < shares_.size()
-               && done + work_[i] / 2 >= until + all_work * speeds[share] / all_speed)
-            until += all_work * speeds[share++] / all_speed;
+        while (share + 1 < shares_.size() && done + work_[i] / 2 >= until + part(share))
+            until += part(share++);
         shares_[share].own.push_back(order_[i]);
         owners_[order_[i]] = share;
+        own[share] += work_[i];
         done += work_[i];
     }
+    return own;
+}
+
+/// What others' bodies bring a share is known once it is cut: a few times, and the cut stays in which the
+/// share that takes longest is done first.
+void Deal::cut(std::span<const BodyPair> near, std::span<const double> speeds) {
+    constexpr int times = 4;
+    std::vector<double> brought(shares_.size()), best_brought = brought;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < times; ++i) {
+        const auto own = cut_once(speeds, brought);
+        gather(near);
+        const auto before = std::exchange(brought, std::vector<double>(shares_.size()));
+        double longest = 0;
+        for (std::size_t share = 0; share < shares_.size(); ++share) {
+            for (const auto body : shares_[share].others) brought[share] += tetrahedra_of(body);
+            longest = std::max(longest, (own[share] + brought[share]) / speeds[share]);
+        }
+        if (longest >= shortest) continue;
+        shortest = longest;
+        best_brought = before;
+    }
+    cut_once(speeds, best_brought);
+    gather(near);
 }
 
 /// Of every pair the share that has it needs both.
 void Deal::gather(std::span<const BodyPair> near) {
-    std::vector<std::vector<Role>> roles;
-    for (const auto& share : shares_) roles.push_back(roles_in(share, scene_.bodies.size()));
+    std::vector<std::pair<std::size_t, std::uint32_t>> needed; // by share, bodies of others
     for (const auto& pair : near) {
         const auto share = share_of(pair);
-        for (const auto body : {pair.a, pair.b}) {
-            auto& role = roles[share][body];
-            if (role != Role::none) continue;
-            role = Role::other;
-            shares_[share].others.push_back(body);
-        }
+        for (const auto body : {pair.a, pair.b})
+            if (owners_[body] != share) needed.emplace_back(share, body);
     }
+    std::sort(needed.begin(), needed.end());
+    needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
+    for (auto& share : shares_) share.others.clear();
+    for (const auto& [share, body] : needed) shares_[share].others.push_back(body);
 }
 
 void Deal::gather_all() {
+    for (auto& share : shares_) share.others.clear();
     for (std::size_t i = 0; i < shares_.size(); ++i)
         for (std::uint32_t body = 0; body < owners_.size(); ++body)
             if (owners_[body] > i) shares_[i].others.push_back(body);
@@ -143,25 +173,26 @@ void Deal::make(const Frame& frame, std::span<const double> speeds) {
     order_bodies();
     const auto near = sweep_.pairs(frame, places_.margins(margin_));
     expect_work(near);
-    cut(speeds);
-    if (has_all_)
-        gather_all();
-    else
-        gather(near);
+    cut(near, speeds);
+    if (has_all_) gather_all();
 }
 
 void Deal::make(std::span<const Ball> balls, std::span<const double> speeds) {
     balls_.assign(balls.begin(), balls.end());
     order_bodies();
-    expect_work(sweep_.pairs(balls));
-    cut(speeds);
+    const auto near = sweep_.pairs(balls);
+    expect_work(near);
+    cut(near, speeds);
+}
+
+double Deal::tetrahedra_of(std::uint32_t body) const {
+    return static_cast<double>(scene_.meshes[scene_.bodies[body].mesh].tetrahedra.size());
 }
 
 double Deal::work_of(const Share& share, std::uint64_t pairs) const {
     double tetrahedra = 0;
     for (const auto* bodies : {&share.own, &share.others})
-        for (const auto body : *bodies)
-            tetrahedra += static_cast<double>(scene_.meshes[scene_.bodies[body].mesh].tetrahedra.size());
+        for (const auto body : *bodies) tetrahedra += tetrahedra_of(body);
     return tetrahedra + work_of_a_pair * static_cast<double>(pairs);
 }
 

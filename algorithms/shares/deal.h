@@ -20,8 +20,8 @@ public:
     /// Deals anew. `speeds`: of each share's device, in any unit. Where the last deal has not held for long
     /// margins grow, and where they are of no use shares have all bodies, which holds for any frame.
     void make(const Frame& frame, std::span<const double> speeds);
-    /// The same for who knows no more of a frame than the balls that bodies are in: shares have their own
-    /// bodies and no others, and hold() is not to be asked.
+    /// The same for who knows no more of a frame than the balls that bodies are in: shares have all bodies
+    /// whose balls may meet their own, and holds() is not to be asked.
     void make(std::span<const Ball> balls, std::span<const double> speeds);
     /// Candidate pairs of each body in the frame that was dealt, from which the next deal expects work.
     void learn(std::span<const std::uint64_t> pairs_by_body);
@@ -38,7 +38,9 @@ private:
     void order_bodies();
     void expect_work(std::span<const BodyPair> near);
     double expected_pairs(BodyPair pair) const;
-    void cut(std::span<const double> speeds);
+    double tetrahedra_of(std::uint32_t body) const;
+    void cut(std::span<const BodyPair> near, std::span<const double> speeds);
+    std::vector<double> cut_once(std::span<const double> speeds, std::span<const double> brought);
     void gather(std::span<const BodyPair> near);
     void gather_all();
 

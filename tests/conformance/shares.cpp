@@ -279,6 +279,32 @@ TEST(Deals, GoBySpeedAndByWhatWasFound) {
     EXPECT_LT(first, 30u) << "half of the work is of the first fifty bodies";
 }
 
+/// Bodies in whose pairs nothing is found: the first shares have to bound others' bodies as well as their own.
+TEST(Deals, CountWhatOthersBring) {
+    Random random(3);
+    Scene scene;
+    scene.meshes = {shaken_box(1, random)};
+    constexpr std::uint32_t side = 8;
+    scene.bodies.resize(std::size_t{side} * side * side);
+    const double apart = 1.6 * ball_around(scene.meshes[0].vertices).radius;
+    Frame frame;
+    for (std::uint32_t i = 0; i < side * side * side; ++i)
+        frame.poses.push_back(
+            {.translation = apart * Eigen::Vector3d(i % side, i / side % side, i / side / side)});
+    frame.deformed.resize(scene.bodies.size());
+    Deal deal(scene, {}, 4);
+    deal.make(frame, std::array{1.0, 1.0, 1.0, 1.0});
+    deal.learn(std::vector<std::uint64_t>(scene.bodies.size()));
+    deal.make(frame, std::array{1.0, 1.0, 1.0, 1.0});
+    std::size_t most = 0, sum = 0;
+    for (const auto& share : deal.shares()) {
+        most = std::max(most, share.own.size() + share.others.size());
+        sum += share.own.size() + share.others.size();
+    }
+    EXPECT_GT(sum, scene.bodies.size() * 11 / 10);
+    EXPECT_LT(static_cast<double>(most), 1.04 * static_cast<double>(sum) / 4);
+}
+
 SharedWork took(std::int64_t ns) { return {.bodies = 1, .body_pairs = 1, .pairs = 1, .ns = ns}; }
 
 TEST(Balances, WantADealAfterSomeFramesOutOfBalance) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sessions on ranks of a job, which a launcher has started: answers together are those of one device, every
 // pair is found once, and an error of one rank is one of all. Every rank runs every test.
+#include "algorithms/answer/digest.h"
 #include "algorithms/ranks/bytes.h"
 #include "backends/mpi/mpi_ranks.h"
 #include "scenes/error.h"
@@ -41,8 +42,31 @@ Frame of_own(const Scene& scene, const Session& session, std::size_t number) {
         if (is_own[body] || scene.bodies[body].fixed) continue;
         frame.poses[body].translation = {1e6, 0, 0};
         frame.deformed[body].clear();
+        if (!frame.skipped.empty()) frame.skipped[body].clear();
     }
     return frame;
+}
+
+/// Tetrahedra that touch their neighbours in rows, planes and a lattice of so many to a side.
+Scene lattice(std::uint32_t side) {
+    Scene scene;
+    scene.name = scene.key = "lattice";
+    Mesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.tetrahedra = {{0, 1, 2, 3}};
+    complete_mesh(mesh, "lattice");
+    scene.meshes = {mesh};
+    scene.bodies.resize(std::size_t{side} * side * side);
+    scene.frame = [side](std::size_t) {
+        Frame frame;
+        for (std::uint32_t i = 0; i < side * side * side; ++i)
+            frame.poses.push_back(
+                {.translation = {1.0 * (i % side), 1.5 * (i / side % side), 1.5 * (i / side / side)}});
+        frame.deformed.resize(frame.poses.size());
+        return frame;
+    };
+    scene.digest = digest_of(scene);
+    return scene;
 }
 
 class RankSessions : public testing::Test {
@@ -121,6 +145,44 @@ TEST_F(RankSessions, OnlyWhatIsNeededIsOnTheDevice) {
     }
 }
 
+/// Every rank says which tetrahedra of its own bodies are skipped, in one frame and not in the next.
+TEST_F(RankSessions, SkippedTetrahedraAreTold) {
+    auto scene = procession(24, 4, 0.05);
+    scene.frame = [whole = scene.frame](std::size_t number) {
+        auto frame = whole(number);
+        if (number % 2 == 1) return frame;
+        for (std::uint32_t body = 0; body < frame.poses.size(); ++body)
+            frame.skipped.push_back({body % 5, body % 5 + 3, 40u - static_cast<std::uint32_t>(number)});
+        return frame;
+    };
+    for (const auto* traversal : algorithms()) {
+        SCOPED_TRACE(traversal->name());
+        const auto session = traversal->prepare(device("host"), scene, settings_of(*traversal), *job);
+        const auto one = alone(*traversal, scene);
+        for (const std::size_t i : {0u, 1u, 2u, 2u, 3u, 0u}) expect_equal(scene, *session, *one, i);
+    }
+}
+
+/// A device's search numbers 2^20 bodies at most, a scene on ranks may have more: those of other ranks have
+/// no numbers on a device.
+TEST_F(RankSessions, MoreBodiesThanADeviceCanNumber) {
+    ASSERT_GT(job->size(), 1) << "one rank has all bodies";
+    constexpr std::uint32_t side = 103;
+    const auto scene = lattice(side);
+    ASSERT_GT(scene.bodies.size(), std::size_t{1} << 20);
+    const auto& traversal = algorithm("tiled");
+    EXPECT_THAT([&] { alone(traversal, scene); },
+                testing::ThrowsMessage<InputError>(testing::HasSubstr("takes at most 1048576 bodies")));
+    const auto session =
+        traversal.prepare(device("host"), scene, settings_of(traversal, {{"contact_rule", "none"}}), *job);
+    const auto result = session->run(scene.frame(0));
+    EXPECT_EQ(summed(result.count), std::uint64_t{side - 1} * side * side) << "neighbours in rows touch";
+    std::vector<Pair> pairs;
+    for (std::uint32_t i = 0; i < scene.bodies.size(); ++i)
+        if (i % side + 1 < side) pairs.push_back({i, 0, i + 1, 0});
+    EXPECT_EQ(summed(result.digest()), digest_of(pairs));
+}
+
 TEST_F(RankSessions, CountsAndDigestsWithoutPairs) {
     const auto scene = procession(20, 1, 0);
     for (const std::string output : {"count", "digest"}) {
@@ -183,6 +245,15 @@ TEST_F(RankSessions, RefuseWhatOneRankCannotDo) {
         }
         return "";
     };
+    const auto& tiled = algorithm("tiled");
+    const auto session = tiled.prepare(device("host"), scene, settings_of(tiled), *job);
+    DeviceFrame there;
+    there.poses = {device("host").allocate(5 * 7 * 8, "poses"), Precision::fp64};
+    there.deformed.resize(5);
+    there.deformed[1] = {device("host").allocate(scene.meshes[0].vertices.size() * 24, "vertices"),
+                         Precision::fp64};
+    EXPECT_THAT([&] { session->run(there); },
+                testing::ThrowsMessage<InputError>(testing::HasSubstr("ranks of a job tell each other")));
     EXPECT_THAT(refusal("tiled", {{"broad", "tight"}}), testing::HasSubstr("choose broad=device"));
     EXPECT_THAT(refusal("chunked", {{"residency", "published"}}), testing::HasSubstr("cannot share a frame"));
     EXPECT_THAT(refusal("tiled", {}), testing::HasSubstr("which ranks of a job find themselves"));

@@ -57,6 +57,7 @@ public:
                 }
                 boundary.push_back(static_cast<unsigned char>(second ? pair.boundary_b : pair.boundary_a));
             }
+        ids = {2, 0, 1}; // two bodies by their own numbers
         for (std::uint32_t i = 0; i < 2 * count; ++i) ids.push_back(input_id(i % count));
         for (std::uint32_t i = 0; i < count; ++i) found.insert(found.end(), {0, 1, i, i});
         const std::uint32_t in_world = 1;
