@@ -279,7 +279,8 @@ TEST(Deals, GoBySpeedAndByWhatWasFound) {
     EXPECT_LT(first, 30u) << "half of the work is of the first fifty bodies";
 }
 
-/// Bodies in whose pairs nothing is found: the first shares have to bound others' bodies as well as their own.
+/// Bodies in whose pairs nothing is found: the first shares have to bound others' bodies as well as their
+/// own.
 TEST(Deals, CountWhatOthersBring) {
     Random random(3);
     Scene scene;
