@@ -91,12 +91,14 @@ void check_local_memory(const Settings& settings, const DeviceInfo& info, std::u
                         settings[parameters::group_size], needed, what, info.id, info.local_bytes, remedy));
 }
 
-Pipeline::Pipeline(const Traversal& traversal, Device& on, const Scene& scene, Settings fitted)
+Pipeline::Pipeline(const Traversal& traversal, Device& on, const Scene& scene, Settings fitted,
+                   std::shared_ptr<AnswerPool> used)
     : device(on),
       settings(std::move(fitted)),
       shape(shape_of(settings, on.info())),
       output(settings[parameters::output]),
-      status(on, writes_of(settings)) {
+      status(on, writes_of(settings)),
+      answers(std::move(used)) {
     auto foundation = build_within(traversal, on, scene, settings, shape);
     bodies = std::move(foundation.bodies);
     steps = std::move(foundation.steps);
@@ -110,9 +112,11 @@ Pipeline::Pipeline(const Traversal& traversal, Device& on, const Scene& scene, S
     if (contacting)
         contacts = std::make_unique<ContactStage>(*bodies, contact_settings_of(settings), shape, launches);
     tools = std::make_shared<AnswerTools>(bodies, shape, contacting);
-    answers = std::make_unique<AnswerPool>(on, bodies->pair_layout(), real_bytes(bodies->geometry()),
-                                           output == Output::pairs ? settings[parameters::pair_capacity] : 1,
-                                           contacting ? settings[parameters::contact_capacity] : 0);
+    if (!answers || !answers->fits(bodies->pair_layout()))
+        answers =
+            std::make_shared<AnswerPool>(on, bodies->pair_layout(), real_bytes(bodies->geometry()),
+                                         output == Output::pairs ? settings[parameters::pair_capacity] : 1,
+                                         contacting ? settings[parameters::contact_capacity] : 0);
     compile(false);
 }
 

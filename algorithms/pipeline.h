@@ -26,7 +26,9 @@ void check_local_memory(const Settings& settings, const DeviceInfo& info, std::u
 struct Pipeline {
     /// Uploads what is static and compiles. `fitted`: Traversal::fitted. Throws OutOfMemory that says what
     /// bodies and hierarchy take when a memory limit is below that.
-    Pipeline(const Traversal& traversal, Device& on, const Scene& scene, Settings fitted);
+    /// `used`: a pool of a pipeline before it on this device with these settings, or null.
+    Pipeline(const Traversal& traversal, Device& on, const Scene& scene, Settings fitted,
+             std::shared_ptr<AnswerPool> used = nullptr);
 
     /// The hierarchy's walks count from now on, or do not.
     void count(bool on);
@@ -52,7 +54,7 @@ struct Pipeline {
     Status status;
     std::unique_ptr<ContactStage> contacts; ///< none when there are to be none
     std::shared_ptr<const AnswerTools> tools;
-    std::unique_ptr<AnswerPool> answers;
+    std::shared_ptr<AnswerPool> answers;
 };
 
 } // namespace tandem

@@ -15,8 +15,14 @@ namespace tandem {
 class ResidentSession final : public Session {
 public:
     /// `fitted`: Traversal::fitted.
-    ResidentSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted)
-        : scene_(scene), steps_(traversal, device, scene, std::move(fitted)), devices_{&device} {}
+    /// `answers`: of a session before it on this device with these settings, whose room for answers it
+    /// goes on with; null: none.
+    ResidentSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted,
+                    std::shared_ptr<AnswerPool> answers = nullptr)
+        : scene_(scene),
+          steps_(traversal, device, scene, std::move(fitted), std::move(answers)),
+          devices_{&device} {}
+    const std::shared_ptr<AnswerPool>& answers() const { return steps_.answers; }
 
     /// From now on finds the pairs of a share of each frame, and looks at nothing else of it. Body pairs that
     /// run() is given are of bodies that have a part in the share.

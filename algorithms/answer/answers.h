@@ -94,6 +94,8 @@ public:
     AnswerPool(Device& device, PairLayout layout, std::size_t real_bytes, std::int64_t pairs,
                std::int64_t contacts);
 
+    /// Whether pairs in this layout fit into its rows.
+    bool fits(PairLayout layout) const { return pair_bytes_ == words_of(layout) * 4; }
     /// Buffers that no answer lies in, with as much room as was ever needed. Throws OutOfMemory.
     std::shared_ptr<AnswerBuffers> take();
     /// The same for a frame that did not fit: room for so many, or as much as is free, shared out to pairs

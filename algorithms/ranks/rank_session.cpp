@@ -87,13 +87,15 @@ void RankSession::drop() {
     present_.reset();
 }
 
-/// A session of those bodies alone.
+/// A session of those bodies alone, with as much room for answers as the last had.
 void RankSession::build(const std::vector<std::uint32_t>& bodies) {
+    const auto answers = session_ ? session_->answers() : nullptr;
     drop(); // before the next takes memory
     present_ = part_of(scene_, bodies);
     present_frame_ = {std::vector<Pose>(bodies.size()),
                       std::vector<std::vector<Eigen::Vector3d>>(bodies.size())};
-    session_ = std::make_unique<ResidentSession>(traversal_, *devices_.front(), *present_, settings_);
+    session_ =
+        std::make_unique<ResidentSession>(traversal_, *devices_.front(), *present_, settings_, answers);
     if (counts_work_) session_->count_work(true);
 }
 

@@ -10,27 +10,40 @@ namespace tandem {
 /// How fast devices that share frames are, and whether a new deal would make frames shorter.
 class Balance {
 public:
-    explicit Balance(std::size_t shares) : speeds_(shares, 1.0) {}
+    explicit Balance(std::size_t shares);
 
-    /// A frame: what each device did, and its work as deals count it. The first one says nothing of times:
-    /// some devices compile in it.
+    /// A frame: what each device did, and its work as deals count it. The first one, and the first after a
+    /// deal, say nothing: some devices compile in them, or make room.
     void see(std::span<const SharedWork> done, std::span<const double> work);
-    /// Whether in some frames one after the other one device took so much longer than all on average that
-    /// bodies had better be dealt anew. After a deal that was of no use it takes twice as many frames.
+    /// Whether over some frames one device took so much longer than all on average, and more than frames
+    /// scatter, that bodies had better be dealt anew. After a deal that was of no use it takes twice as many.
     bool wants_a_deal() const { return wants_a_deal_; }
     /// Bodies have been dealt anew.
     void dealt();
-    /// Of each device: work done in a nanosecond; equal before the first frame.
+    /// Of each device: work done in a nanosecond; equal before some frames were seen.
     std::span<const double> speeds() const { return speeds_; }
 
 private:
+    /// Of one device over some frames.
+    struct Seen {
+        double sum = 0, squares = 0; ///< of its times over the frames' mean times
+        double work = 0, ns = 0;
+    };
+
+    double sure_imbalance() const;
+    void look_back();
+    void begin();
+
     std::vector<double> speeds_;
-    std::size_t frames_ = 0;
+    std::vector<Seen> seen_;
+    std::size_t frames_ = 0; ///< in seen_
+    std::size_t patience_;   ///< frames
+    std::size_t next_look_;  ///< at frames_
+    bool is_new_ = true;     ///< no frame of this deal has been seen
+    bool knows_speeds_ = false;
     bool wants_a_deal_ = false;
-    bool judges_ = false;      ///< the next frame tells what the last deal was good for
-    double before_ = 1;        ///< imbalance that it was made for
-    std::size_t patience_ = 2; ///< frames
-    std::size_t waited_ = 0;   ///< frames out of balance, one after the other
+    bool judges_ = false; ///< the frames at hand tell what the last deal was good for
+    double before_ = 1;   ///< the longest device's mean time that it was made for
 };
 
 /// The longest time over the mean of all: 1 where all devices end together.

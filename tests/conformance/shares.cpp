@@ -9,7 +9,9 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <cmath>
 #include <gtest/gtest.h>
+#include <random>
 #include <set>
 
 namespace tandem {
@@ -315,22 +317,56 @@ TEST(Balances, WantADealAfterSomeFramesOutOfBalance) {
     EXPECT_DOUBLE_EQ(imbalance(odd), 1.5);
     balance.see(std::array{took(100), took(90'000)}, work);
     EXPECT_EQ(balance.speeds()[0], balance.speeds()[1]) << "devices may compile in the first frame";
+    const std::array other{took(300), took(100)};
+    for (int i = 0; i < 2; ++i)
+        for (const auto& frame : {odd, other}) {
+            EXPECT_FALSE(balance.wants_a_deal());
+            balance.see(frame, work);
+        }
+    EXPECT_FALSE(balance.wants_a_deal()) << "now the one and now the other takes longer";
+    balance.dealt();
     balance.see(even, work);
-    EXPECT_FALSE(balance.wants_a_deal());
-    balance.see(odd, work);
-    EXPECT_FALSE(balance.wants_a_deal()) << "one frame says little";
-    balance.see(odd, work);
+    for (int i = 0; i < 4; ++i) {
+        EXPECT_FALSE(balance.wants_a_deal()) << "few frames say little";
+        balance.see(odd, work);
+    }
     EXPECT_TRUE(balance.wants_a_deal());
     EXPECT_GT(balance.speeds()[0], 1.5 * balance.speeds()[1]);
     balance.dealt();
     EXPECT_FALSE(balance.wants_a_deal());
     // The deal was of no use: the next ones are asked for later and later.
-    std::size_t frames = 0;
-    while (!balance.wants_a_deal() && frames < 100) {
-        balance.see(odd, work);
-        ++frames;
+    for (const std::size_t later : {4u, 8u, 16u}) {
+        balance.see(even, work); // the first frame of a deal says nothing
+        std::size_t frames = 0;
+        while (!balance.wants_a_deal() && frames < 100) {
+            balance.see(odd, work);
+            ++frames;
+        }
+        EXPECT_EQ(frames, later == 4u ? 4u : later) << "after one of no use";
+        balance.dealt();
     }
-    EXPECT_EQ(frames, 4u);
+}
+
+/// Frames whose times scatter by a tenth: no deal where shares are even, and one where one takes longer.
+TEST(Balances, DealForWhatIsSure) {
+    std::mt19937 random(5);
+    std::normal_distribution scatter(1.0, 0.1);
+    const std::vector<double> work(16, 1.0);
+    const auto deals_in = [&](std::size_t frames, double first_takes) {
+        Balance balance(work.size());
+        std::size_t deals = 0;
+        for (std::size_t frame = 0; frame < frames; ++frame) {
+            std::vector<SharedWork> done;
+            for (std::size_t i = 0; i < work.size(); ++i)
+                done.push_back(took(std::llround((i == 0 ? first_takes : 1) * 1e6 * scatter(random))));
+            balance.see(done, work);
+            deals += balance.wants_a_deal() ? 1 : 0;
+            if (balance.wants_a_deal()) balance.dealt();
+        }
+        return deals;
+    };
+    EXPECT_LE(deals_in(5000, 1), 5u);
+    EXPECT_GE(deals_in(100, 1.15), 1u);
 }
 
 } // namespace
