@@ -4,6 +4,7 @@
 #include "algorithms/batches.h"
 #include "algorithms/bodies/frame_on_device.h"
 
+#include <fmt/format.h>
 #include <utility>
 
 namespace tandem {
@@ -13,6 +14,17 @@ void ResidentSession::take(const Share& share) {
     steps_.bodies->take(share);
     steps_.steps.hierarchy->take(share, steps_.bodies->count());
     steps_.body_pairs->take(share);
+}
+
+void ResidentSession::receive(std::span<const std::uint32_t> bodies) {
+    receives_ = !bodies.empty();
+    is_placed_ = false;
+    steps_.bodies->leave(bodies);
+}
+
+void ResidentSession::place_vertices(const Frame& frame) {
+    steps_.bodies->update_deformed(frame, true);
+    is_placed_ = true;
 }
 
 void ResidentSession::do_reset() {
@@ -31,7 +43,8 @@ FrameResult ResidentSession::do_run_there(const DeviceFrame& frame,
 void ResidentSession::refresh(const Given& given) {
     const bool all = std::exchange(stale_, true);
     if (given.here != nullptr) {
-        steps_.bodies->update(*given.here, all);
+        steps_.bodies->update_poses(*given.here, all);
+        if (!std::exchange(is_placed_, false)) steps_.bodies->update_deformed(*given.here);
         steps_.steps.hierarchy->refit(*given.here, all);
         return;
     }
@@ -137,6 +150,9 @@ FrameResult ResidentSession::run_whole(const Given& given) {
 
 /// From the beginning: how far the frame came is not known.
 FrameResult ResidentSession::run_parts(const Given& given) {
+    if (receives_)
+        throw OutOfMemory(fmt::format("{}: a frame in batches needs all vertices in the host's memory",
+                                      steps_.device.info().id));
     if (given.there != nullptr) steps_.status.begin(0);
     refresh(given);
     if (given.there != nullptr) {

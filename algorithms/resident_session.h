@@ -24,6 +24,15 @@ public:
           devices_{&device} {}
     const std::shared_ptr<AnswerPool>& answers() const { return steps_.answers; }
 
+    // Where vertices come by another way than from the host's memory:
+
+    /// From now on somebody else writes the vertices of these deformable bodies, between place_vertices() and
+    /// run(), which throws OutOfMemory where it needs them in the host's: a frame in batches.
+    void receive(std::span<const std::uint32_t> bodies);
+    /// Puts the other deformable bodies' vertices of the next frame that is run to the device, and waits.
+    void place_vertices(const Frame& frame);
+    const Bodies& bodies() const { return *steps_.bodies; }
+
     /// From now on finds the pairs of a share of each frame, and looks at nothing else of it. Body pairs that
     /// run() is given are of bodies that have a part in the share.
     void take(const Share& share);
@@ -64,6 +73,8 @@ private:
     std::unique_ptr<PackStage> pack_; ///< from the first frame in the device's memory on
     std::uint64_t batches_ = 1;       ///< to begin a frame with
     bool stale_ = true;               ///< whether all commands so far have run is not known
+    bool is_placed_ = false;          ///< the next frame's vertices are there
+    bool receives_ = false;           ///< some come by another way
 };
 
 } // namespace tandem

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "backends/device.h"
+
 #include <cstddef>
 #include <span>
 #include <stdexcept>
@@ -20,6 +22,13 @@ struct RanksError : std::runtime_error {
 class Ranks {
 public:
     using Bytes = std::vector<std::byte>;
+
+    /// Memory, of a device or of the host, that goes to a rank or comes from it.
+    struct Piece {
+        int rank = 0;
+        void* memory = nullptr;
+        std::size_t bytes = 0;
+    };
 
     /// A message, and who sent it.
     struct Received {
@@ -44,6 +53,12 @@ public:
     virtual std::vector<Bytes> gather_to_all(std::span<const std::byte> own) = 0;
     /// Message i of `out` goes to rank i; empty ones are not sent. Returns what came, by rank.
     virtual std::vector<Bytes> exchange(const std::vector<Bytes>& out) = 0;
+
+    /// Whether messages can be of this device's memory as it lies there.
+    virtual bool reaches(const DeviceInfo& info) const = 0;
+    /// Pieces to and from other ranks, in whatever memory; between two ranks in the same order and of the
+    /// same sizes. What devices write there has been waited for.
+    virtual void exchange_there(std::span<const Piece> out, std::span<const Piece> in) = 0;
 
     // Between two of them.
 

@@ -178,7 +178,7 @@ std::vector<std::byte> Bodies::packed_poses(const Frame& frame) const {
 
 /// A scene in which nothing rigid moves uploads its poses with `all` only. With placement=exact deformable
 /// bodies have a drift that changes with their vertices and travels with the pose.
-void Bodies::upload_poses(const Frame& frame, bool all) {
+void Bodies::update_poses(const Frame& frame, bool all) {
     const auto moves = [this](const Body& body) {
         return !body.fixed && (!body.deformable || geometry_.placement == Placement::exact);
     };
@@ -197,13 +197,20 @@ void Bodies::take(const Share& share) {
     plan_runs();
 }
 
+void Bodies::leave(std::span<const std::uint32_t> bodies) {
+    left_.assign(bodies.empty() ? 0 : rows_.size(), false);
+    for (const auto body : bodies) left_[body] = true;
+    plan_runs();
+}
+
 /// Vertices of deformable bodies lie behind one another, so that one upload takes them all, and those of
 /// bodies that are left out as well where they are few.
 void Bodies::plan_runs() {
     constexpr std::uint64_t longest_gap = 4096; // vertices that take less than another upload
     runs_.clear();
     for (std::uint32_t body = 0; body < rows_.size(); ++body) {
-        if (!scene_.bodies[body].deformable || !takes(body)) continue;
+        const bool is_left = !left_.empty() && left_[body];
+        if (!scene_.bodies[body].deformable || !takes(body) || is_left) continue;
         const auto& row = rows_[body];
         if (runs_.empty() || row.vertices - runs_.back().end > longest_gap)
             runs_.push_back({row.vertices, row.vertices, {}});
@@ -212,7 +219,7 @@ void Bodies::plan_runs() {
     }
 }
 
-void Bodies::upload_deformed(const Frame& frame) {
+void Bodies::update_deformed(const Frame& frame, bool waits) {
     const auto row = 4 * real_bytes(geometry_);
     for (const auto& run : runs_) {
         std::vector<std::byte> bytes;
@@ -226,13 +233,13 @@ void Bodies::upload_deformed(const Frame& frame) {
         }
         if (bytes.empty()) continue;
         const StageScope scope(device_, Stage::write);
-        device_.upload(vertices_, bytes, run.first * row);
+        device_.upload(vertices_, bytes, run.first * row, waits);
     }
 }
 
 void Bodies::update(const Frame& frame, bool all) {
-    upload_poses(frame, all);
-    upload_deformed(frame);
+    update_poses(frame, all);
+    update_deformed(frame);
 }
 
 } // namespace tandem

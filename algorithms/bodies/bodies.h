@@ -41,8 +41,13 @@ public:
     /// what does not move, as the first frame needs it. For Sharing::by_mesh; the published data path uploads
     /// everything itself.
     void update(const Frame& frame, bool all = true);
+    /// The two halves of update(); `waits`: until vertices are there.
+    void update_poses(const Frame& frame, bool all);
+    void update_deformed(const Frame& frame, bool waits = false);
     /// From now on only what has a part in `share` is looked at in a frame and uploaded.
     void take(const Share& share);
+    /// From now on update() leaves out the vertices of these deformable bodies, which somebody else writes.
+    void leave(std::span<const std::uint32_t> bodies);
 
     Device& device() const { return device_; }
     const Scene& scene() const { return scene_; }
@@ -86,8 +91,6 @@ private:
     void upload_static();
     std::vector<std::byte> shared_vertices() const;
     std::array<double, 3> drift_of(const Frame& frame, std::size_t body) const;
-    void upload_poses(const Frame& frame, bool all);
-    void upload_deformed(const Frame& frame);
     void plan_runs();
     bool takes(std::size_t body) const { return roles_.empty() || roles_[body] != Role::none; }
     bool has_own_vertices(std::size_t body) const;
@@ -105,6 +108,7 @@ private:
     std::uint64_t vertex_total_ = 0;
     std::uint64_t tetrahedron_total_ = 0;
     std::vector<Role> roles_; ///< by body; none where all take part
+    std::vector<bool> left_;  ///< by body, whose vertices somebody else writes; none where nobody does
     /// Deformable bodies whose vertices are uploaded together, and the rows of vertices() that they fill.
     struct Run {
         std::uint64_t first = 0, end = 0;

@@ -174,13 +174,13 @@ void Halo::meet(const std::vector<std::uint32_t>& own, const Frame& frame, Traff
 }
 
 /// Poses or vertices of these bodies; then, where the frame skips tetrahedra, how many of each and which.
-Ranks::Bytes Halo::words_of(const Numbers& bodies, const Frame& frame) const {
+Ranks::Bytes Halo::words_of(const Numbers& bodies, const Frame& frame, bool vertices) const {
     Ranks::Bytes words;
     for (const auto body : bodies) {
-        if (scene_.bodies[body].deformable)
-            append(words, std::span(frame.deformed[body]));
-        else
+        if (!scene_.bodies[body].deformable)
             append(words, std::span(&frame.poses[body], 1));
+        else if (vertices)
+            append(words, std::span(frame.deformed[body]));
     }
     if (frame.skipped.empty()) return words;
     for (const auto body : bodies) {
@@ -191,15 +191,15 @@ Ranks::Bytes Halo::words_of(const Numbers& bodies, const Frame& frame) const {
     return words;
 }
 
-void Halo::listen(const Ranks::Bytes& words, const Numbers& bodies) {
+void Halo::listen(const Ranks::Bytes& words, const Numbers& bodies, bool vertices) {
     MessageReader message(words);
     for (const auto body : bodies) {
-        if (scene_.bodies[body].deformable) {
-            auto& vertices = others_.deformed[body];
-            vertices.resize(scene_.meshes[scene_.bodies[body].mesh].vertices.size());
-            message.read(std::span(vertices));
-        } else {
+        if (!scene_.bodies[body].deformable) {
             message.read(std::span(&others_.poses[body], 1));
+        } else if (vertices) {
+            auto& theirs = others_.deformed[body];
+            theirs.resize(scene_.meshes[scene_.bodies[body].mesh].vertices.size());
+            message.read(std::span(theirs));
         }
     }
     if (message.is_at_end() && others_.skipped.empty()) return;
@@ -211,11 +211,18 @@ void Halo::listen(const Ranks::Bytes& words, const Numbers& bodies) {
     }
 }
 
-void Halo::trade(const Frame& frame, Traffic& traffic) {
+void Halo::trade(const Frame& frame, Traffic& traffic, bool vertices) {
     std::vector<Ranks::Bytes> out;
-    for (const auto& bodies : sent_) out.push_back(words_of(bodies, frame));
+    for (const auto& bodies : sent_) out.push_back(words_of(bodies, frame, vertices));
     const auto in = passed(out, traffic);
-    for (std::size_t i = 0; i < in.size(); ++i) listen(in[i], gotten_[i]);
+    for (std::size_t i = 0; i < in.size(); ++i) listen(in[i], gotten_[i], vertices);
+}
+
+std::vector<Halo::Numbers> Halo::deformable(const std::vector<Numbers>& lists) const {
+    auto some = lists;
+    for (auto& bodies : some)
+        std::erase_if(bodies, [this](std::uint32_t body) { return !scene_.bodies[body].deformable; });
+    return some;
 }
 
 } // namespace tandem

@@ -26,8 +26,13 @@ public:
     /// By all ranks: exchanges bounds, and finds who is near. `frame` has the poses or vertices of `own`, and
     /// of fixed bodies.
     void meet(const std::vector<std::uint32_t>& own, const Frame& frame, Traffic& traffic);
-    /// By all ranks: sends poses, vertices and skipped tetrahedra of own bodies to those that need them.
-    void trade(const Frame& frame, Traffic& traffic);
+    /// By all ranks: sends poses, vertices and skipped tetrahedra of own bodies to those that need them;
+    /// vertices unless they go another way.
+    void trade(const Frame& frame, Traffic& traffic, bool vertices = true);
+    /// Deformable bodies whose vertices go to other ranks, or come from them: by rank, in the order in which
+    /// both have them.
+    std::vector<std::vector<std::uint32_t>> deformed_sent() const { return deformable(sent_); }
+    std::vector<std::vector<std::uint32_t>> deformed_gotten() const { return deformable(gotten_); }
     /// What came of others' bodies; of all else it has nothing.
     const Frame& others() const { return others_; }
     /// Of this rank: its own bodies, and the others that it gets or that are fixed and near.
@@ -45,8 +50,9 @@ private:
     void keep_near(const Frame& frame, const std::vector<double>& slabs, Traffic& traffic);
     std::vector<Ranks::Bytes> passed(const std::vector<Ranks::Bytes>& out, Traffic& traffic);
     std::vector<Ranks::Bytes> boxes_near(const std::vector<double>& boxes, Traffic& traffic);
-    Ranks::Bytes words_of(const Numbers& bodies, const Frame& frame) const;
-    void listen(const Ranks::Bytes& words, const Numbers& bodies);
+    Ranks::Bytes words_of(const Numbers& bodies, const Frame& frame, bool vertices) const;
+    void listen(const Ranks::Bytes& words, const Numbers& bodies, bool vertices);
+    std::vector<Numbers> deformable(const std::vector<Numbers>& lists) const;
 
     const Scene& scene_;
     Ranks& ranks_;

@@ -55,13 +55,14 @@ std::shared_ptr<const Scene> part_of(const Scene& scene, const std::vector<std::
     return part;
 }
 
+std::size_t place_in(const Scene& part, std::uint32_t number) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(part.numbers, number) - part.numbers.begin());
+}
+
 Share in_part(const Scene& part, const Share& share) {
     const auto there = [&](const std::vector<std::uint32_t>& bodies) {
         std::vector<std::uint32_t> numbers;
-        for (const auto body : bodies) {
-            const auto at = std::ranges::lower_bound(part.numbers, body);
-            numbers.push_back(static_cast<std::uint32_t>(at - part.numbers.begin()));
-        }
+        for (const auto body : bodies) numbers.push_back(static_cast<std::uint32_t>(place_in(part, body)));
         return numbers;
     };
     return {there(share.own), there(share.others)};

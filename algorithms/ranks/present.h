@@ -11,6 +11,9 @@ namespace tandem {
 /// that whatever is kept by body is as large as the part; answers name bodies as the whole scene does.
 std::shared_ptr<const Scene> part_of(const Scene& scene, const std::vector<std::uint32_t>& bodies);
 
+/// Where the part has a body that the whole scene numbers so; it has it.
+std::size_t place_in(const Scene& part, std::uint32_t number);
+
 /// A share of the whole scene's bodies, all of which are in the part, as the part numbers them.
 Share in_part(const Scene& part, const Share& share);
 

@@ -57,6 +57,7 @@ RankSession::RankSession(const Traversal& traversal, Device& device, const Scene
       deal_(scene, geometry_of(settings_), static_cast<std::size_t>(ranks.size())),
       balance_(static_cast<std::size_t>(ranks.size())),
       halo_(scene, geometry_of(settings_), ranks),
+      passage_(ranks, device.info(), scene, settings_),
       places_(scene),
       balls_(balls_at_the_start(scene)) {
     deal_.make(balls_, balance_.speeds());
@@ -120,26 +121,51 @@ void RankSession::take_share() {
         }
     }
     session_->take(in_part(*present_, share));
+    std::vector<std::uint32_t> received;
+    if (passage_.is_taken())
+        for (const auto& bodies : halo_.deformed_gotten())
+            for (const auto body : bodies)
+                received.push_back(static_cast<std::uint32_t>(place_in(*present_, body)));
+    session_->receive(received);
 }
 
 /// Of bodies that have a part in this rank's share.
 void RankSession::take_frame(const Frame& frame) {
-    const auto& there = present_->numbers;
     const auto take = [&](const std::vector<std::uint32_t>& bodies, bool are_own) {
         for (const auto number : bodies) {
-            const auto& from = are_own || scene_.bodies[number].fixed ? frame : halo_.others();
-            const auto body =
-                static_cast<std::size_t>(std::ranges::lower_bound(there, number) - there.begin());
+            const bool is_here = are_own || scene_.bodies[number].fixed;
+            const auto& from = is_here ? frame : halo_.others();
+            const auto body = place_in(*present_, number);
             present_frame_.poses[body] = from.poses[number];
-            if (scene_.bodies[number].deformable) present_frame_.deformed[body] = from.deformed[number];
+            if (scene_.bodies[number].deformable && (is_here || !passage_.is_taken()))
+                present_frame_.deformed[body] = from.deformed[number];
             const bool skips = !from.skipped.empty() && !from.skipped[number].empty();
-            if (skips) present_frame_.skipped.resize(there.size());
+            if (skips) present_frame_.skipped.resize(present_->bodies.size());
             if (!present_frame_.skipped.empty())
                 present_frame_.skipped[body] = skips ? from.skipped[number] : std::vector<std::uint32_t>{};
         }
     };
     take(halo_.share().own, true);
     take(halo_.share().others, false);
+}
+
+void RankSession::note(const std::exception& error, Report& own) {
+    own.failure = error.what();
+    own.is_memory = dynamic_cast<const OutOfMemory*>(&error) != nullptr;
+}
+
+/// From device to device, once this one has its own.
+void RankSession::pass_vertices(const Frame& frame, Halo::Traffic& traffic, Report& own) {
+    if (session_ && own.failure.empty()) {
+        try {
+            take_frame(frame);
+            session_->place_vertices(present_frame_);
+        } catch (const std::exception& error) {
+            note(error, own);
+        }
+    }
+    const bool is_there = session_ && own.failure.empty();
+    passage_.pass(halo_, is_there ? &session_->bodies() : nullptr, present_.get(), traffic);
 }
 
 /// What others have to say of a frame. Every rank passes the same messages, whatever becomes of it.
@@ -152,27 +178,39 @@ void RankSession::exchange(const Frame& frame, Report& own) {
         try {
             take_share();
         } catch (const std::exception& error) {
-            own.failure = error.what();
-            own.is_memory = dynamic_cast<const OutOfMemory*>(&error) != nullptr;
+            note(error, own);
             drop();
             halo_.forget();
         }
     }
-    halo_.trade(frame, traffic);
+    halo_.trade(frame, traffic, !passage_.is_taken());
+    if (passage_.is_taken()) pass_vertices(frame, traffic, own);
     own.work.exchange_ns = ns_since(begin);
     own.work.exchange_bytes = traffic.bytes;
     own.work.messages = traffic.messages;
+}
+
+/// A frame that needs batches needs all vertices here, this time and from now on.
+FrameResult RankSession::run_present(Report& own) {
+    if (!passage_.is_taken()) return session_->run(present_frame_);
+    try {
+        return session_->run(present_frame_);
+    } catch (const OutOfMemory&) {
+        own.is_in_batches = true;
+    }
+    passage_.bring(halo_, session_->bodies(), *present_, present_frame_);
+    session_->receive({});
+    return session_->run(present_frame_);
 }
 
 void RankSession::walk(const Frame& frame, FrameResult& result, Report& own) {
     if (!own.failure.empty() || !session_) return;
     const auto begin = Clock::now();
     try {
-        take_frame(frame);
-        result = session_->run(present_frame_);
+        if (!passage_.is_taken()) take_frame(frame); // with what came
+        result = run_present(own);
     } catch (const std::exception& error) {
-        own.failure = error.what();
-        own.is_memory = dynamic_cast<const OutOfMemory*>(&error) != nullptr;
+        note(error, own);
         return;
     }
     for (auto& part : result.parts) part = kept_part(std::move(part), present_);
@@ -198,6 +236,7 @@ std::vector<RankSession::Report> RankSession::reports(const Report& own) {
     append(message, std::span(&own.work, 1));
     append(message, std::span(&own.is_memory, 1));
     append(message, std::span(&own.is_usual, 1));
+    append(message, std::span(&own.is_in_batches, 1));
     append_text(message,
                 own.failure.empty() ? own.failure : fmt::format("rank {}: {}", ranks_.rank(), own.failure));
     std::vector<Report> all;
@@ -207,6 +246,7 @@ std::vector<RankSession::Report> RankSession::reports(const Report& own) {
         report.work = reader.read<SharedWork>();
         report.is_memory = reader.read<bool>();
         report.is_usual = reader.read<bool>();
+        report.is_in_batches = reader.read<bool>();
         report.failure = reader.read_text();
     }
     return all;
@@ -257,6 +297,10 @@ FrameResult RankSession::do_run(const Frame& frame, std::optional<std::span<cons
     exchange(frame, own);
     walk(frame, result, own);
     const auto all = reports(own);
+    if (std::ranges::any_of(all, &Report::is_in_batches)) {
+        passage_.give_up();
+        halo_.forget(); // sessions are told at the next meeting
+    }
     fail(all);
     result.shared.clear();
     bool is_usual = true;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/ranks/halo.h"
+#include "algorithms/ranks/vertex_passage.h"
 #include "algorithms/resident_session.h"
 #include "algorithms/shares/balance.h"
 
@@ -24,8 +25,9 @@ private:
     struct Report {
         SharedWork work;
         std::string failure;
-        bool is_memory = false; ///< that there is too little
-        bool is_usual = true;   ///< the frame took what frames take: no buffer had to grow
+        bool is_memory = false;     ///< that there is too little
+        bool is_usual = true;       ///< the frame took what frames take: no buffer had to grow
+        bool is_in_batches = false; ///< it needs vertices in the host's memory
     };
 
     void do_reset() override;
@@ -44,7 +46,10 @@ private:
     void build(const std::vector<std::uint32_t>& bodies);
     void drop();
     void exchange(const Frame& frame, Report& own);
+    void note(const std::exception& error, Report& own);
     void take_frame(const Frame& frame);
+    void pass_vertices(const Frame& frame, Halo::Traffic& traffic, Report& own);
+    FrameResult run_present(Report& own);
     void walk(const Frame& frame, FrameResult& result, Report& own);
     std::vector<Report> reports(const Report& own);
     void fail(const std::vector<Report>& all) const;
@@ -59,6 +64,7 @@ private:
     Deal deal_;
     Balance balance_;
     Halo halo_;
+    VertexPassage passage_;
     Places places_;
     std::vector<Ball> balls_;                  ///< by body, when they were dealt
     std::shared_ptr<const Scene> present_;     ///< what is on the device; null without a session

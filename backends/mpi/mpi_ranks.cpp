@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <string_view>
 
@@ -12,7 +13,7 @@ namespace tandem {
 
 namespace {
 
-enum Tag { exchanged = 1, passed };
+enum Tag { exchanged = 1, passed, there };
 
 /// Counts of MPI's calls are ints: a longer message goes in pieces of that size.
 constexpr std::size_t most_at_once = std::size_t{1} << 30;
@@ -36,6 +37,15 @@ void in_pieces(std::size_t bytes, const Work& work) {
         work(offset, count_of(bytes - offset));
 }
 
+/// Asked of the library that runs, whatever it was when this was compiled. One that does not know it of
+/// itself, as Open MPI over a UCX that reaches GPUs, is told by the environment.
+bool is_cuda_aware() {
+    if (const auto* said = std::getenv("TANDEM_MPI_CUDA")) return std::string_view(said) == "1";
+    using Query = int (*)();
+    const auto query = reinterpret_cast<Query>(dlsym(RTLD_DEFAULT, "MPIX_Query_cuda_support"));
+    return query != nullptr && query() == 1;
+}
+
 class MpiRanks final : public Ranks {
 public:
     explicit MpiRanks(MPI_Comm communicator) {
@@ -52,6 +62,8 @@ public:
     void broadcast(Bytes& bytes, int from) override;
     std::vector<Bytes> gather_to_all(std::span<const std::byte> own) override;
     std::vector<Bytes> exchange(const std::vector<Bytes>& out) override;
+    bool reaches(const DeviceInfo& info) const override;
+    void exchange_there(std::span<const Piece> out, std::span<const Piece> in) override;
     void send(int to, std::span<const std::byte> bytes) override;
     Received receive() override;
     bool is_there() override;
@@ -135,6 +147,26 @@ std::vector<Ranks::Bytes> MpiRanks::exchange(const std::vector<Bytes>& out) {
     check(MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE),
           "MPI_Waitall");
     return in;
+}
+
+bool MpiRanks::reaches(const DeviceInfo& info) const {
+    return info.id.starts_with("host") || (info.id.starts_with("cuda") && is_cuda_aware());
+}
+
+void MpiRanks::exchange_there(std::span<const Piece> out, std::span<const Piece> in) {
+    std::vector<MPI_Request> requests;
+    const auto begin = [&](std::span<const Piece> pieces, auto call, std::string_view name) {
+        for (const auto& piece : pieces)
+            in_pieces(piece.bytes, [&](std::size_t offset, int count) {
+                check(call(static_cast<std::byte*>(piece.memory) + offset, count, MPI_BYTE, piece.rank, there,
+                           communicator_, &requests.emplace_back()),
+                      name);
+            });
+    };
+    begin(in, MPI_Irecv, "MPI_Irecv");
+    begin(out, MPI_Isend, "MPI_Isend");
+    check(MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE),
+          "MPI_Waitall");
 }
 
 void MpiRanks::send(int to, std::span<const std::byte> bytes) {

@@ -48,6 +48,45 @@ TEST(Ranks, GatherGivesAllWhatEachGave) {
         EXPECT_EQ(all[static_cast<std::size_t>(rank)], bytes_of(rank, size_of(rank)));
 }
 
+/// Several between the same two, in order; none is a message too.
+TEST(Ranks, PiecesLieWhereTheyAreWanted) {
+    std::vector<Bytes> memory;
+    std::vector<Ranks::Piece> out, in;
+    const auto size_of = [](int from, int to, int i) {
+        return static_cast<std::size_t>(100 * from + 10 * to + i);
+    };
+    const auto rank = ranks->rank();
+    memory.reserve(static_cast<std::size_t>(ranks->size()) * 6);
+    for (int other = 0; other < ranks->size(); ++other)
+        for (int i = 0; i < 3; ++i) {
+            auto& sent = memory.emplace_back(bytes_of(rank + i, size_of(rank, other, i)));
+            out.push_back({other, sent.data(), sent.size()});
+            auto& gotten = memory.emplace_back(size_of(other, rank, i));
+            in.push_back({other, gotten.data(), gotten.size()});
+        }
+    ranks->exchange_there(out, in);
+    for (int other = 0; other < ranks->size(); ++other)
+        for (int i = 0; i < 3; ++i)
+            EXPECT_EQ(memory[static_cast<std::size_t>(other * 6 + i * 2 + 1)],
+                      bytes_of(other + i, size_of(other, rank, i)));
+}
+
+/// What a library says of itself, unless the environment knows better.
+TEST(Ranks, ReachTheHostAndWhatTheEnvironmentSays) {
+    const auto reaches = [](const char* id) {
+        DeviceInfo info;
+        info.id = id;
+        return ranks->reaches(info);
+    };
+    EXPECT_TRUE(reaches("host"));
+    EXPECT_FALSE(reaches("opencl:0"));
+    setenv("TANDEM_MPI_CUDA", "1", 1);
+    EXPECT_TRUE(reaches("cuda:0"));
+    setenv("TANDEM_MPI_CUDA", "0", 1);
+    EXPECT_FALSE(reaches("cuda:0"));
+    unsetenv("TANDEM_MPI_CUDA");
+}
+
 /// To itself as well; every third message is empty, one is of megabytes.
 TEST(Ranks, ExchangeBringsEachItsOwn) {
     const auto size_of = [](int from, int to) {

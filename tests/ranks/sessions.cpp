@@ -47,6 +47,25 @@ Frame of_own(const Scene& scene, const Session& session, std::size_t number) {
     return frame;
 }
 
+/// A procession of which every body but the fixed one, and every fifth, is deformable.
+Scene soft_procession(std::uint32_t bodies, std::size_t frames, double step) {
+    auto scene = procession(bodies, frames, step);
+    const auto vertices = scene.meshes.front().vertices;
+    for (std::uint32_t body = 1; body < bodies; ++body) scene.bodies[body].deformable = body % 5 != 0;
+    scene.frame = [whole = scene.frame, vertices](std::size_t number) {
+        auto frame = whole(number);
+        for (std::uint32_t body = 2; body < frame.poses.size(); ++body) {
+            if (body % 5 == 0) continue;
+            const auto pose = std::exchange(frame.poses[body], {});
+            for (const auto& vertex : vertices)
+                frame.deformed[body].push_back(pose.rotation * vertex + pose.translation);
+        }
+        return frame;
+    };
+    scene.digest = digest_of(scene);
+    return scene;
+}
+
 /// Tetrahedra that touch their neighbours in rows, planes and a lattice of so many to a side.
 Scene lattice(std::uint32_t side) {
     Scene scene;
@@ -161,6 +180,58 @@ TEST_F(RankSessions, SkippedTetrahedraAreTold) {
         const auto one = alone(*traversal, scene);
         for (const std::size_t i : {0u, 1u, 2u, 2u, 3u, 0u}) expect_equal(scene, *session, *one, i);
     }
+}
+
+/// Where messages reach devices their vertices go there as rows of four floats; else as three doubles through
+/// the hosts. With placement=exact hosts need them.
+TEST_F(RankSessions, VerticesGoFromDeviceToDevice) {
+    const auto scene = soft_procession(40, 3, 0.01);
+    for (const auto* traversal : algorithms()) {
+        SCOPED_TRACE(traversal->name());
+        std::uint64_t straight = 0;
+        for (const std::string placement : {"rounded", "exact"}) {
+            const SettingTexts given{{"placement", placement}};
+            const auto settings = settings_of(*traversal, given);
+            const auto session = traversal->prepare(device("host"), scene, settings, *job);
+            const std::array one{&device("host")};
+            const auto whole = traversal->prepare(one, scene, settings);
+            for (const std::size_t i : {0u, 1u, 2u, 0u}) expect_equal(scene, *session, *whole, i);
+            const auto bytes = summed(last_.shared[static_cast<std::size_t>(job->rank())].exchange_bytes);
+            if (placement == "rounded") straight = bytes;
+            if (job->size() > 1) {
+                EXPECT_EQ(4 * straight > 3 * bytes, placement == "rounded") << straight << " and " << bytes;
+            }
+        }
+    }
+}
+
+/// OpenCL's memory has no pointers that a message could be of.
+TEST_F(RankSessions, VerticesOfDevicesOutOfReachGoThroughHosts) {
+    const auto scene = soft_procession(20, 2, 0.01);
+    const auto& traversal = algorithm("tiled");
+    const auto session = traversal.prepare(device("opencl:0"), scene, settings_of(traversal), *job);
+    const auto one = alone(traversal, scene);
+    for (const std::size_t i : {0u, 1u, 0u}) expect_equal(scene, *session, *one, i);
+}
+
+/// The first rank has memory for its frame in batches only, for which it has to have all vertices.
+TEST_F(RankSessions, VerticesAreBroughtWhereAFrameTakesBatches) {
+    const auto scene = soft_procession(40, 3, 0.01);
+    const auto& traversal = algorithm("chunked");
+    auto& on = device("host");
+    const SettingTexts small{
+        {"pair_capacity", "64"}, {"contact_capacity", "64"}, {"body_pair_capacity", "8"}};
+    const auto session = traversal.prepare(on, scene, settings_of(traversal, small), *job);
+    const auto one = alone(traversal, scene);
+    if (job->is_first()) on.set_memory_limit(on.bytes_allocated() + 20'000);
+    const auto result = session->run(of_own(scene, *session, 1));
+    on.set_memory_limit(Device::no_memory_limit);
+    const auto right = one->run(scene.frame(1));
+    EXPECT_EQ(summed(result.digest()), right.digest());
+    if (job->is_first()) {
+        EXPECT_GT(result.batches, 1u);
+    }
+    for (const std::size_t i : {2u, 0u}) expect_equal(scene, *session, *one, i);
 }
 
 /// A device's search numbers 2^20 bodies at most, a scene on ranks may have more: those of other ranks have
