@@ -15,6 +15,7 @@ import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
 
 import numpy
 
@@ -318,10 +319,22 @@ class Memory(ColliderCase):
                 tensor = taken.from_dlpack(answer.pairs(on_device=True))
                 self.assertEqual(tensor.data_ptr(), address(numpy.from_dlpack(answer.pairs(on_device=True))))
                 poses = taken.tensor(POSES, dtype=taken.float64)
-                self.assertEqual(self.collider().digest(poses), answer.digest())
+                self.expect_digest(answer, poses, ByDlpack(poses), poses.repeat_interleave(2, 1)[:, ::2])
+                with self.assertRaisesRegex(ValueError, "poses: is not given by DLPack: .*grad"):
+                    self.collider().run(poses.requires_grad_())
+                if hasattr(taken.Tensor, "__dlpack_c_exchange_api__"):
+                    with unittest.mock.patch.object(taken.Tensor, "__dlpack__", side_effect=BufferError("not by the table")):
+                        self.expect_digest(answer, poses.detach())
             elif library == "jax":
                 array = taken.numpy.from_dlpack(answer.pairs(on_device=True))
                 self.assertEqual(sorted(map(tuple, numpy.asarray(array))), list(map(tuple, answer.pairs())))
+                taken.config.update("jax_enable_x64", True)
+                poses = taken.numpy.asarray(numpy.array(POSES))
+                self.expect_digest(answer, poses, ByDlpack(poses))
+
+    def expect_digest(self, answer, *poses):
+        for rows in poses:
+            self.assertEqual(self.collider().digest(rows), answer.digest())
 
 
 class Threads(ColliderCase):
