@@ -493,8 +493,8 @@ class BadInput(ColliderCase):
 
 
 class Example(ColliderCase):
-    def example(self, *arguments, code=0):
-        done = subprocess.run([sys.executable, SOURCE / "scripts/examples/collide.py", *map(str, arguments)], cwd=self.work, capture_output=True, text=True,
+    def example(self, *arguments, code=0, script="collide.py"):
+        done = subprocess.run([sys.executable, SOURCE / "scripts/examples" / script, *map(str, arguments)], cwd=self.work, capture_output=True, text=True,
                               env={**os.environ, "PYTHONPATH": FOLDER.name})
         self.assertEqual(done.returncode, code, done.stderr)
         self.assertEqual(len(done.stderr.splitlines()), 1 if code else 0, done.stderr)
@@ -508,6 +508,13 @@ class Example(ColliderCase):
         self.assertIn("no contacts to draw", self.example(*self.files, "--shift", "99,0,0"))
         for arguments in ((self.files[0],), (self.files[0], "nowhere.msh"), ("--shift", "1,x"), ("--device", "hst")):
             self.assertTrue(self.example(*arguments, code=2).startswith("collide.py: "))
+
+
+    def test_what_a_call_costs_is_told(self):
+        text = self.example("plates:count=2", "--frames", "60:61", "--rounds", 1, "--arrays", "all", script="call_cost.py")
+        self.assertRegex(text, r"arrays of numpy, 2 frames, 1 rounds: call [\d.]+ us, library's frame [\d.]+ us, the call beside it [\d.]+ us; pairs handed out")
+        self.assertRegex(text, r"3 arrays, asked from Python: __dlpack_device__ [\d.]+ us, __dlpack__ [\d.]+ us; without DLPack's table")
+        self.assertTrue(self.example("plates", "--frames", "60", code=1, script="call_cost.py").startswith("call_cost.py: "))
 
 
 class Package(unittest.TestCase):
