@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// DLPack's table of C functions, which the arrays of a library have without a word of Python (DLPack 1.2).
+// DLPack's table of C functions, which the arrays of a library have without a word of Python (DLPack 1.3).
 #pragma once
 
 #include <cstdint>
