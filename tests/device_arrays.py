@@ -75,17 +75,20 @@ class OnGpu:
     """Memory of NumPy's that says it is a GPU's, as the stub's is; what it was asked for, and what was given back."""
     def __init__(self, values, dtype=numpy.float64, device=(2, 0)):
         self.array, self.device = numpy.array(values, dtype), device
-        self.streams, self.given_back = [], 0
+        self.streams, self.asked, self.given_back = [], 0, 0
 
     @property
     def address(self):
         return self.array.__array_interface__["data"][0]
 
     def __dlpack_device__(self):
+        self.asked += 1
         return self.device
 
     def __dlpack__(self, *, stream=None):
         self.streams.append(stream)
+        if self.device[0] == 1 and stream is not None:
+            raise BufferError("there is no stream on the host")
         self.managed = Managed(self.tensor(), None, self.deleter)
         return ctypes.pythonapi.PyCapsule_New(ctypes.addressof(self.managed), b"dltensor", None)
 
@@ -187,6 +190,21 @@ class Arrays(Case):
         soft.run(vertices=[self.parts[0][0], rows[1]])  # from the host's memory and from the GPU's
         self.assertEqual(soft._core.addresses[2], rows[1].address)
         self.assertEqual([array.given_back for array in rows], [1, 3])
+        self.assertEqual([array.asked for array in rows], [1, 2], "where the second is once the first is there")
+
+    def test_an_array_is_not_where_the_one_before_it_is(self):
+        soft, (first, second) = self.collider(deformable=True), (points for points, _ in self.parts)
+        here = soft.run(vertices=[first, second]).digest()
+        rows = [OnGpu(first), OnGpu(second, device=(1, 0))]
+        self.assertEqual(soft.run(vertices=rows).digest(), here)
+        self.assertEqual((rows[1].streams, rows[1].asked > 0), ([soft._core.queue, None], True))
+        self.assertNotEqual(soft._core.addresses[2], rows[1].address)
+        for words, array in (("is in CUDA's memory of GPU 1, and the collider works on cuda:0", OnGpu(second, device=(2, 1))), ("shape (1, 3, 3)", OnGpu([second[:3]])),
+                             ("vertices of body 1: its rows are not beside each other", OnGpu(second))):
+            if "beside" in words:
+                array.array = numpy.repeat(second, 2, axis=1)[:, ::2]
+            with self.assertRaisesRegex(ValueError, words.replace("(", "\\(").replace(")", "\\)")):
+                soft.run(vertices=[OnGpu(first), array])
 
     def test_arrays_may_come_by_the_cuda_array_interface(self):
         collider, array = self.collider(), numpy.array(POSES)

@@ -233,7 +233,19 @@ GivenRows on_gpu(nb::handle object, std::pair<int, int> place, const WantedRows&
         return of_interface(object, nb::cast<nb::dict>(object.attr("__cuda_array_interface__")), wanted);
     if (place.first == managed || place.second == *gpu)
         if (auto given = by_interface(object, wanted)) return std::move(*given);
-    return by_dlpack(object, wanted);
+    auto given = by_dlpack(object, wanted);
+    wanted.last_there = object.type();
+    return given;
+}
+
+/// Of an array beside which others of its type are on the GPU, and it is, most likely: a library that is told
+/// a stream for memory of the host's refuses. None where anything is otherwise, which is then asked first.
+std::optional<GivenRows> like_the_last(nb::handle object, const WantedRows& wanted) {
+    try {
+        return by_dlpack(object, wanted);
+    } catch (const InputError&) {
+    } catch (const nb::builtin_exception&) {}
+    return std::nullopt;
 }
 
 bool is_of_numpy(nb::handle object) {
@@ -261,6 +273,8 @@ GivenRows given_rows(nb::handle array, const WantedRows& wanted) {
     // On a GPU there is no buffer, and JAX makes an exception of saying so.
     if (!gpu_of(wanted.devices))
         if (auto given = by_buffer(array, wanted)) return std::move(*given);
+    if (array.type().is(wanted.last_there))
+        if (auto given = like_the_last(array, wanted)) return std::move(*given);
     const auto place = place_of(array);
     if (place && (place->first == cuda || place->first == managed)) return on_gpu(array, *place, wanted);
     return on_host(array, wanted);

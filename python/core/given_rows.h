@@ -27,6 +27,7 @@ struct GivenRows {
 struct WantedRows {
     const DeviceGroup& devices;
     std::size_t columns;
+    nanobind::handle& last_there;      ///< of a call: type of the last array that DLPack gave on the GPU
     std::optional<std::size_t> body{}; ///< whose vertices they are; none: they are poses
 
     std::string name() const;

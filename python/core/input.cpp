@@ -47,16 +47,17 @@ std::optional<Entries> entries_of(const Collider& collider, nb::handle vertices)
 template<class Take>
 Input taken(const Collider& collider, nb::handle poses, const Entries& entries, const Take& take) {
     Input input;
+    nb::handle last_there;
     const auto rows = [&](nb::handle array, const WantedRows& wanted) {
         auto given = take(array, wanted);
         input.there |= given.on_device;
         return given;
     };
-    if (!poses.is_none()) input.poses = rows(poses, {collider.devices(), 7});
+    if (!poses.is_none()) input.poses = rows(poses, {collider.devices(), 7, last_there});
     input.vertices.resize(entries.size());
     for (std::size_t body = 0; body < entries.size(); ++body)
         if (entries[body] && !entries[body].is_none())
-            input.vertices[body] = rows(entries[body], {collider.devices(), 3, body});
+            input.vertices[body] = rows(entries[body], {collider.devices(), 3, last_there, body});
     return input;
 }
 
