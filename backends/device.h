@@ -180,7 +180,7 @@ public:
     /// cl_command_queue of OpenCL's; null of the host's.
     virtual void* queue() const = 0;
     /// Commands from now on come after what was given to `queue` so far, a vendor's handle of this device's
-    /// context. Waits for it.
+    /// context. The host waits for it where no command does: on OpenCL.
     void follow(void* queue) { do_follow(queue); }
 
     /// Memory of at least `bytes` bytes, their values unknown. Throws OutOfMemory that says how much was

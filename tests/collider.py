@@ -15,6 +15,7 @@ import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
 
 import numpy
 
@@ -318,10 +319,22 @@ class Memory(ColliderCase):
                 tensor = taken.from_dlpack(answer.pairs(on_device=True))
                 self.assertEqual(tensor.data_ptr(), address(numpy.from_dlpack(answer.pairs(on_device=True))))
                 poses = taken.tensor(POSES, dtype=taken.float64)
-                self.assertEqual(self.collider().digest(poses), answer.digest())
+                self.expect_digest(answer, poses, ByDlpack(poses), poses.repeat_interleave(2, 1)[:, ::2])
+                with self.assertRaisesRegex(ValueError, "poses: is not given by DLPack: .*grad"):
+                    self.collider().run(poses.requires_grad_())
+                if hasattr(taken.Tensor, "__dlpack_c_exchange_api__"):
+                    with unittest.mock.patch.object(taken.Tensor, "__dlpack__", side_effect=BufferError("not by the table")):
+                        self.expect_digest(answer, poses.detach())
             elif library == "jax":
                 array = taken.numpy.from_dlpack(answer.pairs(on_device=True))
                 self.assertEqual(sorted(map(tuple, numpy.asarray(array))), list(map(tuple, answer.pairs())))
+                taken.config.update("jax_enable_x64", True)
+                poses = taken.numpy.asarray(numpy.array(POSES))
+                self.expect_digest(answer, poses, ByDlpack(poses))
+
+    def expect_digest(self, answer, *poses):
+        for rows in poses:
+            self.assertEqual(self.collider().digest(rows), answer.digest())
 
 
 class Threads(ColliderCase):
@@ -480,8 +493,8 @@ class BadInput(ColliderCase):
 
 
 class Example(ColliderCase):
-    def example(self, *arguments, code=0):
-        done = subprocess.run([sys.executable, SOURCE / "scripts/examples/collide.py", *map(str, arguments)], cwd=self.work, capture_output=True, text=True,
+    def example(self, *arguments, code=0, script="collide.py"):
+        done = subprocess.run([sys.executable, SOURCE / "scripts/examples" / script, *map(str, arguments)], cwd=self.work, capture_output=True, text=True,
                               env={**os.environ, "PYTHONPATH": FOLDER.name})
         self.assertEqual(done.returncode, code, done.stderr)
         self.assertEqual(len(done.stderr.splitlines()), 1 if code else 0, done.stderr)
@@ -495,6 +508,13 @@ class Example(ColliderCase):
         self.assertIn("no contacts to draw", self.example(*self.files, "--shift", "99,0,0"))
         for arguments in ((self.files[0],), (self.files[0], "nowhere.msh"), ("--shift", "1,x"), ("--device", "hst")):
             self.assertTrue(self.example(*arguments, code=2).startswith("collide.py: "))
+
+
+    def test_what_a_call_costs_is_told(self):
+        text = self.example("plates:count=2", "--frames", "60:61", "--rounds", 1, "--arrays", "all", script="call_cost.py")
+        self.assertRegex(text, r"arrays of numpy, 2 frames, 1 rounds: call [\d.]+ us, library's frame [\d.]+ us, the call beside it [\d.]+ us; pairs handed out")
+        self.assertRegex(text, r"3 arrays, asked from Python: __dlpack_device__ [\d.]+ us, __dlpack__ [\d.]+ us; without DLPack's table")
+        self.assertTrue(self.example("plates", "--frames", "60", code=1, script="call_cost.py").startswith("call_cost.py: "))
 
 
 class Package(unittest.TestCase):

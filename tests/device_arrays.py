@@ -29,7 +29,8 @@ def setUpModule():
     DRIVER = ctypes.CDLL("libcuda.so.1")
     for name in ("stub_launches_with", "stub_copies_of"):
         getattr(DRIVER, name).argtypes, getattr(DRIVER, name).restype = [ctypes.c_ulonglong], ctypes.c_ulong
-    DRIVER.stub_calls.argtypes, DRIVER.stub_calls.restype = [ctypes.c_void_p, ctypes.c_void_p], ctypes.c_ulong
+    for name in ("stub_calls", "stub_orderings"):
+        getattr(DRIVER, name).argtypes, getattr(DRIVER, name).restype = [ctypes.c_void_p, ctypes.c_void_p], ctypes.c_ulong
 
 
 def tearDownModule():
@@ -49,6 +50,23 @@ class Managed(ctypes.Structure):
     _fields_ = [("tensor", Tensor), ("context", ctypes.c_void_p), ("deleter", DELETER)]
 
 
+class Versioned(ctypes.Structure):
+    _fields_ = [("major", ctypes.c_uint32), ("minor", ctypes.c_uint32), ("context", ctypes.c_void_p), ("deleter", DELETER), ("flags", ctypes.c_uint64),
+                ("tensor", Tensor)]
+
+
+FROM_OBJECT = ctypes.PYFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.POINTER(ctypes.c_void_p))
+CURRENT_STREAM = ctypes.PYFUNCTYPE(ctypes.c_int, ctypes.c_int, ctypes.c_int32, ctypes.POINTER(ctypes.c_void_p))
+
+
+class Table(ctypes.Structure):
+    pass
+
+
+Table._fields_ = [("major", ctypes.c_uint32), ("minor", ctypes.c_uint32), ("older", ctypes.POINTER(Table)), ("allocate", ctypes.c_void_p),
+                  ("from_object", FROM_OBJECT), ("to_object", ctypes.c_void_p), ("view", ctypes.c_void_p), ("current_stream", CURRENT_STREAM)]
+
+
 ctypes.pythonapi.PyCapsule_New.restype = ctypes.py_object
 ctypes.pythonapi.PyCapsule_New.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p]
 
@@ -57,23 +75,29 @@ class OnGpu:
     """Memory of NumPy's that says it is a GPU's, as the stub's is; what it was asked for, and what was given back."""
     def __init__(self, values, dtype=numpy.float64, device=(2, 0)):
         self.array, self.device = numpy.array(values, dtype), device
-        self.streams, self.given_back = [], 0
+        self.streams, self.asked, self.given_back = [], 0, 0
 
     @property
     def address(self):
         return self.array.__array_interface__["data"][0]
 
     def __dlpack_device__(self):
+        self.asked += 1
         return self.device
 
     def __dlpack__(self, *, stream=None):
         self.streams.append(stream)
+        if self.device[0] == 1 and stream is not None:
+            raise BufferError("there is no stream on the host")
+        self.managed = Managed(self.tensor(), None, self.deleter)
+        return ctypes.pythonapi.PyCapsule_New(ctypes.addressof(self.managed), b"dltensor", None)
+
+    def tensor(self):
         numbers, array = ctypes.c_int64 * self.array.ndim, self.array
         self.shape, self.strides = numbers(*array.shape), numbers(*(step // array.itemsize for step in array.strides))
         self.deleter = DELETER(self._take_back)
         code = {"i": 0, "u": 1, "f": 2, "c": 5}[array.dtype.kind]
-        self.managed = Managed(Tensor(self.address, *self.device, array.ndim, code, 8 * array.itemsize, 1, self.shape, self.strides, 0), None, self.deleter)
-        return ctypes.pythonapi.PyCapsule_New(ctypes.addressof(self.managed), b"dltensor", None)
+        return Tensor(self.address, *self.device, array.ndim, code, 8 * array.itemsize, 1, self.shape, self.strides, 0)
 
     def _take_back(self, _):
         self.given_back += 1
@@ -88,6 +112,36 @@ class ByInterface:
     def __cuda_array_interface__(self):
         return {"shape": self.array.shape, "typestr": self.array.dtype.str, "version": 3, "strides": None, "stream": None,
                 "data": (self.array.__array_interface__["data"][0], False), **self.changes}
+
+
+def with_table(stream=None, major=1, older=None, gives=0, tells=0, name=b"dlpack_exchange_api"):
+    """A type of such arrays whose library has DLPack's table of C functions, and gives its work to `stream`; what these return, and the version."""
+    def from_object(address, out):
+        array = ctypes.cast(address, ctypes.py_object).value
+        array.given += 1
+        array.versioned = Versioned(1, 3, None, DELETER(), 0, array.tensor())
+        array.versioned.deleter = array.deleter
+        out[0] = None if gives else ctypes.addressof(array.versioned)
+        return gives
+
+    def current_stream(kind, number, out):
+        out[0] = stream if (kind, number) in ((2, 0), (13, 0)) else None
+        return tells
+
+    class WithTable(OnGpu):
+        given = 0
+        table = Table(major, 0, ctypes.pointer(older) if older else None, None, FROM_OBJECT(from_object), None, None, CURRENT_STREAM(current_stream))
+        __dlpack_c_exchange_api__ = ctypes.pythonapi.PyCapsule_New(ctypes.addressof(table), name, None)
+    return WithTable
+
+
+class WithBoth(OnGpu):
+    """By DLPack and by an interface, as CuPy's."""
+    changes = {}
+
+    @property
+    def __cuda_array_interface__(self):
+        return {**ByInterface(self.array).__cuda_array_interface__, **self.changes}
 
 
 class Arrays(Case):
@@ -136,6 +190,21 @@ class Arrays(Case):
         soft.run(vertices=[self.parts[0][0], rows[1]])  # from the host's memory and from the GPU's
         self.assertEqual(soft._core.addresses[2], rows[1].address)
         self.assertEqual([array.given_back for array in rows], [1, 3])
+        self.assertEqual([array.asked for array in rows], [1, 2], "where the second is once the first is there")
+
+    def test_an_array_is_not_where_the_one_before_it_is(self):
+        soft, (first, second) = self.collider(deformable=True), (points for points, _ in self.parts)
+        here = soft.run(vertices=[first, second]).digest()
+        rows = [OnGpu(first), OnGpu(second, device=(1, 0))]
+        self.assertEqual(soft.run(vertices=rows).digest(), here)
+        self.assertEqual((rows[1].streams, rows[1].asked > 0), ([soft._core.queue, None], True))
+        self.assertNotEqual(soft._core.addresses[2], rows[1].address)
+        for words, array in (("is in CUDA's memory of GPU 1, and the collider works on cuda:0", OnGpu(second, device=(2, 1))), ("shape (1, 3, 3)", OnGpu([second[:3]])),
+                             ("vertices of body 1: its rows are not beside each other", OnGpu(second))):
+            if "beside" in words:
+                array.array = numpy.repeat(second, 2, axis=1)[:, ::2]
+            with self.assertRaisesRegex(ValueError, words.replace("(", "\\(").replace(")", "\\)")):
+                soft.run(vertices=[OnGpu(first), array])
 
     def test_arrays_may_come_by_the_cuda_array_interface(self):
         collider, array = self.collider(), numpy.array(POSES)
@@ -144,6 +213,108 @@ class Arrays(Case):
         for changes, followed in (({}, 0), ({"stream": stream}, 1), ({"strides": (56, 8)}, 1)):
             self.expect_read(collider, lambda: collider.run(ByInterface(array, **changes)), array.__array_interface__["data"][0])
             self.assertEqual(DRIVER.stub_calls(stream, context), before + followed)
+
+    def expect_followed(self, collider, stream, times, run):
+        before = DRIVER.stub_orderings(collider._core.queue, stream)
+        run()
+        self.assertEqual(DRIVER.stub_orderings(collider._core.queue, stream), before + times)
+
+    def test_a_stream_is_followed_once_a_frame(self):
+        soft, array = self.collider(deformable=True), numpy.array(POSES)
+        first, second = (self.stream()[0] for _ in range(2))
+        rows = [ByInterface(points, stream=first) for points, _ in self.parts]
+        self.expect_followed(soft, first, 1, lambda: self.expect_followed(soft, second, 0, lambda: soft.run(vertices=rows)))
+        self.expect_followed(soft, second, 1, lambda: soft.run(ByInterface(array, stream=second), rows))
+        self.expect_followed(soft, first, 1, lambda: soft.run(vertices=rows))
+        self.expect_followed(soft, None, 1, lambda: soft.run(ByInterface(array, stream=1), rows))
+        own = self.collider(stream=first)
+        self.expect_followed(own, first, 0, lambda: own.run(ByInterface(array, stream=first)))
+
+    def test_arrays_may_come_by_dlpacks_table(self):
+        """Nothing of Python's is called, and the library's stream is followed."""
+        stream, _ = self.stream()
+        soft, kind = self.collider(deformable=True), with_table(stream)
+        for dtype, device in ((numpy.float64, (2, 0)), (numpy.float32, (13, 0))):
+            rows = [kind(points, dtype, device) for points, _ in self.parts]
+            self.expect_followed(soft, stream, 1, lambda: self.expect_read(soft, lambda: soft.run(vertices=rows), 0, *(array.address for array in rows)))
+            self.assertEqual([(array.given, array.given_back, array.streams) for array in rows], [(1, 1, [])] * 2)
+        default, collider = with_table(None)(POSES), self.collider()
+        self.expect_followed(collider, None, 1, lambda: collider.run(default))
+        newer = with_table(stream, major=2, older=kind.table)(POSES)
+        self.expect_followed(collider, stream, 1, lambda: collider.run(newer))
+        self.assertEqual((newer.given, newer.streams), (1, []))
+        dropped = kind(POSES)
+        collider.run(dropped)
+        gone = weakref.ref(dropped)
+        del dropped
+        gc.collect()
+        self.assertIsNone(gone())
+
+    def test_what_is_read_is_kept_meanwhile(self):
+        """Although the list that gave it is emptied before the frame runs."""
+        soft, kept = self.collider(deformable=True), []
+
+        class Emptying(OnGpu):
+            def __dlpack__(self, **named):
+                rows.clear()
+                return super().__dlpack__(**named)
+        for kind in (type("Plain", (numpy.ndarray,), {}), type("Both", (WithBoth,), {"changes": {"stream": 1}}), with_table(), OnGpu):
+            points = self.parts[0][0]
+            first, last = points.copy().view(kind) if issubclass(kind, numpy.ndarray) else kind(points), Emptying(self.parts[1][0])
+            rows, there = [first, last], weakref.ref(first)
+            del first
+            watcher = ctypes.CFUNCTYPE(None, ctypes.c_int)(lambda _: kept.append(there() is not None and not getattr(there(), "given_back", 0)))
+            DRIVER.stub_watch(watcher)
+            soft.run(vertices=rows)
+            DRIVER.stub_watch(None)
+            self.assertEqual((rows, set(kept)), ([], {True}), kind)
+            gc.collect()
+            self.assertIsNone(there())
+
+    def test_what_the_table_does_not_give_comes_by_dlpack(self):
+        collider, stream = self.collider(), self.stream()[0]
+        for options in ({"gives": -1}, {"tells": -1}, {"major": 2}, {"name": b"other"}):
+            poses = with_table(stream, **options)(POSES)
+            self.expect_followed(collider, stream, 0, lambda: self.expect_read(collider, lambda: collider.run(poses), poses.address))
+            self.assertEqual((poses.given, poses.streams), ("major" not in options and "name" not in options, [collider._core.queue]), options)
+            self.assertEqual(poses.given_back, 2 if "tells" in options else 1, options)
+
+        class Odd(with_table(stream)):
+            def tensor(self):
+                tensor = super().tensor()
+                tensor.ndim = -1
+                return tensor
+        poses = Odd(POSES)
+        with self.assertRaises(RuntimeError):
+            collider.run(poses)
+        self.assertEqual((poses.given, poses.given_back, len(poses.streams)), (1, 1, 1))
+        poses = with_table(stream)(POSES)
+        poses.requires_grad = True
+        collider.run(poses)
+        self.assertEqual((poses.given, poses.streams), (0, [collider._core.queue]))
+
+    def test_the_hosts_arrays_may_come_by_dlpacks_table(self):
+        for device in ("host", "cuda:0"):
+            collider = self.collider(device)
+            for kind in ((1, 0), (3, 0)):
+                poses = with_table()(POSES, device=kind)
+                answer = collider.run(poses)
+                self.assertEqual((poses.given, poses.given_back, poses.streams), (1, 1, []))
+                self.assertEqual(answer.digest(), collider.run(POSES).digest())
+            apart = with_table()(POSES, numpy.float32, (1, 0))
+            self.assertEqual(collider.run(apart).digest(), answer.digest())
+            self.assertEqual((apart.given, apart.streams), (1, [None]), "NumPy makes of it what is wanted")
+
+    def test_of_two_protocols_the_one_that_names_a_stream(self):
+        collider, stream = self.collider(), self.stream()[0]
+
+        class Streamless(WithBoth):
+            pass
+        for kind, changes, followed in ((WithBoth, {"stream": stream}, 1), (Streamless, {}, 0), (Streamless, {"stream": stream}, 0), (WithBoth, {"stream": stream}, 1)):
+            poses = kind(POSES)
+            poses.changes = changes
+            self.expect_followed(collider, stream, followed, lambda: self.expect_read(collider, lambda: collider.run(poses), poses.address))
+            self.assertEqual((poses.streams, poses.given_back), ([], 0) if followed else ([collider._core.queue], 1))
 
     def test_work_goes_by_the_applications_stream(self):
         address, context = self.stream()
@@ -185,7 +356,12 @@ class Arrays(Case):
         wide.array = wide.array[:, ::2]
         odd = OnGpu(numpy.zeros(16))
         odd.array = numpy.frombuffer(odd.array.tobytes() + b"    ", numpy.uint8)[4:4 + 112].view(numpy.float64).reshape(2, 7)
+        table, both = with_table(), type("Both", (WithBoth,), {"changes": {"stream": 1}})
         for kind, words, value in (
+                (ValueError, "poses: shape (2, 6), and (n, 7) is wanted", table(array[:, :6])), (TypeError, "poses: numbers of 64 bits that are neither", table(array, numpy.int64)),
+                (ValueError, "poses: is in CUDA's memory of GPU 1, and the collider works on cuda:0", table(array, device=(2, 1))),
+                (ValueError, "poses: shape (2, 6), and (n, 7) is wanted", both(array[:, :6])), (TypeError, "poses: numbers of 64 bits that are neither", both(array, numpy.int64)),
+                (ValueError, "poses: is in CUDA's memory of GPU 1, and the collider works on cuda:0", both(array, device=(2, 1))),
                 (ValueError, "poses: shape (2, 6), and (n, 7) is wanted", OnGpu(array[:, :6])), (ValueError, "poses: shape (7,), and (n, 7) is wanted", OnGpu(array[0])),
                 (ValueError, "poses: 1 rows for 2 bodies", OnGpu(array[:1])), (TypeError, "poses: numbers of 16 bits that are neither", OnGpu(array, numpy.float16)),
                 (TypeError, "poses: numbers of 64 bits that are neither", OnGpu(array, numpy.int64)), (ValueError, "rows are not beside each other", wide),
@@ -200,7 +376,8 @@ class Arrays(Case):
         self.expect(ValueError, "residency=published converts every frame on the host", self.collider(algorithm="chunked", preset="published", seed_capacity=1024).run,
                     OnGpu(array))
         for device in ("host", "host+cuda:0"):
-            self.expect(ValueError, f"poses: is in CUDA's memory, and the collider works on {device}", self.collider(device=device).run, OnGpu(array))
+            for there in (OnGpu(array), with_table()(array)):
+                self.expect(ValueError, f"poses: is in CUDA's memory, and the collider works on {device}", self.collider(device=device).run, there)
         self.expect(ValueError, "stream: device host is not one of CUDA's", self.collider, "host", stream=0)
         self.expect(TypeError, "stream: type str, and a CUDA stream or its address is wanted", self.collider, stream="main")
         self.expect(tandem.DeviceError, "cuda:4: the driver has 1 devices", self.collider, "cuda:4", stream=0)

@@ -5,6 +5,7 @@ they lie and have the answers of NumPy's to the bit, after what the library has 
 on the device; what is wrong ends in the sentences of the host's memory. For a machine with a GPU: scripts/gpu/run python."""
 import sys
 import unittest
+import unittest.mock
 
 import numpy
 
@@ -151,6 +152,12 @@ class InterfaceAlone:
         self.kept = array
 
 
+class DlpackAlone:
+    """The same by DLPack's methods alone."""
+    def __init__(self, array):
+        self.__dlpack__, self.__dlpack_device__ = array.__dlpack__, array.__dlpack_device__
+
+
 class Arrays(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -198,8 +205,30 @@ class Arrays(unittest.TestCase):
         self.expect_same(self.rigid.run(InterfaceAlone(poses)), self.rigid.run(self.pile.poses(0)))
         self.assertEqual(self.rigid._core.addresses, [ON.address(poses)])
 
+    def test_arrays_by_dlpacks_methods(self):
+        poses = ON.array(self.pile.poses(0))
+        self.expect_same(self.rigid.run(DlpackAlone(poses)), self.rigid.run(self.pile.poses(0)))
+        self.assertEqual(self.rigid._core.addresses, [ON.address(poses)])
+
+    def test_arrays_by_dlpacks_table(self):
+        poses = ON.array(self.pile.poses(0))
+        if not hasattr(type(poses), "__dlpack_c_exchange_api__"):
+            self.skipTest(f"{LIBRARY} has none")
+        with unittest.mock.patch.object(type(poses), "__dlpack__", side_effect=BufferError("not by the table")):
+            self.expect_same(self.rigid.run(poses), self.rigid.run(self.pile.poses(0)))
+
     def test_frames_come_after_what_was_enqueued_for_them(self):
         """The library's stream is busy when the collider is called, and only then writes the frame."""
+        self.expect_frames_after(lambda array: array)
+
+    def test_by_dlpacks_methods_as_well(self):
+        self.expect_frames_after(DlpackAlone)
+
+    def test_on_a_stream_of_the_librarys_as_well(self):
+        with ON.on(ON.stream()):
+            self.expect_frames_after(lambda array: array)
+
+    def expect_frames_after(self, given):
         here = self.soft.run(vertices=self.plates.vertices(64))
         values = {body: ON.array(points) for body, points in self.plates.vertices(64).items()}
         targets = {body: ON.empty_like(array) for body, array in values.items()}
@@ -213,7 +242,7 @@ class Arrays(unittest.TestCase):
                 targets[body][...] = 0
             array, was_done = ON.written_late(targets[body], values[body], matrix)
             late |= not was_done
-            self.expect_same(self.soft.run(vertices={**values, body: array}), here)
+            self.expect_same(self.soft.run(vertices={**values, body: given(array)}), here)
         self.assertTrue(late, "nothing was under way: the test says nothing")
 
     def test_work_goes_by_the_librarys_stream(self):

@@ -73,6 +73,11 @@ Staging::Source page_locked(const Driver& driver) {
     return {allocate, [&driver](std::byte* memory) { driver.cuMemFreeHost(memory); }};
 }
 
+/// CU_STREAM_LEGACY is another name of the default stream, which null is everywhere else.
+Stream legacy_is_null(void* stream) {
+    return reinterpret_cast<std::uintptr_t>(stream) == 1 ? nullptr : static_cast<Stream>(stream);
+}
+
 class CudaDevice : public Device {
 public:
     /// In the device's primary context; on a stream of its own, or on one of others where `stream` names it.
@@ -147,6 +152,7 @@ private:
     Context context_ = nullptr;
     Stream stream_ = nullptr;
     bool owned_ = true;
+    EventHandle followed_ = nullptr;      ///< in the last stream that was followed; none before
     std::unique_ptr<CommandClock> clock_; ///< since clocks were on for the first time
     bool timed_ = false;
     int capability_ = 0;
@@ -191,6 +197,7 @@ CudaDevice::~CudaDevice() {
     staging_.drop();
     clock_.reset();
     for (const auto& [key, loaded] : modules_) driver().cuModuleUnload(loaded.module);
+    if (followed_ != nullptr) driver().cuEventDestroy_v2(followed_);
     if (owned_) driver().cuStreamDestroy_v2(stream_);
 }
 
@@ -514,9 +521,14 @@ void CudaDevice::do_finish() {
 }
 
 void CudaDevice::do_follow(void* queue) {
+    auto* const stream = legacy_is_null(queue);
+    if (stream == stream_) return;
     const Scope scope(*this);
-    check(driver().cuStreamSynchronize(static_cast<Stream>(queue)), "cuStreamSynchronize",
-          "waiting for another stream");
+    constexpr unsigned untimed = 2; // CU_EVENT_DISABLE_TIMING
+    constexpr std::string_view what = "following another stream";
+    if (followed_ == nullptr) check(driver().cuEventCreate(&followed_, untimed), "cuEventCreate", what);
+    check(driver().cuEventRecord(followed_, stream), "cuEventRecord", what);
+    check(driver().cuStreamWaitEvent(stream_, followed_, 0), "cuStreamWaitEvent", what);
 }
 
 std::pair<std::int64_t, std::int64_t> CudaDevice::do_interval(std::uint64_t ticket) {
@@ -524,15 +536,6 @@ std::pair<std::int64_t, std::int64_t> CudaDevice::do_interval(std::uint64_t tick
     const auto interval = clock_->interval(ticket);
     if (clock_->spent()) clock_ = started_clock(std::move(clock_), driver(), stream_);
     return interval;
-}
-
-} // namespace
-
-namespace {
-
-/// CU_STREAM_LEGACY is another name of the default stream, which null is everywhere else.
-Stream legacy_is_null(void* stream) {
-    return reinterpret_cast<std::uintptr_t>(stream) == 1 ? nullptr : static_cast<Stream>(stream);
 }
 
 } // namespace

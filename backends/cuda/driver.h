@@ -73,6 +73,7 @@ enum FunctionAttribute : int { function_max_threads = 0, function_shared_bytes =
     ENTRY(cuStreamCreate, (Stream*, unsigned))                                                               \
     ENTRY(cuStreamDestroy_v2, (Stream))                                                                      \
     ENTRY(cuStreamSynchronize, (Stream))                                                                     \
+    ENTRY(cuStreamWaitEvent, (Stream, EventHandle, unsigned))                                                \
     ENTRY(cuEventCreate, (EventHandle*, unsigned))                                                           \
     ENTRY(cuEventDestroy_v2, (EventHandle))                                                                  \
     ENTRY(cuEventRecord, (EventHandle, Stream))                                                              \

@@ -2,6 +2,7 @@
 #include "python/core/answer.h"
 
 #include "algorithms/parameters/table.h"
+#include "python/core/arrays.h"
 #include "scenes/error.h"
 
 #include <fmt/format.h>

@@ -19,17 +19,6 @@ using Points = HostArray<double, 3>;         ///< a vertex a row
 using Corners = HostArray<std::uint32_t, 4>; ///< a tetrahedron a row
 using Poses = HostArray<double, 7>;          ///< a body a row: tx ty tz qw qx qy qz
 
-/// Rows of float64 beside each other in memory that somebody else keeps.
-struct HostRows {
-    const double* data = nullptr;
-    std::size_t rows = 0;
-};
-
-template<class Array>
-HostRows rows_of(const Array& array) {
-    return {array.data(), array.shape(0)};
-}
-
 inline void copy_points(const Points& from, std::vector<Eigen::Vector3d>& to) {
     static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
     const auto* const first = reinterpret_cast<const Eigen::Vector3d*>(from.data());

@@ -110,10 +110,8 @@ void Collider::prepare(const ColliderOptions& options) {
     if (traversal != nullptr) session_ = traversal->prepare(devices_, scene_, settings);
 }
 
-template<class Input>
-std::pair<FrameResult, double> Collider::run_frame(const Input& input) {
-    const std::lock_guard lock(mutex_);
-    const auto& frame = frame_of(input);
+template<class AnyFrame>
+std::pair<FrameResult, double> Collider::run_frame(const AnyFrame& frame) {
     if (!session_) choose_for(frame, seconds_of_choosing);
     const auto begin = std::chrono::steady_clock::now();
     auto result = session_->run(frame);
@@ -121,8 +119,10 @@ std::pair<FrameResult, double> Collider::run_frame(const Input& input) {
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
 }
 
-std::pair<FrameResult, double> Collider::run(const HostInput& input) { return run_frame(input); }
-std::pair<FrameResult, double> Collider::run(const MixedInput& input) { return run_frame(input); }
+std::pair<FrameResult, double> Collider::run(const Input& input) {
+    const std::lock_guard lock(mutex_);
+    return input.there ? run_frame(device_frame(input)) : run_frame(host_frame(input));
+}
 
 template<class AnyFrame>
 std::vector<Trial> Collider::choose_for(const AnyFrame& frame, double seconds) {
@@ -133,17 +133,13 @@ std::vector<Trial> Collider::choose_for(const AnyFrame& frame, double seconds) {
     return std::move(chosen.trials);
 }
 
-template<class Input>
-std::vector<Trial> Collider::tune_to(const Input& input, double seconds) {
+std::vector<Trial> Collider::tune(const Input& input, double seconds) {
     const std::lock_guard lock(mutex_);
     if (candidates_.empty())
         throw InputError(
             fmt::format("tune: algorithm {} was named; make the collider with algorithm=auto", algorithm_));
-    return choose_for(frame_of(input), seconds);
+    return input.there ? choose_for(device_frame(input), seconds) : choose_for(host_frame(input), seconds);
 }
-
-std::vector<Trial> Collider::tune(const HostInput& input, double seconds) { return tune_to(input, seconds); }
-std::vector<Trial> Collider::tune(const MixedInput& input, double seconds) { return tune_to(input, seconds); }
 
 void Collider::reset() {
     const std::lock_guard lock(mutex_);
@@ -167,7 +163,7 @@ std::vector<std::uintptr_t> Collider::addresses() {
 
 /// What is out of range is counted on the way, not looked for; the library's own check, which looks at meshes
 /// as well, has the sentence.
-const Frame& Collider::frame_of(const HostInput& input) {
+const Frame& Collider::host_frame(const Input& input) {
     beyond_ = 0;
     if (input.poses)
         set_poses(*input.poses);
@@ -184,12 +180,12 @@ const Frame& Collider::frame_of(const HostInput& input) {
     return frame_;
 }
 
-const DeviceFrame& Collider::frame_of(const MixedInput& input) {
+const DeviceFrame& Collider::device_frame(const Input& input) {
     if (!device_input_) device_input_ = std::make_unique<DeviceInput>(*devices_.front(), scene_);
     return device_input_->frame(input.poses, input.vertices);
 }
 
-void Collider::set_poses(HostRows poses) {
+void Collider::set_poses(const GivenRows& poses) {
     if (poses.rows != bodies())
         throw InputError(
             fmt::format("poses: {} rows for {} bodies; give each body its row", poses.rows, bodies()));
@@ -198,12 +194,12 @@ void Collider::set_poses(HostRows poses) {
             frame_.poses[body] = {};
             continue;
         }
-        frame_.poses[body] = pose_of_row(poses.data + 7 * body, body);
+        frame_.poses[body] = pose_of_row(static_cast<const double*>(poses.data) + 7 * body, body);
         for (const double x : frame_.poses[body].translation) beyond_ += !(std::abs(x) <= limit_);
     }
 }
 
-void Collider::set_vertices(std::size_t body, HostRows vertices) {
+void Collider::set_vertices(std::size_t body, const GivenRows& vertices) {
     const auto count = scene_.meshes[scene_.bodies[body].mesh].vertices.size();
     if (vertices.rows != count)
         throw InputError(fmt::format("vertices: {} rows for body {}, whose mesh has {} vertices",
@@ -211,7 +207,7 @@ void Collider::set_vertices(std::size_t body, HostRows vertices) {
     auto& points = frame_.deformed[body];
     points.resize(count);
     static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
-    const auto* const from = vertices.data;
+    const auto* const from = static_cast<const double*>(vertices.data);
     auto* const to = reinterpret_cast<double*>(points.data());
     std::size_t beyond = 0; // a local: the loop is vector code
     for (std::size_t i = 0; i < 3 * count; ++i) {

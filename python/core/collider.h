@@ -3,10 +3,10 @@
 
 #include "algorithms/traversal.h"
 #include "harness/device_groups.h"
-#include "python/core/arrays.h"
 #include "python/core/choosing.h"
 #include "python/core/device_input.h"
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -23,17 +23,12 @@ struct ColliderOptions {
         stream; ///< a CUstream of the device, which is one of CUDA's; 0: the default one
 };
 
-/// A frame's numbers in the host's memory: without poses every body is at the identity, and deformable ones
-/// without vertices have their mesh's.
-struct HostInput {
-    std::optional<HostRows> poses;
-    std::vector<std::optional<HostRows>> vertices; ///< one a body, or none at all
-};
-
-/// The same where some of it is in memory of the collider's device.
-struct MixedInput {
+/// A frame's numbers: without poses every body is at the identity, and deformable ones without vertices have
+/// their mesh's.
+struct Input {
     std::optional<GivenRows> poses;
-    std::vector<std::optional<GivenRows>> vertices;
+    std::vector<std::optional<GivenRows>> vertices; ///< one a body, or none at all
+    bool there = false; ///< some of them are in memory of the collider's device, and it is read there
 };
 
 /// A scene of meshes on devices of its own, prepared for one algorithm. One thread at a time is in it.
@@ -44,16 +39,17 @@ public:
 
     /// Finds the pairs of a frame. Throws InputError or DeviceError.
     /// Seconds: of the frame itself, as the program measures one.
-    std::pair<FrameResult, double> run(const HostInput& input);
-    std::pair<FrameResult, double> run(const MixedInput& input);
+    std::pair<FrameResult, double> run(const Input& input);
     /// Of algorithm auto: the fastest of its candidates for that frame runs from now on. Throws InputError
     /// for another algorithm.
-    std::vector<Trial> tune(const HostInput& input, double seconds);
-    std::vector<Trial> tune(const MixedInput& input, double seconds);
+    std::vector<Trial> tune(const Input& input, double seconds);
     void reset();
 
     std::size_t bodies() const { return scene_.bodies.size(); }
     bool is_deformable(std::size_t body) const { return scene_.bodies[body].deformable; }
+    bool is_any_deformable() const {
+        return std::ranges::any_of(scene_.bodies, [](const Body& body) { return body.deformable; });
+    }
     /// "auto" until one is chosen.
     std::string algorithm();
     /// As the devices took them; none until an algorithm is chosen.
@@ -72,16 +68,14 @@ private:
     void open_devices(const ColliderOptions& options);
     void prepare(const ColliderOptions& options);
     /// A frame of the input, checked and ready to run; the next one's takes its place.
-    const Frame& frame_of(const HostInput& input);
-    const DeviceFrame& frame_of(const MixedInput& input);
-    template<class Input>
-    std::pair<FrameResult, double> run_frame(const Input& input);
-    template<class Input>
-    std::vector<Trial> tune_to(const Input& input, double seconds);
+    const Frame& host_frame(const Input& input);
+    const DeviceFrame& device_frame(const Input& input);
+    template<class AnyFrame>
+    std::pair<FrameResult, double> run_frame(const AnyFrame& frame);
     template<class AnyFrame>
     std::vector<Trial> choose_for(const AnyFrame& frame, double seconds);
-    void set_poses(HostRows poses);
-    void set_vertices(std::size_t body, HostRows vertices);
+    void set_poses(const GivenRows& poses);
+    void set_vertices(std::size_t body, const GivenRows& vertices);
 
     nanobind::object kept_;
     std::vector<BackendReport> backends_; ///< these outlive what lies on their devices

@@ -1,34 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/device_frame.h"
+#include "python/core/given_rows.h"
 
 #include <map>
-#include <nanobind/ndarray.h>
-#include <optional>
 #include <vector>
 
 namespace tandem::python {
-
-/// Rows of an array where Python has them.
-struct GivenRows {
-    void* data = nullptr;
-    std::size_t rows = 0;
-    Precision precision = Precision::fp64;
-    bool on_device = false;                   ///< in memory of the collider's device; or in the host's
-    std::optional<void*> queue{};             ///< what has to be waited for before they are read
-    nanobind::ndarray<nanobind::ro> keeper{}; ///< of the memory; dropped with the interpreter's lock
-};
-
-/// What DLPack calls a device's memory, its kind and its number; none of OpenCL's, which no array library
-/// takes.
-std::optional<std::pair<int, int>> dlpack_device(const Device& device);
-
-/// `value`: None; an array of the host's; a capsule of DLPack; or (address, rows, bits, stream) of
-/// __cuda_array_interface__, whose shape is checked, with stream None where nothing is to be waited for.
-/// Throws InputError, or TypeError for numbers of another type: one line that begins with `what`.
-std::optional<GivenRows> given_rows(nanobind::handle value, std::size_t columns, const std::string& what,
-                                    const Device& device);
 
 /// Frames of a scene as a session takes them from memory of its device: arrays there are read where they are,
 /// those of the host's memory are brought to it.
@@ -63,6 +41,7 @@ private:
     /// Handles stay, since one that goes takes with it what the device keeps of earlier frames' commands.
     std::map<std::pair<void*, std::size_t>, Buffer> adopted_;
     DeviceFrame frame_;
+    std::optional<void*> followed_; ///< in this frame: arrays of a library share its stream
 };
 
 } // namespace tandem::python

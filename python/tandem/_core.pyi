@@ -129,21 +129,17 @@ class Collider:
 
     def __init__(self, meshes: Sequence[Mesh], bodies: Sequence[int], deformable: Sequence[bool], algorithm: str, preset: str, device: str, settings: Mapping[str, str], stream: int | None, owner: object | None) -> None: ...
 
-    def run(self, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C', device='cpu', writable=False)] | None, vertices: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)] | None]) -> Answer: ...
-
-    def run_plain(self, poses: object | None, vertices: object | None) -> Answer | None:
+    def run(self, poses: object | None, vertices: object | None) -> Answer | None:
         """
-        The same of what is as it has to be already: float64 with rows beside each other by the buffer protocol, in a list or a dict. None where anything is something else.
+        Of arrays, vertices in a list of one for each deformable body or in {number: array}. None where they are in anything else.
         """
 
     def run_there(self, poses: object | None, vertices: list) -> Answer:
         """
-        The same of arrays some of which are in memory of the device: capsules of DLPack, or (address, rows, bits, stream) of __cuda_array_interface__.
+        The same as if all were in memory of the device, where arrays of the host are for device host; an entry for each body.
         """
 
-    def tune(self, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C', device='cpu', writable=False)] | None, vertices: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)] | None], seconds: float) -> list: ...
-
-    def tune_there(self, poses: object | None, vertices: list, seconds: float) -> list: ...
+    def tune(self, poses: object | None, vertices: object | None, seconds: float) -> list | None: ...
 
     def reset(self) -> None: ...
 
@@ -160,10 +156,7 @@ class Collider:
     def queue(self) -> int: ...
 
     @property
-    def cuda_device(self) -> int | None: ...
-
-    @property
     def addresses(self) -> list[int]:
         """
-        Where kernels read the last frame of run_there: poses, 0 for none, then vertices of each deformable body.
+        Where kernels read the last frame that was in memory of the device: poses, 0 for none, then vertices of each deformable body.
         """

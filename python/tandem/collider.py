@@ -9,7 +9,7 @@ import numpy
 
 from . import _core
 from ._core import Mesh
-from .arrays import gpu_rows, host_array, on_gpu, stream_address
+from .arrays import host_array, stream_address
 
 
 class Digest(NamedTuple):
@@ -127,14 +127,13 @@ class Collider:
         made = [_mesh(mesh, f"meshes[{i}]") for i, mesh in enumerate(_list(meshes, "meshes"))]
         of = list(range(len(made))) if bodies is None else [_number(value, f"bodies[{i}]") for i, value in enumerate(_list(bodies, "bodies"))]
         flags = _flags(deformable, len(of))
-        self._bodies, self._soft = len(of), [body for body, flag in enumerate(flags) if flag]
+        self._soft = [body for body, flag in enumerate(flags) if flag]
         for what, text in (("algorithm", algorithm), ("device", device), ("preset", preset)):
             if not isinstance(text, str):
                 raise TypeError(f"{what}: type {type(text).__name__}, and a name is wanted")
         texts = {name: _text(value, name) for name, value in settings.items()}
         address = None if stream is None else stream_address(stream)
         self._core = _core.Collider(made, of, flags, algorithm, preset, device, texts, address, stream)
-        self._gpu = self._core.cuda_device
 
     def run(self, poses: Any = None, vertices: Any = None) -> Answer:
         """Finds the candidate pairs and contacts of a frame.
@@ -150,25 +149,16 @@ class Collider:
         before this returns. Both kinds may be mixed, and give the same answer to the bit; with the latter body pairs are found on the device,
         whatever broad says. Raises ValueError or TypeError for wrong shapes, types and numbers that are not finite, tandem.DeviceError
         otherwise."""
-        plain = self._core.run_plain(poses, vertices)
-        if plain is not None:
-            return Answer(plain)
-        vertices = _by_number(vertices)
-        if not _any_on_gpu(poses, vertices):
-            return Answer(self._core.run(None if poses is None else host_array(poses, "poses", 7),
-                                         [] if vertices is None else self._by_body(vertices, host_array)))
-        return Answer(self._core.run_there(*self._rows_there(poses, vertices)))
+        answer = self._core.run(poses, vertices)
+        return Answer(self._core.run(poses, self._by_body(vertices)) if answer is None else answer)
 
     def tune(self, poses: Any = None, vertices: Any = None, seconds: float = 2.0) -> list[Trial]:
         """Of algorithm="auto": times its candidates on that frame, given as to run(), for about `seconds` of frames (compiling them may take six
         times as long), and keeps the fastest, which `algorithm` and `settings` then name. Returns those timed, the fastest first. Without it the
         first run() does so. Raises ValueError where an algorithm was named, or every candidate fails."""
-        vertices = _by_number(vertices)
-        if not _any_on_gpu(poses, vertices):
-            trials = self._core.tune(None if poses is None else host_array(poses, "poses", 7),
-                                     [] if vertices is None else self._by_body(vertices, host_array), seconds)
-        else:
-            trials = self._core.tune_there(*self._rows_there(poses, vertices), seconds)
+        trials = self._core.tune(poses, vertices, seconds)
+        if trials is None:
+            trials = self._core.tune(poses, self._by_body(vertices), seconds)
         return [Trial(*trial) for trial in trials]
 
     def pairs(self, poses: Any = None, vertices: Any = None, on_device: bool = False) -> Any:
@@ -206,42 +196,20 @@ class Collider:
         """The ids of the devices that share each frame."""
         return self._core.devices
 
-    def _rows_there(self, poses, vertices):
-        """Both as _core takes them where some are on its GPU."""
-        return (None if poses is None else self._rows(poses, "poses", 7)), [] if vertices is None else self._by_body(vertices, self._rows)
-
-    def _rows(self, value, what, columns):
-        if not on_gpu(value):
-            return host_array(value, what, columns)
-        if self._gpu is None:
-            raise ValueError(f"{what}: is in CUDA's memory, and the collider works on {'+'.join(self.devices)}; make it on that GPU, or copy the array to "
-                             "the host's memory (.cpu() or .get())")
-        return gpu_rows(value, what, columns, self._core.queue)
-
-    def _by_body(self, vertices, taken):
-        """One entry for each body: its array, or None."""
+    def _by_body(self, vertices):
+        """{number: array}, from whatever may stand for it."""
+        if not isinstance(vertices, Mapping):
+            rows = _list(vertices, "vertices")
         if not self._soft:
             raise ValueError("vertices: no body is deformable; make the collider with deformable=True or numbers of bodies")
-        if not isinstance(vertices, (dict, Mapping)):
-            rows = vertices
+        if not isinstance(vertices, Mapping):
             if len(rows) != len(self._soft):
                 raise ValueError(f"vertices: {len(rows)} arrays for {len(self._soft)} deformable bodies; give each its array")
             vertices = dict(zip(self._soft, rows))
-        given = [None] * self._bodies
-        for body, rows in vertices.items():
+        for body in vertices:
             if body not in self._soft:
                 raise ValueError(f"vertices: {body!r} is no deformable body (there are: {', '.join(map(str, self._soft))})")
-            given[body] = taken(rows, f"vertices of body {body}", 3)
-        return given
-
-
-def _by_number(vertices):
-    """None, a mapping, or a list; also of an array of all bodies' arrays."""
-    return vertices if vertices is None or isinstance(vertices, (list, dict, Mapping)) else _list(vertices, "vertices")
-
-
-def _any_on_gpu(poses, vertices):
-    return on_gpu(poses) or (bool(vertices) and any(map(on_gpu, vertices.values() if isinstance(vertices, (dict, Mapping)) else vertices)))
+        return {int(body): rows for body, rows in vertices.items()}
 
 
 def _list(value, what):

@@ -115,11 +115,19 @@ TEST_F(CudaFrames, WorkOnTheApplicationsStream) {
 }
 
 TEST_F(CudaFrames, FollowOtherStreams) {
-    auto* const stream = stream_of(primary());
-    const auto before = calls(stream, primary());
-    device->follow(stream);
-    EXPECT_EQ(calls(stream, primary()), before + 1);
-    EXPECT_EQ(current(), nullptr);
+    const auto waits = entry_of_stub<unsigned long()>("stub_waits");
+    const auto orderings = entry_of_stub<unsigned long(CUstream_st*, CUstream_st*)>("stub_orderings");
+    auto* const own = static_cast<CUstream_st*>(device->queue());
+    auto* const legacy = reinterpret_cast<CUstream_st*>(1);
+    const auto waited = waits();
+    for (auto* const stream : {stream_of(primary()), stream_of(primary()), legacy, own}) {
+        auto* const named = stream == legacy ? nullptr : stream;
+        const auto before = orderings(own, named);
+        device->follow(stream);
+        EXPECT_EQ(orderings(own, named), before + (stream != own));
+        EXPECT_EQ(current(), nullptr);
+    }
+    EXPECT_EQ(waits(), waited) << "the host goes on";
 }
 
 } // namespace

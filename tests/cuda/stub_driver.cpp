@@ -46,6 +46,8 @@ unsigned long graphs = 0; ///< that live
 unsigned long graph_launches = 0, commands_in_graphs = 0;
 unsigned long profiler_starts = 0, profiler_stops = 0;
 unsigned long event_records = 0;
+std::map<EventHandle, Stream> recorded_in;
+std::map<std::pair<Stream, Stream>, unsigned long> orderings; ///< by who waits and for whom
 void (*watcher)(int) = nullptr;
 std::map<std::uint64_t, unsigned long> launches_with, copies_of; ///< by address
 
@@ -245,8 +247,13 @@ Result cuEventCreate(EventHandle* event, unsigned) {
     return current() != nullptr ? make(event) : invalid_context;
 }
 Result cuEventDestroy_v2(EventHandle) { return in_context(); }
-Result cuEventRecord(EventHandle, Stream stream) {
+Result cuEventRecord(EventHandle event, Stream stream) {
     ++event_records;
+    recorded_in[event] = stream;
+    return on(stream);
+}
+Result cuStreamWaitEvent(Stream stream, EventHandle event, unsigned) {
+    ++orderings[{stream, recorded_in.at(event)}];
     return on(stream);
 }
 Result cuEventElapsedTime(float* ms, EventHandle, EventHandle) {
@@ -326,6 +333,10 @@ unsigned long stub_waits() { return waits; }
 unsigned long stub_launches_with(unsigned long long address) { return launches_with[address]; }
 unsigned long stub_copies_of(unsigned long long address) { return copies_of[address]; }
 unsigned long stub_event_records() { return event_records; }
+unsigned long stub_orderings(Stream stream, Stream before) {
+    const auto found = orderings.find({stream, before});
+    return found == orderings.end() ? 0 : found->second;
+}
 void stub_watch(void (*by)(int)) { watcher = by; }
 unsigned long stub_profiler_starts() { return profiler_starts; }
 unsigned long stub_profiler_stops() { return profiler_stops; }

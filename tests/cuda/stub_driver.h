@@ -19,6 +19,8 @@ unsigned long stub_graph_launches();
 unsigned long stub_commands_in_graphs();
 /// How often an event was recorded.
 unsigned long stub_event_records();
+/// How often what `stream` is given next had to wait for what `before` was given so far.
+unsigned long stub_orderings(CUstream_st* stream, CUstream_st* before);
 /// From here on `watcher` is called at every command that a stream is told, with its kind as CUPTI numbers it
 /// (1 copy, 2 clear, 10 kernel); null: no longer.
 void stub_watch(void (*watcher)(int kind));
