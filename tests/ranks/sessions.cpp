@@ -19,6 +19,12 @@ using namespace testing_support;
 
 std::unique_ptr<Ranks> job;
 
+/// A rank's own device: host, or a GPU for each where TANDEM_TEST_RANKS_ON says cuda.
+Device& own_device() {
+    const auto* on = std::getenv("TANDEM_TEST_RANKS_ON");
+    return device(on == nullptr ? "host" : fmt::format("{}:{}", on, job->rank()));
+}
+
 Settings settings_of(const Traversal& traversal, const SettingTexts& given = {}) {
     return resolve(traversal.parameters(), traversal.presets().front().values, given, traversal.name());
 }
@@ -121,7 +127,7 @@ TEST_F(RankSessions, AnswersTogetherAreThoseOfOneDevice) {
     const auto scene = procession(24, 4, 0.35);
     for (const auto* traversal : algorithms()) {
         SCOPED_TRACE(traversal->name());
-        const auto session = traversal->prepare(device("host"), scene, settings_of(*traversal), *job);
+        const auto session = traversal->prepare(own_device(), scene, settings_of(*traversal), *job);
         const auto one = alone(*traversal, scene);
         std::vector<FrameResult> kept;
         for (const std::size_t i : {0u, 1u, 2u, 3u, 0u, 3u, 3u}) {
@@ -138,7 +144,7 @@ TEST_F(RankSessions, OnlyWhatIsNeededIsOnTheDevice) {
     scene.meshes.resize(scene.bodies.size(), scene.meshes.front());
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) scene.bodies[body].mesh = body;
     const auto& traversal = algorithm("tiled");
-    auto& on = device("host");
+    auto& on = own_device();
     const auto before = on.bytes_allocated();
     const auto session = traversal.prepare(on, scene,
                                            settings_of(traversal, {{"pair_capacity", "1"},
@@ -176,7 +182,7 @@ TEST_F(RankSessions, SkippedTetrahedraAreTold) {
     };
     for (const auto* traversal : algorithms()) {
         SCOPED_TRACE(traversal->name());
-        const auto session = traversal->prepare(device("host"), scene, settings_of(*traversal), *job);
+        const auto session = traversal->prepare(own_device(), scene, settings_of(*traversal), *job);
         const auto one = alone(*traversal, scene);
         for (const std::size_t i : {0u, 1u, 2u, 2u, 3u, 0u}) expect_equal(scene, *session, *one, i);
     }
@@ -192,7 +198,7 @@ TEST_F(RankSessions, VerticesGoFromDeviceToDevice) {
         for (const std::string placement : {"rounded", "exact"}) {
             const SettingTexts given{{"placement", placement}};
             const auto settings = settings_of(*traversal, given);
-            const auto session = traversal->prepare(device("host"), scene, settings, *job);
+            const auto session = traversal->prepare(own_device(), scene, settings, *job);
             const std::array one{&device("host")};
             const auto whole = traversal->prepare(one, scene, settings);
             for (const std::size_t i : {0u, 1u, 2u, 0u}) expect_equal(scene, *session, *whole, i);
@@ -218,7 +224,7 @@ TEST_F(RankSessions, VerticesOfDevicesOutOfReachGoThroughHosts) {
 TEST_F(RankSessions, VerticesAreBroughtWhereAFrameTakesBatches) {
     const auto scene = soft_procession(40, 3, 0.01);
     const auto& traversal = algorithm("chunked");
-    auto& on = device("host");
+    auto& on = own_device();
     const SettingTexts small{
         {"pair_capacity", "64"}, {"contact_capacity", "64"}, {"body_pair_capacity", "8"}};
     const auto session = traversal.prepare(on, scene, settings_of(traversal, small), *job);
@@ -245,7 +251,7 @@ TEST_F(RankSessions, MoreBodiesThanADeviceCanNumber) {
     EXPECT_THAT([&] { alone(traversal, scene); },
                 testing::ThrowsMessage<InputError>(testing::HasSubstr("takes at most 1048576 bodies")));
     const auto session =
-        traversal.prepare(device("host"), scene, settings_of(traversal, {{"contact_rule", "none"}}), *job);
+        traversal.prepare(own_device(), scene, settings_of(traversal, {{"contact_rule", "none"}}), *job);
     const auto result = session->run(scene.frame(0));
     EXPECT_EQ(summed(result.count), std::uint64_t{side - 1} * side * side) << "neighbours in rows touch";
     std::vector<Pair> pairs;
@@ -259,7 +265,7 @@ TEST_F(RankSessions, CountsAndDigestsWithoutPairs) {
     for (const std::string output : {"count", "digest"}) {
         const auto& traversal = algorithm("chunked");
         const auto session =
-            traversal.prepare(device("host"), scene, settings_of(traversal, {{"output", output}}), *job);
+            traversal.prepare(own_device(), scene, settings_of(traversal, {{"output", output}}), *job);
         const auto right = alone(traversal, scene)->run(scene.frame(0));
         for (int i = 0; i < 4; ++i) {
             const auto result = session->run(of_own(scene, *session, 0));
@@ -275,7 +281,7 @@ TEST_F(RankSessions, CountsAndDigestsWithoutPairs) {
 TEST_F(RankSessions, MoreRanksThanBodies) {
     const auto scene = procession(3, 2, 0.1);
     const auto& traversal = algorithm("gproximity");
-    const auto session = traversal.prepare(device("host"), scene, settings_of(traversal), *job);
+    const auto session = traversal.prepare(own_device(), scene, settings_of(traversal), *job);
     const auto one = alone(traversal, scene);
     for (const std::size_t i : {0u, 1u, 0u}) expect_equal(scene, *session, *one, i);
 }
@@ -284,7 +290,7 @@ TEST_F(RankSessions, MoreRanksThanBodies) {
 TEST_F(RankSessions, AnErrorOfOneRankIsOneOfAll) {
     const auto scene = procession(40, 2, 5);
     const auto& traversal = algorithm("tiled");
-    auto& on = device("host");
+    auto& on = own_device();
     const auto session = traversal.prepare(on, scene, settings_of(traversal), *job);
     const auto one = alone(traversal, scene);
     expect_equal(scene, *session, *one, 0);
@@ -307,8 +313,7 @@ TEST_F(RankSessions, RefuseWhatOneRankCannotDo) {
     const auto refusal = [&](const char* name, const SettingTexts& given) -> std::string {
         const auto& traversal = algorithm(name);
         try {
-            const auto session =
-                traversal.prepare(device("host"), scene, settings_of(traversal, given), *job);
+            const auto session = traversal.prepare(own_device(), scene, settings_of(traversal, given), *job);
             const std::vector<BodyPair> pairs{{1, 2}};
             session->run(scene.frame(0), pairs);
         } catch (const InputError& error) {
@@ -317,11 +322,11 @@ TEST_F(RankSessions, RefuseWhatOneRankCannotDo) {
         return "";
     };
     const auto& tiled = algorithm("tiled");
-    const auto session = tiled.prepare(device("host"), scene, settings_of(tiled), *job);
+    const auto session = tiled.prepare(own_device(), scene, settings_of(tiled), *job);
     DeviceFrame there;
-    there.poses = {device("host").allocate(5 * 7 * 8, "poses"), Precision::fp64};
+    there.poses = {own_device().allocate(5 * 7 * 8, "poses"), Precision::fp64};
     there.deformed.resize(5);
-    there.deformed[1] = {device("host").allocate(scene.meshes[0].vertices.size() * 24, "vertices"),
+    there.deformed[1] = {own_device().allocate(scene.meshes[0].vertices.size() * 24, "vertices"),
                          Precision::fp64};
     EXPECT_THAT([&] { session->run(there); },
                 testing::ThrowsMessage<InputError>(testing::HasSubstr("ranks of a job tell each other")));
