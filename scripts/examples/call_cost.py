@@ -65,8 +65,9 @@ def main():
         moved = on_gpu(arguments.arrays) if arguments.arrays != "numpy" else lambda array: array
         frames = frames_of(scene, range(first, min(last + 1, scene.frame_count)), moved)
         figures = measure(collider, frames, lambda c, frame: c.run(*frame), arguments.rounds)
-    except (ValueError, tandem.DeviceError) as error:
-        sys.exit(f"call_cost.py: {error}")
+    except (ImportError, ValueError, tandem.DeviceError) as error:
+        print(f"call_cost.py: {error}", file=sys.stderr)
+        sys.exit(2)
     print(f"{arguments.scene} on {arguments.device}, arrays of {arguments.arrays}, {len(frames)} frames, {arguments.rounds} rounds: {figures}")
 
 
