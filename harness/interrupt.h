@@ -4,7 +4,8 @@
 namespace tandem {
 
 /// While it lives, the first SIGINT, SIGTERM or SIGHUP only asks to end, so that what is being measured is
-/// written first; a second one ends the program at once. One at a time.
+/// written first; a second one ends the program at once, of SIGTERM one that comes a second later. One at a
+/// time.
 class Interrupt {
 public:
     Interrupt();

@@ -13,6 +13,7 @@
 #include "harness/progress.h"
 #include "harness/ranks/companions.h"
 #include "harness/ranks/launched.h"
+#include "harness/ranks/launched_run.h"
 #include "harness/ranks/sweep.h"
 #include "harness/run_parts.h"
 #include "harness/sampling/replays.h"
@@ -252,7 +253,10 @@ int Run::list_all() {
 /// Of several processes a plan's cells go to one each, and a scene's frames are shared by all.
 int run_command(const RunOptions& options) {
     auto* ranks = launched_ranks();
-    if (ranks == nullptr) return Run(options).go();
+    if (ranks == nullptr) {
+        tell_tasks_are_no_ranks();
+        return Run(options).go();
+    }
     if (options.plan) return sweep_command(options, *ranks);
     Companions companions(*ranks, options);
     return Run(companions.own_options(options)).go();

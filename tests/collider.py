@@ -514,7 +514,7 @@ class Example(ColliderCase):
         text = self.example("plates:count=2", "--frames", "60:61", "--rounds", 1, "--arrays", "all", script="call_cost.py")
         self.assertRegex(text, r"arrays of numpy, 2 frames, 1 rounds: call [\d.]+ us, library's frame [\d.]+ us, the call beside it [\d.]+ us; pairs handed out")
         self.assertRegex(text, r"3 arrays, asked from Python: __dlpack_device__ [\d.]+ us, __dlpack__ [\d.]+ us; without DLPack's table")
-        self.assertTrue(self.example("plates", "--frames", "60", code=1, script="call_cost.py").startswith("call_cost.py: "))
+        self.assertTrue(self.example("plates", "--frames", "60", code=2, script="call_cost.py").startswith("call_cost.py: "))
 
 
 class Package(unittest.TestCase):

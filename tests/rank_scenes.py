@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """rank_scenes.py PROGRAM SOURCE: scenes whose frames the ranks of a job of MPI share."""
 import os
+import pathlib
 import re
 import signal
 import subprocess
@@ -9,10 +10,11 @@ import time
 import unittest
 
 from program import PROGRAM, SMALL, Case, sets, tandem
-from ranks import ENVIRONMENT, launch, of, processes, wait_for
+from ranks import ENVIRONMENT, job, launch, of, processes, wait_for
 
 PILE = "pile:bodies=27,mesh=grain1,frames=2"
 ROOMS = sets({name: SMALL[name] for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")})
+STUBS = pathlib.Path(os.environ.get("CUDA_STUBS", "/nonexistent"))
 CELL = ["--device", "host", "--algorithm", "tiled", *ROOMS]
 
 
@@ -72,17 +74,33 @@ class RankScenes(Case):
         self.one_line("unknown scene 'pil'", "pil", "--device", "host")
         self.one_line("frames", PILE, "--device", "host", "--frames", "5:9")
 
+    @unittest.skipUnless(STUBS.is_dir(), "no stubs of CUDA")
+    def test_every_rank_has_a_gpu(self):
+        """As a launcher shows them: all of the machine to every rank, one to each (srun --gpus-per-task=1), one to both."""
+        stubs = {"LD_LIBRARY_PATH": str(STUBS / "driver"), "TANDEM_NVRTC": str(STUBS / "nvrtc/libnvrtc.so"), "TANDEM_CUPTI": "", "STUB_DEVICES": "2"}
+        stubs = ["env", *(f"{name}={value}" for name, value in stubs.items())]
+        common = ["run", PILE, "--repeat", 1, "--truth", "none", "--no-check", "--algorithm", "tiled", "--device"]
+        for shown, asked, expected in ((("0,1", "0,1"), "cuda:0+cuda:1", "cuda:1"), (("0", "1"), "cuda:0", "cuda:0"), (("1", "0"), "cuda:0", "cuda:0")):
+            status, text, errors = launch(job(*([*stubs, f"CUDA_VISIBLE_DEVICES={which}"] for which in shown))(*common, asked))
+            self.assertEqual((status, errors), (0, []), text)
+            self.assertIn(f"rank 1, {expected}", text)
+        for shown, asked, expected in ((("0,1", "0,1"), "cuda:0", "ranks 0 and 1 have one GPU, GPU-"), (("1", "1"), "cuda:0", "ranks 0 and 1 have one GPU, GPU-"),
+                                       (("0", "1"), "cuda:0+cuda:1", "rank 1: unknown device 'cuda:1'")):
+            status, text, errors = launch(job(*([*stubs, f"CUDA_VISIBLE_DEVICES={which}"] for which in shown))(*common, asked))
+            self.assertEqual((status, len(errors)), (2, 1), (text, errors))
+            self.assertIn(expected, errors[0])
+
     def test_a_rank_that_dies_ends_the_job_and_records_are_whole(self):
         out = self.work / "killed.jsonl"
         words = of(2)("run", PILE, "plates", *CELL, "--seconds", 60, "--noise", 1e-9, "--truth", "none", "--out", out)
-        job = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
-        wait_for(lambda: len(processes(job.pid)[0]) == 2)
+        process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+        wait_for(lambda: len(processes(process.pid)[0]) == 2)
         time.sleep(2)
         begin = time.monotonic()
-        os.kill(processes(job.pid)[0][1], signal.SIGKILL)
-        text = job.communicate(timeout=10)[1]
+        os.kill(processes(process.pid)[0][1], signal.SIGKILL)
+        text = process.communicate(timeout=10)[1]
         self.assertLess(time.monotonic() - begin, 10)
-        self.assertNotEqual(job.returncode, 0)
+        self.assertNotEqual(process.returncode, 0)
         self.assertRegex(text, r"rank 1\b.*\bsignal 9")
         if out.exists():
             self.records(out)  # whatever there is, whole and valid

@@ -224,10 +224,10 @@ class Sweeps(RanksCase):
         self.resumed(out)
 
     def test_a_signal_to_all_ranks(self):
-        """As Slurm does, in cells that would take minutes: what was measured is recorded, and the job ends by itself."""
+        """As Slurm does, two when time is up, in cells that would take minutes: what was measured is recorded, and the job ends by itself."""
         out, left = self.work / "signals.jsonl", self.work / "signals.jsonl.unfinished"
         two_begun = lambda _: left.exists() and len({json.loads(line)["key"] for line in left.read_text().splitlines()[1:-1]}) >= min(2, len(CORES))
-        stop = lambda process, ranks: [os.kill(rank, signal.SIGTERM) for rank in ranks]
+        stop = lambda process, ranks: [os.kill(rank, signal.SIGTERM) for _ in range(2) for rank in ranks]
         status, seconds, errors = self.stopped(out, stop, 1000, two_begun)
         self.assertEqual(status, 3)
         self.assertLess(seconds, 6)
@@ -318,6 +318,16 @@ class Refusals(RanksCase):
         status, text, errors = launch(of(4)("check", SCENES[0], "--device", "host", "--algorithm", "tiled", "--frames", 0, "--set", "k=8,99"))
         self.assertEqual(status, 2, errors)
         self.assertEqual((len(errors), errors[0]), (2, "tandem: check runs on one rank; the other 3 wait"))
+
+    def test_tasks_of_slurm_that_are_no_ranks(self):
+        """srun without --mpi tells its tasks nothing: the first says what that means, and each measures."""
+        of_one = [SCENES[0], "--device", "host", "--frames", 0, "--truth", "none", "--algorithm", "tiled", "--no-check"]
+        for number, said_by in (("0", 1), ("1", 0)):
+            status, _, errors = tandem("run", *of_one, environment={"SLURM_STEP_NUM_TASKS": "2", "SLURM_PROCID": number})
+            self.assertEqual((status, len(errors)), (0, said_by), errors)
+            self.assertTrue(all("srun started 2 tasks that know nothing of each other" in line for line in errors), errors)
+        self.assertEqual(tandem("run", *of_one, environment={"SLURM_STEP_NUM_TASKS": "1", "SLURM_PROCID": "0"})[2], [])
+        self.assertEqual(tandem("algorithms", environment={"SLURM_STEP_NUM_TASKS": "2", "SLURM_PROCID": "0"})[2], [])
 
     def test_a_scene_that_one_rank_has_not(self):
         far = self.work / "elsewhere"

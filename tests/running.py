@@ -96,6 +96,9 @@ class Running(Case):
             process = subprocess.Popen([str(PROGRAM), *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
             time.sleep(3)
             process.send_signal(number)
+            if number == signal.SIGTERM:  # Slurm sends two when time is up
+                time.sleep(0.002)
+                process.send_signal(number)
             text, errors = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 3, errors)
             self.assertRegex(errors, r"^tandem: interrupted; 2 cells are measured; to go on: tandem run .* --resume\n$")

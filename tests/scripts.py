@@ -369,6 +369,18 @@ class Scripts(Case):
                 if not re.match(r"[a-z]+:", target):
                     self.assertTrue((page.parent / target).exists(), f"{page.relative_to(SOURCE)}: {target}")
 
+    def test_quotes_of_the_examples_are_theirs(self):
+        """Fenced lines of their page stand in the file that the section is of."""
+        folder = SOURCE / "scripts/examples"
+        sections = re.split(r"(?m)^## `(.*?)`", (folder / "README.md").read_text())
+        named = dict(zip(sections[1::2], sections[2::2]), **{"find_pairs.h": sections[0]})
+        self.assertEqual(set(named), {p.name for p in folder.iterdir() if p.suffix in (".cpp", ".h", ".py")})
+        for name, text in named.items():
+            lines = [line.strip() for line in (folder / name).read_text().splitlines()]
+            quotes = [line.strip() for quote in re.findall(r"(?s)```\w+\n(.*?)```", text) for line in quote.splitlines()]
+            self.assertGreater(len(quotes), 2, name)
+            self.assertEqual([line for line in quotes if line not in lines], [], name)
+
     def test_committed_microbenchmarks(self):
         """What compare.py of Google Benchmark reads, of every benchmark as often; and nothing that names the machine."""
         result = json.loads((SOURCE / "results/cpu/bench.json").read_text(), parse_constant=self.fail)

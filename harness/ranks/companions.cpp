@@ -115,6 +115,7 @@ void Companions::open(const RunOptions& options, const Device& own) {
         wrong = error.what();
     }
     if (const auto text = first_complaint(ranks_, wrong); !text.empty()) throw InputError(text);
+    if (const auto text = shared_gpu(ranks_, own.info()); !text.empty()) throw InputError(text);
     devices_ = devices_of_ranks(ranks_, own.info());
 }
 

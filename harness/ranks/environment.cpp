@@ -15,6 +15,11 @@ bool has_launcher() {
     return std::ranges::any_of(names, [](const char* name) { return std::getenv(name) != nullptr; });
 }
 
+int tasks_without_mpi() {
+    const char* tasks = has_launcher() ? nullptr : std::getenv("SLURM_STEP_NUM_TASKS");
+    return tasks != nullptr ? std::max(std::atoi(tasks), 1) : 1;
+}
+
 std::vector<char*> environment_without_launcher() {
     using namespace std::string_view_literals;
     constexpr std::array beginnings{"OMPI_"sv, "PMIX_"sv, "PMI_"sv, "PMI2_"sv, "HYDRA_"sv, "MPIR_"sv};

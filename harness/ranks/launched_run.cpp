@@ -4,12 +4,15 @@
 #include "harness/environment.h"
 #include "harness/interrupt.h"
 #include "harness/ranks/companions.h"
+#include "harness/ranks/environment.h"
 #include "harness/ranks/launched.h"
 #include "harness/ranks/worker.h"
 #include "harness/standard_streams.h"
 
+#include <cstdlib>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <string_view>
 
 namespace tandem {
 
@@ -79,6 +82,15 @@ void tell_others_wait(const std::string& command) {
     const int others = ranks->size() - 1;
     tell("tandem: {} runs on one rank; the other {}\n", command,
          others == 1 ? "waits" : fmt::format("{} wait", others));
+}
+
+void tell_tasks_are_no_ranks() {
+    const int tasks = tasks_without_mpi();
+    const char* number = std::getenv("SLURM_PROCID");
+    if (tasks == 1 || number == nullptr || number != std::string_view("0")) return;
+    tell("tandem: srun started {} tasks that know nothing of each other, and each measures everything; for "
+         "ranks of one job give it --mpi=pmix, or another of srun --mpi=list\n",
+         tasks);
 }
 
 } // namespace tandem

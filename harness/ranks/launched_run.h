@@ -18,4 +18,7 @@ int run_launched(Ranks& ranks, const std::vector<std::string>& words, const std:
 /// others.
 void tell_others_wait(const std::string& command);
 
+/// Of a run by itself: says on standard error, once for all tasks of an srun, that they are no ranks.
+void tell_tasks_are_no_ranks();
+
 } // namespace tandem

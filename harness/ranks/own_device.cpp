@@ -6,8 +6,8 @@
 #include "harness/ranks/machine.h"
 #include "scenes/error.h"
 
-#include <array>
 #include <fmt/format.h>
+#include <map>
 
 namespace tandem {
 
@@ -32,16 +32,27 @@ std::string device_of_rank(const std::string& names, const PlaceOnMachine& place
             fmt::format("--device {} names {} devices for {} rank{} on a machine, and a rank has one; start "
                         "as many ranks as devices",
                         names, parts.size(), count, count == 1 ? "" : "s"));
-    if (parts.size() == count) return parts[place.before];
-    // Processors can be shared; of GPUs each rank has its own, or times are of nothing.
-    const auto own = parts[place.before % parts.size()];
-    const auto backends = open_backends(std::array{own}, {});
-    if (choose_devices(backends, std::array{own}).front().front()->info().is_gpu)
-        throw InputError(
-            fmt::format("{} ranks on a machine have {} GPU{} in --device {}; name one for each, as in "
-                        "cuda:0+cuda:1, or start fewer ranks a machine",
-                        count, parts.size(), parts.size() == 1 ? "" : "s", names));
-    return own;
+    return parts[place.before % parts.size()];
+}
+
+std::string shared_gpu(Ranks& ranks, const DeviceInfo& own) {
+    Ranks::Bytes message;
+    append_text(message, own.is_gpu ? this_machine() : "");
+    append_text(message, own.hardware.empty() ? own.id : own.hardware);
+    std::map<std::pair<std::string, std::string>, std::size_t> rank_of;
+    const auto all = ranks.gather_to_all(message);
+    for (std::size_t rank = 0; rank < all.size(); ++rank) {
+        MessageReader reader(all[rank]);
+        auto machine = reader.read_text();
+        auto card = reader.read_text();
+        if (machine.empty()) continue;
+        const auto [first, is_new] = rank_of.try_emplace({std::move(machine), std::move(card)}, rank);
+        if (!is_new)
+            return fmt::format("ranks {} and {} have one GPU, {}; name one for each rank of a machine, as in "
+                               "--device cuda:0+cuda:1, or start one rank a GPU",
+                               first->second, rank, first->first.second);
+    }
+    return {};
 }
 
 std::vector<DeviceInfo> devices_of_ranks(Ranks& ranks, const DeviceInfo& own) {

@@ -17,9 +17,13 @@ struct PlaceOnMachine {
 /// By all ranks together.
 PlaceOnMachine place_on_machine(Ranks& ranks);
 
-/// Which of the devices "cuda:0+cuda:1" is the rank's. Processors can be shared; of GPUs every rank has its
-/// own, or times would say nothing. Throws InputError where there are more devices than ranks, or fewer GPUs.
+/// Which of the devices "cuda:0+cuda:1" is the rank's, by the names that it has there: a launcher may show
+/// every rank another GPU as cuda:0. Throws InputError where there are more devices than ranks.
 std::string device_of_rank(const std::string& names, const PlaceOnMachine& place);
+
+/// By all ranks together: the sentence against one GPU for two ranks of a machine, whose times would say
+/// nothing; empty where each has its own. Processors can be shared.
+std::string shared_gpu(Ranks& ranks, const DeviceInfo& own);
 
 /// By all ranks together: what each has.
 std::vector<DeviceInfo> devices_of_ranks(Ranks& ranks, const DeviceInfo& own);

@@ -132,7 +132,8 @@ void Companion::tell_of(std::uint64_t number, Order order) {
 bool Companion::follow(const Told& told) {
     switch (told.order) {
     case Order::open:
-        if (first_complaint(ranks_, open(json::parse(told.text))).empty())
+        if (first_complaint(ranks_, open(json::parse(told.text))).empty()
+            && shared_gpu(ranks_, device().info()).empty())
             devices_of_ranks(ranks_, device().info());
         return true;
     case Order::prepare:

@@ -105,8 +105,9 @@ def main():
             print(f"{arguments.scene} on {arguments.device}, arrays of {library}, {len(frames)} frames, {arguments.rounds} rounds: {figures}")
             stream = (collider._core.queue or 1) if on_gpu and library != "numpy" else None
             print(protocols(frames, arguments.rounds, stream), flush=True)
-    except (ValueError, tandem.DeviceError) as error:
-        sys.exit(f"call_cost.py: {error}")
+    except (ImportError, ValueError, tandem.DeviceError) as error:
+        print(f"call_cost.py: {error}", file=sys.stderr)
+        sys.exit(2)
 
 
 if __name__ == "__main__":

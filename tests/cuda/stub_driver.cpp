@@ -3,7 +3,8 @@
 // context is the thread's, what needs one fails without, and a stream goes with its own only. What goes wrong
 // is chosen by variables: STUB_INIT (code of cuInit), STUB_VERSION, STUB_MEMORY (bytes there are), STUB_FAULT
 // (launches fault), STUB_LAUNCH, STUB_INSTANTIATE and STUB_GRAPH (codes of cuLaunchKernel, of making a
-// graph and of launching one), STUB_UNTOLD (an attribute of the device that is not told).
+// graph and of launching one), STUB_UNTOLD (an attribute of the device that is not told). STUB_DEVICES is how
+// many there are, of which CUDA_VISIBLE_DEVICES shows some; else there is one.
 #include "backends/cuda/driver.h"
 #include "tests/cuda/stub_driver.h"
 
@@ -12,6 +13,8 @@
 #include <cstring>
 #include <functional>
 #include <map>
+#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -83,6 +86,17 @@ Result in_memory(DevicePointer first, std::size_t bytes) {
     return first + bytes <= next->first + next->second ? 0 : 1;
 }
 
+/// The devices that there are, by their numbers in the machine.
+std::vector<long> visible() {
+    std::vector<long> devices;
+    const auto count = number("STUB_DEVICES", 1);
+    const auto* shown = count > 1 ? std::getenv("CUDA_VISIBLE_DEVICES") : nullptr;
+    for (long device = 0; shown == nullptr && device < count; ++device) devices.push_back(device);
+    std::istringstream words(shown != nullptr ? shown : "");
+    for (std::string word; std::getline(words, word, ',');) devices.push_back(std::stol(word));
+    return devices;
+}
+
 std::size_t memory() { return static_cast<std::size_t>(number("STUB_MEMORY", 1L << 32)); }
 
 template<class Handle>
@@ -114,7 +128,7 @@ Result cuGetErrorString(Result, const char** text) {
     return 0;
 }
 Result cuDeviceGetCount(int* count) {
-    *count = 1;
+    *count = static_cast<int>(visible().size());
     return 0;
 }
 Result cuDeviceGet(DeviceHandle* device, int index) {
@@ -125,8 +139,9 @@ Result cuDeviceGetName(char* name, int size, DeviceHandle) {
     std::strncpy(name, "Stub GPU", static_cast<std::size_t>(size));
     return 0;
 }
-Result cuDeviceGetUuid_v2(unsigned char* uuid, DeviceHandle) {
+Result cuDeviceGetUuid_v2(unsigned char* uuid, DeviceHandle device) {
     std::memset(uuid, 0x5a, 16);
+    uuid[15] = static_cast<unsigned char>(uuid[15] + visible()[static_cast<std::size_t>(device)]);
     return 0;
 }
 Result cuDeviceGetAttribute(int* value, int what, DeviceHandle) {
