@@ -21,37 +21,37 @@ class Cupy:
     """What the tests need of a library."""
     def __init__(self):
         import cupy
-        self.library = cupy
+        self.module = cupy
 
     def array(self, values, dtype=numpy.float64):
-        return self.library.asarray(numpy.asarray(values, dtype))
+        return self.module.asarray(numpy.asarray(values, dtype))
 
     def empty_like(self, array):
-        return self.library.zeros_like(array)
+        return self.module.zeros_like(array)
 
     def address(self, array):
         return array.data.ptr
 
     def host(self, array):
-        return self.library.asnumpy(array)
+        return self.module.asnumpy(array)
 
     def taken(self, given):
-        return self.library.from_dlpack(given)
+        return self.module.from_dlpack(given)
 
     def matrix(self):
-        return self.library.ones((SIDE, SIDE), self.library.float32)
+        return self.module.ones((SIDE, SIDE), self.module.float32)
 
     def written_late(self, target, values, matrix, products=60):
         """`target`, which is `values` once the GPU has done much else; whether it was so already when this returned."""
         for _ in range(products):
             matrix = matrix @ matrix * numpy.float32(1 / SIDE)
         target[...] = values + 0 * matrix[0, 0].astype(target.dtype)
-        event = self.library.cuda.Event()
+        event = self.module.cuda.Event()
         event.record()
         return target, event.done
 
     def stream(self):
-        return self.library.cuda.Stream(non_blocking=True)
+        return self.module.cuda.Stream(non_blocking=True)
 
     def on(self, stream):
         return stream
@@ -60,16 +60,16 @@ class Cupy:
         return stream.ptr
 
     def finish(self):
-        self.library.cuda.Device().synchronize()
+        self.module.cuda.Device().synchronize()
 
 
 class Torch(Cupy):
     def __init__(self):
         import torch
-        self.library = torch
+        self.module = torch
 
     def array(self, values, dtype=numpy.float64):
-        return self.library.from_numpy(numpy.array(values, dtype)).cuda()
+        return self.module.from_numpy(numpy.array(values, dtype)).cuda()
 
     def address(self, array):
         return array.data_ptr()
@@ -78,52 +78,52 @@ class Torch(Cupy):
         return array.cpu().numpy()
 
     def matrix(self):
-        return self.library.ones((SIDE, SIDE), dtype=self.library.float32, device="cuda")
+        return self.module.ones((SIDE, SIDE), dtype=self.module.float32, device="cuda")
 
     def written_late(self, target, values, matrix, products=60):
         for _ in range(products):
             matrix = matrix @ matrix * (1 / SIDE)
         target.copy_(values + 0 * matrix[0, 0].to(target.dtype))
-        event = self.library.cuda.Event()
+        event = self.module.cuda.Event()
         event.record()
         return target, event.query()
 
     def stream(self):
-        return self.library.cuda.Stream()
+        return self.module.cuda.Stream()
 
     def on(self, stream):
-        return self.library.cuda.stream(stream)
+        return self.module.cuda.stream(stream)
 
     def stream_address(self, stream):
         return stream.cuda_stream
 
     def finish(self):
-        self.library.cuda.synchronize()
+        self.module.cuda.synchronize()
 
 
 class Jax(Cupy):
     def __init__(self):
         import jax
         jax.config.update("jax_enable_x64", True)
-        self.library = jax
+        self.module = jax
 
     def array(self, values, dtype=numpy.float64):
-        return self.library.block_until_ready(self.library.numpy.asarray(numpy.asarray(values, dtype)))
+        return self.module.block_until_ready(self.module.numpy.asarray(numpy.asarray(values, dtype)))
 
     def address(self, array):
         return array.unsafe_buffer_pointer()
 
     def empty_like(self, array):
-        return self.library.numpy.zeros_like(array)
+        return self.module.numpy.zeros_like(array)
 
     def host(self, array):
         return numpy.asarray(array)
 
     def taken(self, given):
-        return self.library.dlpack.from_dlpack(given)
+        return self.module.dlpack.from_dlpack(given)
 
     def matrix(self):
-        return self.library.numpy.ones((SIDE, SIDE), numpy.float32)
+        return self.module.numpy.ones((SIDE, SIDE), numpy.float32)
 
     def written_late(self, target, values, matrix, products=60):
         """A new array: those of JAX never change."""
@@ -136,13 +136,13 @@ class Jax(Cupy):
         raise unittest.SkipTest("jax has no streams of its users'")
 
     def finish(self):
-        self.library.block_until_ready(self.library.numpy.zeros(1) + 1)
+        self.module.block_until_ready(self.module.numpy.zeros(1) + 1)
 
 
 def setUpModule():
     global ON
     ON = {"cupy": Cupy, "torch": Torch, "jax": Jax}[LIBRARY]()
-    print(f"{LIBRARY} {ON.library.__version__}, {DEVICE}: {next(d['name'] for d in tandem.devices() if d['id'] == DEVICE)}", file=sys.stderr)
+    print(f"{LIBRARY} {ON.module.__version__}, {DEVICE}: {next(d['name'] for d in tandem.devices() if d['id'] == DEVICE)}", file=sys.stderr)
 
 
 class InterfaceAlone:

@@ -46,7 +46,7 @@ private:
     void build(const std::vector<std::uint32_t>& bodies);
     void drop();
     void exchange(const Frame& frame, Report& own);
-    void note(const std::exception& error, Report& own);
+    static void note(const std::exception& error, Report& own);
     void take_frame(const Frame& frame);
     void pass_vertices(const Frame& frame, Halo::Traffic& traffic, Report& own);
     FrameResult run_present(Report& own);

@@ -57,17 +57,22 @@ inline Mesh shaken_box(std::uint32_t cells, Random& random) {
     return mesh;
 }
 
+/// A corner of a cube with edges of that length.
+inline Mesh one_tetrahedron(double edge) {
+    Mesh mesh;
+    mesh.vertices = {{0, 0, 0}, {edge, 0, 0}, {0, edge, 0}, {0, 0, edge}};
+    mesh.tetrahedra = {{0, 1, 2, 3}};
+    complete_mesh(mesh, "one tetrahedron");
+    return mesh;
+}
+
 /// Bodies of three meshes (1 tetrahedron, 48, 162) crowded together; body 0 fixed, body 1 deformable; two
 /// frames.
 inline Scene crowd(std::uint64_t seed, std::uint32_t bodies, double spread) {
     Random random(seed);
     Scene scene;
     scene.name = scene.key = "crowd";
-    Mesh one;
-    one.vertices = {{0, 0, 0}, {0.7, 0, 0}, {0, 0.7, 0}, {0, 0, 0.7}};
-    one.tetrahedra = {{0, 1, 2, 3}};
-    complete_mesh(one, "one");
-    scene.meshes = {shaken_box(3, random), shaken_box(2, random), one};
+    scene.meshes = {shaken_box(3, random), shaken_box(2, random), one_tetrahedron(0.7)};
     std::vector<std::array<Pose, 2>> poses(bodies);
     for (std::uint32_t i = 0; i < bodies; ++i) {
         scene.bodies.push_back({.mesh = i < 2 ? i : i % 3, .fixed = i == 0, .deformable = i == 1});
