@@ -2,6 +2,8 @@
 #include "algorithms/answer/answers.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace tandem {
 
@@ -34,22 +36,29 @@ std::shared_ptr<AnswerBuffers> AnswerPool::make(std::uint64_t pairs, std::uint64
 std::size_t AnswerPool::contact_bytes() const { return id_bytes + value_reals * real_bytes_; }
 
 void AnswerPool::expect(std::uint64_t pairs, double contacts_a_pair) {
-    expected_pairs_ = pairs;
-    expected_contacts_ =
-        contacts_ ? static_cast<std::uint64_t>(static_cast<double>(pairs) * contacts_a_pair) : 0;
+    constexpr double spare = 1.125;
+    const auto expected = spare * static_cast<double>(pairs);
+    needed_pairs_ = static_cast<std::uint64_t>(std::min(expected, static_cast<double>(Room::most)));
+    needed_contacts_ = static_cast<std::uint64_t>(
+        std::min(contacts_ ? expected * contacts_a_pair : 0.0, static_cast<double>(Room::most)));
 }
 
-/// Where memory is short a walk may do with less.
-void AnswerPool::widen(AnswerBuffers& set) const {
-    const auto widen_one = [](Room& room, std::uint64_t rows) {
-        if (rows > room.rows()) room.grow(rows);
+/// As much room as any set has, or is expected to need. Where memory is short a walk may do with less.
+void AnswerPool::widen(AnswerBuffers& set) {
+    for (const auto& other : sets_) {
+        needed_pairs_ = std::max(needed_pairs_, other->pairs.rows());
+        needed_contacts_ = std::max(needed_contacts_, other->contact_ids.rows());
+    }
+    const auto widen_one = [&](Room& room, std::uint64_t rows, double share) {
+        if (rows > room.rows() && rows - room.rows() <= rows_within(device_, room.row_bytes(), share))
+            room.widen(rows);
     };
     try {
-        widen_one(set.pairs, std::min(expected_pairs_, rows_within(device_, pair_bytes_, pair_share)));
-        const auto contacts =
-            std::min(expected_contacts_, rows_within(device_, contact_bytes(), contact_share));
-        widen_one(set.contact_ids, contacts);
-        widen_one(set.contact_values, contacts);
+        widen_one(set.pairs, std::exchange(needed_pairs_, 0), pair_share);
+        const auto contacts = std::exchange(needed_contacts_, 0);
+        if (!contacts_) return;
+        widen_one(set.contact_ids, contacts, contact_share);
+        set.contact_values.widen(set.contact_ids.rows());
     } catch (const OutOfMemory&) {} // the room that there was is there again, or the walk says that it is not
 }
 
@@ -61,7 +70,6 @@ std::shared_ptr<AnswerBuffers> AnswerPool::take() {
         free = std::prev(sets_.end());
     }
     widen(**free);
-    expected_pairs_ = expected_contacts_ = 0;
     return *free;
 }
 

@@ -107,14 +107,14 @@ public:
 private:
     /// Throws OutOfMemory.
     std::shared_ptr<AnswerBuffers> make(std::uint64_t pairs, std::uint64_t contacts) const;
-    void widen(AnswerBuffers& set) const;
+    void widen(AnswerBuffers& set);
     /// Of one contact in both of its buffers.
     std::size_t contact_bytes() const;
 
     Device& device_;
     std::size_t pair_bytes_, real_bytes_;
     bool contacts_;
-    std::uint64_t expected_pairs_ = 0, expected_contacts_ = 0;
+    std::uint64_t needed_pairs_ = 0, needed_contacts_ = 0; ///< of the next set that is taken
     std::vector<std::shared_ptr<AnswerBuffers>> sets_;
 };
 

@@ -17,14 +17,21 @@ void Room::allocate(std::uint64_t rows) {
     rows_ = rows;
 }
 
-void Room::grow(std::uint64_t rows) {
+void Room::grow(std::uint64_t rows) { replace(rows, rows / 8); }
+
+void Room::widen(std::uint64_t rows) {
+    if (rows > rows_) replace(rows, 0);
+}
+
+/// Room for so many rows, and for `spare` more where memory allows.
+void Room::replace(std::uint64_t rows, std::uint64_t spare) {
     if (rows > most)
         throw OutOfMemory(fmt::format("{}: {} rows of {} do not fit into one buffer of at most {}",
                                       device_->info().id, rows, label_, most));
     const auto before = rows_;
     buffer_ = {}; // first, so that old and new need not fit side by side
     rows_ = 0;
-    for (const auto wanted : {std::min(rows + rows / 8, most), rows}) {
+    for (const auto wanted : {std::min(rows + spare, most), rows}) {
         try {
             allocate(wanted);
             return;

@@ -20,6 +20,8 @@ public:
     /// Makes room for `rows`, and for an eighth more where memory allows; what was there is lost. Throws
     /// OutOfMemory, after which there is as much room as before, or none when even that is not to be had.
     void grow(std::uint64_t rows);
+    /// Makes room for `rows` at least, and no more than that where there is less. Otherwise as grow().
+    void widen(std::uint64_t rows);
     std::uint64_t rows() const { return rows_; }
     /// The same as kernels take it.
     std::uint32_t capacity() const { return static_cast<std::uint32_t>(rows_); }
@@ -30,6 +32,7 @@ public:
 
 private:
     void allocate(std::uint64_t rows);
+    void replace(std::uint64_t rows, std::uint64_t spare);
     void restore(std::uint64_t rows);
 
     Device* device_ = nullptr;

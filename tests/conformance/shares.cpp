@@ -168,6 +168,22 @@ TEST_F(Shares, ExpectedFramesRunOnce) {
     EXPECT_EQ(again.retries, 0u);
     expect_equal(again, result);
     EXPECT_EQ(prepared.run(frame).retries, 0u) << "while the last answer is kept, with other buffers";
+    // Buffers take turns where the last answer is kept.
+    auto apart = frame;
+    for (std::size_t body = 0; body < 8; ++body) {
+        apart.poses[body].translation.x() = 100.0 * static_cast<double>(body);
+        for (auto& vertex : apart.deformed[body]) vertex.x() += 100.0 * static_cast<double>(body);
+    }
+    auto later = session();
+    auto last = later.run(apart);
+    last = later.run(apart);
+    ASSERT_EQ(last.count, 0u);
+    last = later.run(frame);
+    ASSERT_GT(last.retries, 0u);
+    for (int i = 0; i < 4; ++i) {
+        last = later.run(frame);
+        EXPECT_EQ(last.retries, 0u) << "there was as much room before";
+    }
 }
 
 /// Batches for want of memory look for their pairs among the share's alone, wherever they are found.
