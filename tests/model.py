@@ -178,7 +178,7 @@ class Fit(ModelCase):
 
 class SimulatedRanks(ModelCase):
     def test_counts_are_those_of_brute_force(self):
-        pile, many, margin = ranks.Pile(150, 0.1, 3), 4, 0.1
+        pile, many, margin = ranks.Pile(150, 0.1, 3), 10, 0.1
         found = ranks.count(pile, many, margin)
         starts = np.concatenate([[0], np.cumsum(found["own"])])
         own = [range(a, b) for a, b in zip(starts, starts[1:])]
@@ -195,6 +195,7 @@ class SimulatedRanks(ModelCase):
         for name, expected in {"halo": of(gets, 0), "sent": of(owners(gets), 1), "senders": of(links, 0), "receivers": of(links, 1),
                                "offered": of(hears, 0), "offers": of(owners(hears), 1), "boxes_to": of(boxes, 0), "boxes_from": of(boxes, 1)}.items():
             self.assertEqual(found[name].tolist(), expected, name)
+        self.assertLess(len(boxes), many * (many - 1) // 2)
         self.assertGreater(len(hears), len(gets) + 5)
         self.assertGreater(len(gets), 50)
         self.expect_pairs(pile, found, owner)
