@@ -23,6 +23,10 @@ public:
           steps_(traversal, device, scene, std::move(fitted), std::move(answers)),
           devices_{&device} {}
     const std::shared_ptr<AnswerPool>& answers() const { return steps_.answers; }
+    /// What the next frame is going to find, as far as anybody knows: with room for it it need not run twice.
+    void expect(std::uint64_t pairs, double contacts_a_pair) {
+        steps_.answers->expect(pairs, contacts_a_pair);
+    }
 
     // Where vertices come by another way than from the host's memory:
 

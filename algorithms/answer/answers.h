@@ -96,6 +96,8 @@ public:
 
     /// Whether pairs in this layout fit into its rows.
     bool fits(PairLayout layout) const { return pair_bytes_ == words_of(layout) * 4; }
+    /// The next buffers taken have room for so many, as far as memory allows.
+    void expect(std::uint64_t pairs, double contacts_a_pair);
     /// Buffers that no answer lies in, with as much room as was ever needed. Throws OutOfMemory.
     std::shared_ptr<AnswerBuffers> take();
     /// The same for a frame that did not fit: room for so many, or as much as is free, shared out to pairs
@@ -105,12 +107,14 @@ public:
 private:
     /// Throws OutOfMemory.
     std::shared_ptr<AnswerBuffers> make(std::uint64_t pairs, std::uint64_t contacts) const;
+    void widen(AnswerBuffers& set) const;
     /// Of one contact in both of its buffers.
     std::size_t contact_bytes() const;
 
     Device& device_;
     std::size_t pair_bytes_, real_bytes_;
     bool contacts_;
+    std::uint64_t expected_pairs_ = 0, expected_contacts_ = 0;
     std::vector<std::shared_ptr<AnswerBuffers>> sets_;
 };
 

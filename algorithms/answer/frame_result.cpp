@@ -34,6 +34,10 @@ Digest& Digest::operator+=(const Digest& other) {
     return *this;
 }
 
+double FrameResult::contacts_a_pair() const {
+    return count == 0 ? 1 : static_cast<double>(contacts) / static_cast<double>(count);
+}
+
 Digest FrameResult::digest() const {
     if (summed) return *summed;
     Digest sum;

@@ -86,6 +86,8 @@ struct FrameResult {
 
     /// False with output=count or digest, which keep none.
     bool has_pairs() const { return !parts.empty(); }
+    /// 1 where there are no candidate pairs.
+    double contacts_a_pair() const;
     /// Of pairs and contacts, summed where they are. Not part of a measured frame. Of an answer that only
     /// counts the sums are 0.
     Digest digest() const;

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <iterator>
 #include <numeric>
+#include <utility>
 
 namespace tandem {
 
@@ -121,6 +122,7 @@ void RankSession::take_share() {
         }
     }
     session_->take(in_part(*present_, share));
+    session_->expect(std::exchange(expected_pairs_, 0), contacts_a_pair_);
     std::vector<std::uint32_t> received;
     if (passage_.is_taken())
         for (const auto& bodies : halo_.deformed_gotten())
@@ -286,6 +288,8 @@ void RankSession::deal_anew(const Frame& frame, FrameResult& result) {
     if (settings_[parameters::output] == Output::pairs) deal_.learn(counts);
     deal_.make(balls_, balance_.speeds());
     balance_.dealt();
+    expected_pairs_ = deal_.expected_pairs(static_cast<std::size_t>(ranks_.rank()));
+    contacts_a_pair_ = result.contacts_a_pair();
     halo_.forget();
     result.deals = 1;
 }

@@ -12,25 +12,30 @@ class Balance {
 public:
     explicit Balance(std::size_t shares);
 
-    /// A frame: what each device did, and its work as deals count it. The first one, and the first after a
-    /// deal, say nothing: some devices compile in them, or make room.
+    /// A frame: what each device did, and its work as deals count it. Times of the first one, and of the
+    /// first after a deal, say nothing: some devices compile in them, or make room.
     void see(std::span<const SharedWork> done, std::span<const double> work);
-    /// Whether over some frames one device took so much longer than all on average, and more than frames
-    /// scatter, that bodies had better be dealt anew. After a deal that was of no use it takes twice as many.
+    /// Whether, at these speeds, one device's work takes so much longer than all on average that bodies had
+    /// better be dealt anew: asked of the first frame of all, and after some frames again. After a deal that
+    /// was of no use it takes twice as many.
     bool wants_a_deal() const { return wants_a_deal_; }
     /// Bodies have been dealt anew.
     void dealt();
-    /// Of each device: work done in a nanosecond; equal before some frames were seen.
+    /// Of each device, beside the others: work done in a time; equal until frames, beside their scatter, say
+    /// for sure that they are not.
     std::span<const double> speeds() const { return speeds_; }
 
 private:
     /// Of one device over some frames.
     struct Seen {
-        double sum = 0, squares = 0; ///< of its times over the frames' mean times
-        double work = 0, ns = 0;
+        double sum = 0, squares = 0; ///< of its speeds
+        double frames = 0;           ///< with work
+        double work = 0;
     };
 
-    double sure_imbalance() const;
+    double expected_imbalance(std::span<const double> work) const;
+    double scatter() const;
+    void learn_speeds();
     void look_back();
     void begin();
 
@@ -39,11 +44,11 @@ private:
     std::size_t frames_ = 0; ///< in seen_
     std::size_t patience_;   ///< frames
     std::size_t next_look_;  ///< at frames_
+    bool is_first_ = true;   ///< no frame at all has been seen
     bool is_new_ = true;     ///< no frame of this deal has been seen
-    bool knows_speeds_ = false;
     bool wants_a_deal_ = false;
     bool judges_ = false; ///< the frames at hand tell what the last deal was good for
-    double before_ = 1;   ///< the longest device's mean time that it was made for
+    double before_ = 1;   ///< the imbalance that it was made for
 };
 
 /// The longest time over the mean of all: 1 where all devices end together.

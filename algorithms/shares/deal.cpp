@@ -39,8 +39,7 @@ Deal::Deal(const Scene& scene, const Geometry& geometry, std::size_t shares)
       shares_(shares),
       owners_(scene.bodies.size(), shares),
       balls_(scene.bodies.size()),
-      learned_(scene.bodies.size(), 1.0),
-      foreseen_(scene.bodies.size()) {
+      learned_(scene.bodies.size(), 1.0) {
     std::iota(all_.begin(), all_.end(), 0u);
 }
 
@@ -64,7 +63,7 @@ void Deal::order_bodies() {
 
 /// As if tetrahedra were strewn evenly through the balls: those of one whose middle lies within the sum of
 /// both sizes of a tetrahedron of the other.
-double Deal::expected_pairs(BodyPair pair) const {
+double Deal::foreseen_pairs(BodyPair pair) const {
     const auto &a = balls_[pair.a], &b = balls_[pair.b];
     const double volume = common_volume(a.radius, b.radius, (a.centre - b.centre).norm());
     if (!(volume > 0)) return 0;
@@ -77,18 +76,16 @@ double Deal::expected_pairs(BodyPair pair) const {
 }
 
 /// A body brings its share its own tetrahedra and the pairs with those that follow it on the curve.
-void Deal::expect_work(std::span<const BodyPair> near) {
+void Deal::expect_work() {
     std::vector<std::uint32_t> positions(scene_.bodies.size(), std::numeric_limits<std::uint32_t>::max());
     for (std::uint32_t i = 0; i < order_.size(); ++i) positions[order_[i]] = i;
     work_.assign(order_.size(), 0);
     for (std::size_t i = 0; i < order_.size(); ++i) work_[i] = tetrahedra_of(order_[i]);
-    std::fill(foreseen_.begin(), foreseen_.end(), 0);
-    for (const auto& pair : near) {
-        const double pairs = expected_pairs(pair);
-        foreseen_[pair.a] += pairs;
-        foreseen_[pair.b] += pairs;
+    foreseen_.clear();
+    for (const auto& pair : near_) {
+        foreseen_.push_back(foreseen_pairs(pair));
         work_[std::min(positions[pair.a], positions[pair.b])] +=
-            work_of_a_pair * pairs * std::sqrt(learned_[pair.a] * learned_[pair.b]);
+            work_of_a_pair * foreseen_.back() * learned_[pair.a] * learned_[pair.b];
     }
 }
 
@@ -120,13 +117,13 @@ std::vector<double> Deal::cut_once(std::span<const double> speeds, std::span<con
 
 /// What others' bodies bring a share is known once it is cut: a few times, and the cut stays in which the
 /// share that takes longest is done first.
-void Deal::cut(std::span<const BodyPair> near, std::span<const double> speeds) {
+void Deal::cut(std::span<const double> speeds) {
     constexpr int times = 4;
     std::vector<double> brought(shares_.size()), best_brought = brought;
     double shortest = std::numeric_limits<double>::infinity();
     for (int i = 0; i < times; ++i) {
         const auto own = cut_once(speeds, brought);
-        gather(near);
+        gather();
         const auto before = std::exchange(brought, std::vector<double>(shares_.size()));
         double longest = 0;
         for (std::size_t share = 0; share < shares_.size(); ++share) {
@@ -138,13 +135,13 @@ void Deal::cut(std::span<const BodyPair> near, std::span<const double> speeds) {
         best_brought = before;
     }
     cut_once(speeds, best_brought);
-    gather(near);
+    gather();
 }
 
 /// Of every pair the share that has it needs both.
-void Deal::gather(std::span<const BodyPair> near) {
+void Deal::gather() {
     std::vector<std::pair<std::size_t, std::uint32_t>> needed; // by share, bodies of others
-    for (const auto& pair : near) {
+    for (const auto& pair : near_) {
         const auto share = share_of(pair);
         for (const auto body : {pair.a, pair.b})
             if (owners_[body] != share) needed.emplace_back(share, body);
@@ -171,18 +168,18 @@ void Deal::make(const Frame& frame, std::span<const double> speeds) {
     places_.keep(frame, all_);
     for (const auto body : all_) balls_[body] = places_.ball(body);
     order_bodies();
-    const auto near = sweep_.pairs(frame, places_.margins(margin_));
-    expect_work(near);
-    cut(near, speeds);
+    near_ = sweep_.pairs(frame, places_.margins(margin_));
+    expect_work();
+    cut(speeds);
     if (has_all_) gather_all();
 }
 
 void Deal::make(std::span<const Ball> balls, std::span<const double> speeds) {
     balls_.assign(balls.begin(), balls.end());
     order_bodies();
-    const auto near = sweep_.pairs(balls);
-    expect_work(near);
-    cut(near, speeds);
+    near_ = sweep_.pairs(balls);
+    expect_work();
+    cut(speeds);
 }
 
 double Deal::tetrahedra_of(std::uint32_t body) const {
@@ -196,12 +193,35 @@ double Deal::work_of(const Share& share, std::uint64_t pairs) const {
     return tetrahedra + work_of_a_pair * static_cast<double>(pairs);
 }
 
+std::uint64_t Deal::expected_pairs(std::size_t share) const {
+    double work = 0;
+    for (std::size_t i = 0; i < order_.size(); ++i)
+        if (owners_[order_[i]] == share) work += work_[i] - tetrahedra_of(order_[i]);
+    return has_learned_ ? static_cast<std::uint64_t>(work / work_of_a_pair) : 0;
+}
+
+/// Sums of the pairs foreseen, times their bodies' numbers, are made those that were found, body by body, a
+/// few times over: iterative proportional fitting (Deming and Stephan 1940) of a symmetric table, whose roots
+/// keep both bodies of a pair from mending the same error.
 void Deal::learn(std::span<const std::uint64_t> pairs_by_body) {
     constexpr double least = 1e-3, most = 1e3;
-    for (std::size_t body = 0; body < learned_.size(); ++body)
-        if (foreseen_[body] >= 1)
-            learned_[body] =
-                std::clamp(static_cast<double>(pairs_by_body[body]) / foreseen_[body], least, most);
+    constexpr int times = 12;
+    has_learned_ = true;
+    std::vector<double> expected(learned_.size());
+    for (int i = 0; i < times; ++i) {
+        std::ranges::fill(expected, 0);
+        for (std::size_t pair = 0; pair < near_.size(); ++pair) {
+            const auto [a, b] = near_[pair];
+            const double pairs = foreseen_[pair] * learned_[a] * learned_[b];
+            expected[a] += pairs;
+            expected[b] += pairs;
+        }
+        for (std::size_t body = 0; body < learned_.size(); ++body)
+            if (expected[body] >= 1)
+                learned_[body] = std::clamp(
+                    learned_[body] * std::sqrt(static_cast<double>(pairs_by_body[body]) / expected[body]),
+                    least, most);
+    }
 }
 
 } // namespace tandem

@@ -31,17 +31,20 @@ public:
     std::size_t share_of(BodyPair pair) const { return std::min(owners_[pair.a], owners_[pair.b]); }
     /// The share that owns a body; of a fixed one the number of shares.
     std::size_t owner_of(std::uint32_t body) const { return owners_[body]; }
+    /// Candidate pairs that a share of the last deal is expected to have; 0 where none were ever learned, as
+    /// balls alone expect several times too many.
+    std::uint64_t expected_pairs(std::size_t share) const;
     /// What a share in which so many candidate pairs were found has worked, in tetrahedra refitted.
     double work_of(const Share& share, std::uint64_t pairs) const;
 
 private:
     void order_bodies();
-    void expect_work(std::span<const BodyPair> near);
-    double expected_pairs(BodyPair pair) const;
+    void expect_work();
+    double foreseen_pairs(BodyPair pair) const;
     double tetrahedra_of(std::uint32_t body) const;
-    void cut(std::span<const BodyPair> near, std::span<const double> speeds);
+    void cut(std::span<const double> speeds);
     std::vector<double> cut_once(std::span<const double> speeds, std::span<const double> brought);
-    void gather(std::span<const BodyPair> near);
+    void gather();
     void gather_all();
 
     const Scene& scene_;
@@ -53,13 +56,16 @@ private:
     std::vector<Ball> balls_;          ///< by body, in the frame that was dealt
     std::vector<std::uint32_t> order_; ///< moving bodies along the curve
     std::vector<double> work_;         ///< by position in order_: expected of what its body brings its share
-    std::vector<double> learned_;      ///< by body: candidate pairs found for each that was expected
-    std::vector<double> foreseen_;     ///< by body: candidate pairs expected from balls alone
+    std::vector<BodyPair> near_;       ///< that were dealt
+    std::vector<double> foreseen_;     ///< by pair of near_: candidate pairs expected from balls alone
+    std::vector<double> learned_;      ///< by body; of a pair those found for each that was foreseen are the
+                                       ///< product of its bodies'
     double margin_ = 0.25;             ///< of a body's radius
     std::size_t held_ = 0;             ///< frames that the deal was asked for and held
     bool is_made_ = false;             ///< there is one
     bool is_over_ = false;             ///< it was asked for one and did not hold
     bool has_all_ = false;             ///< shares have all bodies
+    bool has_learned_ = false;         ///< work_ is of what bodies had once
 };
 
 } // namespace tandem

@@ -223,7 +223,8 @@ void CudaDevice::describe_peaks() {
 
 void CudaDevice::describe() {
     std::array<char, 256> text{};
-    driver().cuDeviceGetName(text.data(), static_cast<int>(text.size()), handle_);
+    check(driver().cuDeviceGetName(text.data(), static_cast<int>(text.size()), handle_), "cuDeviceGetName",
+          "asking for the device's name");
     info_.name = text.data();
     std::array<unsigned char, 16> uuid{};
     if (driver().cuDeviceGetUuid_v2(uuid.data(), handle_) == 0) info_.hardware = uuid_text(uuid);
@@ -538,20 +539,31 @@ std::pair<std::int64_t, std::int64_t> CudaDevice::do_interval(std::uint64_t tick
     return interval;
 }
 
+int device_count(const Driver& driver) {
+    int count = 0;
+    if (const auto code = driver.cuDeviceGetCount(&count); code != 0)
+        throw DeviceError(fmt::format("cuda: cuDeviceGetCount failed with {}", driver.describe(code)));
+    return count;
+}
+
+DeviceHandle device_handle(const Driver& driver, int index) {
+    DeviceHandle handle = 0;
+    if (const auto code = driver.cuDeviceGet(&handle, index); code != 0)
+        throw DeviceError(fmt::format("cuda:{}: cuDeviceGet failed with {}", index, driver.describe(code)));
+    return handle;
+}
+
 } // namespace
 
 Found discover() {
     Found found;
     try {
         const auto loaded = libraries();
-        int count = 0;
-        loaded->driver.cuDeviceGetCount(&count);
+        const int count = device_count(loaded->driver);
         for (int i = 0; i < count; ++i) {
-            DeviceHandle handle = 0;
-            loaded->driver.cuDeviceGet(&handle, i);
             try {
-                found.devices.push_back(
-                    std::make_unique<CudaDevice>(loaded, handle, static_cast<std::size_t>(i)));
+                found.devices.push_back(std::make_unique<CudaDevice>(loaded, device_handle(loaded->driver, i),
+                                                                     static_cast<std::size_t>(i)));
             } catch (const DeviceError& error) {
                 found.reason = error.what();
             }
@@ -565,13 +577,11 @@ Found discover() {
 
 std::unique_ptr<Device> on_stream(std::size_t index, void* stream) {
     const auto loaded = libraries();
-    int count = 0;
-    loaded->driver.cuDeviceGetCount(&count);
+    const int count = device_count(loaded->driver);
     if (index >= static_cast<std::size_t>(count))
         throw DeviceError(fmt::format("cuda:{}: the driver has {} devices, numbered from 0", index, count));
-    DeviceHandle handle = 0;
-    loaded->driver.cuDeviceGet(&handle, static_cast<int>(index));
-    return std::make_unique<CudaDevice>(loaded, handle, index, legacy_is_null(stream));
+    return std::make_unique<CudaDevice>(loaded, device_handle(loaded->driver, static_cast<int>(index)), index,
+                                        legacy_is_null(stream));
 }
 
 std::unique_ptr<Device> adopt(void* context, void* stream) {

@@ -69,7 +69,8 @@ Nvrtc::Nvrtc(int driver_version, std::optional<std::filesystem::path> cache)
 #undef TANDEM_LOAD
     int major = 0;
     int minor = 0;
-    nvrtcVersion(&major, &minor);
+    if (const auto code = nvrtcVersion(&major, &minor); code != 0)
+        throw DeviceError(fmt::format("{} does not tell its version (code {})", library_.name(), code));
     version_ = major * 1000 + minor * 10;
     if (driver_version != 0 && major > driver_version / 1000)
         throw DeviceError(
