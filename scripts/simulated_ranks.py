@@ -12,11 +12,11 @@ MESHES = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "meshes"
 DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]], float)
 IN_A_BOX, IN_A_GROUP = 8, 32  # halo.cpp: bodies, boxes
 LEAST_MARGIN, MOST_MARGIN, SOON = 0.25, 2.0, 8  # halo.cpp: of a radius; frames
-WORK_OF_A_PAIR = 6  # deal.cpp: in tetrahedra refitted
+WORK_OF_A_PAIR, CUTS = 6, 4  # deal.cpp: in tetrahedra refitted; tried
 SPIN, DRIFT = 0.03, 0.01  # pile.cpp: radians, and of a radius, a frame
 LATTICE = (1 << 21) - 1  # hierarchy/order.cpp
 MOST_EXACT = 2000  # bodies whose poses are the scene's own numbers unless asked for: of more they are as random, and made faster
-AT_ONCE = 100_000  # rows whose neighbours are looked for together: memory
+AT_ONCE = 10_000  # rows whose neighbours are looked for together: what of them stays in a cache
 
 
 @dataclasses.dataclass
@@ -132,7 +132,7 @@ def expanded(first, end):
     """Of ranges of whole numbers: which range each number is of, and the number."""
     counts = np.maximum(end - first, 0)
     which = np.repeat(np.arange(len(first)), counts)
-    return which, np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts) + first[which]
+    return which, np.arange(len(which)) + np.repeat(first - (np.cumsum(counts) - counts), counts)
 
 
 class Grid:
@@ -141,13 +141,20 @@ class Grid:
     def __init__(self, points, side):
         self.lower, self.side = points.min(0), side
         self.counts = self.cubes(points.max(0)) + 1
-        cells = self.cubes(points)
-        numbers = (cells[:, 0] * self.counts[1] + cells[:, 1]) * self.counts[2] + cells[:, 2]
-        self.order = np.argsort(numbers, kind="stable")
+        self.cells = self.cubes(points)
+        numbers = (self.cells[:, 0] * self.counts[1] + self.cells[:, 1]) * self.counts[2] + self.cells[:, 2]
+        self.order = np.argsort(numbers, kind="stable").astype(np.int32)
         self.starts = np.concatenate([[0], np.cumsum(np.bincount(numbers, minlength=int(self.counts.prod())))])
 
     def cubes(self, points):
         return np.floor((points - self.lower) / self.side).astype(np.int64)
+
+    def column(self, x, y, low, high):
+        """Places, first and end, of cubes low..high of a column; none where there is no such column."""
+        inside = (x >= 0) & (x < self.counts[0]) & (y >= 0) & (y < self.counts[1])
+        row = np.where(inside, (x * self.counts[1] + y) * self.counts[2], 0)
+        low, high = np.maximum(low, 0), np.minimum(high, self.counts[2] - 1)
+        return self.starts[row + np.minimum(low, self.counts[2] - 1)], np.where(inside & (low <= high), self.starts[row + np.maximum(high, 0) + 1], 0)
 
     def near(self, lower, upper):
         """(box, point) of all points in cubes that the boxes reach; more than those within."""
@@ -155,77 +162,172 @@ class Grid:
         box, x = expanded(low[:, 0], high[:, 0] + 1)
         column, y = expanded(low[box, 1], high[box, 1] + 1)
         box, x = box[column], x[column]
-        row = (x * self.counts[1] + y) * self.counts[2]
-        which, place = expanded(self.starts[row + low[box, 2]], self.starts[row + np.maximum(high[box, 2], low[box, 2] - 1) + 1])
+        which, place = expanded(*self.column(x, y, low[box, 2], high[box, 2]))
         return box[which], self.order[place]
+
+    def pairs(self, first, end, reach):
+        """Pairs, once each, of the points first..end - 1 in the order of cubes with all others in cubes so many sides off or nearer."""
+        points, cells = self.order[first:end], self.cells[self.order[first:end]]
+        x, y, z = cells.T
+        parts = []
+        for i in range(reach + 1):
+            for j in range(-reach if i else 0, reach + 1):
+                begin, stop = self.column(x + i, y + j, z if (i, j) == (0, 0) else z - reach, z + reach)
+                if (i, j) == (0, 0):
+                    begin = np.arange(first + 1, end + 1)  # of the same cube those behind
+                which, place = expanded(begin, stop)
+                parts.append((points[which], self.order[place]))
+        return (np.concatenate(part) for part in zip(*parts))
 
 
 def expected_pairs(distance, mesh):
     """deal.cpp's, of two balls of one mesh: tetrahedra strewn evenly through balls, those that come as near as both are large."""
     r = mesh.radius
-    depth = 2 * r - distance
+    depth = np.maximum(2 * r - distance, 0)
     common = np.pi * depth ** 2 * (distance ** 2 + 4 * distance * r) / (12 * np.maximum(distance, 1e-300))
     density = mesh.tetrahedra / (4 * np.pi / 3 * r ** 3)
     return common * density ** 2 * (2 / np.cbrt(density)) ** 3
 
 
+@dataclasses.dataclass
+class Pairs:
+    """Of each body with those that follow it on the curve: candidate pairs expected from balls, and pairs of bodies whose balls and bounds
+    overlap; `near`, from `starts`: the later bodies of pairs whose balls do not lie apart along any direction, which the deal goes by."""
+    expected: np.ndarray
+    bodies: np.ndarray
+    near: np.ndarray
+    starts: np.ndarray
+
+
 def pairs_of_bodies(pile):
-    """Of each body with those that follow it on the curve: candidate pairs expected from balls, and pairs of bodies whose bounds overlap."""
-    expected, pairs = np.zeros(len(pile.centres)), np.zeros(len(pile.centres), np.int64)
-    for first in range(0, len(pile.centres), AT_ONCE):
-        centres = pile.centres[first:first + AT_ONCE]
-        a, b = pile.grid.near(centres - 2 * pile.mesh.radius, centres + 2 * pile.mesh.radius)
-        a += first
-        a, b = a[b > a], b[b > a]
+    many, reach = len(pile.centres), 2 * pile.mesh.radius
+    lengths = np.linalg.norm(DIRECTIONS, axis=1)
+    expected, pairs, first_of, second_of = np.zeros(many), np.zeros(many, np.int64), [], []
+    for first in range(0, many, AT_ONCE):
+        a, b = pile.grid.pairs(first, min(first + AT_ONCE, many), math.ceil(reach / pile.grid.side))
+        close = np.ones(len(a), bool)
+        for axis in np.ascontiguousarray(pile.centres.T):
+            close &= np.abs(axis[a] - axis[b]) <= reach
+        a, b = a[close], b[close]
         way = pile.centres[a] - pile.centres[b]
+        along = np.abs(way @ DIRECTIONS.T)
+        close = (along <= reach * lengths).all(1)
+        a, b, along, way = np.minimum(a, b)[close], np.maximum(a, b)[close], along[close], way[close]
         distance = np.sqrt(np.einsum("ij,ij->i", way, way))
-        close = distance < 2 * pile.mesh.radius
-        a, b, way, distance = a[close], b[close], way[close], distance[close]
-        expected += np.bincount(a, expected_pairs(distance, pile.mesh), len(expected))
-        overlap = np.ones(len(a), bool)
-        for i, direction in enumerate(DIRECTIONS):
-            overlap &= np.abs(way @ direction) <= pile.widths[a, i] + pile.widths[b, i]
-        pairs += np.bincount(a[overlap], minlength=len(pairs))
-    return expected, pairs
+        np.add.at(expected, a, expected_pairs(distance, pile.mesh))
+        np.add.at(pairs, a[(distance < reach) & (along <= pile.widths[a] + pile.widths[b]).all(1)], 1)
+        first_of.append(a), second_of.append(b)
+    first_of, near = np.concatenate(first_of), np.concatenate(second_of)
+    order = np.argsort(first_of, kind="stable")
+    return Pairs(expected, pairs, near[order], np.concatenate([[0], np.cumsum(np.bincount(first_of, minlength=many))]))
 
 
-def cuts(work, ranks):
-    """The first body of each rank, and the end: a body goes to the rank in whose part the middle of its work lies."""
+def cut_once(work, brought):
+    """The first body of each rank, and the end: a body goes to the rank in whose part the middle of its work lies, and a part is less by
+    what others' bodies bring that rank."""
     middles = np.cumsum(work) - work / 2
-    return np.searchsorted(middles, work.sum() / ranks * np.arange(ranks + 1) * (1 - 1e-15))[:-1].tolist() + [len(work)]
+    parts = np.maximum(0, (work.sum() + brought.sum()) / len(brought) - brought)
+    return np.concatenate([[0], np.searchsorted(middles, np.cumsum(parts)[:-1]), [len(work)]])
 
 
-def bounds(pile, starts, margin):
-    """Ends of the boxes over so many bodies of each rank, along DIRECTIONS, and the rank of each."""
-    firsts = np.concatenate([np.arange(a, b, IN_A_BOX) for a, b in zip(starts, starts[1:])])
-    owner = np.repeat(np.arange(len(starts) - 1), [-(-(b - a) // IN_A_BOX) for a, b in zip(starts, starts[1:])])
-    lower, upper = np.empty((len(firsts), len(DIRECTIONS))), np.empty((len(firsts), len(DIRECTIONS)))
-    for i, direction in enumerate(DIRECTIONS):
-        middle = pile.centres @ direction
-        width = pile.widths[:, i] + margin * pile.mesh.radius * np.linalg.norm(direction)
-        lower[:, i], upper[:, i] = np.minimum.reduceat(middle - width, firsts), np.maximum.reduceat(middle + width, firsts)
-    return lower, upper, owner
+def brought_by(starts, pairs):
+    """Of each rank: how many bodies of later ones its own have pairs with."""
+    is_there, counts = np.zeros(len(pairs.expected), bool), []
+    for first, end in zip(starts, starts[1:]):
+        near = pairs.near[pairs.starts[first]:pairs.starts[end]]
+        near = near[near >= end]
+        is_there[near] = True
+        counts.append(np.count_nonzero(is_there))
+        is_there[near] = False
+    return np.array(counts)
 
 
-def halo(pile, starts, margin):
-    """{rank, body} of each body of a later rank that meets one of a rank's boxes: that one gets it."""
-    lower, upper, rank_of_box = bounds(pile, starts, margin)
-    owners = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
-    reach, found = np.linalg.norm(pile.mesh.half) + margin * pile.mesh.radius, []  # corners of a turned box reach further than the ball
-    for first in range(0, len(lower), AT_ONCE // 4):
-        part = slice(first, first + AT_ONCE // 4)
-        box, body = pile.grid.near(lower[part, :3] - reach, upper[part, :3] + reach)
-        box += first
-        later = owners[body] > rank_of_box[box]
-        box, body = box[later], body[later]
-        for i, direction in enumerate(DIRECTIONS):
-            width = pile.widths[body, i] + margin * pile.mesh.radius * np.linalg.norm(direction)
-            middle = pile.centres[body] @ direction
-            meets = (middle - width <= upper[box, i]) & (lower[box, i] <= middle + width)
+def sums(values, starts):
+    """Of each rank's bodies."""
+    return np.diff(np.concatenate([[0], np.cumsum(values)])[starts])
+
+
+def cuts(pairs, mesh, ranks):
+    """Deal::cut: of four cuts, each with what the last one brought, that in which the rank that takes longest is done first."""
+    work = mesh.tetrahedra + WORK_OF_A_PAIR * pairs.expected
+    brought, shortest, best = np.zeros(ranks), math.inf, None
+    for _ in range(CUTS):
+        starts = cut_once(work, brought)
+        brought = mesh.tetrahedra * brought_by(starts, pairs).astype(float)
+        longest = (sums(work, starts) + brought).max()
+        if longest < shortest:
+            shortest, best = longest, starts
+    return best
+
+
+class Slabs:
+    """Ends of bodies along DIRECTIONS, with a margin."""
+
+    def __init__(self, pile, margin):
+        middles = pile.centres @ DIRECTIONS.T
+        widths = pile.widths + margin * pile.mesh.radius * np.linalg.norm(DIRECTIONS, axis=1)
+        self.lower, self.upper = middles - widths, middles + widths
+
+    def around(self, firsts):
+        """Boxes around bodies from each of these to the next."""
+        boxes = object.__new__(Slabs)
+        boxes.lower, boxes.upper = np.minimum.reduceat(self.lower, firsts), np.maximum.reduceat(self.upper, firsts)
+        return boxes
+
+    def meet(self, own, others, theirs):
+        """Of pairs of numbers, of these slabs and of others: which overlap."""
+        found = np.arange(len(own))
+        for axes in (slice(0, 3), slice(3, None)):  # most lie apart along the first
+            a, b = own[found], theirs[found]
+            found = found[((self.lower[a, axes] <= others.upper[b, axes]) & (others.lower[b, axes] <= self.upper[a, axes])).all(1)]
+        return found
+
+
+class Met:
+    """What ranks find when they meet: {rank, body} of each body of a later rank that meets one of a rank's boxes (`offered`), and of
+    those that meet one of its bodies, which it keeps (`halo`); which ranks send which their boxes."""
+
+    def __init__(self, pile, starts, margin):
+        ranks = len(starts) - 1
+        self.owners = np.repeat(np.arange(ranks), np.diff(starts))
+        self.slabs = Slabs(pile, margin)
+        self.firsts = np.concatenate([np.arange(a, b, IN_A_BOX) for a, b in zip(starts, starts[1:])])
+        self.boxes = self.slabs.around(self.firsts)
+        filled = np.flatnonzero(np.diff(starts))
+        whole = self.slabs.around(starts[filled])
+        a, b = np.triu_indices(len(filled), 1)
+        hears = whole.meet(a, whole, b)
+        self.told, self.hears = filled[a[hears]], filled[b[hears]]
+        codes, kept = zip(*self.parts(pile, margin))
+        self.offered = np.unique(np.concatenate(codes))
+        self.halo = np.unique(np.concatenate(kept))
+
+    def of(self, codes):
+        return codes // len(self.owners), codes % len(self.owners)
+
+    def parts(self, pile, margin):
+        """(offered, kept) of some boxes at a time, as rank times bodies plus body."""
+        reach = np.linalg.norm(pile.mesh.half) + margin * pile.mesh.radius  # corners of a turned box reach further than the ball
+        rank_of_box = self.owners[self.firsts]
+        for first in range(0, len(self.firsts), AT_ONCE // 8):
+            part = slice(first, first + AT_ONCE // 8)
+            box, body = pile.grid.near(self.boxes.lower[part, :3] - reach, self.boxes.upper[part, :3] + reach)
+            box += first
+            later = self.owners[body] > rank_of_box[box]
+            box, body = box[later], body[later]
+            meets = self.boxes.meet(box, self.slabs, body)
             box, body = box[meets], body[meets]
-        found.append(np.unique(rank_of_box[box] * len(owners) + body))
-    codes = np.unique(np.concatenate(found))
-    return codes // len(owners), codes % len(owners), owners
+            codes, which = np.unique(rank_of_box[box] * len(self.owners) + body, return_inverse=True)
+            yield codes, codes[self.is_near(box, body, which, len(codes))]
+
+    def is_near(self, box, body, which, many):
+        """Of so many bodies at boxes: whether one of a box's bodies meets it."""
+        kept, end = np.zeros(many, bool), np.append(self.firsts, len(self.owners))
+        for i in range(IN_A_BOX):
+            one = self.firsts[box] + i
+            rest = np.flatnonzero(~kept[which] & (one < end[box + 1]))
+            kept[which[rest[self.slabs.meet(one[rest], self.slabs, body[rest])]]] = True
+        return kept
 
 
 def settled_margin():
@@ -237,14 +339,17 @@ def settled_margin():
     return margin, int(margin / way)
 
 
-def count(pile, ranks, margin, measured=None):
-    """Of each rank: bodies it owns, gets and sends in a frame, from and to how many ranks, pairs of bodies and candidate pairs expected.
-    `measured`: pairs_of_bodies(pile), where they are known."""
-    expected, pairs = measured or pairs_of_bodies(pile)
-    starts = cuts(pile.mesh.tetrahedra + WORK_OF_A_PAIR * expected, ranks)
-    to, body, owners = halo(pile, starts, margin)
-    links = np.unique(to * ranks + owners[body])
+def count(pile, ranks, margin, pairs=None):
+    """Of each rank: bodies it owns, gets and sends in a frame, from and to how many ranks; when ranks meet, bodies that it hears of and
+    tells others of, and from and to how many ranks boxes go; bodies of others and pairs of the deal; pairs of bodies and candidate pairs
+    expected. `pairs`: pairs_of_bodies(pile), where they are known."""
+    pairs = pairs or pairs_of_bodies(pile)
+    starts = cuts(pairs, pile.mesh, ranks)
+    met = Met(pile, starts, margin)
     each = lambda values: np.bincount(values, minlength=ranks)
-    sums = lambda values: np.add.reduceat(np.append(values, 0), starts[:-1]) * (np.diff(starts) > 0)
-    return {"own": np.diff(starts), "halo": each(to), "sent": each(owners[body]), "senders": each(links // ranks), "receivers": each(links % ranks),
-            "body_pairs": sums(pairs), "expected_pairs": np.rint(sums(expected)).astype(np.int64)}
+    (to, body), (hears, told) = met.of(met.halo), met.of(met.offered)
+    links = np.unique(to * ranks + met.owners[body])
+    return {"own": np.diff(starts), "halo": each(to), "sent": each(met.owners[body]), "senders": each(links // ranks), "receivers": each(links % ranks),
+            "offered": each(hears), "offers": each(met.owners[told]), "boxes_from": each(met.hears), "boxes_to": each(met.told),
+            "brought": brought_by(starts, pairs), "near_pairs": np.diff(pairs.starts[starts]), "body_pairs": sums(pairs.bodies, starts),
+            "expected_pairs": np.rint(sums(pairs.expected, starts)).astype(np.int64)}

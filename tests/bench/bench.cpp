@@ -5,6 +5,7 @@
 #include "algorithms/broad/broad_stage.h"
 #include "algorithms/contacts/reference.h"
 #include "tests/support/prepared_trees.h"
+#include "algorithms/shares/deal.h"
 #include "algorithms/sources.h"
 #include "algorithms/answer/status.clh"
 #include "algorithms/traversal.h"
@@ -12,6 +13,8 @@
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
+
+#include <numeric>
 
 namespace tandem {
 
@@ -119,6 +122,38 @@ void broad(benchmark::State& state, Broad bound) {
     state.SetComplexityN(state.range(0));
 }
 
+/// A pile dealt to as many ranks as have 4,200 bodies each, as every one of them deals it.
+struct DealtPile {
+    explicit DealtPile(std::int64_t bodies)
+        : scene(make_scene(fmt::format("pile:bodies={},frames=1", bodies))),
+          speeds(static_cast<std::size_t>(bodies / 4200 + 1), 1.0),
+          deal(scene, {.k = 18}, speeds.size()) {
+        std::vector<std::uint32_t> all(scene.bodies.size());
+        std::iota(all.begin(), all.end(), 0u);
+        Places places(scene);
+        places.keep(scene.frame(0), all);
+        for (const auto body : all) balls.push_back(places.ball(body));
+    }
+
+    Scene scene;
+    std::vector<double> speeds;
+    Deal deal;
+    std::vector<Ball> balls;
+};
+
+void deal(benchmark::State& state) {
+    DealtPile pile(state.range(0));
+    for ([[maybe_unused]] auto _ : state) pile.deal.make(pile.balls, pile.speeds);
+}
+
+/// Of all shares, which ranks look at after every frame.
+void work_of_shares(benchmark::State& state) {
+    DealtPile pile(state.range(0));
+    pile.deal.make(pile.balls, pile.speeds);
+    for ([[maybe_unused]] auto _ : state)
+        for (const auto& share : pile.deal.shares()) benchmark::DoNotOptimize(pile.deal.work_of(share, 1));
+}
+
 /// Preparation has to be linear in bodies.
 void prepare(benchmark::State& state, Device& device) {
     const auto scene = make_scene(fmt::format("pile:bodies={},frames=1", state.range(0)));
@@ -179,6 +214,19 @@ int main(int argc, char** argv) {
             ->Arg(2000)
             ->Arg(20000)
             ->Unit(benchmark::kMicrosecond);
+    // Once: a million bodies are dealt for each in seconds.
+    const auto add_deals = [](const char* name, auto call, int times) {
+        benchmark::RegisterBenchmark(name, call)
+            ->Arg(20'000)
+            ->Arg(200'000)
+            ->Arg(1'000'000)
+            ->Iterations(times)
+            ->Repetitions(1)
+            ->Unit(benchmark::kMillisecond)
+            ->UseRealTime();
+    };
+    add_deals("deal, balls", tandem::deal, 1);
+    add_deals("deal, work of shares", tandem::work_of_shares, 20);
     tandem::register_oracle();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
