@@ -142,7 +142,7 @@ void SplitSession::look_back(const FrameResult& result) {
     if (result.retries > 0 || result.batches > sessions_.size()) return; // they are not what frames take
     std::vector<double> work;
     for (std::size_t i = 0; i < result.shared.size(); ++i)
-        work.push_back(deal_.work_of(taken_[i], result.shared[i].pairs));
+        work.push_back(deal_.work_of(i, result.shared[i].pairs));
     balance_.see(result.shared, work);
     if (!balance_.wants_a_deal() || !result.has_pairs()) return;
     contacts_a_pair_ = result.contacts_a_pair();

@@ -121,7 +121,8 @@ void RankSession::take_share() {
             build(needed);
         }
     }
-    session_->take(in_part(*present_, share));
+    there_ = in_part(*present_, share);
+    session_->take(there_);
     session_->expect(std::exchange(expected_pairs_, 0), contacts_a_pair_);
     std::vector<std::uint32_t> received;
     if (passage_.is_taken())
@@ -133,11 +134,12 @@ void RankSession::take_share() {
 
 /// Of bodies that have a part in this rank's share.
 void RankSession::take_frame(const Frame& frame) {
-    const auto take = [&](const std::vector<std::uint32_t>& bodies, bool are_own) {
-        for (const auto number : bodies) {
+    const auto take = [&](const std::vector<std::uint32_t>& bodies, const std::vector<std::uint32_t>& there,
+                          bool are_own) {
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            const auto number = bodies[i], body = there[i];
             const bool is_here = are_own || scene_.bodies[number].fixed;
             const auto& from = is_here ? frame : halo_.others();
-            const auto body = place_in(*present_, number);
             present_frame_.poses[body] = from.poses[number];
             if (scene_.bodies[number].deformable && (is_here || !passage_.is_taken()))
                 present_frame_.deformed[body] = from.deformed[number];
@@ -147,8 +149,8 @@ void RankSession::take_frame(const Frame& frame) {
                 present_frame_.skipped[body] = skips ? from.skipped[number] : std::vector<std::uint32_t>{};
         }
     };
-    take(halo_.share().own, true);
-    take(halo_.share().others, false);
+    take(halo_.share().own, there_.own, true);
+    take(halo_.share().others, there_.others, false);
 }
 
 void RankSession::note(const std::exception& error, Report& own) {
@@ -271,7 +273,7 @@ Ranks::Bytes RankSession::seen_of(const Frame& frame, const FrameResult& result)
 void RankSession::deal_anew(const Frame& frame, FrameResult& result) {
     std::vector<double> work;
     for (std::size_t i = 0; i < result.shared.size(); ++i)
-        work.push_back(deal_.work_of(deal_.shares()[i], result.shared[i].pairs));
+        work.push_back(deal_.work_of(i, result.shared[i].pairs));
     balance_.see(result.shared, work);
     if (!balance_.wants_a_deal()) return;
     const HostWork timed(*devices_.front(), Stage::exchange, "deal bodies");

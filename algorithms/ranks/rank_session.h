@@ -69,6 +69,7 @@ private:
     std::vector<Ball> balls_;                  ///< by body, when they were dealt
     std::shared_ptr<const Scene> present_;     ///< what is on the device; null without a session
     Frame present_frame_;                      ///< of present_
+    Share there_;                              ///< the halo's share, by places in present_
     std::unique_ptr<ResidentSession> session_; ///< none where the share has no bodies
     std::uint64_t expected_pairs_ = 0;         ///< of this rank's share after a new deal; 0: nobody knows
     double contacts_a_pair_ = 1;               ///< when it was dealt

@@ -172,6 +172,7 @@ void Deal::make(const Frame& frame, std::span<const double> speeds) {
     expect_work();
     cut(speeds);
     if (has_all_) gather_all();
+    count_tetrahedra();
 }
 
 void Deal::make(std::span<const Ball> balls, std::span<const double> speeds) {
@@ -180,17 +181,23 @@ void Deal::make(std::span<const Ball> balls, std::span<const double> speeds) {
     near_ = sweep_.pairs(balls);
     expect_work();
     cut(speeds);
+    count_tetrahedra();
 }
 
 double Deal::tetrahedra_of(std::uint32_t body) const {
     return static_cast<double>(scene_.meshes[scene_.bodies[body].mesh].tetrahedra.size());
 }
 
-double Deal::work_of(const Share& share, std::uint64_t pairs) const {
-    double tetrahedra = 0;
-    for (const auto* bodies : {&share.own, &share.others})
-        for (const auto body : *bodies) tetrahedra += tetrahedra_of(body);
-    return tetrahedra + work_of_a_pair * static_cast<double>(pairs);
+/// Once a deal: who shares frames asks for the work of all shares in every one.
+void Deal::count_tetrahedra() {
+    tetrahedra_.assign(shares_.size(), 0);
+    for (std::size_t share = 0; share < shares_.size(); ++share)
+        for (const auto* bodies : {&shares_[share].own, &shares_[share].others})
+            for (const auto body : *bodies) tetrahedra_[share] += tetrahedra_of(body);
+}
+
+double Deal::work_of(std::size_t share, std::uint64_t pairs) const {
+    return tetrahedra_[share] + work_of_a_pair * static_cast<double>(pairs);
 }
 
 std::uint64_t Deal::expected_pairs(std::size_t share) const {

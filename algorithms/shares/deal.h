@@ -35,7 +35,7 @@ public:
     /// balls alone expect several times too many.
     std::uint64_t expected_pairs(std::size_t share) const;
     /// What a share in which so many candidate pairs were found has worked, in tetrahedra refitted.
-    double work_of(const Share& share, std::uint64_t pairs) const;
+    double work_of(std::size_t share, std::uint64_t pairs) const;
 
 private:
     void order_bodies();
@@ -46,12 +46,14 @@ private:
     std::vector<double> cut_once(std::span<const double> speeds, std::span<const double> brought);
     void gather();
     void gather_all();
+    void count_tetrahedra();
 
     const Scene& scene_;
     BroadSweep sweep_;
     Places places_;
     std::vector<std::uint32_t> all_; ///< bodies
     std::vector<Share> shares_;
+    std::vector<double> tetrahedra_;   ///< by share, of its own bodies and others'
     std::vector<std::size_t> owners_;  ///< by body
     std::vector<Ball> balls_;          ///< by body, in the frame that was dealt
     std::vector<std::uint32_t> order_; ///< moving bodies along the curve

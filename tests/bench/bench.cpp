@@ -146,14 +146,6 @@ void deal(benchmark::State& state) {
     for ([[maybe_unused]] auto _ : state) pile.deal.make(pile.balls, pile.speeds);
 }
 
-/// Of all shares, which ranks look at after every frame.
-void work_of_shares(benchmark::State& state) {
-    DealtPile pile(state.range(0));
-    pile.deal.make(pile.balls, pile.speeds);
-    for ([[maybe_unused]] auto _ : state)
-        for (const auto& share : pile.deal.shares()) benchmark::DoNotOptimize(pile.deal.work_of(share, 1));
-}
-
 /// Preparation has to be linear in bodies.
 void prepare(benchmark::State& state, Device& device) {
     const auto scene = make_scene(fmt::format("pile:bodies={},frames=1", state.range(0)));
@@ -214,19 +206,15 @@ int main(int argc, char** argv) {
             ->Arg(2000)
             ->Arg(20000)
             ->Unit(benchmark::kMicrosecond);
-    // Once: a million bodies are dealt for each in seconds.
-    const auto add_deals = [](const char* name, auto call, int times) {
-        benchmark::RegisterBenchmark(name, call)
-            ->Arg(20'000)
-            ->Arg(200'000)
-            ->Arg(1'000'000)
-            ->Iterations(times)
-            ->Repetitions(1)
-            ->Unit(benchmark::kMillisecond)
-            ->UseRealTime();
-    };
-    add_deals("deal, balls", tandem::deal, 1);
-    add_deals("deal, work of shares", tandem::work_of_shares, 20);
+    // Once: a million bodies are dealt in seconds.
+    benchmark::RegisterBenchmark("deal, balls", tandem::deal)
+        ->Arg(20'000)
+        ->Arg(200'000)
+        ->Arg(1'000'000)
+        ->Iterations(1)
+        ->Repetitions(1)
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime();
     tandem::register_oracle();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
