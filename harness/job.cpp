@@ -76,7 +76,8 @@ std::unique_ptr<CellSampler> make_sampler(const Cell& cell, const Job& job, Refe
                                           const Measuring& measuring, CellKeeper& keeper) {
     auto state = keeper.state(cell, asked_key(cell, job));
     if (job.options.isolate)
-        return std::make_unique<IsolatedSampler>(cell, job.options, std::move(state), measuring.give_up);
+        return std::make_unique<IsolatedSampler>(cell, job.options, std::move(state), measuring.give_up,
+                                                 measuring.process);
     return std::make_unique<LocalSampler>(cell, job.scene, job.range, references, std::move(state));
 }
 

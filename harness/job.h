@@ -28,6 +28,8 @@ struct Job {
 /// Of the scene that the options name, which it opens; throws as the job's constructor.
 Job open_job(const RunOptions& options, std::vector<Cell> cells, const Unfit& unfit = refuse);
 
+class AnsweringProcess;
+
 /// How the cells of a job are measured.
 struct Measuring {
     CheckOptions check;
@@ -35,7 +37,9 @@ struct Measuring {
     std::uint64_t seed = 0;
     Unfinished* unfinished = nullptr; ///< where rounds are kept; null: nowhere
     std::function<bool()> stop = [] { return false; };
-    std::function<bool()> give_up{}; ///< with options.isolate: not to wait for the end of a round either
+    // With options.isolate:
+    std::function<bool()> give_up{};     ///< not to wait for the end of a round either
+    AnsweringProcess* process = nullptr; ///< measures all cells; null: one for each check and round
 };
 
 /// What became of a cell.

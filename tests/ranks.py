@@ -156,6 +156,20 @@ class Sweeps(RanksCase):
         record, = self.records(out)
         self.assertEqual(record["chosen"]["by"], "auto")
 
+    def test_a_rank_has_one_process_that_measures(self):
+        """With --isolate one for each check and each round."""
+        for more, least, most in ((), 1, 2), (("--isolate",), 6, 100):
+            out, seen = self.work / f"processes_{most}.jsonl", set()
+            process = self.start(of(2)("run", self.plan(), *more, "--out", out))
+            wait_for(out.exists)  # it has looked for devices
+            while process.poll() is None:
+                seen |= set(processes(process.pid)[1])
+                time.sleep(0.001)
+            status, text, errors = self.end(process)
+            self.assertEqual((status, said(errors)), (0, []), text)
+            self.assertEqual(len(self.records(out)), 8)
+            self.assertTrue(least <= len(seen) <= most, seen)
+
     def test_a_process_that_crashes_costs_its_cell(self):
         out = self.work / "crash.jsonl"
         process = self.start(of(2)("run", self.plan(), "--out", out))

@@ -241,7 +241,7 @@ Action add_run(CLI::App& app) {
         "that cell only, and the luck of a process is part of the noise");
     auto* timeout = app.add_option("--timeout", options.timeout,
                                    "seconds after which such a process is ended; no limit when left out");
-    if (launched_ranks() == nullptr) timeout->needs(isolate); // over ranks every cell has one
+    if (launched_ranks() == nullptr) timeout->needs(isolate); // over ranks another process measures anyway
     timeout->check(CLI::Range(0.001, 1e7))->option_text("S");
     app.add_option_function<std::string>(
            "--deal",

@@ -21,16 +21,8 @@
 
 namespace tandem {
 
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-[[noreturn]] void fail(const char* what, int error) {
-    throw OutputError(fmt::format("a process of its own cannot be made: {}: {}", what, std::strerror(error)));
-}
-
 /// A descriptor that is closed with it.
-class Descriptor {
+class ChildProcess::Descriptor {
 public:
     explicit Descriptor(int number = -1) : number_(number) {}
     Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
@@ -49,6 +41,16 @@ public:
 private:
     int number_;
 };
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+[[noreturn]] void fail(const char* what, int error) {
+    throw OutputError(fmt::format("a process of its own cannot be made: {}: {}", what, std::strerror(error)));
+}
+
+using Descriptor = ChildProcess::Descriptor;
 
 struct Pipe {
     Pipe() {
@@ -83,7 +85,7 @@ pid_t start(std::span<const std::string> arguments, const Descriptor& input, con
     return child;
 }
 
-enum class End { of_output, of_time, given_up };
+enum class End { of_answer, of_output, of_time, given_up };
 
 /// The limits of a child from now on.
 class Deadline {
@@ -112,12 +114,12 @@ private:
     Clock::time_point begin_;
 };
 
-/// A part of the input into the pipe, which is closed behind the last one, and where nobody reads it.
+/// A part of the input into the pipe, which is closed where nobody reads it.
 void feed(Descriptor& pipe, std::string_view& input) {
     const auto written = ::write(pipe.number(), input.data(), input.size());
     if (written < 0 && (errno == EINTR || errno == EAGAIN)) return;
     if (written > 0) input.remove_prefix(static_cast<std::size_t>(written));
-    if (written < 0 || input.empty()) pipe.close();
+    if (written < 0) pipe.close();
 }
 
 /// Adds what there is to the output; false at its end.
@@ -129,21 +131,23 @@ bool take(const Descriptor& pipe, std::string& output) {
     return count > 0;
 }
 
-/// Until the child has closed its output, or a limit is reached.
-End converse(Descriptor to, const Descriptor& from, std::string_view input, std::string& output,
+/// Until the child has answered or closed its output, or a limit is reached.
+End converse(Descriptor& to, const Descriptor& from, std::string_view input, std::string& output,
              const ChildLimits& limits) {
     const Deadline deadline(limits);
-    fcntl(to.number(), F_SETFL, O_NONBLOCK);
-    if (input.empty()) to.close();
     for (;;) {
-        std::array<pollfd, 2> ends{{{from.number(), POLLIN, 0}, {to.number(), POLLOUT, 0}}};
+        // poll() leaves out descriptors below 0.
+        const int hears = input.empty() ? -1 : to.number();
+        std::array<pollfd, 2> ends{{{from.number(), POLLIN, 0}, {hears, POLLOUT, 0}}};
         const int ready = poll(ends.data(), ends.size(), deadline.wait_ms());
         if (deadline.is_over()) return End::of_time;
         if (deadline.is_given_up()) return End::given_up;
         if (ready < 0 && errno != EINTR) fail("poll", errno);
         if (ready < 0) continue;
         if (ends[1].revents != 0) feed(to, input);
-        if (ends[0].revents != 0 && !take(from, output)) return End::of_output;
+        if (ends[0].revents == 0) continue;
+        if (!take(from, output)) return End::of_output;
+        if (output.ends_with(end_of_answer)) return End::of_answer;
     }
 }
 
@@ -153,19 +157,52 @@ std::string described(int status) {
     return WEXITSTATUS(status) == 0 ? "" : fmt::format("ended with code {}", WEXITSTATUS(status));
 }
 
-} // namespace
-
-ChildResult run_child(std::span<const std::string> arguments, const std::string& input,
-                      const ChildLimits& limits) {
-    Pipe in, out;
-    const auto child = start(arguments, in.read, out.write);
-    in.read.close();
-    out.write.close();
-    ChildResult result;
-    const auto end = converse(std::move(in.write), out.read, input, result.output, limits);
-    if (end != End::of_output) kill(child, SIGKILL);
+int waited_for(pid_t child) {
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    return status;
+}
+
+} // namespace
+
+struct ChildProcess::Running {
+    pid_t child = 0;
+    Descriptor to, from;
+};
+
+ChildProcess::ChildProcess(std::span<const std::string> arguments) : running_(std::make_unique<Running>()) {
+    Pipe in, out;
+    running_->child = start(arguments, in.read, out.write);
+    running_->to = std::move(in.write);
+    running_->from = std::move(out.read);
+    fcntl(running_->to.number(), F_SETFL, O_NONBLOCK);
+}
+
+ChildProcess::~ChildProcess() {
+    if (!running_) return;
+    constexpr double patience = 10; // seconds: drivers take some to close
+    running_->to.close();           // which ends it
+    std::string rest;
+    while (true) {
+        const auto end = converse(running_->to, running_->from, {}, rest, {.seconds = patience});
+        if (end == End::of_time) kill(running_->child, SIGKILL);
+        if (end != End::of_answer) break;
+    }
+    waited_for(running_->child);
+}
+
+bool ChildProcess::is_over() const { return !running_; }
+
+ChildResult ChildProcess::ask(const std::string& line, const ChildLimits& limits) {
+    ChildResult result;
+    const auto end = converse(running_->to, running_->from, line + '\n', result.output, limits);
+    if (end == End::of_answer) {
+        result.output.pop_back();
+        return result;
+    }
+    const auto running = std::exchange(running_, nullptr);
+    if (end != End::of_output) kill(running->child, SIGKILL);
+    const int status = waited_for(running->child);
     result.given_up = end == End::given_up;
     result.failure = end == End::of_time
                          ? fmt::format("took longer than {:g} s and was ended", limits.seconds)

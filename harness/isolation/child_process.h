@@ -2,16 +2,17 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 
 namespace tandem {
 
-/// What became of a process.
+/// What became of a question.
 struct ChildResult {
-    std::string output;    ///< all of its standard output
+    std::string output;    ///< of the process, up to the end of its answer
     bool given_up = false; ///< by limits.give_up
-    std::string failure;   ///< "ended by signal 11 (Segmentation fault)"; empty when it ended with code 0
+    std::string failure;   ///< "ended by signal 11 (Segmentation fault)"; empty behind an answer, or code 0
 };
 
 /// When a process is killed.
@@ -21,11 +22,32 @@ struct ChildLimits {
     std::function<bool()> give_up{};
 };
 
-/// Runs this program again with these arguments, in a process group of its own, so that signals of a terminal
-/// do not reach it, outside of any job of MPI, and waits until it ends, or kills it. It reads `input` from
-/// its standard input and shares standard error. Throws OutputError when no process can be made.
-ChildResult run_child(std::span<const std::string> arguments, const std::string& input,
-                      const ChildLimits& limits);
+/// Ends an answer on a child's standard output: what libraries print there has no such byte.
+constexpr char end_of_answer = '\x1e';
+
+/// This program again with other arguments, in a process group of its own, so that signals of a terminal do
+/// not reach it, outside of any job of MPI. It shares standard error.
+class ChildProcess {
+public:
+    /// Starts it. Throws OutputError when no process can be made.
+    explicit ChildProcess(std::span<const std::string> arguments);
+    /// Lets it end, and kills it where it takes long.
+    ~ChildProcess();
+
+    /// Gives it a line on its standard input and waits for the end of its answer. Without one, at its end or
+    /// a limit, which kills it, there is no more to be asked.
+    ChildResult ask(const std::string& line, const ChildLimits& limits);
+    bool is_over() const;
+
+    ChildProcess(const ChildProcess&) = delete;
+    ChildProcess& operator=(const ChildProcess&) = delete;
+
+    class Descriptor;
+
+private:
+    struct Running;
+    std::unique_ptr<Running> running_; ///< null when it is over
+};
 
 /// Called by the child: it ends when its parent does.
 void end_with_parent();

@@ -44,7 +44,7 @@ std::vector<BackendReport> backends_of(const nlohmann::json& from) {
 
 nlohmann::json describe_backends(std::span<const std::string> names) {
     const std::vector<std::string> asked(names.begin(), names.end());
-    return ask_isolated({{"work", "describe"}, {"devices", asked}}, {}).at("backends");
+    return AnsweringProcess().ask({{"work", "describe"}, {"devices", asked}}, {}).at("backends");
 }
 
 } // namespace tandem

@@ -27,10 +27,14 @@ nlohmann::json answer_of(const ChildResult& result) {
 
 } // namespace
 
-nlohmann::json ask_isolated(const nlohmann::json& request, const ChildLimits& limits) {
-    const auto result = run_child(std::array<std::string, 1>{"isolated"}, request.dump(), limits);
+nlohmann::json AnsweringProcess::ask(const nlohmann::json& request, const ChildLimits& limits) {
+    if (!child_) child_ = std::make_unique<ChildProcess>(std::array<std::string, 1>{"isolated"});
+    const auto result = child_->ask(request.dump(), limits);
+    if (child_->is_over()) child_.reset();
     if (result.given_up) throw GivenUp();
     auto answer = answer_of(result);
+    // An error may stick to its devices.
+    if (answer.contains("failure")) child_.reset();
     if (answer.contains("input_error")) throw InputError(answer["input_error"].get<std::string>());
     return answer;
 }
@@ -45,7 +49,8 @@ void leave_out_this_process(std::span<RoundConditions> rounds, std::uint32_t fir
 
 void IsolatedSampler::ask(const char* work, const CheckOptions& options, std::size_t samples) {
     const auto request = request_json(options_, *this, {work, samples, options});
-    const auto answer = ask_isolated(request, {options_.timeout, give_up_});
+    AnsweringProcess own;
+    const auto answer = (process_ != nullptr ? *process_ : own).ask(request, {options_.timeout, give_up_});
     if (answer.contains("checked") && !answer["checked"].is_null()) {
         take_checked(state_, answer["checked"], cell_);
         const auto first = state_.rounds;
@@ -57,7 +62,7 @@ void IsolatedSampler::ask(const char* work, const CheckOptions& options, std::si
 
 /// Counting as well, in the same process.
 void IsolatedSampler::do_check(const CheckOptions& options) {
-    options.progress(fmt::format("{}: checking in a process of its own", describe(cell_)));
+    options.progress(fmt::format("{}: checking in another process", describe(cell_)));
     ask("check", options, 0);
 }
 

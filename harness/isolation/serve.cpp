@@ -13,7 +13,7 @@
 
 #include <array>
 #include <iostream>
-#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 
 namespace tandem {
@@ -21,6 +21,19 @@ namespace tandem {
 namespace {
 
 using nlohmann::json;
+
+/// Devices that stay open from request to request.
+class OpenDevices {
+public:
+    DeviceGroup open(const RunOptions& options, const std::string& names) {
+        auto& backends = opened_[{names, options.memory}];
+        if (backends.empty()) backends = open_backends(std::array{names}, {});
+        return open_devices(options, backends, std::array{names}).front();
+    }
+
+private:
+    std::map<std::pair<std::string, std::uint64_t>, std::vector<BackendReport>> opened_; ///< by names, limit
+};
 
 /// Does what was asked for; a failure of the device leaves what was measured before.
 void work(LocalSampler& sampler, const IsolatedWork& asked, json& answer) {
@@ -41,12 +54,10 @@ json describe(const json& asked) {
 }
 
 /// A cell of auto, decided.
-json choose(const json& asked) {
+json choose(const json& asked, OpenDevices& devices) {
     RunOptions options;
     take_options(options, asked);
-    const std::array names{asked.at("devices").get<std::string>()};
-    const auto backends = open_backends(names, {});
-    const auto group = open_devices(options, backends, names).front();
+    const auto group = devices.open(options, asked.at("devices").get<std::string>());
     auto job = open_job(options, {cell_of(asked.at("cell"), group)});
     ChoosingOptions choosing;
     asked.at("seconds").get_to(choosing.seconds);
@@ -55,12 +66,11 @@ json choose(const json& asked) {
     return {{"cell", cell_json(job.cells.front())}};
 }
 
-json answer_to(const json& asked) {
+json answer_to(const json& asked, OpenDevices& devices) {
     if (asked.at("work") == "describe") return describe(asked);
-    if (asked.at("work") == "choose") return choose(asked);
+    if (asked.at("work") == "choose") return choose(asked, devices);
     auto request = request_of(asked);
-    const auto backends = open_backends(std::array{request.devices}, {});
-    const auto group = open_devices(request.options, backends, std::array{request.devices}).front();
+    const auto group = devices.open(request.options, request.devices);
     const auto& traversal = algorithm(request.algorithm);
     const auto job = open_job(
         request.options, {make_cell(traversal, preset(traversal, request.preset), request.settings, group)});
@@ -84,16 +94,19 @@ json answer_to(const json& asked) {
 
 int isolated_command() {
     end_with_parent();
-    json answer;
-    try {
-        const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
-        answer = answer_to(json::parse(text));
-    } catch (const InputError& error) {
-        answer = {{"input_error", error.what()}};
-    } catch (const std::exception& error) {
-        answer = {{"failure", error.what()}};
+    OpenDevices devices;
+    for (std::string line; std::getline(std::cin, line);) {
+        json answer;
+        try {
+            answer = answer_to(json::parse(line), devices);
+        } catch (const InputError& error) {
+            answer = {{"input_error", error.what()}};
+        } catch (const std::exception& error) {
+            answer = {{"failure", error.what()}};
+        }
+        put("\n{}\n{}", answer.dump(), end_of_answer);
+        flush_output();
     }
-    put("\n{}\n", answer.dump());
     return 0;
 }
 

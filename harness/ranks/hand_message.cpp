@@ -54,9 +54,13 @@ CellState state_of(const json& from, const Cell& cell) {
 
 json hand_json(const RunOptions& options, std::uint64_t seed, std::uint64_t digest,
                const DeviceGroup& devices, std::span<const DealtCell> cells) {
-    json message{
-        {"do", "hand"},     {"options", options_json(options)}, {"measure", measure_json(options, seed)},
-        {"digest", digest}, {"devices", json::array()},         {"cells", json::array()}};
+    json message{{"do", "hand"},
+                 {"options", options_json(options)},
+                 {"measure", measure_json(options, seed)},
+                 {"digest", digest},
+                 {"devices", json::array()},
+                 {"cells", json::array()},
+                 {"isolate", options.isolate}};
     for (const auto* device : devices) message["devices"].push_back(device_json(device->info()));
     for (const auto& dealt : cells)
         message["cells"].push_back({{"cell", cell_json(dealt.cell)}, {"state", state_json(dealt.state)}});
@@ -66,6 +70,7 @@ json hand_json(const RunOptions& options, std::uint64_t seed, std::uint64_t dige
 DealtHand::DealtHand(const json& message) {
     take_options(options, message.at("options"));
     take_measure(options, message.at("measure"));
+    message.at("isolate").get_to(isolate);
     options.isolate = true;
     message.at("digest").get_to(digest);
     DeviceGroup group;

@@ -23,7 +23,8 @@ nlohmann::json hand_json(const RunOptions& options, std::uint64_t seed, std::uin
 struct DealtHand {
     explicit DealtHand(const nlohmann::json& message);
 
-    RunOptions options; ///< with a process of its own for each cell
+    RunOptions options;   ///< with another process that measures
+    bool isolate = false; ///< one for each check and round
     std::uint64_t digest = 0;
     std::vector<std::unique_ptr<Device>> devices; ///< described
     std::vector<DealtCell> cells;

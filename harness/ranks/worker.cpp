@@ -35,6 +35,7 @@ private:
     const std::function<void()>& share_;
     std::optional<int> end_; ///< the exit code, once it is told
     bool stopped_ = false;
+    AnsweringProcess process_; ///< which measures
 };
 
 /// Keeps what becomes of the cells of a hand with the first rank.
@@ -81,7 +82,7 @@ void Worker::choose(std::vector<Cell>& cells, const RunOptions& options) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
         if (cells[i].candidates.empty()) continue;
         try {
-            const auto answer = ask_isolated(choosing_json(options, cells[i]),
+            const auto answer = process_.ask(choosing_json(options, cells[i]),
                                              {options.timeout, [&] { return is_stopped(); }});
             cells[i] = cell_of(answer.at("cell"), cells[i].devices);
         } catch (const DeviceError&) {
@@ -103,6 +104,7 @@ void Worker::measure(DealtHand& hand) {
                         job.scene.key, job.scene.digest, hand.digest));
     auto measuring = measuring_of(hand.options);
     measuring.stop = measuring.give_up = [&] { return is_stopped(); };
+    measuring.process = hand.isolate ? nullptr : &process_;
     References references(job.scene, job.range, checks_folder(hand.options));
     MailKeeper keeper(mail_, job.cells, hand.cells);
     const bool interrupted = measure_cells(job, job.cells, references, measuring, keeper, Progress(true),
