@@ -58,7 +58,7 @@ def record(chance, bodies, devices, with_ranks=False, frames=2):
     loads = []
     for _ in range(devices):
         present = own if devices == 1 else int(own * chance.uniform(1.1, 1.6))
-        counts = MODEL.counts_of(scene, present, own, body_pairs / devices, pairs / devices, devices == 1)
+        counts = MODEL.counts_of(scene, present, own, body_pairs / devices, pairs / devices, devices == 1, present if with_ranks else None)
         us = {part: known_us(part, counts, chance) for part in KNOWN}
         exchange = {"messages": chance.randrange(1, 20) * frames, "bytes": chance.randrange(1000, 1000000) * frames} if with_ranks else None
         if exchange:
