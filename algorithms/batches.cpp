@@ -119,20 +119,13 @@ void BatchRun::walk(const Part& part) {
     }
 }
 
-/// Adds what the status counts; contacts are added by those who bring them to the host.
+/// Adds what the status counts of a batch; contacts are added by those who bring them to the host, and body
+/// pairs are the frame's.
 void BatchRun::add_counts() {
-    const auto one = steps_.counts();
-    result_.count += one.count;
-    result_.degenerate += one.degenerate;
-    result_.rejected += one.rejected;
-    result_.undecided_by_filter += one.undecided_by_filter;
-    result_.undecided_by_double += one.undecided_by_double;
-    if (one.summed) {
-        if (!result_.summed) result_.summed.emplace();
-        *result_.summed += *one.summed;
-    }
+    auto one = steps_.counts();
+    one.contacts = one.body_pairs = 0;
+    result_.add(one, one.summed);
     if (steps_.counting) steps_.steps.walker->report(steps_.status, result_.work);
-    ++result_.batches;
 }
 
 /// Ranges of pairs whose contacts fit into their buffer, one after the other.

@@ -16,21 +16,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 void add(FrameResult& sum, FrameResult& part, std::span<const Counter> counters) {
-    sum.count += part.count;
-    sum.body_pairs += part.body_pairs;
-    sum.contacts += part.contacts;
-    sum.degenerate += part.degenerate;
-    sum.rejected += part.rejected;
-    sum.undecided_by_filter += part.undecided_by_filter;
-    sum.undecided_by_double += part.undecided_by_double;
-    sum.retries += part.retries;
-    sum.batches += part.batches;
+    sum.add(part, part.summed);
     for (const auto& counter : counters)
         if (part.work.contains(counter.name)) sum.work[counter.name] += part.work[counter.name];
-    if (part.summed) {
-        if (!sum.summed) sum.summed.emplace();
-        *sum.summed += *part.summed;
-    }
     std::move(part.parts.begin(), part.parts.end(), std::back_inserter(sum.parts));
 }
 

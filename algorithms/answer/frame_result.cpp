@@ -34,6 +34,26 @@ Digest& Digest::operator+=(const Digest& other) {
     return *this;
 }
 
+FrameCounts& FrameCounts::operator+=(const FrameCounts& other) {
+    count += other.count;
+    body_pairs += other.body_pairs;
+    contacts += other.contacts;
+    degenerate += other.degenerate;
+    rejected += other.rejected;
+    undecided_by_filter += other.undecided_by_filter;
+    undecided_by_double += other.undecided_by_double;
+    retries += other.retries;
+    batches += other.batches;
+    return *this;
+}
+
+void FrameResult::add(const FrameCounts& counts, const std::optional<Digest>& digest) {
+    *this += counts;
+    if (!digest) return;
+    if (!summed) summed.emplace();
+    *summed += *digest;
+}
+
 double FrameResult::contacts_a_pair() const {
     return count == 0 ? 1 : static_cast<double>(contacts) / static_cast<double>(count);
 }

@@ -64,10 +64,8 @@ struct SharedWork {
     std::uint64_t messages = 0;       ///< sent
 };
 
-/// A frame's answer, which owns its parts: one for each device, and one for each batch whose pairs were
-/// brought to the host to make room. It can be asked as long as its scene and devices live, also after the
-/// next run; a session keeps its buffers apart until then.
-struct FrameResult {
+/// What of a frame is counted, and adds up over devices and ranks.
+struct FrameCounts {
     std::uint64_t count = 0;      ///< candidate pairs
     std::uint64_t body_pairs = 0; ///< those given, or found
     std::uint64_t contacts = 0;
@@ -76,9 +74,17 @@ struct FrameResult {
     std::uint64_t undecided_by_filter = 0; ///< that the certified filter left (decision=recheck, exact)
     std::uint64_t undecided_by_double = 0; ///< that double left (decision=recheck, fp64, exact)
     std::uint64_t retries = 0;             ///< times a buffer was too small and a walk ran again
-    std::uint64_t batches = 0;      ///< parts that the frame was split into for want of memory; 1: none
-    std::vector<SharedWork> shared; ///< by device; of a session on one device none
-    std::uint64_t deals = 0;        ///< 1 where the bodies were dealt to the devices anew
+    std::uint64_t batches = 0; ///< parts that the frame was split into for want of memory; 1: none
+
+    FrameCounts& operator+=(const FrameCounts& other);
+};
+
+/// A frame's answer, which owns its parts: one for each device, and one for each batch whose pairs were
+/// brought to the host to make room. It can be asked as long as its scene and devices live, also after the
+/// next run; a session keeps its buffers apart until then.
+struct FrameResult : FrameCounts {
+    std::vector<SharedWork> shared;                 ///< by device; of a session on one device none
+    std::uint64_t deals = 0;                        ///< 1 where the bodies were dealt to the devices anew
     std::map<std::string_view, std::uint64_t> work; ///< by Counter; empty unless Session::count_work(true)
     std::optional<Digest> summed;                   ///< output=digest: of the pairs
     std::array<double, 3> origin{}; ///< what points of contacts in the parts count from (Session::origin)
@@ -86,6 +92,8 @@ struct FrameResult {
 
     /// False with output=count or digest, which keep none.
     bool has_pairs() const { return !parts.empty(); }
+    /// Adds counts, and the sums of output=digest, of another device or rank.
+    void add(const FrameCounts& counts, const std::optional<Digest>& digest);
     /// 1 where there are no candidate pairs.
     double contacts_a_pair() const;
     /// Of pairs and contacts, summed where they are. Not part of a measured frame. Of an answer that only

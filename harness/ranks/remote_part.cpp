@@ -6,15 +6,15 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 namespace tandem {
 
 namespace {
 
-/// Numbers of an answer that add up.
+/// What adds up of an answer.
 struct Totals {
-    std::uint64_t count = 0, body_pairs = 0, contacts = 0, degenerate = 0, rejected = 0;
-    std::uint64_t undecided_by_filter = 0, undecided_by_double = 0, retries = 0, batches = 0;
+    FrameCounts counts;
     bool is_summed = false, has_parts = false;
     Digest summed;
 };
@@ -92,21 +92,6 @@ private:
     std::uint64_t count_;
 };
 
-void add(FrameResult& sum, const Totals& totals) {
-    sum.count += totals.count;
-    sum.body_pairs += totals.body_pairs;
-    sum.contacts += totals.contacts;
-    sum.degenerate += totals.degenerate;
-    sum.rejected += totals.rejected;
-    sum.undecided_by_filter += totals.undecided_by_filter;
-    sum.undecided_by_double += totals.undecided_by_double;
-    sum.retries += totals.retries;
-    sum.batches += totals.batches;
-    if (!totals.is_summed) return;
-    if (!sum.summed) sum.summed.emplace();
-    *sum.summed += totals.summed;
-}
-
 template<class Value>
 void append_list(Ranks::Bytes& message, const std::vector<Value>& values) {
     const std::uint64_t count = values.size();
@@ -117,15 +102,7 @@ void append_list(Ranks::Bytes& message, const std::vector<Value>& values) {
 } // namespace
 
 Ranks::Bytes totals_of(const FrameResult& result) {
-    const Totals totals{.count = result.count,
-                        .body_pairs = result.body_pairs,
-                        .contacts = result.contacts,
-                        .degenerate = result.degenerate,
-                        .rejected = result.rejected,
-                        .undecided_by_filter = result.undecided_by_filter,
-                        .undecided_by_double = result.undecided_by_double,
-                        .retries = result.retries,
-                        .batches = result.batches,
+    const Totals totals{.counts = result,
                         .is_summed = result.summed.has_value(),
                         .has_parts = result.has_pairs(),
                         .summed = result.summed.value_or(Digest{})};
@@ -168,7 +145,7 @@ void add_remote_parts(FrameResult& result, Ranks& ranks, std::uint64_t number) {
     for (std::size_t rank = 1; rank < all.size(); ++rank) {
         MessageReader reader(all[rank]);
         const auto totals = reader.read<Totals>();
-        add(result, totals);
+        result.add(totals.counts, totals.is_summed ? std::optional(totals.summed) : std::nullopt);
         while (!reader.is_at_end()) {
             const auto name = reader.read_text();
             const auto count = reader.read<std::uint64_t>();
@@ -177,7 +154,7 @@ void add_remote_parts(FrameResult& result, Ranks& ranks, std::uint64_t number) {
                 if (own == name) sum += count;
         }
         if (totals.has_parts)
-            result.parts.push_back(std::make_shared<RemotePart>(answer, rank, totals.count));
+            result.parts.push_back(std::make_shared<RemotePart>(answer, rank, totals.counts.count));
     }
 }
 
