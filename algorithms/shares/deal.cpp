@@ -2,10 +2,12 @@
 #include "algorithms/shares/deal.h"
 
 #include "algorithms/hierarchy/order.h"
+#include "scenes/parallel.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -77,16 +79,74 @@ double Deal::foreseen_pairs(BodyPair pair) const {
 
 /// A body brings its share its own tetrahedra and the pairs with those that follow it on the curve.
 void Deal::expect_work() {
+    constexpr std::size_t part = 1 << 14;
+    foreseen_.resize(near_.size());
+    parallel_for((near_.size() + part - 1) / part, [&](std::size_t p) {
+        for (auto i = p * part; i < std::min(near_.size(), (p + 1) * part); ++i)
+            foreseen_[i] = foreseen_pairs(near_[i]);
+    });
     std::vector<std::uint32_t> positions(scene_.bodies.size(), std::numeric_limits<std::uint32_t>::max());
-    for (std::uint32_t i = 0; i < order_.size(); ++i) positions[order_[i]] = i;
-    work_.assign(order_.size(), 0);
-    for (std::size_t i = 0; i < order_.size(); ++i) work_[i] = tetrahedra_of(order_[i]);
-    foreseen_.clear();
-    for (const auto& pair : near_) {
-        foreseen_.push_back(foreseen_pairs(pair));
-        work_[std::min(positions[pair.a], positions[pair.b])] +=
-            work_of_a_pair * foreseen_.back() * learned_[pair.a] * learned_[pair.b];
+    work_.resize(order_.size());
+    for (std::uint32_t i = 0; i < order_.size(); ++i) {
+        positions[order_[i]] = i;
+        work_[i] = tetrahedra_of(order_[i]);
     }
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+        const auto [a, b] = near_[i];
+        work_[std::min(positions[a], positions[b])] +=
+            work_of_a_pair * foreseen_[i] * learned_[a] * learned_[b];
+    }
+}
+
+/// In two passes over all pairs: rows in any order, then each row's neighbours told of it in the rows' order.
+void Deal::list_neighbours() {
+    bodies_ = order_;
+    for (const auto body : all_)
+        if (scene_.bodies[body].fixed) bodies_.push_back(body);
+    std::vector<std::uint32_t> rows(bodies_.size());
+    for (std::uint32_t row = 0; row < bodies_.size(); ++row) rows[bodies_[row]] = row;
+    first_.assign(bodies_.size() + 1, 0);
+    for (const auto& pair : near_)
+        for (const auto body : {pair.a, pair.b}) ++first_[rows[body] + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    std::vector<std::uint32_t> unsorted(2 * near_.size());
+    auto next = first_;
+    for (const auto& pair : near_) {
+        unsorted[next[rows[pair.a]]++] = rows[pair.b];
+        unsorted[next[rows[pair.b]]++] = rows[pair.a];
+    }
+    neighbours_.resize(unsorted.size());
+    std::copy(first_.begin(), first_.end(), next.begin());
+    for (std::uint32_t row = 0; row < bodies_.size(); ++row)
+        for (auto i = first_[row]; i < first_[row + 1]; ++i) neighbours_[next[unsorted[i]]++] = row;
+    row_owners_.assign(bodies_.size(), shares_.size());
+}
+
+/// Calls need(share) for each share that has a pair of the row's body and does not own it. Owners do not fall
+/// along the curve, so that a share's neighbours stand together.
+template<class Need>
+void Deal::for_needs(std::size_t row, const Need& need) const {
+    auto last = shares_.size();
+    for (auto i = first_[row]; i < first_[row + 1]; ++i) {
+        const auto share = row_owners_[neighbours_[i]];
+        if (share >= row_owners_[row]) return;
+        if (std::exchange(last, share) != share) need(share);
+    }
+}
+
+/// By share: tetrahedra of others' bodies that it needs. Sums of whole numbers, the same in any order.
+std::vector<double> Deal::brought() const {
+    constexpr std::size_t part = 1 << 16;
+    std::vector<double> all(shares_.size());
+    std::mutex mutex;
+    parallel_for((bodies_.size() + part - 1) / part, [&](std::size_t p) {
+        std::vector<double> some(shares_.size());
+        for (auto row = p * part; row < std::min(bodies_.size(), (p + 1) * part); ++row)
+            for_needs(row, [&](std::size_t share) { some[share] += tetrahedra_of(bodies_[row]); });
+        const std::lock_guard lock(mutex);
+        for (std::size_t share = 0; share < all.size(); ++share) all[share] += some[share];
+    });
+    return all;
 }
 
 /// Each share takes bodies up to where its part of all work ends, which is less by what others' bodies
@@ -108,7 +168,7 @@ std::vector<double> Deal::cut_once(std::span<const double> speeds, std::span<con
         while (share + 1 < shares_.size() && done + work_[i] / 2 >= until + part(share))
             until += part(share++);
         shares_[share].own.push_back(order_[i]);
-        owners_[order_[i]] = share;
+        owners_[order_[i]] = row_owners_[i] = share;
         own[share] += work_[i];
         done += work_[i];
     }
@@ -119,37 +179,29 @@ std::vector<double> Deal::cut_once(std::span<const double> speeds, std::span<con
 /// share that takes longest is done first.
 void Deal::cut(std::span<const double> speeds) {
     constexpr int times = 4;
-    std::vector<double> brought(shares_.size()), best_brought = brought;
+    list_neighbours();
+    std::vector<double> foreign(shares_.size()), best = foreign;
     double shortest = std::numeric_limits<double>::infinity();
     for (int i = 0; i < times; ++i) {
-        const auto own = cut_once(speeds, brought);
-        gather();
-        const auto before = std::exchange(brought, std::vector<double>(shares_.size()));
+        const auto own = cut_once(speeds, foreign);
+        const auto before = std::exchange(foreign, brought());
         double longest = 0;
-        for (std::size_t share = 0; share < shares_.size(); ++share) {
-            for (const auto body : shares_[share].others) brought[share] += tetrahedra_of(body);
-            longest = std::max(longest, (own[share] + brought[share]) / speeds[share]);
-        }
+        for (std::size_t share = 0; share < shares_.size(); ++share)
+            longest = std::max(longest, (own[share] + foreign[share]) / speeds[share]);
         if (longest >= shortest) continue;
         shortest = longest;
-        best_brought = before;
+        best = before;
     }
-    cut_once(speeds, best_brought);
+    cut_once(speeds, best);
     gather();
 }
 
 /// Of every pair the share that has it needs both.
 void Deal::gather() {
-    std::vector<std::pair<std::size_t, std::uint32_t>> needed; // by share, bodies of others
-    for (const auto& pair : near_) {
-        const auto share = share_of(pair);
-        for (const auto body : {pair.a, pair.b})
-            if (owners_[body] != share) needed.emplace_back(share, body);
-    }
-    std::sort(needed.begin(), needed.end());
-    needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
     for (auto& share : shares_) share.others.clear();
-    for (const auto& [share, body] : needed) shares_[share].others.push_back(body);
+    for (std::size_t row = 0; row < bodies_.size(); ++row)
+        for_needs(row, [&](std::size_t share) { shares_[share].others.push_back(bodies_[row]); });
+    parallel_for(shares_.size(), [&](std::size_t share) { std::ranges::sort(shares_[share].others); });
 }
 
 void Deal::gather_all() {

@@ -40,6 +40,10 @@ public:
 private:
     void order_bodies();
     void expect_work();
+    void list_neighbours();
+    template<class Need>
+    void for_needs(std::size_t row, const Need& need) const;
+    std::vector<double> brought() const;
     double foreseen_pairs(BodyPair pair) const;
     double tetrahedra_of(std::uint32_t body) const;
     void cut(std::span<const double> speeds);
@@ -58,16 +62,21 @@ private:
     std::vector<Ball> balls_;          ///< by body, in the frame that was dealt
     std::vector<std::uint32_t> order_; ///< moving bodies along the curve
     std::vector<double> work_;         ///< by position in order_: expected of what its body brings its share
-    std::vector<BodyPair> near_;       ///< that were dealt
-    std::vector<double> foreseen_;     ///< by pair of near_: candidate pairs expected from balls alone
-    std::vector<double> learned_;      ///< by body; of a pair those found for each that was foreseen are the
-                                       ///< product of its bodies'
-    double margin_ = 0.25;             ///< of a body's radius
-    std::size_t held_ = 0;             ///< frames that the deal was asked for and held
-    bool is_made_ = false;             ///< there is one
-    bool is_over_ = false;             ///< it was asked for one and did not hold
-    bool has_all_ = false;             ///< shares have all bodies
-    bool has_learned_ = false;         ///< work_ is of what bodies had once
+    // Rows are positions in order_ and, behind them, fixed bodies:
+    std::vector<std::uint32_t> bodies_;     ///< by row
+    std::vector<std::uint64_t> first_;      ///< by row: of its part of neighbours_
+    std::vector<std::uint32_t> neighbours_; ///< rows of bodies that it has a pair of near_ with, in order
+    std::vector<std::size_t> row_owners_;   ///< by row, as owners_
+    std::vector<BodyPair> near_;            ///< that were dealt
+    std::vector<double> foreseen_;          ///< by pair of near_: candidate pairs expected from balls alone
+    std::vector<double> learned_; ///< by body; of a pair those found for each that was foreseen are the
+                                  ///< product of its bodies'
+    double margin_ = 0.25;        ///< of a body's radius
+    std::size_t held_ = 0;        ///< frames that the deal was asked for and held
+    bool is_made_ = false;        ///< there is one
+    bool is_over_ = false;        ///< it was asked for one and did not hold
+    bool has_all_ = false;        ///< shares have all bodies
+    bool has_learned_ = false;    ///< work_ is of what bodies had once
 };
 
 } // namespace tandem
