@@ -75,9 +75,9 @@ std::string asked_key(const Cell& cell, const Job& job) {
 std::unique_ptr<CellSampler> make_sampler(const Cell& cell, const Job& job, References& references,
                                           const Measuring& measuring, CellKeeper& keeper) {
     auto state = keeper.state(cell, asked_key(cell, job));
-    if (job.options.isolate)
+    if (job.options.isolate || measuring.process != nullptr)
         return std::make_unique<IsolatedSampler>(cell, job.options, std::move(state), measuring.give_up,
-                                                 measuring.process);
+                                                 job.options.isolate ? nullptr : measuring.process);
     return std::make_unique<LocalSampler>(cell, job.scene, job.range, references, std::move(state));
 }
 

@@ -37,9 +37,9 @@ struct Measuring {
     std::uint64_t seed = 0;
     Unfinished* unfinished = nullptr; ///< where rounds are kept; null: nowhere
     std::function<bool()> stop = [] { return false; };
-    // With options.isolate:
-    std::function<bool()> give_up{};     ///< not to wait for the end of a round either
-    AnsweringProcess* process = nullptr; ///< measures all cells; null: one for each check and round
+    AnsweringProcess* process =
+        nullptr;                     ///< which measures; null, or with options.isolate: none for all cells
+    std::function<bool()> give_up{}; ///< where another process measures: not to wait for its round either
 };
 
 /// What became of a cell.

@@ -147,8 +147,25 @@ End converse(Descriptor& to, const Descriptor& from, std::string_view input, std
         if (ends[1].revents != 0) feed(to, input);
         if (ends[0].revents == 0) continue;
         if (!take(from, output)) return End::of_output;
-        if (output.ends_with(end_of_answer)) return End::of_answer;
+        // Libraries may print behind it, too.
+        if (const auto answer = output.find(end_of_answer); answer != std::string::npos) {
+            output.resize(answer);
+            return End::of_answer;
+        }
     }
+}
+
+/// Whether the child closes its output in time, whatever it still prints.
+bool closes(const Descriptor& output, double seconds) {
+    const ChildLimits limits{.seconds = seconds};
+    const Deadline deadline(limits);
+    std::array<char, 4096> rest{};
+    while (!deadline.is_over()) {
+        pollfd end{output.number(), POLLIN, 0};
+        if (poll(&end, 1, deadline.wait_ms()) <= 0) continue;
+        if (::read(output.number(), rest.data(), rest.size()) == 0) return true;
+    }
+    return false;
 }
 
 std::string described(int status) {
@@ -182,12 +199,7 @@ ChildProcess::~ChildProcess() {
     if (!running_) return;
     constexpr double patience = 10; // seconds: drivers take some to close
     running_->to.close();           // which ends it
-    std::string rest;
-    while (true) {
-        const auto end = converse(running_->to, running_->from, {}, rest, {.seconds = patience});
-        if (end == End::of_time) kill(running_->child, SIGKILL);
-        if (end != End::of_answer) break;
-    }
+    if (!closes(running_->from, patience)) kill(running_->child, SIGKILL);
     waited_for(running_->child);
 }
 
@@ -196,10 +208,7 @@ bool ChildProcess::is_over() const { return !running_; }
 ChildResult ChildProcess::ask(const std::string& line, const ChildLimits& limits) {
     ChildResult result;
     const auto end = converse(running_->to, running_->from, line + '\n', result.output, limits);
-    if (end == End::of_answer) {
-        result.output.pop_back();
-        return result;
-    }
+    if (end == End::of_answer) return result;
     const auto running = std::exchange(running_, nullptr);
     if (end != End::of_output) kill(running->child, SIGKILL);
     const int status = waited_for(running->child);

@@ -33,8 +33,8 @@ nlohmann::json AnsweringProcess::ask(const nlohmann::json& request, const ChildL
     if (child_->is_over()) child_.reset();
     if (result.given_up) throw GivenUp();
     auto answer = answer_of(result);
-    // An error may stick to its devices.
-    if (answer.contains("failure")) child_.reset();
+    // An error may stick to its devices, and so does that one is not there.
+    if (answer.contains("failure") || answer.contains("input_error")) child_.reset();
     if (answer.contains("input_error")) throw InputError(answer["input_error"].get<std::string>());
     return answer;
 }

@@ -18,6 +18,7 @@ json measure_json(const RunOptions& options, std::uint64_t seed) {
             {"noise", options.noise},
             {"seconds", options.seconds},
             {"seed", seed},
+            {"isolate", options.isolate},
             {"timeout", options.timeout},
             {"check", options.check},
             {"count", options.count},
@@ -30,6 +31,7 @@ void take_measure(RunOptions& options, const json& from) {
     from.at("noise").get_to(options.noise);
     from.at("seconds").get_to(options.seconds);
     options.seed = from.at("seed").get<std::uint64_t>();
+    from.at("isolate").get_to(options.isolate);
     from.at("timeout").get_to(options.timeout);
     from.at("check").get_to(options.check);
     from.at("count").get_to(options.count);
@@ -54,13 +56,9 @@ CellState state_of(const json& from, const Cell& cell) {
 
 json hand_json(const RunOptions& options, std::uint64_t seed, std::uint64_t digest,
                const DeviceGroup& devices, std::span<const DealtCell> cells) {
-    json message{{"do", "hand"},
-                 {"options", options_json(options)},
-                 {"measure", measure_json(options, seed)},
-                 {"digest", digest},
-                 {"devices", json::array()},
-                 {"cells", json::array()},
-                 {"isolate", options.isolate}};
+    json message{
+        {"do", "hand"},     {"options", options_json(options)}, {"measure", measure_json(options, seed)},
+        {"digest", digest}, {"devices", json::array()},         {"cells", json::array()}};
     for (const auto* device : devices) message["devices"].push_back(device_json(device->info()));
     for (const auto& dealt : cells)
         message["cells"].push_back({{"cell", cell_json(dealt.cell)}, {"state", state_json(dealt.state)}});
@@ -70,8 +68,6 @@ json hand_json(const RunOptions& options, std::uint64_t seed, std::uint64_t dige
 DealtHand::DealtHand(const json& message) {
     take_options(options, message.at("options"));
     take_measure(options, message.at("measure"));
-    message.at("isolate").get_to(isolate);
-    options.isolate = true;
     message.at("digest").get_to(digest);
     DeviceGroup group;
     for (const auto& device : message.at("devices"))

@@ -23,8 +23,7 @@ nlohmann::json hand_json(const RunOptions& options, std::uint64_t seed, std::uin
 struct DealtHand {
     explicit DealtHand(const nlohmann::json& message);
 
-    RunOptions options;   ///< with another process that measures
-    bool isolate = false; ///< one for each check and round
+    RunOptions options;
     std::uint64_t digest = 0;
     std::vector<std::unique_ptr<Device>> devices; ///< described
     std::vector<DealtCell> cells;

@@ -104,7 +104,7 @@ void Worker::measure(DealtHand& hand) {
                         job.scene.key, job.scene.digest, hand.digest));
     auto measuring = measuring_of(hand.options);
     measuring.stop = measuring.give_up = [&] { return is_stopped(); };
-    measuring.process = hand.isolate ? nullptr : &process_;
+    measuring.process = &process_;
     References references(job.scene, job.range, checks_folder(hand.options));
     MailKeeper keeper(mail_, job.cells, hand.cells);
     const bool interrupted = measure_cells(job, job.cells, references, measuring, keeper, Progress(true),
