@@ -39,8 +39,9 @@ Deal::Deal(const Scene& scene, const Geometry& geometry, std::size_t shares)
       places_(scene),
       all_(scene.bodies.size()),
       shares_(shares),
-      owners_(scene.bodies.size(), shares),
       balls_(scene.bodies.size()),
+      rows_(scene.bodies.size()),
+      owners_(scene.bodies.size(), shares),
       learned_(scene.bodies.size(), 1.0) {
     std::iota(all_.begin(), all_.end(), 0u);
 }
@@ -53,14 +54,16 @@ bool Deal::holds(const Frame& frame) {
 
 void Deal::order_bodies() {
     std::vector<Eigen::Vector3d> centres;
-    std::vector<std::uint32_t> moving;
+    std::vector<std::uint32_t> moving, fixed;
     for (const auto body : all_) {
-        if (scene_.bodies[body].fixed) continue;
-        moving.push_back(body);
-        centres.push_back(balls_[body].centre);
+        (scene_.bodies[body].fixed ? fixed : moving).push_back(body);
+        if (!scene_.bodies[body].fixed) centres.push_back(balls_[body].centre);
     }
+    moving_ = moving.size();
     order_.clear();
     for (const auto position : hilbert_order(centres)) order_.push_back(moving[position]);
+    order_.insert(order_.end(), fixed.begin(), fixed.end());
+    for (std::uint32_t row = 0; row < order_.size(); ++row) rows_[order_[row]] = row;
 }
 
 /// As if tetrahedra were strewn evenly through the balls: those of one whose middle lies within the sum of
@@ -85,41 +88,30 @@ void Deal::expect_work() {
         for (auto i = p * part; i < std::min(near_.size(), (p + 1) * part); ++i)
             foreseen_[i] = foreseen_pairs(near_[i]);
     });
-    std::vector<std::uint32_t> positions(scene_.bodies.size(), std::numeric_limits<std::uint32_t>::max());
-    work_.resize(order_.size());
-    for (std::uint32_t i = 0; i < order_.size(); ++i) {
-        positions[order_[i]] = i;
-        work_[i] = tetrahedra_of(order_[i]);
-    }
+    work_.resize(moving_);
+    for (std::size_t row = 0; row < moving_; ++row) work_[row] = tetrahedra_of(order_[row]);
     for (std::size_t i = 0; i < near_.size(); ++i) {
         const auto [a, b] = near_[i];
-        work_[std::min(positions[a], positions[b])] +=
-            work_of_a_pair * foreseen_[i] * learned_[a] * learned_[b];
+        work_[std::min(rows_[a], rows_[b])] += work_of_a_pair * foreseen_[i] * learned_[a] * learned_[b];
     }
 }
 
 /// In two passes over all pairs: rows in any order, then each row's neighbours told of it in the rows' order.
 void Deal::list_neighbours() {
-    bodies_ = order_;
-    for (const auto body : all_)
-        if (scene_.bodies[body].fixed) bodies_.push_back(body);
-    std::vector<std::uint32_t> rows(bodies_.size());
-    for (std::uint32_t row = 0; row < bodies_.size(); ++row) rows[bodies_[row]] = row;
-    first_.assign(bodies_.size() + 1, 0);
+    first_.assign(order_.size() + 1, 0);
     for (const auto& pair : near_)
-        for (const auto body : {pair.a, pair.b}) ++first_[rows[body] + 1];
+        for (const auto body : {pair.a, pair.b}) ++first_[rows_[body] + 1];
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     std::vector<std::uint32_t> unsorted(2 * near_.size());
     auto next = first_;
     for (const auto& pair : near_) {
-        unsorted[next[rows[pair.a]]++] = rows[pair.b];
-        unsorted[next[rows[pair.b]]++] = rows[pair.a];
+        unsorted[next[rows_[pair.a]]++] = rows_[pair.b];
+        unsorted[next[rows_[pair.b]]++] = rows_[pair.a];
     }
     neighbours_.resize(unsorted.size());
     std::copy(first_.begin(), first_.end(), next.begin());
-    for (std::uint32_t row = 0; row < bodies_.size(); ++row)
+    for (std::uint32_t row = 0; row < order_.size(); ++row)
         for (auto i = first_[row]; i < first_[row + 1]; ++i) neighbours_[next[unsorted[i]]++] = row;
-    row_owners_.assign(bodies_.size(), shares_.size());
 }
 
 /// Calls need(share) for each share that has a pair of the row's body and does not own it. Owners do not fall
@@ -128,8 +120,8 @@ template<class Need>
 void Deal::for_needs(std::size_t row, const Need& need) const {
     auto last = shares_.size();
     for (auto i = first_[row]; i < first_[row + 1]; ++i) {
-        const auto share = row_owners_[neighbours_[i]];
-        if (share >= row_owners_[row]) return;
+        const auto share = owners_[neighbours_[i]];
+        if (share >= owners_[row]) return;
         if (std::exchange(last, share) != share) need(share);
     }
 }
@@ -139,10 +131,10 @@ std::vector<double> Deal::brought() const {
     constexpr std::size_t part = 1 << 16;
     std::vector<double> all(shares_.size());
     std::mutex mutex;
-    parallel_for((bodies_.size() + part - 1) / part, [&](std::size_t p) {
+    parallel_for((order_.size() + part - 1) / part, [&](std::size_t p) {
         std::vector<double> some(shares_.size());
-        for (auto row = p * part; row < std::min(bodies_.size(), (p + 1) * part); ++row)
-            for_needs(row, [&](std::size_t share) { some[share] += tetrahedra_of(bodies_[row]); });
+        for (auto row = p * part; row < std::min(order_.size(), (p + 1) * part); ++row)
+            for_needs(row, [&](std::size_t share) { some[share] += tetrahedra_of(order_[row]); });
         const std::lock_guard lock(mutex);
         for (std::size_t share = 0; share < all.size(); ++share) all[share] += some[share];
     });
@@ -163,12 +155,12 @@ std::vector<double> Deal::cut_once(std::span<const double> speeds, std::span<con
     std::vector<double> own(shares_.size());
     double done = 0, until = 0;
     std::size_t share = 0;
-    for (std::size_t i = 0; i < order_.size(); ++i) {
+    for (std::size_t i = 0; i < moving_; ++i) {
         // A body goes to the share in whose part the middle of its work lies.
         while (share + 1 < shares_.size() && done + work_[i] / 2 >= until + part(share))
             until += part(share++);
         shares_[share].own.push_back(order_[i]);
-        owners_[order_[i]] = row_owners_[i] = share;
+        owners_[i] = share;
         own[share] += work_[i];
         done += work_[i];
     }
@@ -199,16 +191,16 @@ void Deal::cut(std::span<const double> speeds) {
 /// Of every pair the share that has it needs both.
 void Deal::gather() {
     for (auto& share : shares_) share.others.clear();
-    for (std::size_t row = 0; row < bodies_.size(); ++row)
-        for_needs(row, [&](std::size_t share) { shares_[share].others.push_back(bodies_[row]); });
+    for (std::size_t row = 0; row < order_.size(); ++row)
+        for_needs(row, [&](std::size_t share) { shares_[share].others.push_back(order_[row]); });
     parallel_for(shares_.size(), [&](std::size_t share) { std::ranges::sort(shares_[share].others); });
 }
 
 void Deal::gather_all() {
     for (auto& share : shares_) share.others.clear();
     for (std::size_t i = 0; i < shares_.size(); ++i)
-        for (std::uint32_t body = 0; body < owners_.size(); ++body)
-            if (owners_[body] > i) shares_[i].others.push_back(body);
+        for (const auto body : all_)
+            if (owner_of(body) > i) shares_[i].others.push_back(body);
 }
 
 void Deal::make(const Frame& frame, std::span<const double> speeds) {
@@ -254,8 +246,8 @@ double Deal::work_of(std::size_t share, std::uint64_t pairs) const {
 
 std::uint64_t Deal::expected_pairs(std::size_t share) const {
     double work = 0;
-    for (std::size_t i = 0; i < order_.size(); ++i)
-        if (owners_[order_[i]] == share) work += work_[i] - tetrahedra_of(order_[i]);
+    for (std::size_t row = 0; row < moving_; ++row)
+        if (owners_[row] == share) work += work_[row] - tetrahedra_of(order_[row]);
     return has_learned_ ? static_cast<std::uint64_t>(work / work_of_a_pair) : 0;
 }
 

@@ -28,9 +28,9 @@ public:
 
     const std::vector<Share>& shares() const { return shares_; }
     /// The share that a pair of bodies, not both of which are fixed, belongs to.
-    std::size_t share_of(BodyPair pair) const { return std::min(owners_[pair.a], owners_[pair.b]); }
+    std::size_t share_of(BodyPair pair) const { return std::min(owner_of(pair.a), owner_of(pair.b)); }
     /// The share that owns a body; of a fixed one the number of shares.
-    std::size_t owner_of(std::uint32_t body) const { return owners_[body]; }
+    std::size_t owner_of(std::uint32_t body) const { return owners_[rows_[body]]; }
     /// Candidate pairs that a share of the last deal is expected to have; 0 where none were ever learned, as
     /// balls alone expect several times too many.
     std::uint64_t expected_pairs(std::size_t share) const;
@@ -57,16 +57,16 @@ private:
     Places places_;
     std::vector<std::uint32_t> all_; ///< bodies
     std::vector<Share> shares_;
-    std::vector<double> tetrahedra_;   ///< by share, of its own bodies and others'
-    std::vector<std::size_t> owners_;  ///< by body
-    std::vector<Ball> balls_;          ///< by body, in the frame that was dealt
-    std::vector<std::uint32_t> order_; ///< moving bodies along the curve
-    std::vector<double> work_;         ///< by position in order_: expected of what its body brings its share
-    // Rows are positions in order_ and, behind them, fixed bodies:
-    std::vector<std::uint32_t> bodies_;     ///< by row
+    std::vector<double> tetrahedra_; ///< by share, of its own bodies and others'
+    std::vector<Ball> balls_;        ///< by body, in the frame that was dealt
+    // Rows are positions of moving bodies along the curve and, behind them, fixed bodies:
+    std::vector<std::uint32_t> order_;      ///< bodies by row
+    std::vector<std::uint32_t> rows_;       ///< by body
+    std::size_t moving_ = 0;                ///< rows of moving bodies
+    std::vector<std::size_t> owners_;       ///< by row; of a fixed body the number of shares
+    std::vector<double> work_;              ///< by row below moving_: expected of what it brings its share
     std::vector<std::uint64_t> first_;      ///< by row: of its part of neighbours_
     std::vector<std::uint32_t> neighbours_; ///< rows of bodies that it has a pair of near_ with, in order
-    std::vector<std::size_t> row_owners_;   ///< by row, as owners_
     std::vector<BodyPair> near_;            ///< that were dealt
     std::vector<double> foreseen_;          ///< by pair of near_: candidate pairs expected from balls alone
     std::vector<double> learned_; ///< by body; of a pair those found for each that was foreseen are the
