@@ -64,7 +64,7 @@ struct SharedWork {
     std::uint64_t messages = 0;       ///< sent
 };
 
-/// What of a frame is counted, and adds up over devices and ranks.
+/// What of a frame is counted, and adds up over devices, ranks and batches.
 struct FrameCounts {
     std::uint64_t count = 0;      ///< candidate pairs
     std::uint64_t body_pairs = 0; ///< those given, or found
@@ -92,7 +92,7 @@ struct FrameResult : FrameCounts {
 
     /// False with output=count or digest, which keep none.
     bool has_pairs() const { return !parts.empty(); }
-    /// Adds counts, and the sums of output=digest, of another device or rank.
+    /// Adds counts, and the sums of output=digest, of another device, rank or batch.
     void add(const FrameCounts& counts, const std::optional<Digest>& digest);
     /// 1 where there are no candidate pairs.
     double contacts_a_pair() const;
