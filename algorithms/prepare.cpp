@@ -120,7 +120,7 @@ std::unique_ptr<Session> Traversal::prepare(std::span<Device* const> devices, co
     std::vector<Settings> fitting;
     for (const auto* device : devices) fitting.push_back(fitted(settings, device->info(), &scene));
     auto& device = *devices.front();
-    auto session = devices.size() > 1 ? split_session(*this, devices, scene, std::move(fitting))
+    auto session = devices.size() > 1 ? split_session(*this, devices, scene, fitting)
                    : is_published(settings)
                        ? published_session(*this, device, scene, fitting.front())
                        : std::make_unique<ResidentSession>(*this, device, scene, fitting.front());

@@ -165,7 +165,7 @@ FrameResult SplitSession::do_run(const Frame& frame, std::optional<std::span<con
 } // namespace
 
 std::unique_ptr<Session> split_session(const Traversal& traversal, std::span<Device* const> devices,
-                                       const Scene& scene, std::vector<Settings> fitted) {
+                                       const Scene& scene, const std::vector<Settings>& fitted) {
     return std::make_unique<SplitSession>(traversal, devices, scene, fitted);
 }
 

@@ -10,6 +10,6 @@ namespace tandem {
 /// With broad=device each finds its own pairs; otherwise, and where run() is given some, the host deals them
 /// out by the same rule. `fitted`: of each device.
 std::unique_ptr<Session> split_session(const Traversal& traversal, std::span<Device* const> devices,
-                                       const Scene& scene, std::vector<Settings> fitted);
+                                       const Scene& scene, const std::vector<Settings>& fitted);
 
 } // namespace tandem

@@ -42,6 +42,7 @@ std::vector<Ball> balls_at_the_start(const Scene& scene) {
     std::iota(all.begin(), all.end(), 0u);
     places.keep(scene.frame(0), all);
     std::vector<Ball> balls;
+    balls.reserve(all.size());
     for (const auto body : all) balls.push_back(places.ball(body));
     return balls;
 }

@@ -44,6 +44,7 @@ struct CudaBuffer : Buffer::Impl {
         const CurrentContext current(*driver, context);
         driver->cuMemFree_v2(pointer);
     }
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): the driver's number of an address
     void* native() const override { return reinterpret_cast<void*>(pointer); }
 };
 
