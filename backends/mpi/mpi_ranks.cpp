@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <numeric>
 #include <string_view>
 
 namespace tandem {
@@ -14,9 +15,6 @@ namespace tandem {
 namespace {
 
 enum Tag { exchanged = 1, passed, there };
-
-/// Counts of MPI's calls are ints: a longer message goes in pieces of that size.
-constexpr std::size_t most_at_once = std::size_t{1} << 30;
 
 void check(int code, std::string_view call) {
     if (code == MPI_SUCCESS) return;
@@ -26,15 +24,6 @@ void check(int code, std::string_view call) {
     throw RanksError(fmt::format("MPI: {}: {}", call,
                                  length > 0 ? std::string_view(text.data(), static_cast<std::size_t>(length))
                                             : std::string_view("unknown error")));
-}
-
-int count_of(std::size_t bytes) { return static_cast<int>(std::min(bytes, most_at_once)); }
-
-/// work(offset, count) for each piece of so many bytes.
-template<class Work>
-void in_pieces(std::size_t bytes, const Work& work) {
-    for (std::size_t offset = 0; offset < bytes; offset += most_at_once)
-        work(offset, count_of(bytes - offset));
 }
 
 /// Asked of the library that runs, whatever it was when this was compiled. One that does not know it of
@@ -48,7 +37,7 @@ bool is_cuda_aware() {
 
 class MpiRanks final : public Ranks {
 public:
-    explicit MpiRanks(MPI_Comm communicator) {
+    MpiRanks(MPI_Comm communicator, std::size_t most_at_once) : most_at_once_(most_at_once) {
         check(MPI_Comm_dup(communicator, &communicator_), "MPI_Comm_dup");
         check(MPI_Comm_set_errhandler(communicator_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
         check(MPI_Comm_rank(communicator_, &rank_), "MPI_Comm_rank");
@@ -75,6 +64,14 @@ public:
 private:
     std::vector<std::uint64_t> sizes_to_all(const std::vector<Bytes>& out);
 
+    /// work(offset, count) for each piece of so many bytes.
+    template<class Work>
+    void in_pieces(std::size_t bytes, const Work& work) const {
+        for (std::size_t offset = 0; offset < bytes; offset += most_at_once_)
+            work(offset, static_cast<int>(std::min(bytes - offset, most_at_once_)));
+    }
+
+    const std::size_t most_at_once_;
     MPI_Comm communicator_ = MPI_COMM_NULL;
     int rank_ = 0, size_ = 1;
 };
@@ -88,29 +85,35 @@ void MpiRanks::broadcast(Bytes& bytes, int from) {
     });
 }
 
+/// In as many rounds as the counts of one call cannot hold what all gave; each takes as much of everyone.
 std::vector<Ranks::Bytes> MpiRanks::gather_to_all(std::span<const std::byte> own) {
     const auto ranks = static_cast<std::size_t>(size_);
-    int length = 0;
-    if (own.size() > most_at_once)
-        throw RanksError(
-            fmt::format("MPI: a rank gave {} bytes to all; at most {}", own.size(), most_at_once));
-    length = static_cast<int>(own.size());
-    std::vector<int> lengths(ranks), starts(ranks);
-    check(MPI_Allgather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, communicator_), "MPI_Allgather");
-    std::uint64_t total = 0;
-    for (std::size_t i = 0; i < ranks; ++i) {
-        starts[i] = static_cast<int>(total);
-        total += static_cast<std::uint64_t>(lengths[i]);
-    }
-    if (total > most_at_once)
-        throw RanksError(fmt::format("MPI: the ranks gave {} bytes to all; at most {}", total, most_at_once));
-    Bytes all(total);
-    check(MPI_Allgatherv(own.data(), length, MPI_BYTE, all.data(), lengths.data(), starts.data(), MPI_BYTE,
-                         communicator_),
-          "MPI_Allgatherv");
+    const std::uint64_t length = own.size();
+    std::vector<std::uint64_t> lengths(ranks);
+    check(MPI_Allgather(&length, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, communicator_),
+          "MPI_Allgather");
+    const auto total = std::accumulate(lengths.begin(), lengths.end(), std::uint64_t{0});
+    const auto longest = std::ranges::max(lengths);
+    const auto piece = total <= most_at_once_ ? longest : std::max<std::uint64_t>(most_at_once_ / ranks, 1);
     std::vector<Bytes> parts(ranks);
-    for (std::size_t i = 0; i < ranks; ++i)
-        parts[i].assign(all.begin() + starts[i], all.begin() + starts[i] + lengths[i]);
+    for (std::size_t i = 0; i < ranks; ++i) parts[i].reserve(lengths[i]);
+    std::vector<int> counts(ranks), starts(ranks);
+    Bytes all;
+    for (std::uint64_t offset = 0; offset < longest; offset += piece) {
+        std::size_t end = 0;
+        for (std::size_t i = 0; i < ranks; ++i) {
+            starts[i] = static_cast<int>(end);
+            counts[i] = static_cast<int>(std::min(lengths[i] - std::min(lengths[i], offset), piece));
+            end += static_cast<std::size_t>(counts[i]);
+        }
+        all.resize(end);
+        const auto* from = own.data() + std::min(length, offset);
+        check(MPI_Allgatherv(from, counts[static_cast<std::size_t>(rank_)], MPI_BYTE, all.data(),
+                             counts.data(), starts.data(), MPI_BYTE, communicator_),
+              "MPI_Allgatherv");
+        for (std::size_t i = 0; i < ranks; ++i)
+            parts[i].insert(parts[i].end(), all.begin() + starts[i], all.begin() + starts[i] + counts[i]);
+    }
     return parts;
 }
 
@@ -170,8 +173,8 @@ void MpiRanks::exchange_there(std::span<const Piece> out, std::span<const Piece>
 }
 
 void MpiRanks::send(int to, std::span<const std::byte> bytes) {
-    if (bytes.size() > most_at_once)
-        throw RanksError(fmt::format("MPI: a message of {} bytes; at most {}", bytes.size(), most_at_once));
+    if (bytes.size() > most_at_once_)
+        throw RanksError(fmt::format("MPI: a message of {} bytes; at most {}", bytes.size(), most_at_once_));
     check(MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, passed, communicator_),
           "MPI_Send");
 }
@@ -196,7 +199,9 @@ bool MpiRanks::is_there() {
 
 } // namespace
 
-std::unique_ptr<Ranks> mpi_ranks(MPI_Comm communicator) { return std::make_unique<MpiRanks>(communicator); }
+std::unique_ptr<Ranks> mpi_ranks(MPI_Comm communicator, std::size_t most_at_once) {
+    return std::make_unique<MpiRanks>(communicator, most_at_once);
+}
 
 std::string mpi_version() {
     std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};

@@ -48,6 +48,30 @@ TEST(Ranks, GatherGivesAllWhatEachGave) {
         EXPECT_EQ(all[static_cast<std::size_t>(rank)], bytes_of(rank, size_of(rank)));
 }
 
+/// Longer than the counts of a call can say, in pieces that end within a message and at its end.
+TEST(Ranks, LongMessagesGoInPieces) {
+    const auto in_pieces = mpi_ranks(MPI_COMM_WORLD, 100);
+    const auto rank = ranks->rank(), size = ranks->size();
+    const auto size_of = [](int from, int to) { return static_cast<std::size_t>(100 * from + 37 * to); };
+    const auto all = in_pieces->gather_to_all(bytes_of(rank, size_of(rank, 7)));
+    ASSERT_EQ(all.size(), static_cast<std::size_t>(size));
+    for (int from = 0; from < size; ++from)
+        EXPECT_EQ(all[static_cast<std::size_t>(from)], bytes_of(from, size_of(from, 7)));
+    for (const auto& nothing : in_pieces->gather_to_all({})) EXPECT_TRUE(nothing.empty());
+
+    auto bytes = rank == 0 ? bytes_of(0, 1000) : Bytes();
+    in_pieces->broadcast(bytes, 0);
+    EXPECT_EQ(bytes, bytes_of(0, 1000));
+
+    std::vector<Bytes> out;
+    for (int to = 0; to < size; ++to) out.push_back(bytes_of(rank + to, size_of(rank + 1, to)));
+    const auto in = in_pieces->exchange(out);
+    for (int from = 0; from < size; ++from)
+        EXPECT_EQ(in[static_cast<std::size_t>(from)], bytes_of(from + rank, size_of(from + 1, rank)));
+
+    EXPECT_THROW(in_pieces->send(0, Bytes(101)), RanksError);
+}
+
 /// Several between the same two, in order; none is a message too.
 TEST(Ranks, PiecesLieWhereTheyAreWanted) {
     std::vector<Bytes> memory;
