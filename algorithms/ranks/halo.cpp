@@ -61,7 +61,7 @@ Halo::Halo(const Scene& scene, const Geometry& geometry, Ranks& ranks)
 }
 
 bool Halo::is_over(const Frame& frame, Traffic& traffic) {
-    const bool over = !is_met_ || !places_.all_within(frame, share_.own, margin_);
+    const bool over = !is_met_ || !places_.all_within(frame, looked_at_, margin_);
     const auto said = std::array{std::byte{over ? std::uint8_t{1} : std::uint8_t{0}}};
     const auto all = ranks_.gather_to_all(said);
     traffic.bytes += said.size();
@@ -159,6 +159,8 @@ void Halo::keep_near(const Frame& frame, const std::vector<double>& slabs, Traff
 
 void Halo::meet(const std::vector<std::uint32_t>& own, const Frame& frame, Traffic& traffic) {
     share_ = {own, {}};
+    looked_at_ = own;
+    std::ranges::sort(looked_at_);
     places_.keep(frame, own);
     places_.keep(frame, fixed_);
     const auto slabs = slabs_of(own, frame);

@@ -60,6 +60,7 @@ private:
     Places places_;
     Numbers fixed_; ///< bodies
     Share share_;
+    Numbers looked_at_; ///< own bodies as they lie in memory, which is half of the time that it takes to look
     std::vector<Numbers> sent_, gotten_; ///< by rank
     Frame others_;
     double margin_ = 0.25; ///< of a body's radius
