@@ -146,6 +146,18 @@ void deal(benchmark::State& state) {
     for ([[maybe_unused]] auto _ : state) pile.deal.make(pile.balls, pile.speeds);
 }
 
+/// What a rank does in every frame: whether its bodies are still near where they were.
+void still_near(benchmark::State& state) {
+    const auto scene = make_scene(fmt::format("pile:bodies={},frames=1", state.range(0)));
+    const auto frame = scene.frame(0);
+    std::vector<std::uint32_t> all(scene.bodies.size());
+    std::iota(all.begin(), all.end(), 0u);
+    Places places(scene);
+    places.keep(frame, all);
+    for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(places.all_within(frame, all, 0.25));
+    state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * state.range(0));
+}
+
 /// Preparation has to be linear in bodies.
 void prepare(benchmark::State& state, Device& device) {
     const auto scene = make_scene(fmt::format("pile:bodies={},frames=1", state.range(0)));
@@ -214,6 +226,11 @@ int main(int argc, char** argv) {
         ->Iterations(1)
         ->Repetitions(1)
         ->Unit(benchmark::kMillisecond)
+        ->UseRealTime();
+    benchmark::RegisterBenchmark("still near", tandem::still_near)
+        ->Arg(10'000)
+        ->Arg(100'000)
+        ->Unit(benchmark::kMicrosecond)
         ->UseRealTime();
     tandem::register_oracle();
     benchmark::Initialize(&argc, argv);
