@@ -12,6 +12,7 @@ MESHES = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "meshes"
 DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]], float)
 IN_A_BOX, IN_A_GROUP = 8, 32  # halo.cpp: bodies, boxes
 LEAST_MARGIN, MOST_MARGIN, SOON = 0.25, 2.0, 8  # halo.cpp: of a radius; frames
+ROOM = 2.0  # halo.cpp: times a margin, beyond it; who is that near has a place in the session
 WORK_OF_A_PAIR, CUTS = 6, 4  # deal.cpp: in tetrahedra refitted; tried
 SPIN, DRIFT = 0.03, 0.01  # pile.cpp: radians, and of a radius, a frame
 LATTICE = (1 << 21) - 1  # hierarchy/order.cpp
@@ -284,29 +285,29 @@ class Slabs:
 
 
 class Met:
-    """What ranks find when they meet: {rank, body} of each body of a later rank that meets one of a rank's boxes (`offered`), and of
-    those that meet one of its bodies, which it keeps (`halo`); which ranks send which their boxes."""
+    """What ranks find when they meet: {rank, body} of each body of a later rank that meets one of a rank's boxes, with more than a margin
+    (`offered`), of those that meet one of its bodies so (`room`: its session has them), and of those within the margin (`halo`); which ranks
+    send which their boxes."""
 
     def __init__(self, pile, starts, margin):
         ranks = len(starts) - 1
         self.owners = np.repeat(np.arange(ranks), np.diff(starts))
         self.slabs = Slabs(pile, margin)
         self.firsts = np.concatenate([np.arange(a, b, IN_A_BOX) for a, b in zip(starts, starts[1:])])
-        self.boxes = self.slabs.around(self.firsts)
+        self.wide = Slabs(pile, (1 + ROOM) * margin)
+        self.boxes = self.wide.around(self.firsts)
         filled = np.flatnonzero(np.diff(starts))
-        whole = self.slabs.around(starts[filled])
+        whole = self.wide.around(starts[filled])
         a, b = np.triu_indices(len(filled), 1)
         hears = whole.meet(a, whole, b)
         self.told, self.hears = filled[a[hears]], filled[b[hears]]
-        codes, kept = zip(*self.parts(pile, margin))
-        self.offered = np.unique(np.concatenate(codes))
-        self.halo = np.unique(np.concatenate(kept))
+        self.offered, self.room, self.halo = (np.unique(np.concatenate(codes)) for codes in zip(*self.parts(pile, margin)))
 
     def of(self, codes):
         return codes // len(self.owners), codes % len(self.owners)
 
     def parts(self, pile, margin):
-        """(offered, kept) of some boxes at a time, as rank times bodies plus body."""
+        """(offered, room, halo) of some boxes at a time, as rank times bodies plus body."""
         reach = np.linalg.norm(pile.mesh.half) + margin * pile.mesh.radius  # corners of a turned box reach further than the ball
         rank_of_box = self.owners[self.firsts]
         for first in range(0, len(self.firsts), AT_ONCE // 8):
@@ -318,15 +319,15 @@ class Met:
             meets = self.boxes.meet(box, self.slabs, body)
             box, body = box[meets], body[meets]
             codes, which = np.unique(rank_of_box[box] * len(self.owners) + body, return_inverse=True)
-            yield codes, codes[self.is_near(box, body, which, len(codes))]
+            yield codes, *(codes[self.is_near(slabs, box, body, which, len(codes))] for slabs in (self.wide, self.slabs))
 
-    def is_near(self, box, body, which, many):
-        """Of so many bodies at boxes: whether one of a box's bodies meets it."""
+    def is_near(self, slabs, box, body, which, many):
+        """Of so many bodies at boxes: whether one of a box's bodies, with these slabs, meets it."""
         kept, end = np.zeros(many, bool), np.append(self.firsts, len(self.owners))
         for i in range(IN_A_BOX):
             one = self.firsts[box] + i
             rest = np.flatnonzero(~kept[which] & (one < end[box + 1]))
-            kept[which[rest[self.slabs.meet(one[rest], self.slabs, body[rest])]]] = True
+            kept[which[rest[slabs.meet(one[rest], self.slabs, body[rest])]]] = True
         return kept
 
 
@@ -340,8 +341,8 @@ def settled_margin():
 
 
 def count(pile, ranks, margin, pairs=None):
-    """Of each rank: bodies it owns, gets and sends in a frame, from and to how many ranks; when ranks meet, bodies that it hears of and
-    tells others of, and from and to how many ranks boxes go; bodies of others and pairs of the deal; pairs of bodies and candidate pairs
+    """Of each rank: bodies it owns, gets and sends in a frame, from and to how many ranks, and has room for beside its own; when
+    ranks meet, bodies that it hears of and tells others of, and from and to how many ranks boxes go; bodies of others and pairs of the deal; pairs of bodies and candidate pairs
     expected. `pairs`: pairs_of_bodies(pile), where they are known."""
     pairs = pairs or pairs_of_bodies(pile)
     starts = cuts(pairs, pile.mesh, ranks)
@@ -350,6 +351,6 @@ def count(pile, ranks, margin, pairs=None):
     (to, body), (hears, told) = met.of(met.halo), met.of(met.offered)
     links = np.unique(to * ranks + met.owners[body])
     return {"own": np.diff(starts), "halo": each(to), "sent": each(met.owners[body]), "senders": each(links // ranks), "receivers": each(links % ranks),
-            "offered": each(hears), "offers": each(met.owners[told]), "boxes_from": each(met.hears), "boxes_to": each(met.told),
+            "room": each(met.of(met.room)[0]), "offered": each(hears), "offers": each(met.owners[told]), "boxes_from": each(met.hears), "boxes_to": each(met.told),
             "brought": brought_by(starts, pairs), "near_pairs": np.diff(pairs.starts[starts]), "body_pairs": sums(pairs.bodies, starts),
             "expected_pairs": np.rint(sums(pairs.expected, starts)).astype(np.int64)}

@@ -183,20 +183,23 @@ class SimulatedRanks(ModelCase):
         starts = np.concatenate([[0], np.cumsum(found["own"])])
         own = [range(a, b) for a, b in zip(starts, starts[1:])]
         ends = [boxes_by_hand(pile, body, margin) for body in range(150)]
+        wide = [boxes_by_hand(pile, body, (1 + ranks.ROOM) * margin) for body in range(150)]
         hears = {(rank, body) for rank in range(many) for first in own[rank][::8] for body in range(own[rank].stop, 150)
-                 if overlap(self.box_over(ends, range(first, min(first + 8, own[rank].stop))), ends[body])}
-        gets = {(rank, body) for rank, body in hears if any(overlap(ends[one], ends[body]) for one in own[rank])}
-        whole = [self.box_over(ends, bodies) for bodies in own]
+                 if overlap(self.box_over(wide, range(first, min(first + 8, own[rank].stop))), ends[body])}
+        near = lambda boxes: {(rank, body) for rank, body in hears if any(overlap(boxes[one], ends[body]) for one in own[rank])}
+        gets, room = near(ends), near(wide)
+        whole = [self.box_over(wide, bodies) for bodies in own]
         boxes = {(a, b) for a in range(many) for b in range(a + 1, many) if overlap(whole[a], whole[b])}
         owner = lambda body: next(rank for rank in range(many) if body in own[rank])
         links = {(rank, owner(body)) for rank, body in gets}
         of = lambda pairs, place: [sum(pair[place] == rank for pair in pairs) for rank in range(many)]
         owners = lambda pairs: [(rank, owner(body)) for rank, body in pairs]
-        for name, expected in {"halo": of(gets, 0), "sent": of(owners(gets), 1), "senders": of(links, 0), "receivers": of(links, 1),
+        for name, expected in {"halo": of(gets, 0), "sent": of(owners(gets), 1), "senders": of(links, 0), "receivers": of(links, 1), "room": of(room, 0),
                                "offered": of(hears, 0), "offers": of(owners(hears), 1), "boxes_to": of(boxes, 0), "boxes_from": of(boxes, 1)}.items():
             self.assertEqual(found[name].tolist(), expected, name)
         self.assertLess(len(boxes), many * (many - 1) // 2)
-        self.assertGreater(len(hears), len(gets) + 5)
+        self.assertGreater(len(hears), len(room) + 5)
+        self.assertGreater(len(room), len(gets) + 5)
         self.assertGreater(len(gets), 50)
         self.expect_pairs(pile, found, owner)
         self.expect_the_deal(pile, found, owner)
@@ -265,7 +268,7 @@ class Paper(ModelCase):
     def made(self, options=()):
         """Three ranks with 256, 300 and 512 bodies; the second and the third hear of the first, and the third of the second."""
         one = {"study": "weak", "bodies": 1068, "ranks": 3, "density": 0.2, "margin": 0.5, "held": 12}
-        columns = {"own": (256, 300, 512), "halo": (90, 40, 0), "sent": (0, 60, 70), "senders": (2, 1, 0), "receivers": (0, 1, 2), "offered": (100, 64, 0),
+        columns = {"own": (256, 300, 512), "halo": (90, 40, 0), "sent": (0, 60, 70), "senders": (2, 1, 0), "receivers": (0, 1, 2), "room": (95, 50, 0), "offered": (100, 64, 0),
                    "offers": (0, 60, 104), "boxes_from": (0, 1, 2), "boxes_to": (2, 1, 0), "brought": (50, 20, 0), "near_pairs": (10, 20, 30),
                    "body_pairs": (1, 2, 3), "expected_pairs": (4, 5, 6)}
         rows = [{**one, **{name: values[rank] for name, values in columns.items()}} for rank in range(3)]

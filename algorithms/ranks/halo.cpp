@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t in_a_box = 8;
 constexpr double most_margin = 2; ///< of a radius
 constexpr std::size_t soon = 8;   ///< frames: less make margins grow
+/// Times a margin: two bodies come nearer by that, at most, until ranks meet again.
+constexpr double room = 2;
 
 /// Closed, as everywhere.
 bool overlap(const double* a, const double* b, std::size_t axes) {
@@ -72,13 +74,13 @@ bool Halo::is_over(const Frame& frame, Traffic& traffic) {
     return any;
 }
 
-std::vector<double> Halo::slabs_of(const Numbers& bodies, const Frame& frame) const {
+std::vector<double> Halo::slabs_of(const Numbers& bodies, const Frame& frame, double margin) const {
     const auto stride = 2 * sweep_.axes();
     std::vector<double> slabs(bodies.size() * stride);
     parallel_for(in_parts(std::span(bodies)).size(), [&](std::size_t part) {
         const auto numbers = in_parts(std::span(bodies))[part];
         for (const auto& body : numbers)
-            sweep_.bound(frame, body, margin_ * places_.ball(body).radius,
+            sweep_.bound(frame, body, margin * places_.ball(body).radius,
                          &slabs[static_cast<std::size_t>(&body - bodies.data()) * stride]);
     });
     return slabs;
@@ -145,33 +147,49 @@ std::vector<Ranks::Bytes> Halo::boxes_near(const std::vector<double>& boxes, Tra
     return passed(out, traffic);
 }
 
-/// Boxes go around several bodies: of those that meet one, the ones that meet a body are kept, and whoever
-/// sends them is told.
-void Halo::keep_near(const Frame& frame, const std::vector<double>& slabs, Traffic& traffic) {
+/// Bodies that meet the narrow ones are in the share, and of the others those next that meet the wide ones.
+/// Returns the first.
+Halo::Numbers Halo::divide(const Numbers& bodies, const std::vector<double>& slabs,
+                           const std::vector<double>& narrow, const std::vector<double>& wide) {
+    auto kept = near(bodies, slabs, narrow);
+    share_.others.insert(share_.others.end(), kept.begin(), kept.end());
+    auto one = kept.begin();
+    for (const auto body : near(bodies, slabs, wide)) {
+        if (one != kept.end() && *one == body)
+            ++one;
+        else
+            next_.push_back(body);
+    }
+    return kept;
+}
+
+/// Boxes go around several bodies, and further than need be: of those that meet one, the ones that meet a
+/// body are kept, and whoever sends them is told.
+void Halo::keep_near(const Frame& frame, const std::vector<double>& slabs, const std::vector<double>& wide,
+                     Traffic& traffic) {
     trade(frame, traffic);
     for (auto& list : gotten_) {
         places_.keep(others_, list);
-        list = near(list, slabs_of(list, others_), slabs);
-        share_.others.insert(share_.others.end(), list.begin(), list.end());
+        list = divide(list, slabs_of(list, others_, margin_), slabs, wide);
     }
     sent_ = told(gotten_, traffic);
 }
 
 void Halo::meet(const std::vector<std::uint32_t>& own, const Frame& frame, Traffic& traffic) {
     share_ = {own, {}};
+    next_.clear();
     looked_at_ = own;
     std::ranges::sort(looked_at_);
     places_.keep(frame, own);
     places_.keep(frame, fixed_);
-    const auto slabs = slabs_of(own, frame);
-    const auto boxes = boxes_near(around(slabs, in_a_box, sweep_.axes()), traffic);
+    const auto slabs = slabs_of(own, frame, margin_), wide = slabs_of(own, frame, (1 + room) * margin_);
+    const auto boxes = boxes_near(around(wide, in_a_box, sweep_.axes()), traffic);
     std::vector<Numbers> lists;
     for (const auto& theirs : boxes) lists.push_back(near(own, slabs, from_message<double>(theirs)));
     gotten_ = told(lists, traffic);
     sent_ = std::move(lists);
-    keep_near(frame, slabs, traffic);
-    const auto fixed = near(fixed_, slabs_of(fixed_, frame), slabs);
-    share_.others.insert(share_.others.end(), fixed.begin(), fixed.end());
+    keep_near(frame, slabs, wide, traffic);
+    divide(fixed_, slabs_of(fixed_, frame, margin_), slabs, wide);
     is_met_ = true;
 }
 

@@ -37,17 +37,23 @@ public:
     const Frame& others() const { return others_; }
     /// Of this rank: its own bodies, and the others that it gets or that are fixed and near.
     const Share& share() const { return share_; }
+    /// Others' bodies that are not in the share, and fixed ones, but may be after the next meet(): those
+    /// within margins more. In no order; where they are is not known.
+    const std::vector<std::uint32_t>& next() const { return next_; }
     /// The next is_over() is true.
     void forget() { is_met_ = false; }
 
 private:
     using Numbers = std::vector<std::uint32_t>;
 
-    std::vector<double> slabs_of(const Numbers& bodies, const Frame& frame) const;
+    std::vector<double> slabs_of(const Numbers& bodies, const Frame& frame, double margin) const;
     Numbers near(const Numbers& bodies, const std::vector<double>& slabs,
                  std::span<const double> boxes) const;
+    Numbers divide(const Numbers& bodies, const std::vector<double>& slabs, const std::vector<double>& narrow,
+                   const std::vector<double>& wide);
     std::vector<Numbers> told(const std::vector<Numbers>& lists, Traffic& traffic);
-    void keep_near(const Frame& frame, const std::vector<double>& slabs, Traffic& traffic);
+    void keep_near(const Frame& frame, const std::vector<double>& slabs, const std::vector<double>& wide,
+                   Traffic& traffic);
     std::vector<Ranks::Bytes> passed(const std::vector<Ranks::Bytes>& out, Traffic& traffic);
     std::vector<Ranks::Bytes> boxes_near(const std::vector<double>& boxes, Traffic& traffic);
     Ranks::Bytes words_of(const Numbers& bodies, const Frame& frame, bool vertices) const;
@@ -61,6 +67,7 @@ private:
     Numbers fixed_; ///< bodies
     Share share_;
     Numbers looked_at_; ///< own bodies as they lie in memory, which is half of the time that it takes to look
+    Numbers next_;
     std::vector<Numbers> sent_, gotten_; ///< by rank
     Frame others_;
     double margin_ = 0.25; ///< of a body's radius

@@ -102,26 +102,29 @@ void RankSession::build(const std::vector<std::uint32_t>& bodies) {
     if (counts_work_) session_->count_work(true);
 }
 
-/// Bodies that were there stay, as long as there is room: those at the border come and go.
+/// Making a session anew takes as long as several frames: as long as there is room, bodies that were there
+/// stay, since those at the border come and go, and those come along that will be next.
+void RankSession::build_for(const std::vector<std::uint32_t>& needed) {
+    auto next = halo_.next();
+    std::ranges::sort(next);
+    std::vector<std::uint32_t> some, all;
+    std::ranges::set_union(needed, next, std::back_inserter(some));
+    std::ranges::set_union(some, session_ ? present_->numbers : next, std::back_inserter(all));
+    try {
+        build(all);
+    } catch (const OutOfMemory&) {
+        if (all == needed) throw;
+        build(needed);
+    }
+}
+
 void RankSession::take_share() {
     const auto& share = halo_.share();
     if (share.own.empty()) return drop();
     auto needed = share.own;
     needed.insert(needed.end(), share.others.begin(), share.others.end());
     std::ranges::sort(needed);
-    auto both = needed;
-    if (session_) {
-        both.clear();
-        std::ranges::set_union(needed, present_->numbers, std::back_inserter(both));
-    }
-    if (!session_ || both != present_->numbers) {
-        try {
-            build(both);
-        } catch (const OutOfMemory&) {
-            if (both == needed) throw;
-            build(needed);
-        }
-    }
+    if (!session_ || !std::ranges::includes(present_->numbers, needed)) build_for(needed);
     there_ = in_part(*present_, share);
     session_->take(there_);
     session_->expect(std::exchange(expected_pairs_, 0), contacts_a_pair_);

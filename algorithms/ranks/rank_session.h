@@ -43,6 +43,7 @@ private:
         return deal_.shares()[static_cast<std::size_t>(ranks_.rank())].own;
     }
     void take_share();
+    void build_for(const std::vector<std::uint32_t>& needed);
     void build(const std::vector<std::uint32_t>& bodies);
     void drop();
     void exchange(const Frame& frame, Report& own);

@@ -2,9 +2,11 @@
 // Sessions on ranks of a job, which a launcher has started: answers together are those of one device, every
 // pair is found once, and an error of one rank is one of all. Every rank runs every test.
 #include "algorithms/answer/digest.h"
+#include "algorithms/bodies/ball.h"
 #include "algorithms/ranks/bytes.h"
 #include "backends/mpi/mpi_ranks.h"
 #include "scenes/error.h"
+#include "tests/ranks/job.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
 
@@ -14,11 +16,12 @@
 #include <map>
 
 namespace tandem {
+
+std::unique_ptr<Ranks> job;
+
 namespace {
 
 using namespace testing_support;
-
-std::unique_ptr<Ranks> job;
 
 /// A rank's own device: host, or a GPU for each where TANDEM_TEST_RANKS_ON says cuda.
 Device& own_device() {
@@ -171,6 +174,50 @@ TEST_F(RankSessions, OnlyWhatIsNeededIsOnTheDevice) {
         EXPECT_GT(summed(own.exchange_bytes), 0u);
         EXPECT_LT(own.exchange_bytes, 400u * 144) << "only bodies at the border travel";
     }
+}
+
+/// Bodies in a row, of which each is near the next one, by a margin of a quarter of a radius, in frame 0, and
+/// in frame 1 the one after that, which before lacked a fifth of a radius.
+Scene drawn_together(std::uint32_t bodies) {
+    auto scene = procession(bodies, 2, 0);
+    scene.bodies.assign(bodies, Body{});
+    const auto& vertices = scene.meshes.front().vertices;
+    const auto [first, last] =
+        std::ranges::minmax(vertices, {}, [](const Eigen::Vector3d& vertex) { return vertex.x(); });
+    const double radius = ball_around(vertices).radius;
+    const double near = last.x() - first.x() + 2 * 0.25 * radius;
+    scene.frame = [=](std::size_t number) {
+        Frame frame;
+        frame.deformed.resize(bodies);
+        const double apart = (near + (number == 0 ? 0.1 : -0.1) * radius) / 2;
+        for (std::uint32_t i = 0; i < bodies; ++i)
+            frame.poses.push_back({Eigen::Quaterniond::Identity(), {apart * i, 0, 0}});
+        return frame;
+    };
+    scene.digest = digest_of(scene);
+    return scene;
+}
+
+/// Once a deal has held for long, so that margins do not grow, every rank but the last gets bodies that are
+/// as near as those that it had. A session that was made anew has other buffers, by kilobytes a body.
+TEST_F(RankSessions, WhoComesNextHasRoom) {
+    const auto scene = drawn_together(200);
+    auto& on = own_device();
+    const auto& traversal = algorithm("tiled");
+    const auto session =
+        traversal.prepare(on, scene, settings_of(traversal, {{"contact_rule", "none"}}), *job);
+    const auto bodies = [&](std::size_t frame) {
+        last_ = session->run(of_own(scene, *session, frame));
+        return last_.shared[static_cast<std::size_t>(job->rank())].bodies;
+    };
+    auto before = bodies(0);
+    for (int held = 0, i = 0; held < 10 && i < 500; ++i) {
+        before = bodies(0);
+        held = last_.deals == 0 ? held + 1 : 0;
+    }
+    const auto bytes = on.bytes_allocated();
+    EXPECT_EQ(bodies(1) > before, job->rank() + 1 < job->size());
+    EXPECT_LT(on.bytes_allocated(), bytes + 1000);
 }
 
 /// Every rank says which tetrahedra of its own bodies are skipped, in one frame and not in the next.
