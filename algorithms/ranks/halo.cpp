@@ -124,6 +124,7 @@ std::vector<Ranks::Bytes> Halo::passed(const std::vector<Ranks::Bytes>& out, Tra
 /// Sends every rank a list of bodies; returns those that came.
 std::vector<Halo::Numbers> Halo::told(const std::vector<Numbers>& lists, Traffic& traffic) {
     std::vector<Ranks::Bytes> out;
+    out.reserve(lists.size());
     for (const auto& list : lists) out.push_back(as_message(std::span(list)));
     std::vector<Numbers> in;
     for (const auto& message : passed(out, traffic)) in.push_back(from_message<std::uint32_t>(message));
@@ -185,6 +186,7 @@ void Halo::meet(const std::vector<std::uint32_t>& own, const Frame& frame, Traff
     const auto slabs = slabs_of(own, frame, margin_), wide = slabs_of(own, frame, (1 + room) * margin_);
     const auto boxes = boxes_near(around(wide, in_a_box, sweep_.axes()), traffic);
     std::vector<Numbers> lists;
+    lists.reserve(boxes.size());
     for (const auto& theirs : boxes) lists.push_back(near(own, slabs, from_message<double>(theirs)));
     gotten_ = told(lists, traffic);
     sent_ = std::move(lists);

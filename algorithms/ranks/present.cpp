@@ -62,6 +62,7 @@ std::size_t place_in(const Scene& part, std::uint32_t number) {
 Share in_part(const Scene& part, const Share& share) {
     const auto there = [&](const std::vector<std::uint32_t>& bodies) {
         std::vector<std::uint32_t> numbers;
+        numbers.reserve(bodies.size());
         for (const auto body : bodies) numbers.push_back(static_cast<std::uint32_t>(place_in(part, body)));
         return numbers;
     };

@@ -177,22 +177,22 @@ DeviceGroup Roster::choose_one(const std::string& name) {
 std::vector<DeviceGroup> Roster::choose(const std::vector<std::string>& names) {
     std::vector<DeviceGroup> chosen;
     for (const auto& name : names) {
-        auto found = name == "all" || asks_for_each(name) ? choose_each(name)
-                                                          : std::vector<DeviceGroup>{choose_one(name)};
+        const auto found = name == "all" || asks_for_each(name) ? choose_each(name)
+                                                                : std::vector<DeviceGroup>{choose_one(name)};
         if (found.empty() || found.front().empty()) {
             std::vector<std::string> have;
             for (std::size_t rank = 0; rank < members_.size(); ++rank)
                 have.push_back(fmt::format("rank {}: {}", rank, list_of(members_[rank])));
             throw InputError(fmt::format("no rank has a device {}; {}", name, fmt::join(have, "; ")));
         }
-        for (auto& group : found) add_once(chosen, standing_for(std::move(group)));
+        for (const auto& group : found) add_once(chosen, standing_for(group));
     }
     return chosen;
 }
 
 /// Devices of like models are one cell's, whatever they were called.
-DeviceGroup Roster::standing_for(DeviceGroup group) {
-    return stand_for_.try_emplace(models_of(group), std::move(group)).first->second;
+DeviceGroup Roster::standing_for(const DeviceGroup& group) {
+    return stand_for_.try_emplace(models_of(group), group).first->second;
 }
 
 DeviceGroup Roster::devices_of(int rank, const Models& models) const {

@@ -50,7 +50,7 @@ public:
 
 private:
     std::vector<DeviceGroup> choose_each(const std::string& name) const;
-    DeviceGroup standing_for(DeviceGroup group);
+    DeviceGroup standing_for(const DeviceGroup& group);
     DeviceGroup choose_one(const std::string& name);
 
     std::vector<Member> members_;

@@ -87,7 +87,7 @@ double outside(Rays one, Rays other, const Eigen::Vector3d& direction) {
 }
 
 Eigen::Vector3d brought_into(Rays one, Rays other, const Eigen::Vector3d& direction) {
-    const auto nearest = in_turn(one, other, direction);
+    auto nearest = in_turn(one, other, direction);
     const double off = outside(one, other, nearest);
     const auto middle = middle_of(one, other);
     if (off < rounding || !(length(middle) > rounding)) return nearest;
