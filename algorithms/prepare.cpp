@@ -48,17 +48,20 @@ void Session::set_threads() const {
 
 FrameResult Session::run_among(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
     set_threads();
-    if (origin_ == Eigen::Vector3d::Zero()) return do_run(frame, body_pairs);
-    auto result = do_run(counted_from(origin_, frame), body_pairs);
-    result.origin = {origin_.x(), origin_.y(), origin_.z()};
-    return result;
+    auto result = origin_ == Eigen::Vector3d::Zero() ? do_run(frame, body_pairs)
+                                                     : do_run(counted_from(origin_, frame), body_pairs);
+    return finished(std::move(result));
 }
 
 FrameResult Session::run_among(const DeviceFrame& frame,
                                std::optional<std::span<const BodyPair>> body_pairs) {
     set_threads();
     check_fits(*scene_, frame);
-    auto result = do_run_there(frame, body_pairs);
+    return finished(do_run_there(frame, body_pairs));
+}
+
+FrameResult Session::finished(FrameResult result) const {
+    for (auto* device : devices()) device->check_guards();
     result.origin = {origin_.x(), origin_.y(), origin_.z()};
     return result;
 }

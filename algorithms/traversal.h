@@ -66,6 +66,8 @@ private:
     void set_threads() const;
     FrameResult run_among(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs);
     FrameResult run_among(const DeviceFrame& frame, std::optional<std::span<const BodyPair>> body_pairs);
+    /// A frame's result, completed, after a check of the devices' guards.
+    FrameResult finished(FrameResult result) const;
 
     virtual void do_reset() = 0;
     virtual FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) = 0;

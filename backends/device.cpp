@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "backends/device.h"
 
+#include "backends/buffer_guards.h"
 #include "backends/ranges.h"
 
 #include <algorithm>
@@ -46,18 +47,32 @@ void check_group_size(const DeviceInfo& device, const KernelFacts& kernel, std::
                                        label));
 }
 
-/// Keeps the device's count of live bytes right, whoever drops the last handle.
+/// Keeps the device's count of live bytes right, and its guards, whoever drops the last handle.
 std::shared_ptr<Buffer::Impl> counted(std::shared_ptr<Buffer::Impl> impl,
-                                      const std::shared_ptr<std::size_t>& count) {
+                                      const std::shared_ptr<std::size_t>& count,
+                                      const std::shared_ptr<BufferGuards>& guards) {
     *count += impl->bytes;
     auto* raw = impl.get();
-    return {raw, [impl = std::move(impl), count](Buffer::Impl*) mutable {
+    return {raw, [impl = std::move(impl), count, guards](Buffer::Impl*) mutable {
                 *count -= impl->bytes;
+                if (guards) guards->remove(*impl);
                 impl.reset();
             }};
 }
 
 } // namespace
+
+Device::Device() = default;
+
+Device::~Device() {
+    if (guards_) guards_->detach();
+}
+
+void Device::guard_buffers() {
+    if (!guards_) guards_ = std::make_shared<BufferGuards>(*this);
+}
+
+void Device::do_check_guards() { guards_->check(); }
 
 void Device::record(Event event, Clock::time_point begin) {
     event.host_begin_ns =
@@ -104,10 +119,11 @@ Buffer Device::allocate(std::size_t bytes, std::string_view label) {
     // Zero-sized buffers are not allowed by OpenCL; one word keeps callers free of special cases.
     const auto size = std::max<std::size_t>(bytes, 16);
     check_room(size, label);
-    auto impl = do_allocate(size);
+    auto impl = do_allocate(guards_ ? size + BufferGuards::padding : size);
     impl->bytes = size;
     impl->label = label;
-    return Buffer(counted(std::move(impl), allocated_));
+    if (guards_) guards_->add(*impl);
+    return Buffer(counted(std::move(impl), allocated_, guards_));
 }
 
 Buffer Device::adopt(void* native, std::size_t bytes, std::string_view label) {
@@ -179,9 +195,20 @@ Trace Device::finish() {
                                    [](const Event& e) { return e.command != Command::host_work; });
     if (last != trace_.events.rend() && !last->blocked)
         record({.command = Command::wait, .stage = last->stage, .label = "finish", .blocked = true}, begin);
-    for (auto& event : trace_.events)
-        if (event.ticket != 0) std::tie(event.begin_ns, event.device_ns) = do_interval(event.ticket);
+    read_times();
     return std::exchange(trace_, {});
+}
+
+/// Adaptors count on each ticket being released once, in order.
+void Device::read_times() {
+    const auto guarding = guards_ ? guards_->take_tickets() : std::vector<std::uint64_t>{};
+    auto next = guarding.begin();
+    for (auto& event : trace_.events) {
+        if (event.ticket == 0) continue;
+        for (; next != guarding.end() && *next < event.ticket; ++next) do_interval(*next);
+        std::tie(event.begin_ns, event.device_ns) = do_interval(event.ticket);
+    }
+    for (; next != guarding.end(); ++next) do_interval(*next);
 }
 
 void Device::set_clocks(Clocks clocks) {

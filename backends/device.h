@@ -20,6 +20,8 @@
 
 namespace tandem {
 
+class BufferGuards;
+
 /// A device failed or cannot do what was asked: backend, call, code and what was being done, in one line.
 /// What the device was asked for before is no longer in flight, or can never be waited for.
 struct DeviceError : std::runtime_error {
@@ -167,7 +169,7 @@ enum class Clocks { off, on };
 /// as it was. Every function may throw DeviceError.
 class Device {
 public:
-    virtual ~Device() = default;
+    virtual ~Device();
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
 
@@ -263,8 +265,17 @@ public:
     std::size_t memory_limit() const { return memory_limit_; }
     static constexpr std::size_t no_memory_limit = std::numeric_limits<std::size_t>::max();
 
+    /// For tests. From now on each new buffer is followed by a byte pattern (buffer_guards.h), which
+    /// check_guards() verifies. Traces and bytes_allocated() do not change.
+    void guard_buffers();
+    /// Waits, and throws std::logic_error where something was written past the end of a guarded buffer,
+    /// whether it still lives or was freed since the last call. Does nothing without guard_buffers().
+    void check_guards() {
+        if (guards_) do_check_guards();
+    }
+
 protected:
-    Device() = default;
+    Device();
 
     /// For an adaptor that collects: it has handed commands over in so many calls.
     void count_submissions(std::uint64_t calls) { submissions_ += calls; }
@@ -272,6 +283,7 @@ protected:
     void host_waited() { waited_ = true; }
 
 private:
+    friend class BufferGuards;
     friend class HostWork;
     friend class StageScope;
 
@@ -306,6 +318,9 @@ private:
     virtual std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) = 0;
 
     void check_room(std::size_t bytes, std::string_view label) const;
+    void do_check_guards();
+    /// Fills in the device times of what was recorded and releases all tickets.
+    void read_times();
     /// Runs `work`, which returns a ticket, and records it where clocks are on.
     template<class Work>
     void submit(Event event, std::string_view label, const Work& work);
@@ -316,6 +331,7 @@ private:
     std::vector<KernelFacts> asked_;
     std::shared_ptr<std::size_t> allocated_ = std::make_shared<std::size_t>(0);
     std::size_t memory_limit_ = no_memory_limit;
+    std::shared_ptr<BufferGuards> guards_; ///< none unless asked for
     Trace trace_;
     std::optional<Stage> stage_; ///< none outside every StageScope
     Clocks clocks_ = Clocks::off;

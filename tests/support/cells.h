@@ -12,8 +12,19 @@
 
 namespace tandem::testing_support {
 
+/// All devices, with guarded buffers: a session's frame fails where a kernel has written past the end of one.
+/// The address sanitizer sees that by itself, and more of it.
+inline std::vector<BackendReport> guarded_backends() {
+    auto backends = discover();
+#if !defined(__SANITIZE_ADDRESS__)
+    for (const auto& backend : backends)
+        for (const auto& found : backend.devices) found->guard_buffers();
+#endif
+    return backends;
+}
+
 inline Device& device(std::string_view id) {
-    static const auto backends = discover();
+    static const auto backends = guarded_backends();
     for (const auto& backend : backends)
         for (const auto& candidate : backend.devices)
             if (candidate->info().id == id) return *candidate;

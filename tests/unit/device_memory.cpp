@@ -79,6 +79,69 @@ TEST(DeviceMemoryDeathTest, TheHostsIsAnErrorOfMemoryToo) {
 }
 #endif
 
+#if !defined(__SANITIZE_ADDRESS__) // which ends the program at such a write
+/// Copies 64 bytes to the begin of `to`, with a kernel that knows no capacity.
+void copy_eight_words(Device& device, const Buffer& to) {
+    const StageScope scope(device, Stage::traverse);
+    const auto from = device.allocate(64, "source");
+    device.clear(from, 64);
+    const std::array<Argument, 3> arguments{from, to, std::uint64_t{8}};
+    device.launch(test::compile(device, "copy_words"), {1, 1}, arguments);
+}
+
+std::string defect_of(Device& device) {
+    try {
+        device.check_guards();
+    } catch (const std::logic_error& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+TEST(DeviceGuards, FindWhatAKernelWritesPastAnEnd) {
+    for (const auto& backend : discover())
+        for (const auto& device : backend.devices) {
+            EXPECT_EQ(defect_of(*device), "none"); // nothing is guarded
+            device->guard_buffers();
+            const auto sufficient = device->allocate(64, "sufficient");
+            auto shorter = device->allocate(56, "shorter");
+            EXPECT_EQ(device->bytes_allocated(), 120u);
+            copy_eight_words(*device, sufficient);
+            EXPECT_EQ(defect_of(*device), "none");
+            const auto expected = device->info().id
+                                  + ": a kernel wrote past the end of buffer 'shorter': byte 0 behind its 56 "
+                                    "bytes has changed";
+            copy_eight_words(*device, shorter);
+            EXPECT_EQ(defect_of(*device), expected);
+            EXPECT_EQ(defect_of(*device), "none"); // each write is reported once
+            copy_eight_words(*device, shorter);
+            shorter = {}; // a buffer that grows is freed before the frame ends
+            EXPECT_EQ(defect_of(*device), expected);
+            EXPECT_EQ(device->bytes_allocated(), 64u);
+        }
+}
+
+TEST(DeviceGuards, StayOutOfTraces) {
+    for (const auto& backend : discover())
+        for (const auto& device : backend.devices) {
+            device->guard_buffers();
+            device->set_clocks(Clocks::on);
+            for (int frame = 0; frame < 2; ++frame) {
+                const auto words = device->allocate(64, "words");
+                copy_eight_words(*device, words);
+                device->check_guards();
+                const auto trace = device->finish();
+                ASSERT_EQ(trace.events.size(), 3u) << device->info().id; // clear, launch, and the wait
+                EXPECT_EQ(trace.events[0].label, "source");
+                EXPECT_EQ(trace.events[1].label, "copy_words");
+                EXPECT_GE(trace.events[0].device_ns, 0);
+                EXPECT_GE(trace.events[1].device_ns, 0);
+                EXPECT_GE(trace.events[1].begin_ns, trace.events[0].begin_ns);
+            }
+        }
+}
+#endif
+
 TEST(DeviceGroups, ThatAreTooLargeAreRefused) {
     for (auto* device : devices()) {
         const StageScope scope(*device, Stage::traverse);
