@@ -139,12 +139,9 @@ void BatchRun::make_contacts(HostPart& host, std::uint64_t pairs) {
         steps_.contacts->launch(*answer_, first, end, status);
         status.read();
         const auto made = status.counter(STATUS_CONTACTS);
-        const auto room = std::min(answer_->contact_ids.rows(), answer_->contact_values.rows());
+        const auto room = answer_->contacts.capacity();
         if (made > room) {
-            if (step == 1) {
-                answer_->contact_ids.grow(made);
-                answer_->contact_values.grow(made);
-            }
+            if (step == 1) answer_->contacts.grow(made);
             const auto share = static_cast<double>(room) / static_cast<double>(made);
             step = std::max<std::uint64_t>(
                 1, static_cast<std::uint64_t>(0.9 * share * static_cast<double>(end - first)));
@@ -184,7 +181,7 @@ void BatchRun::run_part(const Part& part) {
     try {
         walk(part);
         const auto pairs = steps_.status.counter(STATUS_PAIRS);
-        const auto room = answer_->pairs.rows();
+        const std::uint64_t room = answer_->pairs.capacity();
         if (steps_.output != Output::pairs || pairs <= room) {
             finish_part();
             return;
@@ -212,8 +209,8 @@ FrameResult BatchRun::run(std::uint64_t batches) {
         run_part(part);
     }
     steps_.compile(false);
-    fits_ = result_.count <= answer_->pairs.rows()
-            && (!steps_.makes_contacts() || result_.contacts <= answer_->contact_ids.rows());
+    fits_ = result_.count <= answer_->pairs.capacity()
+            && (!steps_.makes_contacts() || result_.contacts <= answer_->contacts.capacity());
     result_.batches = std::max<std::uint64_t>(result_.batches, 1);
     return std::move(result_);
 }

@@ -133,8 +133,8 @@ void Pipeline::compile(bool windowed) {
 }
 
 WalkTask Pipeline::task(const AnswerBuffers& answer, Interlude* interlude) {
-    return {body_pairs->room().buffer(),
-            body_pairs->room().capacity(),
+    return {body_pairs->rows().buffer(),
+            body_pairs->rows().capacity(),
             body_pairs->searched(),
             body_pairs->on_host(),
             answer,

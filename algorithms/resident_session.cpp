@@ -87,7 +87,7 @@ void ResidentSession::walk(const AnswerBuffers& answer) {
     const auto task = steps_.task(answer);
     if (task.most_pairs() == 0) return;
     steps_.steps.walker->launch(task);
-    if (steps_.makes_contacts()) steps_.contacts->launch(answer, 0, answer.pairs.rows(), steps_.status);
+    if (steps_.makes_contacts()) steps_.contacts->launch(answer, 0, answer.pairs.capacity(), steps_.status);
 }
 
 /// Makes room for what the status counts; true when the frame has to run again.
@@ -96,15 +96,13 @@ bool ResidentSession::grow(AnswerBuffers& answer) {
     bool again = steps_.steps.walker->grow(status);
     again |= steps_.body_pairs->grow(status);
     if (const auto found = status.counter(STATUS_PAIRS);
-        steps_.output == Output::pairs && found > answer.pairs.rows()) {
+        steps_.output == Output::pairs && found > answer.pairs.capacity()) {
         answer.pairs.grow(found);
         again = true;
     }
     if (const auto contacts = status.counter(STATUS_CONTACTS);
-        steps_.makes_contacts()
-        && contacts > std::min(answer.contact_ids.rows(), answer.contact_values.rows())) {
-        answer.contact_ids.grow(contacts);
-        answer.contact_values.grow(contacts);
+        steps_.makes_contacts() && contacts > answer.contacts.capacity()) {
+        answer.contacts.grow(contacts);
         again = true;
     }
     return again;

@@ -26,11 +26,13 @@ AnswerPool::AnswerPool(Device& device, PairLayout layout, std::size_t real_bytes
 
 std::shared_ptr<AnswerBuffers> AnswerPool::make(std::uint64_t pairs, std::uint64_t contacts) const {
     auto buffers = std::make_shared<AnswerBuffers>();
-    buffers->pairs = Room(device_, "candidate pairs", pair_bytes_, pairs);
-    if (!contacts_) return buffers;
-    buffers->contact_ids = Room(device_, "contact ids", id_bytes, contacts);
-    buffers->contact_values = Room(device_, "contact values", value_reals * real_bytes_, contacts);
+    buffers->pairs = GrowableBuffer(device_, "candidate pairs", pair_bytes_, pairs);
+    if (contacts_) buffers->contacts = GrowableBuffer(device_, contact_columns(), contacts);
     return buffers;
+}
+
+std::vector<Column> AnswerPool::contact_columns() const {
+    return {{"contact ids", id_bytes}, {"contact values", value_reals * real_bytes_}};
 }
 
 std::size_t AnswerPool::contact_bytes() const { return id_bytes + value_reals * real_bytes_; }
@@ -38,27 +40,26 @@ std::size_t AnswerPool::contact_bytes() const { return id_bytes + value_reals * 
 void AnswerPool::expect(std::uint64_t pairs, double contacts_a_pair) {
     constexpr double spare = 1.125;
     const auto expected = spare * static_cast<double>(pairs);
-    needed_pairs_ = static_cast<std::uint64_t>(std::min(expected, static_cast<double>(Room::most)));
+    needed_pairs_ = static_cast<std::uint64_t>(std::min(expected, static_cast<double>(GrowableBuffer::most)));
     needed_contacts_ = static_cast<std::uint64_t>(
-        std::min(contacts_ ? expected * contacts_a_pair : 0.0, static_cast<double>(Room::most)));
+        std::min(contacts_ ? expected * contacts_a_pair : 0.0, static_cast<double>(GrowableBuffer::most)));
 }
 
 /// As much room as any set has, or is expected to need. Where memory is short a walk may do with less.
 void AnswerPool::widen(AnswerBuffers& set) {
     for (const auto& other : sets_) {
-        needed_pairs_ = std::max(needed_pairs_, other->pairs.rows());
-        needed_contacts_ = std::max(needed_contacts_, other->contact_ids.rows());
+        needed_pairs_ = std::max<std::uint64_t>(needed_pairs_, other->pairs.capacity());
+        needed_contacts_ = std::max<std::uint64_t>(needed_contacts_, other->contacts.capacity());
     }
-    const auto widen_one = [&](Room& room, std::uint64_t rows, double share) {
-        if (rows > room.rows() && rows - room.rows() <= rows_within(device_, room.row_bytes(), share))
-            room.widen(rows);
+    const auto widen_one = [&](GrowableBuffer& buffer, std::uint64_t rows, double share) {
+        const std::uint64_t capacity = buffer.capacity();
+        if (rows > capacity && rows - capacity <= rows_within(device_, buffer.row_bytes(), share))
+            buffer.reserve(rows);
     };
     try {
         widen_one(set.pairs, std::exchange(needed_pairs_, 0), pair_share);
         const auto contacts = std::exchange(needed_contacts_, 0);
-        if (!contacts_) return;
-        widen_one(set.contact_ids, contacts, contact_share);
-        set.contact_values.widen(set.contact_ids.rows());
+        if (contacts_) widen_one(set.contacts, contacts, contact_share);
     } catch (const OutOfMemory&) {} // the room that there was is there again, or the walk says that it is not
 }
 
@@ -66,7 +67,7 @@ std::shared_ptr<AnswerBuffers> AnswerPool::take() {
     auto free = std::ranges::find_if(sets_, [](const auto& set) { return set.use_count() == 1; });
     if (free == sets_.end()) {
         const auto& last = *sets_.back();
-        sets_.push_back(make(last.pairs.rows(), last.contact_ids.rows()));
+        sets_.push_back(make(last.pairs.capacity(), last.contacts.capacity()));
         free = std::prev(sets_.end());
     }
     widen(**free);

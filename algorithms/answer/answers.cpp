@@ -8,6 +8,7 @@
 #include "scenes/parallel.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace tandem {
 
@@ -88,9 +89,14 @@ public:
         : tools_(std::move(tools)), buffers_(std::move(buffers)), pairs_(pairs), contacts_(contacts) {}
 
     PairBuffer pairs() const override {
-        return {buffers_->pairs.buffer(), tools_->layout(), pairs_, buffers_->pairs.rows()};
+        return {buffers_->pairs.buffer(), tools_->layout(), pairs_, buffers_->pairs.capacity()};
     }
     void expand(std::uint64_t first, std::uint64_t count, const Buffer& expanded) const override {
+        if (first > pairs_ || count > pairs_ - first || expanded.bytes() / sizeof(Pair) < count)
+            throw DeviceError(
+                fmt::format("{}: expand() was asked for pairs {} to {} of {}, 16 bytes each, in a "
+                            "buffer of {} bytes",
+                            tools_->device().info().id, first, first + count, pairs_, expanded.bytes()));
         tools_->expand(buffers_->pairs.buffer(), first, count, expanded);
     }
     Digest digest() const override { return tools_->digest(buffers_->pairs.buffer(), pairs_); }
@@ -107,11 +113,12 @@ public:
     void append_contacts(std::vector<ContactPoint>& contacts) const override {
         if (contacts_ == 0) return;
         auto& device = tools_->device();
-        const auto ids = rows_of<ContactIds>(device, buffers_->contact_ids.buffer(), contacts_);
-        std::vector<std::byte> values(contacts_ * buffers_->contact_values.row_bytes());
+        const auto& buffer = buffers_->contacts;
+        const auto ids = rows_of<ContactIds>(device, buffer.buffer(contact_ids), contacts_);
+        std::vector<std::byte> values(contacts_ * buffer.row_bytes(contact_values));
         {
             const StageScope scope(device, Stage::read);
-            device.download(buffers_->contact_values.buffer(), values);
+            device.download(buffer.buffer(contact_values), values);
         }
         std::vector<Pair> pairs;
         append_pairs(pairs);
@@ -163,8 +170,8 @@ Digest AnswerTools::contact_digest(const AnswerBuffers& buffers, std::uint64_t c
     const std::array<Argument, 7> arguments{buffers.pairs.buffer(),
                                             bodies_->owners(),
                                             bodies_->ids(),
-                                            buffers.contact_ids.buffer(),
-                                            buffers.contact_values.buffer(),
+                                            buffers.contacts.buffer(contact_ids),
+                                            buffers.contacts.buffer(contact_values),
                                             static_cast<std::uint32_t>(contacts),
                                             sums_};
     device().launch(contacts_kernel_, {shape_.groups, shape_.group_size}, arguments);
@@ -251,12 +258,12 @@ void HostPart::expand(std::uint64_t, std::uint64_t, const Buffer&) const {
 
 void HostPart::add_contacts(const AnswerBuffers& buffers, std::uint64_t count) {
     auto& device = tools_->device();
-    const auto ids = rows_of<ContactIds>(device, buffers.contact_ids.buffer(), count);
+    const auto ids = rows_of<ContactIds>(device, buffers.contacts.buffer(contact_ids), count);
     ids_.insert(ids_.end(), ids.begin(), ids.end());
     const auto first = values_.size();
-    values_.resize(first + count * buffers.contact_values.row_bytes());
+    values_.resize(first + count * buffers.contacts.row_bytes(contact_values));
     const StageScope scope(device, Stage::read);
-    device.download(buffers.contact_values.buffer(), std::span(values_).subspan(first));
+    device.download(buffers.contacts.buffer(contact_values), std::span(values_).subspan(first));
 }
 
 /// A part may take most of the host's memory: it is numbered anew a block at a time.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/answer/frame_result.h"
-#include "algorithms/answer/room.h"
+#include "algorithms/answer/growable_buffer.h"
 #include "algorithms/bodies/bodies.h"
 #include "algorithms/traversal.h"
 
@@ -10,9 +10,14 @@ namespace tandem {
 
 /// The buffers that one answer lies in.
 struct AnswerBuffers {
-    Room pairs;          ///< rows of pairs.clh, in the bodies' pair_layout()
-    Room contact_ids;    ///< 2 words: pair, feature
-    Room contact_values; ///< 8 reals: point, normal, depth, padding
+    GrowableBuffer pairs;    ///< rows of pairs.clh, in the bodies' pair_layout()
+    GrowableBuffer contacts; ///< columns of ContactColumn; none where there are to be no contacts
+};
+
+/// The columns of contacts (contact_rows.clh).
+enum ContactColumn : std::size_t {
+    contact_ids,   ///< 2 words: pair, feature
+    contact_values ///< 8 reals: point, normal, depth, padding
 };
 
 /// PAIR_WORDS of pairs.clh.
@@ -108,7 +113,8 @@ private:
     /// Throws OutOfMemory.
     std::shared_ptr<AnswerBuffers> make(std::uint64_t pairs, std::uint64_t contacts) const;
     void widen(AnswerBuffers& set);
-    /// Of one contact in both of its buffers.
+    std::vector<Column> contact_columns() const;
+    /// Of one contact, in all columns.
     std::size_t contact_bytes() const;
 
     Device& device_;

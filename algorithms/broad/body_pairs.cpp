@@ -19,7 +19,7 @@ BodyPairs::BodyPairs(const Ground& ground, const Hierarchy& hierarchy, Status::W
       scene_(ground.scene),
       geometry_(ground.bodies.geometry()),
       writes_(writes),
-      room_(ground.device, "body pairs", sizeof(BodyPair), 0) {
+      rows_(ground.device, "body pairs", sizeof(BodyPair), 0) {
     const auto who = ground.settings[parameters::broad];
     if (who == Broad::device)
         make_stage();
@@ -31,19 +31,19 @@ void BodyPairs::make_stage() {
     if (stage_) return;
     stage_ = std::make_unique<BroadStage>(bodies_, hierarchy_, shape_);
     const auto rows = std::clamp<std::uint64_t>(stage_->most_pairs(), 1, first_capacity_);
-    if (rows > room_.rows()) room_ = Room(device_, "body pairs", sizeof(BodyPair), rows);
+    if (rows > rows_.capacity()) rows_ = GrowableBuffer(device_, "body pairs", sizeof(BodyPair), rows);
 }
 
 void BodyPairs::upload(std::span<const BodyPair> pairs) {
     on_host_ = pairs;
     searches_ = false;
-    if (pairs.size() > room_.rows()) room_.grow(pairs.size());
+    if (pairs.size() > rows_.capacity()) rows_.grow(pairs.size());
     const StageScope scope(device_, Stage::write);
-    device_.upload(room_.buffer(), std::as_bytes(pairs), 0, writes_ == Status::Writes::blocking);
+    device_.upload(rows_.buffer(), std::as_bytes(pairs), 0, writes_ == Status::Writes::blocking);
 }
 
 void BodyPairs::upload_given(std::span<const BodyPair> given) {
-    if (given.size() > Room::most)
+    if (given.size() > GrowableBuffer::most)
         throw InputError(
             fmt::format("run() was given {} body pairs; kernels number at most 2^32 - 1", given.size()));
     upload(given);
@@ -96,20 +96,20 @@ bool BodyPairs::has(BodyPair pair) const {
 void BodyPairs::begin_part(std::span<const BodyPair> part) { upload(part); }
 
 void BodyPairs::launch(const Status& status) {
-    if (searches_) stage_->launch(room_.buffer(), room_.capacity(), status.buffer());
+    if (searches_) stage_->launch(rows_.buffer(), rows_.capacity(), status.buffer());
 }
 
 bool BodyPairs::grow(const Status& status) {
     const auto found = status.counter(STATUS_BODY_PAIRS);
-    if (!searches_ || found <= room_.rows()) return false;
-    room_.grow(found);
+    if (!searches_ || found <= rows_.capacity()) return false;
+    rows_.grow(found);
     return true;
 }
 
 std::vector<BodyPair> BodyPairs::list(const Frame* frame, const Status& status) const {
     if (!searches_) return {on_host_.begin(), on_host_.end()};
     const auto found = status.counter(STATUS_BODY_PAIRS);
-    if (found > room_.rows()) {
+    if (found > rows_.capacity()) {
         if (frame == nullptr)
             throw OutOfMemory(fmt::format("{}: there is no memory left for {} body pairs; raise --memory, or "
                                           "take fewer bodies",
@@ -122,7 +122,7 @@ std::vector<BodyPair> BodyPairs::list(const Frame* frame, const Status& status) 
     std::vector<BodyPair> pairs(found);
     {
         const StageScope scope(device_, Stage::read);
-        device_.download(room_.buffer(), std::as_writable_bytes(std::span(pairs)));
+        device_.download(rows_.buffer(), std::as_writable_bytes(std::span(pairs)));
     }
     std::sort(pairs.begin(), pairs.end());
     return pairs;

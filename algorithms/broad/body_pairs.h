@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/answer/room.h"
+#include "algorithms/answer/growable_buffer.h"
 #include "algorithms/answer/status.h"
 #include "algorithms/broad/broad.h"
 #include "algorithms/broad/broad_stage.h"
@@ -50,7 +50,7 @@ public:
     /// The pairs at hand where the host knows them.
     std::span<const BodyPair> on_host() const { return on_host_; }
     /// Rows of two words, body a and body b, a < b.
-    const Room& room() const { return room_; }
+    const GrowableBuffer& rows() const { return rows_; }
 
 private:
     void upload(std::span<const BodyPair> pairs);
@@ -73,7 +73,7 @@ private:
     std::vector<Role> roles_;           ///< by body, in a share; none without one
     std::vector<BodyPair> found_;       ///< by the host
     std::span<const BodyPair> on_host_; ///< of this launch, where the host knows them
-    Room room_;
+    GrowableBuffer rows_;
 };
 
 } // namespace tandem

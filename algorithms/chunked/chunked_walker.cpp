@@ -29,8 +29,9 @@ ChunkedWalker::ChunkedWalker(const ChunkTrees& trees, const Ground& ground)
     const bool hands = top_level_ > 0 || ground.settings[parameters::residency] == Residency::published;
     const auto seeds =
         first_rows(ground.device, ground.settings[chunked_parameters::seed_capacity], seed_bytes, 1.0 / 16);
-    for (auto& room : handed_) room = Room(ground.device, "seeds", seed_bytes, hands ? seeds : 1);
-    starts_ = Room(ground.device, "seed starts", 8, top_level_ + 1);
+    const Column column{"seeds", seed_bytes};
+    handed_ = GrowableBuffer(ground.device, {column, column}, hands ? seeds : 1);
+    starts_ = GrowableBuffer(ground.device, "seed starts", 8, top_level_ + 1);
 }
 
 void ChunkedWalker::do_compile(const WalkBuild& build) {
@@ -71,21 +72,17 @@ void ChunkedWalker::find_top_level() {
             top_level_ = std::max(top_level_, seed_level(a, b, most_pairs));
 }
 
-void ChunkedWalker::reserve_handed(std::uint64_t seeds) {
-    for (auto& room : handed_) room.grow(seeds);
-}
-
 void ChunkedWalker::reserve_starts(std::uint64_t pairs) {
     const auto rows = (pairs + 1) * (top_level_ + 1);
-    if (rows > starts_.rows()) starts_.grow(rows);
+    if (rows > starts_.capacity()) starts_.grow(rows);
 }
 
 bool ChunkedWalker::do_grow(const Status& status) {
     std::uint64_t most = 0;
     for (std::uint32_t level = 0; level < top_level_; ++level)
         most = std::max(most, status.counter(STATUS_LEVELS + 2 * level));
-    if (most <= handed_[0].rows() && most <= handed_[1].rows()) return false;
-    reserve_handed(most);
+    if (most <= handed_.capacity()) return false;
+    handed_.grow(most);
     return true;
 }
 
@@ -119,10 +116,10 @@ void ChunkedWalker::traverse(const WalkTask& task, std::uint32_t level, std::uin
                                              pair_room,
                                              level,
                                              starts_.buffer(),
-                                             handed(level).buffer(),
-                                             handed(level).capacity(),
-                                             handed(level + 1).buffer(),
-                                             handed(level + 1).capacity(),
+                                             handed(level),
+                                             handed_.capacity(),
+                                             handed(level + 1),
+                                             handed_.capacity(),
                                              task.answer.pairs.buffer(),
                                              task.answer.pairs.capacity(),
                                              task.status.buffer()};

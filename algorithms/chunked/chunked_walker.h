@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/answer/room.h"
+#include "algorithms/answer/growable_buffer.h"
 #include "algorithms/chunked/chunked_parameters.h"
 #include "algorithms/hierarchy/chunk_trees.h"
 #include "algorithms/steps.h"
@@ -20,17 +20,19 @@ protected:
     std::uint32_t seed_level(std::uint32_t a, std::uint32_t b, std::uint64_t pair_count) const;
     /// Enqueues the walks of a level: its own seeds, as the starts have them, and those handed down to it.
     void traverse(const WalkTask& task, std::uint32_t level, std::uint32_t pair_room);
-    /// Room for the starts of so many body pairs; what was there is lost.
+    /// Makes starts for so many body pairs; what was there is lost.
     void reserve_starts(std::uint64_t pairs);
 
     const ChunkTrees& trees() const { return trees_; }
     Device& device() const { return trees_.bodies().device(); }
     std::uint32_t top_level() const { return top_level_; }
-    const Room& starts() const { return starts_; }
+    const GrowableBuffer& starts() const { return starts_; }
     /// Seeds handed down to a level, and from outside; rows of SEED_WORDS words.
-    const Room& handed(std::uint32_t level) const { return handed_[level % 2]; }
-    /// Room for so many in both; what was there is lost. Throws OutOfMemory.
-    void reserve_handed(std::uint64_t seeds);
+    const Buffer& handed(std::uint32_t level) const { return handed_.buffer(level % 2); }
+    /// How many a level can be handed.
+    std::uint32_t handed_capacity() const { return handed_.capacity(); }
+    /// Makes that larger; what was there is lost. Throws OutOfMemory.
+    void grow_handed(std::uint64_t seeds) { handed_.grow(seeds); }
 
 private:
     void do_compile(const WalkBuild& build) override;
@@ -50,8 +52,8 @@ private:
     bool larger_;
     bool root_test_;
     std::uint32_t top_level_ = 0; ///< the highest level any pair of this scene's meshes is seeded at
-    std::array<Room, 2> handed_;  ///< seeds handed down to even and odd levels
-    Room starts_;
+    GrowableBuffer handed_;       ///< seeds handed down to even and odd levels, a column each
+    GrowableBuffer starts_;
     Kernel count_kernel_, scan_kernel_, traverse_kernel_;
 };
 

@@ -51,22 +51,15 @@ ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings
         at_once_ = device.compile(last, "generate_contacts", defines);
     }
     nothing_ = device.allocate(4, "nothing");
+    waiting_ = GrowableBuffer(device, {{"pairs to be tested", 4}, {"pairs that meet", 4}}, 0);
 }
 
-/// Room in the lists for so many pairs, or for fewer where memory is short: there are more launches then.
+/// Makes lists for so many pairs, or for fewer where memory is short: there are more launches then.
 void ContactStage::reserve(std::uint64_t pairs) {
-    pairs = std::min(pairs, most_waiting);
-    if (pairs <= room_) return;
-    room_ = 0;
-    open_ = meeting_ = {};
-    auto& device = bodies_.device();
-    for (auto rows = pairs; room_ == 0; rows /= 2) {
+    for (auto rows = std::min(pairs, most_waiting); rows > waiting_.capacity(); rows /= 2) {
         try {
-            open_ = device.allocate(rows * 4, "pairs to be tested");
-            meeting_ = device.allocate(rows * 4, "pairs that meet");
-            room_ = rows;
+            waiting_.reserve(rows);
         } catch (const OutOfMemory&) {
-            open_ = {};
             if (rows <= least_waiting) throw;
         }
     }
@@ -86,11 +79,12 @@ void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first
                                            bodies_.vertices(),
                                            bodies_.boundary(),
                                            verdicts(),
-                                           open_,
-                                           meeting_,
+                                           waiting_.buffer(LIST_OPEN),
+                                           waiting_.buffer(LIST_MEETING),
                                            status.buffer()};
     device.launch(certify_, grid, certify);
-    if (decides_open()) decision_->launch_open(answer.pairs.buffer(), first, end, open_, status);
+    if (decides_open())
+        decision_->launch_open(answer.pairs.buffer(), first, end, waiting_.buffer(LIST_OPEN), status);
     const std::array<Argument, 11> separate{answer.pairs.buffer(),
                                             first,
                                             bodies_.owners(),
@@ -99,8 +93,8 @@ void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first
                                             bodies_.vertices(),
                                             bodies_.boundary(),
                                             verdicts(),
-                                            open_,
-                                            meeting_,
+                                            waiting_.buffer(LIST_OPEN),
+                                            waiting_.buffer(LIST_MEETING),
                                             status.buffer()};
     device.launch(separate_, grid, separate);
 }
@@ -117,10 +111,11 @@ void ContactStage::generate(const Kernel& kernel, LaunchShape shape, const Answe
                                              bodies_.vertices(),
                                              bodies_.boundary(),
                                              verdicts(),
-                                             meeting_ ? meeting_ : nothing_,
-                                             answer.contact_ids.buffer(),
-                                             answer.contact_values.buffer(),
-                                             answer.contact_ids.capacity(),
+                                             waiting_.capacity() > 0 ? waiting_.buffer(LIST_MEETING)
+                                                                     : nothing_,
+                                             answer.contacts.buffer(contact_ids),
+                                             answer.contacts.buffer(contact_values),
+                                             answer.contacts.capacity(),
                                              status.buffer()};
     bodies_.device().launch(kernel, {shape.groups, shape.group_size}, arguments);
 }
@@ -145,10 +140,10 @@ void ContactStage::launch(const AnswerBuffers& answer, std::uint64_t first, std:
     }
     reserve(end - first);
     bool waiting = status.counter(STATUS_WAITING) != 0; // those of a launch before
-    for (auto from = first; from < end; from += room_) {
+    for (auto from = first; from < end; from += waiting_.capacity()) {
         if (waiting) device.clear(status.buffer(), STATUS_WAITING_WORDS * 4, STATUS_WAITING * 4);
         const auto begin = static_cast<std::uint32_t>(from);
-        const auto to = static_cast<std::uint32_t>(std::min(end, from + room_));
+        const auto to = static_cast<std::uint32_t>(std::min(end, from + waiting_.capacity()));
         find_meeting(answer, begin, to, status);
         generate(generate_, shape_, answer, begin, to, status);
         waiting = true;

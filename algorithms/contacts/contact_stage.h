@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/answer/answers.h"
+#include "algorithms/answer/growable_buffer.h"
 #include "algorithms/answer/status.h"
 #include "algorithms/contacts/decision_stage.h"
 #include "algorithms/expected_groups.h"
@@ -46,9 +47,8 @@ private:
     Kernel certify_, separate_, generate_; ///< none for Launches::at_once
     Kernel at_once_;                       ///< none where it is never the better one
     std::optional<std::uint64_t> expected_;
-    std::uint64_t room_ = 0;                  ///< pairs that each of the lists holds
-    Buffer open_, meeting_;                   ///< lists of waiting.clh
-    Buffer nothing_;                          ///< for a kernel that does not look at it
+    GrowableBuffer waiting_; ///< lists of waiting.clh: a column each, LIST_OPEN, LIST_MEETING
+    Buffer nothing_;         ///< for a kernel that does not look at it
     std::unique_ptr<DecisionStage> decision_; ///< none for decision=fp32, which certify and separate do
 };
 

@@ -37,6 +37,9 @@ DecisionStage::DecisionStage(const Bodies& bodies, DecisionPrecision decision, L
     auto defines = row_defines(bodies.geometry(), shape.group_size);
     define(defines, parameters::pair_layout, bodies.pair_layout());
     auto& device = bodies.device();
+    std::vector<Column> columns{{"verdicts", 1}, {"pairs undecided in double", 4}};
+    if (takes_certificates()) columns.push_back({"pairs undecided by the filter", 4});
+    decided_ = GrowableBuffer(device, std::move(columns), 0);
     if (takes_certificates()) {
         const auto& filter = kernel_source("algorithms/contacts/filter.cl");
         filter_ = device.compile(filter, "filter_pairs", defines);
@@ -52,23 +55,14 @@ DecisionStage::DecisionStage(const Bodies& bodies, DecisionPrecision decision, L
     settle_ = device.compile(source, "settle_pairs", defines);
 }
 
-void DecisionStage::reserve(std::uint64_t pairs) {
-    if (pairs <= room_) return;
-    room_ = 0; // until all of them are there
-    verdicts_ = undecided_by_filter_ = undecided_by_double_ = {};
-    auto& device = bodies_.device();
-    verdicts_ = device.allocate(pairs, "verdicts");
-    undecided_by_filter_ = device.allocate(decision_ == DecisionPrecision::fp64 ? 4 : pairs * 4,
-                                           "pairs undecided by the filter");
-    undecided_by_double_ = device.allocate(pairs * 4, "pairs undecided in double");
-    room_ = pairs;
-}
+void DecisionStage::reserve(std::uint64_t pairs) { decided_.reserve(pairs); }
 
 void DecisionStage::launch(const Buffer& found, std::uint64_t first, std::uint64_t end,
                            const Status& status) {
     const StageScope scope(bodies_.device(), Stage::contact);
     // Where the kernel reads no list any buffer will do.
-    if (takes_certificates()) filter(filter_, found, first, end, undecided_by_double_, status);
+    if (takes_certificates())
+        filter(filter_, found, first, end, decided_.buffer(undecided_by_double), status);
     recheck(found, first, end, status);
 }
 
@@ -81,12 +75,14 @@ void DecisionStage::launch_open(const Buffer& found, std::uint64_t first, std::u
 
 void DecisionStage::filter(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
                            const Buffer& open, const Status& status) {
-    decide(kernel, found, first, end, {open, verdicts_, undecided_by_filter_}, status);
+    decide(kernel, found, first, end, {open, decided_.buffer(verdict), decided_.buffer(undecided_by_filter)},
+           status);
 }
 
 void DecisionStage::recheck(const Buffer& found, std::uint64_t first, std::uint64_t end,
                             const Status& status) {
-    decide(recheck_, found, first, end, {verdicts_, undecided_by_filter_, undecided_by_double_}, status);
+    decide(recheck_, found, first, end,
+           {decided_.buffer(verdict), filtered(), decided_.buffer(undecided_by_double)}, status);
     if (decision_ == DecisionPrecision::exact) settle(found, status);
 }
 
@@ -110,12 +106,12 @@ void DecisionStage::decide(const Kernel& kernel, const Buffer& found, std::uint6
 /// Those that are new since the status was last read or written: the others have been settled.
 void DecisionStage::settle(const Buffer& found, const Status& status) {
     auto& device = bodies_.device();
-    std::uint32_t undecided_by_double = 0; // at most one for each of the pairs, whose numbers are words
-    device.download(status.buffer(), std::as_writable_bytes(std::span(&undecided_by_double, 1)),
+    std::uint32_t end = 0; // at most one for each of the pairs, whose numbers are words
+    device.download(status.buffer(), std::as_writable_bytes(std::span(&end, 1)),
                     STATUS_UNDECIDED_BY_DOUBLE * 4);
     const auto first = static_cast<std::uint32_t>(status.counter(STATUS_UNDECIDED_BY_DOUBLE));
-    if (undecided_by_double <= first) return;
-    const std::uint32_t count = undecided_by_double - first;
+    if (end <= first) return;
+    const std::uint32_t count = end - first;
     const auto real = real_bytes(bodies_.geometry());
     corners_ = {};
     corners_ = device.allocate(count * corner_reals * real, "corners of undecided pairs");
@@ -125,7 +121,7 @@ void DecisionStage::settle(const Buffer& found, const Status& status) {
                                          bodies_.poses(),
                                          bodies_.tetrahedra(),
                                          bodies_.vertices(),
-                                         undecided_by_double_,
+                                         decided_.buffer(undecided_by_double),
                                          first,
                                          count,
                                          corners_};
@@ -140,7 +136,8 @@ void DecisionStage::settle(const Buffer& found, const Status& status) {
     answers_ = {};
     answers_ = device.allocate(count, "exact verdicts");
     device.upload(answers_, bytes_of(verdicts), 0, true);
-    const std::array<Argument, 5> settle{undecided_by_double_, first, count, answers_, verdicts_};
+    const std::array<Argument, 5> settle{decided_.buffer(undecided_by_double), first, count, answers_,
+                                         decided_.buffer(verdict)};
     device.launch(settle_, grid, settle);
 }
 

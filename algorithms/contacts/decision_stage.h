@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/contacts/contact_settings.h"
+#include "algorithms/answer/growable_buffer.h"
 #include "algorithms/answer/status.h"
 #include "algorithms/bodies/bodies.h"
 #include "algorithms/traversal.h"
@@ -27,7 +28,8 @@ public:
     void launch_open(const Buffer& found, std::uint64_t first, std::uint64_t end, const Buffer& open,
                      const Status& status);
 
-    const Buffer& verdicts() const { return verdicts_; } ///< a byte a pair, VERDICT_* of candidates.clh
+    /// A byte a pair, VERDICT_* of candidates.clh.
+    const Buffer& verdicts() const { return decided_.buffer(verdict); }
 
 private:
     void filter(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
@@ -40,8 +42,13 @@ private:
     const Bodies& bodies_;
     DecisionPrecision decision_;
     LaunchShape shape_;
-    std::uint64_t room_ = 0;
-    Buffer verdicts_, undecided_by_filter_, undecided_by_double_;
+    /// Columns of what is known of pairs: verdicts, and numbers of pairs that are undecided.
+    enum DecisionColumn : std::size_t { verdict, undecided_by_double, undecided_by_filter };
+    /// The last column, or any buffer where no kernel reads that.
+    const Buffer& filtered() const {
+        return decided_.buffer(takes_certificates() ? undecided_by_filter : undecided_by_double);
+    }
+    GrowableBuffer decided_;   ///< by pair
     Buffer corners_, answers_; ///< of the pairs the host decides; they live until their commands are done
     Kernel filter_, filter_open_, recheck_, gather_, settle_;
 };

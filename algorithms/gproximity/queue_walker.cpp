@@ -11,6 +11,7 @@ namespace tandem {
 namespace {
 
 constexpr std::uint64_t item_words = 3;
+constexpr std::uint64_t least_capacity = 2; ///< of a queue, one item of which stays free
 constexpr auto too_many_items =
     "gproximity: 2^31 node pairs or more wait in its queues, past what it counts; set batch, or take chunked";
 
@@ -37,7 +38,8 @@ QueueWalker::QueueWalker(const ChunkTrees& trees, const Ground& ground)
     totals_ = device().allocate(8, "balance totals");
     idle_ = device().allocate(4, "idle groups");
     const auto room = first_rows(device(), sizes_.queue_capacity, sizes_.groups * item_words * 4, 0.25);
-    reserve_queues(static_cast<std::uint32_t>(room));
+    const Column queues{"queues", sizes_.groups * item_words * 4};
+    queues_ = GrowableBuffer(device(), {queues, queues}, std::max(room, least_capacity));
 }
 
 void QueueWalker::do_compile(const WalkBuild& build) {
@@ -55,32 +57,19 @@ void QueueWalker::do_compile(const WalkBuild& build) {
 }
 
 std::uint64_t QueueWalker::queue_bytes() const {
-    return std::uint64_t{sizes_.groups} * sizes_.queue_capacity * item_words * 4;
+    return std::uint64_t{sizes_.groups} * queue_capacity() * item_words * 4;
 }
 
-/// Items that may wait in all queues together.
 std::uint64_t QueueWalker::queue_room() const {
-    return std::uint64_t{sizes_.groups} * (sizes_.queue_capacity - 1);
-}
-
-void QueueWalker::reserve_queues(std::uint32_t capacity) {
-    for (auto& buffer : items_) buffer = {};
-    sizes_.queue_capacity = std::max(capacity, 2u);
-    for (auto& buffer : items_) buffer = device().allocate(queue_bytes(), "queues");
+    return queue_capacity() == 0 ? 0 : std::uint64_t{sizes_.groups} * (queue_capacity() - 1);
 }
 
 bool QueueWalker::do_grow(const Status& status) {
     if (status.counter(STATUS_BODY_PAIRS) > queue_room()) short_of_queue_ = true;
     if (!short_of_queue_) return false;
     short_of_queue_ = false;
-    if (sizes_.queue_capacity > MOST_QUEUE_ITEMS / 2) throw DeviceError(too_many_items);
-    const auto before = sizes_.queue_capacity;
-    try {
-        reserve_queues(2 * before);
-    } catch (const OutOfMemory&) {
-        reserve_queues(before); // which has just been given back
-        throw;
-    }
+    if (queue_capacity() > MOST_QUEUE_ITEMS / 2) throw DeviceError(too_many_items);
+    queues_.reserve(std::max(2 * std::uint64_t{queue_capacity()}, least_capacity));
     return true;
 }
 
@@ -99,15 +88,15 @@ void QueueWalker::do_report(const Status& status, std::map<std::string_view, std
 /// Spreads the roots of body pairs over the queues; the pairs themselves are on the device.
 void QueueWalker::seed(const WalkTask& task, std::uint32_t first, std::uint32_t most) {
     const StageScope scope(device(), Stage::seed);
-    const std::array<Argument, 7> arguments{items_[0], counts_, sizes_.groups,       sizes_.queue_capacity,
-                                            first,     most,    task.status.buffer()};
+    const std::array<Argument, 7> arguments{items(), counts_, sizes_.groups,       queue_capacity(),
+                                            first,   most,    task.status.buffer()};
     device().launch(scatter_, {shape_.groups, shape_.group_size}, arguments);
 }
 
 /// What the release did: a fresh host array as large as all queues, one root at the start of each, uploaded
 /// whole.
 void QueueWalker::upload_whole_queues(std::uint32_t first, std::uint32_t count) {
-    const auto words = std::uint64_t{sizes_.groups} * sizes_.queue_capacity * item_words;
+    const auto words = std::uint64_t{sizes_.groups} * queue_capacity() * item_words;
     std::unique_ptr<std::uint32_t[]> items;
     std::vector<std::uint32_t> counts(sizes_.groups, 0);
     {
@@ -116,14 +105,13 @@ void QueueWalker::upload_whole_queues(std::uint32_t first, std::uint32_t count) 
         for (std::uint32_t i = 0; i < count; ++i) {
             // A batch may be larger than the groups: roots then lie one above the other.
             const auto queue = i % sizes_.groups;
-            auto* item =
-                &items[(std::uint64_t{queue} * sizes_.queue_capacity + counts[queue]++) * item_words];
+            auto* item = &items[(std::uint64_t{queue} * queue_capacity() + counts[queue]++) * item_words];
             item[0] = first + i;
             item[1] = item[2] = 1;
         }
     }
     const StageScope scope(device(), Stage::write);
-    device().upload(items_[0], std::as_bytes(std::span(items.get(), words)), 0, true);
+    device().upload(this->items(), std::as_bytes(std::span(items.get(), words)), 0, true);
     device().upload(counts_, bytes_of(counts), 0, true);
 }
 
@@ -136,9 +124,9 @@ void QueueWalker::traverse(const WalkTask& task) {
                                              bodies.row_table(),
                                              bodies.ids(),
                                              task.body_pairs,
-                                             items_[0],
+                                             items(),
                                              counts_,
-                                             sizes_.queue_capacity,
+                                             queue_capacity(),
                                              idle_,
                                              task.answer.pairs.buffer(),
                                              task.answer.pairs.capacity(),
@@ -154,14 +142,13 @@ void QueueWalker::traverse(const WalkTask& task) {
 /// The thresholds are those of both originals: any queue below its initial load, or nearly full.
 void QueueWalker::plan_and_move() {
     const auto margin = std::uint64_t{4} * shape_.group_size + sizes_.local_queue;
-    const auto high =
-        static_cast<std::uint32_t>(sizes_.queue_capacity > margin ? sizes_.queue_capacity - margin : 0);
+    const auto high = static_cast<std::uint32_t>(queue_capacity() > margin ? queue_capacity() - margin : 0);
     const auto low = 3 * shape_.group_size;
     const StageScope scope(device(), Stage::balance);
     const std::array<Argument, 6> plan{counts_, sizes_.groups, low, high, starts_, totals_};
     device().launch(plan_, {1, sizes_.balance_group_size}, plan);
-    const std::array<Argument, 7> move{items_[0], items_[1], counts_, sizes_.groups, sizes_.queue_capacity,
-                                       starts_,   totals_};
+    const std::array<Argument, 7> move{items(),          other_items(), counts_, sizes_.groups,
+                                       queue_capacity(), starts_,       totals_};
     if (sizes_.balance == Balance::serial)
         device().launch(move_, {1, sizes_.balance_group_size}, move);
     else
@@ -191,7 +178,7 @@ bool QueueWalker::walk_batch(const WalkTask& task, std::uint32_t first, std::uin
         if (left >= MOST_QUEUE_ITEMS) throw DeviceError(too_many_items);
         if (left == 0) return true;
         if (moved != 0) {
-            std::swap(items_[0], items_[1]);
+            side_ = 1 - side_;
             ++balances_;
         }
         if (left > queue_room()) return false;

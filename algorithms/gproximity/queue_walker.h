@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/answer/growable_buffer.h"
 #include "algorithms/gproximity/gproximity_settings.h"
 #include "algorithms/hierarchy/chunk_trees.h"
 #include "algorithms/steps.h"
@@ -31,8 +32,13 @@ private:
 
     /// Bytes of one of the two arrays of queues.
     std::uint64_t queue_bytes() const;
+    /// Items that each queue holds.
+    std::uint32_t queue_capacity() const { return queues_.capacity(); }
+    /// Items that may wait in all queues together.
     std::uint64_t queue_room() const;
-    void reserve_queues(std::uint32_t capacity);
+    /// The queues that are walked, and those that balancing moves their items to.
+    const Buffer& items() const { return queues_.buffer(side_); }
+    const Buffer& other_items() const { return queues_.buffer(1 - side_); }
     void seed(const WalkTask& task, std::uint32_t first, std::uint32_t most);
     void upload_whole_queues(std::uint32_t first, std::uint32_t count);
     bool walk_batch(const WalkTask& task, std::uint32_t first, std::uint32_t count);
@@ -45,7 +51,8 @@ private:
     QueueSizes sizes_;
     bool short_of_queue_ = false;
     std::uint64_t balances_ = 0;
-    std::array<Buffer, 2> items_; ///< ping and pong
+    GrowableBuffer queues_; ///< two arrays of queues, a column each; row i: item i of every queue
+    std::size_t side_ = 0;  ///< the column of items()
     Buffer counts_, starts_, totals_, idle_;
     Kernel scatter_, traverse_, plan_, move_;
 };

@@ -39,13 +39,13 @@ void PublishedChunkedWalker::do_launch(const WalkTask& task) {
             seeds = seeds_of_level(task.on_host, level);
         }
         const auto total = from_above + seeds.size() / seed_words;
-        if (total > handed(level).rows()) {
+        if (total > handed_capacity()) {
             wanted_ = total;
             return;
         }
         {
             const StageScope scope(device(), Stage::write);
-            device().upload(handed(level).buffer(), bytes_of(seeds), from_above * seed_words * 4, true);
+            device().upload(handed(level), bytes_of(seeds), from_above * seed_words * 4, true);
         }
         task.status.set(STATUS_LEVELS + 2 * level, total);
         traverse(task, level, 0);
@@ -58,7 +58,7 @@ void PublishedChunkedWalker::do_launch(const WalkTask& task) {
 
 bool PublishedChunkedWalker::do_grow(const Status&) {
     if (wanted_ == 0) return false;
-    reserve_handed(wanted_);
+    grow_handed(wanted_);
     return true;
 }
 

@@ -30,23 +30,24 @@ private:
 void ContactsBetween::part_walked() {
     steps_.status.read();
     const auto found = steps_.status.counter(STATUS_PAIRS);
-    if (found > pairs_ && steps_.makes_contacts()) {
-        steps_.contacts->launch(answer_, pairs_, answer_.pairs.rows(), steps_.status);
+    const std::uint64_t written = std::min<std::uint64_t>(found, answer_.pairs.capacity());
+    if (written > pairs_ && steps_.makes_contacts()) {
+        steps_.contacts->launch(answer_, pairs_, answer_.pairs.capacity(), steps_.status);
         steps_.status.read();
-        read_new(std::min(steps_.status.counter(STATUS_CONTACTS), answer_.contact_ids.rows()));
+        read_new(
+            std::min<std::uint64_t>(steps_.status.counter(STATUS_CONTACTS), answer_.contacts.capacity()));
     }
-    pairs_ = found;
+    pairs_ = written;
 }
 
 void ContactsBetween::read_new(std::uint64_t contacts) {
     if (contacts <= contacts_) return;
     const StageScope scope(steps_.device, Stage::read);
-    const auto fetch = [&](const Room& from) {
-        std::vector<std::byte> bytes((contacts - contacts_) * from.row_bytes());
-        steps_.device.download(from.buffer(), bytes, contacts_ * from.row_bytes());
-    };
-    fetch(answer_.contact_values);
-    fetch(answer_.contact_ids);
+    for (const auto column : {contact_values, contact_ids}) {
+        const auto row_bytes = answer_.contacts.row_bytes(column);
+        std::vector<std::byte> bytes((contacts - contacts_) * row_bytes);
+        steps_.device.download(answer_.contacts.buffer(column), bytes, contacts_ * row_bytes);
+    }
     contacts_ = contacts;
 }
 
@@ -88,14 +89,13 @@ void PublishedSession::walk(const AnswerBuffers& answer) {
 bool PublishedSession::grow(AnswerBuffers& answer) {
     bool again = steps_.steps.walker->grow(steps_.status);
     const auto found = steps_.status.counter(STATUS_PAIRS);
-    if (steps_.output == Output::pairs && found > answer.pairs.rows()) {
+    if (steps_.output == Output::pairs && found > answer.pairs.capacity()) {
         answer.pairs.grow(found);
         again = true;
     }
     const auto contacts = steps_.status.counter(STATUS_CONTACTS);
-    if (steps_.makes_contacts() && contacts > answer.contact_ids.rows()) {
-        answer.contact_ids.grow(contacts);
-        answer.contact_values.grow(contacts);
+    if (steps_.makes_contacts() && contacts > answer.contacts.capacity()) {
+        answer.contacts.grow(contacts);
         again = true;
     }
     return again;
@@ -107,7 +107,7 @@ void PublishedSession::sort_contacts(const AnswerBuffers& answer, std::uint64_t 
     std::vector<std::array<std::uint32_t, 2>> ids(count);
     {
         const StageScope scope(steps_.device, Stage::read);
-        steps_.device.download(answer.contact_ids.buffer(), std::as_writable_bytes(std::span(ids)));
+        steps_.device.download(answer.contacts.buffer(contact_ids), std::as_writable_bytes(std::span(ids)));
     }
     const HostWork work(steps_.device, Stage::postprocess, "sort contacts");
     std::sort(ids.begin(), ids.end());

@@ -55,7 +55,7 @@ bool TiledWalker::do_grow(const Status& status) {
     }
     for (std::uint32_t level = 0; level + 1 < trees_.walked_levels(); ++level) {
         const auto found = status.counter(STATUS_TILE_PAIRS + 2 * level);
-        if (found <= lists_[level].rows()) continue;
+        if (found <= lists_[level].capacity()) continue;
         lists_[level].grow(found);
         again = true;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/answer/room.h"
+#include "algorithms/answer/growable_buffer.h"
 #include "algorithms/expected_groups.h"
 #include "algorithms/hierarchy/tile_trees.h"
 #include "algorithms/steps.h"
@@ -42,7 +42,7 @@ private:
     void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
 
     /// The pairs of tiles of a level; of the highest one there is none but those that body pairs begin with.
-    const Room& list(std::uint32_t level) const {
+    const GrowableBuffer& list(std::uint32_t level) const {
         return lists_[std::min<std::size_t>(level, lists_.size() - 1)];
     }
     /// The groups of a level's launch: few where the last frame had few pairs.
@@ -52,7 +52,7 @@ private:
 
     const TileTrees& trees_;
     LaunchShape shape_;
-    std::vector<Room> lists_; ///< by level
+    std::vector<GrowableBuffer> lists_; ///< by level
     /// Of a level: pairs in the last frame, nothing before the first, and the groups for them.
     struct Expected {
         std::optional<std::uint64_t> pairs;

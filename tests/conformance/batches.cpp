@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Frames that do not fit into memory, and memory that is not to be had: the answer is the same, part after
 // part, and a session that could not go on can be used again.
-#include "tests/support/cells.h"
 #include "tests/support/flawed.h"
+#include "tests/support/limited.h"
 #include "tests/support/long_form.h"
 #include "tests/support/scenes.h"
 
@@ -16,37 +16,11 @@ namespace {
 using namespace testing_support;
 using ::testing::HasSubstr;
 
-/// Limits a device's memory to what it has given and so much more, for as long as it lives.
-class Limited {
-public:
-    Limited(Device& device, std::size_t more) : device_(device) {
-        device.set_memory_limit(device.bytes_allocated() + more);
-    }
-    ~Limited() { device_.set_memory_limit(Device::no_memory_limit); }
-    Limited(const Limited&) = delete;
-    Limited& operator=(const Limited&) = delete;
-
-private:
-    Device& device_;
-};
-
 class Batches : public testing::TestWithParam<std::string> {
 protected:
     std::unique_ptr<Session> prepare(const Traversal& traversal, const Scene& scene,
                                      const SettingTexts& given) {
-        const std::array devices{&on};
-        return traversal.prepare(devices, scene,
-                                 resolve(traversal.parameters(), {}, given, traversal.name()));
-    }
-
-    /// Bytes that a session takes when everything else is as small as can be.
-    std::size_t least_bytes(const Traversal& traversal, const Scene& scene, SettingTexts given) {
-        for (const auto* parameter : traversal.parameters())
-            if (parameter->name.ends_with("_capacity")) given[std::string(parameter->name)] = "1";
-        if (traversal.name() == "gproximity") given["queue_bytes"] = "65536";
-        const auto before = on.bytes_allocated();
-        const auto session = prepare(traversal, scene, given);
-        return on.bytes_allocated() - before;
+        return prepare_on(on, traversal, scene, given);
     }
 
     static void expect_equal(const FrameResult& result, const ReferenceAnswer& right) {
@@ -86,7 +60,7 @@ TEST_P(Batches, GiveTheSameAnswer) {
                 const auto right = reference(scene, frame, geometry_of(settings), true, Method::brute_force,
                                              contact_settings_of(settings));
                 const auto wanted = 16 * right.digest.count + 72 * right.contacts;
-                const Limited limit(on, least_bytes(*traversal, scene, given) + wanted / 10);
+                const Limited limit(on, least_bytes(on, *traversal, scene, given) + wanted / 10);
                 const auto session = prepare(*traversal, scene, given);
                 const auto result = session->run(frame);
                 EXPECT_GT(result.batches, 1u);
@@ -114,7 +88,7 @@ TEST_P(Batches, OfThePapersDataPathGiveTheSameAnswer) {
             const auto right = reference(scene, frame, geometry_of(settings), true, Method::brute_force,
                                          contact_settings_of(settings));
             const auto wanted = 16 * right.digest.count + 72 * right.contacts;
-            const Limited limit(on, least_bytes(*traversal, scene, given)
+            const Limited limit(on, least_bytes(on, *traversal, scene, given)
                                         + static_cast<std::size_t>(share * static_cast<double>(wanted)));
             const auto session = prepare(*traversal, scene, given);
             const auto result = session->run(frame);
@@ -141,7 +115,7 @@ TEST_P(Batches, SplitABodyPairByItems) {
               SettingTexts{{"leaves", "2"}, {"seed_threshold", "1"}, {"schedule", "item"}}}) {
             if (traversal->name() != "chunked" && !more.empty()) continue;
             SCOPED_TRACE(std::string(traversal->name()) + text(more));
-            const Limited limit(on, least_bytes(*traversal, scene, more) + 8 * right.digest.count);
+            const Limited limit(on, least_bytes(on, *traversal, scene, more) + 8 * right.digest.count);
             const auto session = prepare(*traversal, scene, more);
             const auto result = session->run(frame, {&only, 1});
             EXPECT_GT(result.batches, 1u);

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 // soak [--device D] [--frames N] [--seed S]: N frames in sessions of random algorithms, settings, scenes and
-// lengths, several alive at a time, with results that outlive them, resets, answers in batches and memory
-// that runs out. One line a tenth. Exit 1 where a frame has another answer than the reference, or the
-// process, its open files or the device's buffers have grown.
+// lengths, several alive at a time, with results that outlive them, resets, and sessions under random memory
+// limits, whose frames run whole, in batches or not at all. Buffers are guarded (support/cells.h). One line a
+// tenth. Exit 1 where a frame has another answer than the same cell without a limit on the host, or the
+// process, its open files or the device's buffers have grown; 3 where a kernel wrote past a buffer's end.
 #include "harness/environment.h"
 #include "scenes/error.h"
-#include "tests/support/cells.h"
+#include "tests/support/limited.h"
 #include "tests/support/scenes.h"
 #include "tests/support/tried.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <deque>
 #include <filesystem>
 #include <fmt/format.h>
@@ -38,7 +40,8 @@ std::size_t threads() {
     return static_cast<std::size_t>(std::distance(begin(tasks), end(tasks)));
 }
 
-/// Few enough that each compiles once: what is soaked is the sessions.
+/// Few enough that each compiles once: what is soaked is the sessions. On the host, which compiles nothing,
+/// rule, decision, precision and layout are drawn instead.
 const std::vector<SettingTexts> variants{{{"k", "8"}, {"contact_rule", "opposing"}},
                                          {{"k", "8"}, {"contact_rule", "opposing"}, {"output", "digest"}},
                                          {{"k", "18"}, {"contact_rule", "sat"}, {"decision", "recheck"}}};
@@ -53,6 +56,8 @@ class Soak {
 public:
     Soak(Device& on, std::uint64_t seed) : device_(on), random_(seed) {
         for (std::uint32_t i = 0; i < 6; ++i) scenes_.push_back(crowd(i + 1, 3 + 5 * i, 2.0 + i));
+        scenes_.push_back(breathing(3));
+        scenes_.push_back(breathing(5));
     }
 
     /// Frames until `stop` in all.
@@ -64,6 +69,7 @@ public:
 
     std::uint64_t frames() const { return frames_; }
     std::uint64_t sessions() const { return sessions_; }
+    std::uint64_t limited() const { return limited_; }
     std::uint64_t refusals() const { return refusals_; }
     std::uint64_t batches() const { return batches_; }
     std::uint64_t wrong() const { return wrong_; }
@@ -73,27 +79,54 @@ private:
         return static_cast<std::size_t>(random_.uniform() * static_cast<double>(n)) % n;
     }
 
-    /// Of the pairs of a frame with these bounds: the first session's on the host.
-    const Digest& expected(std::size_t scene, std::size_t frame, const SettingTexts& variant) {
-        const auto key = std::tuple(scene, frame, variant.at("k"));
+    /// What decides an answer of the variants, and nothing else.
+    static SettingTexts cell_of(const SettingTexts& given) {
+        SettingTexts cell;
+        for (const auto* name : {"k", "contact_rule", "decision", "precision"})
+            if (const auto found = given.find(name); found != given.end()) cell.insert(*found);
+        return cell;
+    }
+
+    /// Of a frame: the first session's on the host, without a limit.
+    const Answer& expected(std::size_t scene, std::size_t frame, const SettingTexts& given) {
+        const auto cell = cell_of(given);
+        const auto key = std::tuple(scene, frame, text(cell));
         const auto known = expected_.find(key);
         if (known != expected_.end()) return known->second;
-        const std::array host{&device("host")};
-        const auto& chunked = algorithm("chunked");
-        const auto session = chunked.prepare(
-            host, scenes_[scene], resolve(chunked.parameters(), {}, {{"k", variant.at("k")}}, "chunked"));
-        return expected_[key] = session->run(scenes_[scene].frame(frame)).digest();
+        auto& host = device("host");
+        const auto limit = host.memory_limit();
+        host.set_memory_limit(Device::no_memory_limit);
+        const auto session = prepare_on(host, algorithm("chunked"), scenes_[scene], cell);
+        const auto& made = expected_.emplace(key, Answer(session->run(scenes_[scene].frame(frame))));
+        host.set_memory_limit(limit);
+        return made.first->second;
+    }
+
+    /// The settings of the next session.
+    SettingTexts draw_settings(const Traversal& traversal) {
+        SettingTexts given = variants[below(variants.size())];
+        if (device_.info().id == "host" && below(2) == 0) {
+            const auto draw = [&](const Parameter& parameter) {
+                const auto words = parameter.choices();
+                given[std::string(parameter.name)] = words[below(words.size())].text;
+            };
+            for (const Parameter* parameter :
+                 std::initializer_list<const Parameter*>{&parameters::contact_rule, &parameters::decision,
+                                                         &parameters::precision, &parameters::pair_layout})
+                draw(*parameter);
+        }
+        given["work_items"] = "64";
+        if (declares(traversal, "queue_bytes")) given["queue_bytes"] = "65536";
+        return given;
     }
 
     /// A session for so many frames, another beside it half of the time.
     void live(std::uint64_t length) {
         const auto& traversal = *algorithms()[below(algorithms().size())];
         const auto scene = below(scenes_.size());
-        SettingTexts given = variants[below(variants.size())];
-        given["work_items"] = "64";
+        auto given = draw_settings(traversal);
         const auto room = std::size_t{1} << (below(13));
         given["pair_capacity"] = given["contact_capacity"] = fmt::format("{}", room);
-        if (declares(traversal, "queue_bytes")) given["queue_bytes"] = "65536";
         const auto settings = resolve(traversal.parameters(), {}, given, traversal.name());
         const std::array devices{&device_};
         std::unique_ptr<Session> session, beside;
@@ -107,39 +140,68 @@ private:
         ++sessions_;
         const std::vector<Frame> frames{scenes_[scene].frame(0), scenes_[scene].frame(1)};
         for (std::uint64_t i = 0; i < length; ++i) {
-            const auto chance = below(1000);
+            const auto chance = below(200);
             if (chance == 0) session->reset();
-            if (chance == 1) starve(traversal, scenes_[scene], settings);
+            if (chance % 50 == 1) starve();
             if (chance == 2 && beside) beside->run(scenes_[(scene + 1) % scenes_.size()].frame(0));
             auto result = session->run(frames[i % 2]);
             ++frames_;
             batches_ += result.batches > 1;
             // A digest costs more than a frame: of the first two and some.
-            if (i < 2 || chance < 50) wrong_ += result.digest() != expected(scene, i % 2, given);
-            if (chance < 5) kept_.push_back(std::move(result));
+            if (i < 2 || chance < 10) check(result, scene, i % 2, given);
+            if (chance < 3) kept_.push_back(std::move(result));
             if (kept_.size() > 20) kept_.pop_front();
         }
     }
 
-    /// A session where there is little memory: none, one that answers in batches, or one whose frame fails.
-    void starve(const Traversal& traversal, const Scene& scene, const Settings& settings) {
-        const std::array devices{&device_};
-        device_.set_memory_limit(device_.bytes_allocated() + (std::size_t{1} << (10 + below(12))));
+    void check(const FrameResult& result, std::size_t scene, std::size_t frame, const SettingTexts& given) {
+        const auto& right = expected(scene, frame, given);
+        // The digest that a walk sums knows no contacts.
+        const bool same = result.has_pairs() ? Answer(result) == right : result.digest() == right.pairs;
+        if (!same) fmt::print(stderr, "wrong: {} frame {}{}\n", scenes_[scene].name, frame, text(given));
+        wrong_ += !same;
+    }
+
+    /// Frames of a session that has from a bit more than nothing to ten times of what it needs at least: they
+    /// run whole, in batches, or end with OutOfMemory.
+    void starve() {
+        const auto& traversal = *algorithms()[below(algorithms().size())];
+        const auto scene = below(scenes_.size());
+        const auto given = draw_settings(traversal);
+        const auto frame_count = scenes_[scene].frame_count;
+        std::vector<std::size_t> frames(2 + below(8));
+        for (auto& frame : frames) {
+            frame = below(frame_count);
+            expected(scene, frame, given); // before there is a limit, which may be the host's
+        }
         try {
-            const auto session = traversal.prepare(devices, scene, settings);
-            batches_ += session->run(scene.frame(0)).batches > 1;
+            const auto least = static_cast<double>(least_bytes(device_, traversal, scenes_[scene], given));
+            const Limited limited(
+                device_, static_cast<std::size_t>(least * std::pow(10.0, random_.uniform(-0.1, 1.0))));
+            const auto session = prepare_on(device_, traversal, scenes_[scene], given);
+            for (const auto frame : frames) run_limited(*session, scene, frame, given);
+        } catch (const OutOfMemory&) {
+            ++refusals_;
+        } catch (const InputError&) {} // settings that do not go together
+    }
+
+    void run_limited(Session& session, std::size_t scene, std::size_t frame, const SettingTexts& given) {
+        try {
+            const auto result = session.run(scenes_[scene].frame(frame));
+            ++limited_;
+            batches_ += result.batches > 1;
+            check(result, scene, frame, given);
         } catch (const OutOfMemory&) {
             ++refusals_;
         }
-        device_.set_memory_limit(Device::no_memory_limit);
     }
 
     Device& device_;
     Random random_;
     std::vector<Scene> scenes_;
     std::deque<FrameResult> kept_;
-    std::map<std::tuple<std::size_t, std::size_t, std::string>, Digest> expected_;
-    std::uint64_t frames_ = 0, sessions_ = 0, refusals_ = 0, batches_ = 0, wrong_ = 0;
+    std::map<std::tuple<std::size_t, std::size_t, std::string>, Answer> expected_;
+    std::uint64_t frames_ = 0, sessions_ = 0, limited_ = 0, refusals_ = 0, batches_ = 0, wrong_ = 0;
 };
 
 int run(const std::string& on, std::uint64_t frames, std::uint64_t seed) {
@@ -153,11 +215,13 @@ int run(const std::string& on, std::uint64_t frames, std::uint64_t seed) {
     for (std::uint64_t part = 2; part <= parts; ++part) {
         soak.run_until(frames * part / parts);
         const Held now;
-        fmt::print("{} frames, {} sessions, {} in batches, {} out of memory, {} wrong; {:+} KiB, {:+} files, "
+        fmt::print("{} frames, {} sessions, {} under a limit, {} in batches, {} out of memory, {} wrong; "
+                   "{:+} KiB, {:+} files, "
                    "{:+} threads, {:+} bytes on "
                    "the device\n",
-                   soak.frames(), soak.sessions(), soak.batches(), soak.refusals(), soak.wrong(),
-                   (now.bytes - before.bytes) / 1024, static_cast<std::int64_t>(now.files - before.files),
+                   soak.frames(), soak.sessions(), soak.limited(), soak.batches(), soak.refusals(),
+                   soak.wrong(), (now.bytes - before.bytes) / 1024,
+                   static_cast<std::int64_t>(now.files - before.files),
                    static_cast<std::int64_t>(now.tasks - before.tasks),
                    static_cast<std::int64_t>(soaked.bytes_allocated() - device_before));
         std::fflush(stdout);

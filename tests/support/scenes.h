@@ -126,4 +126,30 @@ inline Scene procession(std::uint32_t bodies, std::size_t frames, double step) {
     return scene;
 }
 
+/// Boxes around a centre, near it in some frames and further away in others: the numbers of pairs and
+/// contacts grow and shrink from frame to frame, by little and by much.
+inline Scene breathing(std::size_t bodies) {
+    constexpr std::array spreads{1.6, 1.3, 1.25, 0.7, 1.0, 0.68, 0.6, 1.7, 0.62};
+    Random random(5);
+    Scene scene;
+    scene.name = scene.key = "breathing";
+    scene.meshes = {shaken_box(2, random)};
+    scene.bodies.resize(bodies);
+    std::vector<Pose> poses;
+    for (std::size_t i = 0; i < bodies; ++i)
+        poses.push_back(
+            {random.rotation(), Eigen::Vector3d(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5),
+                                                random.uniform(-0.5, 0.5))});
+    scene.frame_count = spreads.size();
+    scene.frame = [poses, spreads](std::size_t number) {
+        Frame frame;
+        frame.deformed.resize(poses.size());
+        for (const auto& pose : poses)
+            frame.poses.push_back({pose.rotation, pose.translation * spreads[number]});
+        return frame;
+    };
+    scene.digest = digest_of(scene);
+    return scene;
+}
+
 } // namespace tandem::testing_support

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// Frames under every kind of memory limit: the answer is that of a session without one, or OutOfMemory, and
+// no kernel writes past the end of a buffer (guards of support/cells.h, or the address sanitizer).
+#include "tests/support/limited.h"
+#include "tests/support/long_form.h"
+#include "tests/support/sanitized.h"
+#include "tests/support/scenes.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+
+class MemoryLimits : public testing::TestWithParam<std::string> {
+protected:
+    MemoryLimits() {
+        for (std::size_t i = 0; i < scene.frame_count; ++i) frames.push_back(scene.frame(i));
+    }
+
+    /// Frames of one cell under `count` limits: `least` to ten times that.
+    void scan(const Traversal& traversal, const SettingTexts& given, int count) {
+        SCOPED_TRACE(std::string(traversal.name()) + text(given));
+        std::vector<Answer> right;
+        {
+            const auto session = prepare_on(on, traversal, scene, given);
+            for (const auto& frame : frames) right.emplace_back(session->run(frame));
+        }
+        const auto least = static_cast<double>(least_bytes(on, traversal, scene, given));
+        for (int i = 0; i < count; ++i) {
+            const auto limit = static_cast<std::size_t>(least * std::pow(10.0, i / (count - 1.0)));
+            SCOPED_TRACE(fmt::format("limit {}", limit));
+            run_limited(traversal, given, limit, right);
+        }
+    }
+
+    void run_limited(const Traversal& traversal, const SettingTexts& given, std::size_t limit,
+                     const std::vector<Answer>& right) {
+        const Limited limited(on, limit);
+        std::unique_ptr<Session> session;
+        try {
+            session = prepare_on(on, traversal, scene, given);
+        } catch (const OutOfMemory&) {
+            ++refused_;
+            return;
+        }
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            try {
+                const auto result = session->run(frames[i]);
+                EXPECT_EQ(Answer(result), right[i]) << "frame " << i;
+                ++(result.batches > 1 ? in_batches_ : whole_);
+            } catch (const OutOfMemory&) {
+                ++refused_;
+            }
+        }
+    }
+
+    /// Every outcome was there, so that the limits are those that matter.
+    void expect_all_outcomes() const {
+        fmt::print("{} frames whole, {} in batches, {} refused\n", whole_, in_batches_, refused_);
+        EXPECT_GT(whole_, 0);
+        EXPECT_GT(in_batches_, 0);
+        EXPECT_GT(refused_, 0);
+    }
+
+    Device& on = device(GetParam());
+    const Scene scene = breathing(4);
+    std::vector<Frame> frames;
+
+private:
+    int whole_ = 0, in_batches_ = 0, refused_ = 0;
+};
+
+/// All algorithms, contact rules, precisions and layouts; decisions and data paths take turns.
+TEST_P(MemoryLimits, KeepTheAnswer) {
+    constexpr std::array decisions{"fp32", "recheck", "exact", "fp64"};
+    const bool on_host = GetParam() == "host";
+    const int limits = !long_form() ? 6 : on_host ? 40 : 12;
+    std::size_t cell = 0;
+    for (const auto* traversal : algorithms()) {
+        const auto paths = residencies_of(*traversal);
+        for (const auto& word : parameters::contact_rule.choices()) {
+            const std::string rule(word.text);
+            for (const std::string precision : {"float", "double"})
+                for (const std::string layout : {"slots", "items"}) {
+                    const auto turn = cell++;
+                    // In short form one combination with each rule, the next one with the next rule; where
+                    // kernels are compiled first, a twelfth of these.
+                    if (!long_form() && (turn % 4 != turn / 4 % 4 || (!on_host && turn / 4 % 12 != 0)))
+                        continue;
+                    SettingTexts given = paths[turn / 3 % paths.size()];
+                    given.merge(SettingTexts{{"k", "8"},
+                                             {"contact_rule", rule},
+                                             {"precision", precision},
+                                             {"pair_layout", layout},
+                                             {"decision", decisions[turn / 4 % decisions.size()]}});
+                    scan(*traversal, given, limits);
+                }
+        }
+    }
+    expect_all_outcomes();
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, MemoryLimits, testing::ValuesIn(device_names()),
+                         [](const auto& test) { return device_label(test.param); });
+
+struct Line {
+    const char* algorithm;
+    SettingTexts more;
+    std::size_t limit;
+};
+
+/// Runs that ended with a corrupt heap when contact ids and contact values were two buffers of unlike
+/// capacities.
+TEST(MemoryLimitsOnHost, RunsThatOverwroteMemoryAreRight) {
+    if (sanitized()) GTEST_SKIP() << "the limits are those of kernels that are not sanitized";
+    const SettingTexts other{{"precision", "double"}, {"pair_layout", "items"}, {"k", "8"}};
+    auto& on = device("host");
+    const auto scene = make_scene("pile:bodies=4,frames=3");
+    for (const auto& [algorithm_name, more, limit] :
+         {Line{"tiled", {}, 2000000}, Line{"tiled", other, 3147038}, Line{"chunked", {}, 3147038},
+          Line{"chunked", other, 3947643}, Line{"gproximity", {}, 4421360},
+          Line{"gproximity", other, 6211691}}) {
+        const auto& traversal = algorithm(algorithm_name);
+        auto given = more;
+        given["contact_rule"] = "sat";
+        SCOPED_TRACE(algorithm_name + text(given));
+        const auto unlimited = prepare_on(on, traversal, scene, given);
+        std::vector<Answer> right;
+        for (std::size_t i = 0; i < 3; ++i) right.emplace_back(unlimited->run(scene.frame(i)));
+        const Limited limited(on, limit);
+        const auto session = prepare_on(on, traversal, scene, given);
+        for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(Answer(session->run(scene.frame(i))), right[i]);
+    }
+}
+
+} // namespace
+} // namespace tandem

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "tests/support/cells.h"
+
+namespace tandem::testing_support {
+
+/// Limits a device's memory to what is allocated and so much more, for as long as it lives.
+class Limited {
+public:
+    Limited(Device& device, std::size_t more) : device_(device) {
+        device.set_memory_limit(device.bytes_allocated() + more);
+    }
+    ~Limited() { device_.set_memory_limit(Device::no_memory_limit); }
+    Limited(const Limited&) = delete;
+    Limited& operator=(const Limited&) = delete;
+
+private:
+    Device& device_;
+};
+
+inline std::unique_ptr<Session> prepare_on(Device& on, const Traversal& traversal, const Scene& scene,
+                                           const SettingTexts& given) {
+    const std::array devices{&on};
+    return traversal.prepare(devices, scene, resolve(traversal.parameters(), {}, given, traversal.name()));
+}
+
+/// Bytes that a session takes when everything else is as small as can be.
+inline std::size_t least_bytes(Device& on, const Traversal& traversal, const Scene& scene,
+                               SettingTexts given) {
+    for (const auto* parameter : traversal.parameters())
+        if (parameter->name.ends_with("_capacity")) given[std::string(parameter->name)] = "1";
+    if (traversal.name() == "gproximity") given["queue_bytes"] = "65536";
+    const auto before = on.bytes_allocated();
+    const auto session = prepare_on(on, traversal, scene, given);
+    return on.bytes_allocated() - before;
+}
+
+/// What of a frame's answer may not depend on memory.
+struct Answer {
+    Digest pairs, contacts;
+    std::array<std::uint64_t, 4> counts{};
+
+    explicit Answer(const FrameResult& result)
+        : pairs(result.digest()),
+          contacts(result.contact_digest()),
+          counts{result.degenerate, result.rejected, result.undecided_by_filter, result.undecided_by_double} {
+    }
+    bool operator==(const Answer&) const = default;
+};
+
+} // namespace tandem::testing_support
