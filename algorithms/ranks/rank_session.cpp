@@ -110,11 +110,12 @@ void RankSession::build_for(const std::vector<std::uint32_t>& needed) {
     std::vector<std::uint32_t> some, all;
     std::ranges::set_union(needed, next, std::back_inserter(some));
     std::ranges::set_union(some, session_ ? present_->numbers : next, std::back_inserter(all));
+    const bool keeps_answers = session_ != nullptr;
     try {
         build(all);
     } catch (const OutOfMemory&) {
-        if (all == needed) throw;
-        build(needed);
+        if (all == needed && !keeps_answers) throw;
+        build(needed); // without the answer buffers of the session before, which are gone by now
     }
 }
 
