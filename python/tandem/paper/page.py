@@ -64,6 +64,8 @@ def write(folder, tables, figures, claims):
 <html lang=en><head><meta charset=utf-8><meta name=viewport content="width=device-width, initial-scale=1"><title>The paper beside ours: {escape(device)}</title>
 <style>{STYLE}</style></head><body>
 <h1>Chunked bounding volume hierarchies: the paper beside ours</h1>
+<p><b>The verdicts on this page are under revision.</b> Some of them compare the paper with our grouped schedule instead of its own, mix settings
+of two GPUs, or are judged by fewer scenes than the claim names.</p>
 <p>Tables 1 to 7 and Figures 1 to 13 of Schmidtke and Erleben, IEEE TVCG 2018, measured by <b>tandem</b> on {escape(device)}, size {escape(first['size'])}.
 Of {len(claims)} claims {count['agrees']} agree, {count['differs']} differ and {count['cannot be tested here']} cannot be tested here.</p>
 <nav aria-label=contents><a href="#claims">Claims</a>{nav}<a href="#steps">What was run</a></nav>
