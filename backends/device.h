@@ -37,12 +37,11 @@ struct OutOfMemory : DeviceError {
 
 /// What a device is; sizes in bytes.
 struct DeviceInfo {
-    std::string id;          ///< "host", "opencl:0", "cuda:0"
-    std::string name;        ///< as the vendor calls it
-    std::string driver;      ///< driver or runtime version
-    std::string compiler;    ///< what compiles kernels
-    std::string processor{}; ///< the model of device host's, where another process described it; else empty
-    std::string hardware;    ///< PCI address or UUID; empty when unknown
+    std::string id;       ///< "host", "opencl:0", "cuda:0"
+    std::string name;     ///< as the vendor calls it
+    std::string driver;   ///< driver or runtime version
+    std::string compiler; ///< what compiles kernels
+    std::string hardware; ///< PCI address or UUID; empty when unknown
     bool is_gpu = false;
     std::uint32_t compute_units = 1;    ///< what runs work-groups side by side: multiprocessors, cores
     std::uint32_t max_group_size = 1;   ///< work-items; a kernel may take fewer

@@ -4,6 +4,7 @@
 #include "harness/accuracy/truths.h"
 #include "harness/flaws.h"
 #include "harness/plans/plan_file.h"
+#include "harness/plans/shard.h"
 
 #include <cstdint>
 #include <optional>
@@ -32,7 +33,7 @@ struct RunOptions {
     bool dry_run = false;                  ///< list the cells and measure none
     bool resume = false;                   ///< leave out what `out` has
     bool isolate = false;                  ///< a process of its own for each cell's check and each round
-    bool deal_cells = false;               ///< over ranks: each cell by itself, also those that are compared
+    Shard shard;                           ///< which groups of the plan are measured
     double timeout = 0;                    ///< seconds of such a process; 0: no limit
     std::string out;                       ///< append records to this file; empty: none are written
     std::string dump_pairs, dump_contacts; ///< CSV files of the first cell that finishes; empty: none

@@ -23,10 +23,7 @@ std::string_view behind_backend(std::string_view word) {
 
 } // namespace
 
-std::string model_name(const DeviceInfo& info) {
-    if (info.id != "host") return info.name;
-    return info.processor.empty() ? processor_name() : info.processor;
-}
+std::string model_name(const DeviceInfo& info) { return info.id == "host" ? processor_name() : info.name; }
 
 std::string_view backend_of(std::string_view name) { return name.substr(0, name.find(':')); }
 

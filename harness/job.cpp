@@ -51,14 +51,40 @@ Job::Job(Scene opened, const RunOptions& given, std::vector<Cell> planned, const
 
 namespace {
 
+/// Where results go: records to a file, and rounds of cells that need more to the file beside it.
+class ResultSink {
+public:
+    ResultSink(RecordFile& file, Unfinished* unfinished) : file_(file), unfinished_(unfinished) {}
+
+    /// What was measured of a cell before, by the key of what was asked for.
+    CellState state(const Cell& cell, const std::string& key) {
+        return unfinished_ == nullptr ? CellState() : unfinished_->state(cell, key);
+    }
+    /// Keeps a cell that needs more rounds: its whole state, or its last round.
+    void keep(const CellSampler& sampler, const std::string& key, bool whole) {
+        if (unfinished_ != nullptr) unfinished_->keep(key, sampler.state(), whole);
+    }
+    /// Appends a record and reports why its cell failed, if it did. False when it could not be written.
+    bool end(const CellResult& result, const nlohmann::ordered_json& record, const std::string& failure) {
+        const bool recorded = file_.append_or_tell(record);
+        if (!failure.empty()) tell("tandem: {}: {}\n", describe(*result.cell), failure);
+        return recorded;
+    }
+    bool failed() const { return file_.failed(); }
+
+private:
+    RecordFile& file_;
+    Unfinished* unfinished_;
+};
+
 /// A device that fails costs its own cell: the record says why, and the others go on.
-CellResult end_cell(const Outcome& outcome, const Sampling& sampling, const Job& job, CellKeeper& keeper) {
+CellResult end_cell(const Outcome& outcome, const Sampling& sampling, const Job& job, ResultSink& sink) {
     CellResult result;
     result.cell = &outcome.sampler->cell();
     result.measurement = outcome.sampler->measurement();
     result.measured = outcome.failure.empty();
     result.converged = outcome.converged;
-    const bool recorded = keeper.end(
+    const bool recorded = sink.end(
         result, make_record(*result.cell, job.scene, job.range, result.measurement, outcome, sampling),
         outcome.failure);
     if (!result.measured || !recorded)
@@ -73,67 +99,35 @@ std::string asked_key(const Cell& cell, const Job& job) {
 }
 
 std::unique_ptr<CellSampler> make_sampler(const Cell& cell, const Job& job, References& references,
-                                          const Measuring& measuring, CellKeeper& keeper) {
-    auto state = keeper.state(cell, asked_key(cell, job));
-    if (job.options.isolate || measuring.process != nullptr)
-        return std::make_unique<IsolatedSampler>(cell, job.options, std::move(state), measuring.give_up,
-                                                 job.options.isolate ? nullptr : measuring.process);
+                                          ResultSink& sink) {
+    auto state = sink.state(cell, asked_key(cell, job));
+    if (job.options.isolate) return std::make_unique<IsolatedSampler>(cell, job.options, std::move(state));
     return std::make_unique<LocalSampler>(cell, job.scene, job.range, references, std::move(state));
 }
-
-/// Records in a file, and rounds where there is a place for them. A cell that fails is said.
-class FileKeeper final : public CellKeeper {
-public:
-    FileKeeper(RecordFile& file, Unfinished* unfinished) : file_(file), unfinished_(unfinished) {}
-
-    CellState state(const Cell& cell, const std::string& key) override {
-        return unfinished_ == nullptr ? CellState() : unfinished_->state(cell, key);
-    }
-    void keep(const CellSampler& sampler, const std::string& key, bool whole) override {
-        if (unfinished_ != nullptr) unfinished_->keep(key, sampler.state(), whole);
-    }
-    bool end(const CellResult& result, const nlohmann::ordered_json& record,
-             const std::string& failure) override {
-        const bool recorded = file_.append_or_tell(record);
-        if (!failure.empty()) tell("tandem: {}: {}\n", describe(*result.cell), failure);
-        return recorded;
-    }
-    bool failed() const override { return file_.failed(); }
-
-private:
-    RecordFile& file_;
-    Unfinished* unfinished_;
-};
 
 } // namespace
 
 bool measure_cells(const Job& job, std::span<const Cell> cells, References& references,
                    const Measuring& measuring, RecordFile& file, const Progress& progress,
                    const std::function<void(const CellResult&)>& ended) {
-    FileKeeper keeper(file, measuring.unfinished);
-    return measure_cells(job, cells, references, measuring, keeper, progress, ended);
-}
-
-bool measure_cells(const Job& job, std::span<const Cell> cells, References& references,
-                   const Measuring& measuring, CellKeeper& keeper, const Progress& progress,
-                   const std::function<void(const CellResult&)>& ended) {
+    ResultSink sink(file, measuring.unfinished);
     std::vector<std::unique_ptr<CellSampler>> samplers;
     std::vector<CellSampler*> group;
     for (const auto& cell : cells)
-        group.push_back(samplers.emplace_back(make_sampler(cell, job, references, measuring, keeper)).get());
+        group.push_back(samplers.emplace_back(make_sampler(cell, job, references, sink)).get());
     RoundsListener listener;
     std::size_t done = 0;
     listener.progress = [&](std::string_view text) {
         progress.show(fmt::format("[{}/{}] {}", done, cells.size(), text));
     };
-    listener.stop = [&] { return keeper.failed() || measuring.stop(); };
+    listener.stop = [&] { return sink.failed() || measuring.stop(); };
     listener.kept = [&](const CellSampler& sampler, bool is_first) {
-        keeper.keep(sampler, asked_key(sampler.cell(), job), is_first);
+        sink.keep(sampler, asked_key(sampler.cell(), job), is_first);
     };
     listener.finished = [&](const Outcome& outcome, const Sampling& sampling) {
         ++done;
         progress.clear();
-        ended(end_cell(outcome, sampling, job, keeper));
+        ended(end_cell(outcome, sampling, job, sink));
     };
     auto check = measuring.check;
     check.progress = listener.progress;

@@ -28,8 +28,6 @@ struct Job {
 /// Of the scene that the options name, which it opens; throws as the job's constructor.
 Job open_job(const RunOptions& options, std::vector<Cell> cells, const Unfit& unfit = refuse);
 
-class AnsweringProcess;
-
 /// How the cells of a job are measured.
 struct Measuring {
     CheckOptions check;
@@ -37,9 +35,6 @@ struct Measuring {
     std::uint64_t seed = 0;
     Unfinished* unfinished = nullptr; ///< where rounds are kept; null: nowhere
     std::function<bool()> stop = [] { return false; };
-    AnsweringProcess* process =
-        nullptr;                     ///< which measures; null, or with options.isolate: none for all cells
-    std::function<bool()> give_up{}; ///< where another process measures: not to wait for its round either
 };
 
 /// What became of a cell.
@@ -50,27 +45,6 @@ struct CellResult {
     bool measured = false;  ///< also without a record
     bool converged = false; ///< or sampled as often as asked for
 };
-
-/// Where what becomes of cells is kept: a file of records and rounds beside it, or with another process.
-class CellKeeper {
-public:
-    virtual ~CellKeeper() = default;
-    /// What there is of a cell already, by the key of what was asked for.
-    virtual CellState state(const Cell& cell, const std::string& key) = 0;
-    /// A cell that needs more rounds: its whole state, or its last round.
-    virtual void keep(const CellSampler& sampler, const std::string& key, bool whole) = 0;
-    /// A cell that has ended, and why it failed, if it did. False when it could not be kept.
-    virtual bool end(const CellResult& result, const nlohmann::ordered_json& record,
-                     const std::string& failure) = 0;
-    /// Whether something could not be kept: nothing more should be measured.
-    virtual bool failed() const = 0;
-};
-
-/// Measures cells of the job as one group and keeps each as it ends, also when its device failed. Returns
-/// whether it was interrupted: cells that had not begun then are not kept.
-bool measure_cells(const Job& job, std::span<const Cell> cells, References& references,
-                   const Measuring& measuring, CellKeeper& keeper, const Progress& progress,
-                   const std::function<void(const CellResult&)>& ended);
 
 /// Measures cells of the job as one group, appends a record for each as it ends, also when its device failed,
 /// which is then said, and hands it over. A record that cannot be written ends it. Returns whether it was

@@ -14,7 +14,6 @@
 #include "harness/ranks/companions.h"
 #include "harness/ranks/launched.h"
 #include "harness/ranks/launched_run.h"
-#include "harness/ranks/sweep.h"
 #include "harness/run_parts.h"
 #include "harness/sampling/replays.h"
 #include "harness/standard_streams.h"
@@ -106,8 +105,12 @@ Run::Run(const RunOptions& options) : options_(options), progress_(options.quiet
     backends_ = open_backends(names, options.require);
     check_required(backends_, options.require);
     limit_memory(options, backends_);
-    all_ = make_groups(plan, [&](const auto& asked) { return choose_devices(backends_, asked); });
+    all_ = make_groups(
+        plan, [&](const auto& asked) { return choose_devices(backends_, asked); }, options.shard);
     tell_left_out(all_);
+    if (options.shard.of > 1)
+        put("shard {}/{}: {} of {} groups\n", options.shard.index, options.shard.of, all_.groups.size(),
+            all_.numbered);
     check_one_group();
 }
 
@@ -208,6 +211,7 @@ Job Run::open(const CellGroup& group, const Unfit& unfit) const {
 
 int Run::go() {
     if (options_.dry_run) return list_all();
+    if (all_.groups.empty()) return 0;
     // A mistake in the last scene had better be known before the first is measured.
     if (all_.groups.size() > 1)
         for (const auto& group : all_.groups) open(group, leave_out);
@@ -250,14 +254,13 @@ int Run::list_all() {
 
 } // namespace
 
-/// Of several processes a plan's cells go to one each, and a scene's frames are shared by all.
+/// Ranks of a job measure the cells one after another, each on all of them.
 int run_command(const RunOptions& options) {
     auto* ranks = launched_ranks();
     if (ranks == nullptr) {
-        tell_tasks_are_no_ranks();
+        if (options.shard.of == 1) tell_tasks_are_no_ranks();
         return Run(options).go();
     }
-    if (options.plan) return sweep_command(options, *ranks);
     Companions companions(*ranks, options);
     return Run(companions.own_options(options)).go();
 }

@@ -43,13 +43,13 @@ Measuring measuring_of(const RunOptions& options) {
     return measuring;
 }
 
-void print_results(std::span<const CellResult* const> results, std::span<const std::string> where) {
+void print_results(std::span<const CellResult* const> results) {
     std::vector<Row> rows;
     std::vector<const CellResult*> measured;
-    for (std::size_t i = 0; i < results.size(); ++i) {
-        if (!results[i]->measured) continue;
-        measured.push_back(results[i]);
-        rows.push_back({results[i]->cell, &results[i]->measurement, {}, where.empty() ? "" : where[i]});
+    for (const auto* result : results) {
+        if (!result->measured) continue;
+        measured.push_back(result);
+        rows.push_back({result->cell, &result->measurement});
     }
     if (rows.empty()) return;
     put("\n{}\n", result_tables(rows, prints_colour()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What `tandem run` does in the same way in one process and over ranks.
+// Parts of `tandem run`.
 #pragma once
 
 #include "harness/job.h"
@@ -17,8 +17,7 @@ Measuring measuring_of(const RunOptions& options);
 void tell_left_out(const CellGroups& all);
 void tell_skipped(const InputError& error);
 
-/// The tables of the cells that were measured, and what is to be thought of each. `where` names the place of
-/// each; left out it is its devices' name.
-void print_results(std::span<const CellResult* const> results, std::span<const std::string> where = {});
+/// The tables of the cells that were measured, and what is to be thought of each.
+void print_results(std::span<const CellResult* const> results);
 
 } // namespace tandem

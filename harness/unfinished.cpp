@@ -64,17 +64,11 @@ void Unfinished::append(nlohmann::ordered_json line) {
     }
 }
 
-nlohmann::ordered_json unfinished_json(const CellState& state, bool whole) {
-    if (whole) return {{"checked", checked_json(state)}, {"rounds", rounds_json(state, 0)}};
-    return {{"rounds", rounds_json(state, state.rounds - 1)}};
-}
-
 void Unfinished::keep(const std::string& key, const CellState& state, bool whole) {
-    if (!path_.empty()) keep(key, unfinished_json(state, whole));
-}
-
-void Unfinished::keep(const std::string& key, nlohmann::ordered_json line) {
     if (path_.empty()) return;
+    nlohmann::ordered_json line;
+    if (whole) line["checked"] = checked_json(state);
+    line["rounds"] = rounds_json(state, whole ? 0 : state.rounds - 1);
     line["key"] = key;
     append(std::move(line));
 }

@@ -12,9 +12,6 @@
 
 namespace tandem {
 
-/// The whole state, or its last round, as a line of it.
-nlohmann::ordered_json unfinished_json(const CellState& state, bool whole);
-
 /// Rounds of cells that have no record yet, in a file FILE.unfinished beside that of the records: what a kill
 /// costs is the round that it falls into. A line of it is what checking a cell gave, or one round.
 class Unfinished {
@@ -30,8 +27,6 @@ public:
     CellState state(const Cell& cell, const std::string& key);
     /// The whole state, or its last round. That it cannot be written is told, and costs nothing else.
     void keep(const std::string& key, const CellState& state, bool whole);
-    /// The same of what unfinished_json() gave.
-    void keep(const std::string& key, nlohmann::ordered_json line);
     /// A cell of this run that has a record already.
     void forget(const std::string& key) { own_.insert(key); }
     /// Once all cells have a record: those of other cells, as of another plan that was killed, stay.

@@ -15,7 +15,7 @@ PLAN = {"plan": "two walks", "scenes": [SMALL, LARGE], "frames": 0, "algorithms"
         "settings": {"k": [8, 18]}, "measure": {"repeat": 1, "truth": "none"}}
 
 
-class Plans(Case):
+class PlanCase(Case):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
@@ -42,6 +42,7 @@ class Plans(Case):
         self.assertEqual(self.is_valid(path), not schema_agrees, path.read_text())
         self.bad(["plan.json", *([said] if isinstance(said, str) else said)], "run", path, "--dry-run")
 
+class Plans(PlanCase):
     def test_a_product(self):
         cells = self.listed(self.plan())
         expected = [(a, s, "0:0", k) for s in ("plates", "pile") for a in ("chunked", "tiled") for k in ("8", "18")]
@@ -143,6 +144,80 @@ class Plans(Case):
         plans = [path for path in SOURCE.glob("results/**/*.json") if "plan" in json.loads(path.read_text())]
         for path in plans:
             self.assertTrue(self.is_valid(path), path)
+
+
+class Shards(PlanCase):
+    """Groups are scenes with their frames, numbered as the plan names them."""
+    GROUPS = {"scenes": [SMALL, LARGE], "frames": ["0", "1"]}
+
+    def groups(self, path, *arguments, environment=None):
+        """Scenes and frames of the cells that a dry run lists, each once and in order; its cells."""
+        status, out, self.said = tandem("run", path, *arguments, "--dry-run", environment=environment)
+        self.assertEqual(status, 0, (out, self.said))
+        cells = re.findall(r"(?m)^ +(\w+)\|([^|]+)\|(\w+):[^|]*\|([\d:]+)\|(.*)$", out)
+        return list(dict.fromkeys((scene, frames) for _, _, scene, frames, _ in cells)), cells
+
+    def test_shards_are_the_plan(self):
+        path = self.plan(**self.GROUPS)
+        whole, cells = self.groups(path)
+        self.assertEqual((len(whole), len(cells)), (4, 16))
+        for count in (1, 2, 3, 4, 5, 9):
+            shards = [self.groups(path, "--shard", f"{i}/{count}") for i in range(count)]
+            for i, (groups, _) in enumerate(shards):
+                self.assertEqual(groups, whole[i::count], (i, count))
+            self.assertCountEqual([cell for _, own in shards for cell in own], cells)
+
+    def test_numbers_do_not_depend_on_devices(self):
+        """A device that a machine lacks, a setting that is impossible, and a group that is excluded on all of them."""
+        path = self.plan(**self.GROUPS, devices=["host", "opencl:0"], impossible="skip", include=[{"scenes": "plates:count=3", "devices": "opencl:0"}])
+        lacks = {"OCL_ICD_VENDORS": "/nonexistent/"}
+        for i in range(2):
+            here, _ = self.groups(path, "--shard", f"{i}/2")
+            there, _ = self.groups(path, "--shard", f"{i}/2", environment=lacks)
+            self.assertEqual([group for group in here if group in there], there)
+            self.assertTrue(any("skipped" in line for line in self.said), self.said)
+        everywhere = [self.groups(path, "--shard", f"{i}/2", environment=lacks if i else None)[0] for i in range(2)]
+        self.assertFalse(set(everywhere[0]) & set(everywhere[1]))
+        excluded = self.plan(**self.GROUPS, exclude=[{"scenes": SMALL, "frames": "0"}])
+        self.assertEqual(self.groups(excluded, "--shard", "0/2")[0], [("pile", "0:0")])
+
+    def test_numbers_do_not_depend_on_what_is_finished(self):
+        path, out = self.plan(**self.GROUPS, measure={"repeat": 1, "truth": "none", "no-check": True, "no-count": True}), self.work / "shard.jsonl"
+        status, text, errors = tandem("run", path, "--shard", "1/2", "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertIn("shard 1/2: 2 of 4 groups", text)
+        self.assertEqual(len(self.records(out)), 8)
+        self.assertEqual(self.groups(path, "--shard", "1/2", "--resume", "--out", out)[0], [])
+        self.assertEqual(len(self.groups(path, "--shard", "0/2", "--resume", "--out", out)[0]), 2)
+        self.assertEqual(len(self.groups(path, "--resume", "--out", out)[0]), 2)
+
+    def test_more_shards_than_groups(self):
+        status, text, errors = tandem("run", self.plan(scenes=SMALL), "--shard", "7/8")
+        self.assertEqual((status, errors), (0, []), text)
+        self.assertEqual(text, "shard 7/8: 0 of 1 groups\n")
+
+    def test_a_task_of_slurm(self):
+        path = self.plan(**self.GROUPS)
+        task = {"SLURM_ARRAY_TASK_ID": "9", "SLURM_ARRAY_TASK_MIN": "5", "SLURM_ARRAY_TASK_MAX": "11", "SLURM_ARRAY_TASK_STEP": "2", "SLURM_ARRAY_TASK_COUNT": "4"}
+        self.assertEqual(self.groups(path, "--shard", "slurm", environment=task)[0], self.groups(path, "--shard", "2/4")[0])
+        for change in ({"SLURM_ARRAY_TASK_ID": "8"}, {"SLURM_ARRAY_TASK_ID": "13"}, {"SLURM_ARRAY_TASK_COUNT": "no"}):
+            status, _, errors = tandem("run", path, "--shard", "slurm", "--dry-run", environment={**task, **change})
+            self.assertEqual((status, len(errors)), (2, 1), errors)
+        self.bad("--shard slurm: this is no task of a job array", "run", path, "--shard", "slurm", "--dry-run")
+
+    def test_bad_shards(self):
+        for text in ("2/2", "a/2", "1", "-1/2", "1/0", "1/2/3", "/", "0/", "1/-2", "18446744073709551616/2"):
+            self.bad(f"--shard {text}: give I/N", "run", self.plan(), f"--shard={text}", "--dry-run")
+
+    def test_devices_by_model(self):
+        plan = self.plan(devices=["host:each", "each"], algorithms="tiled", settings={"k": 8}, scenes=SMALL)
+        status, text, _ = tandem("run", plan, "--dry-run", environment={"OCL_ICD_VENDORS": "/nonexistent/"})
+        self.assertEqual((status, text.count(" on host\n")), (0, 1), text)
+        self.bad(["no device host:no such", "there are: host ("], "run", self.plan(devices="host:no such"), "--dry-run")
+        self.bad("cuda:each: there is no device of that back end", "run", self.plan(devices="cuda:each"), "--dry-run")
+        status, text, errors = tandem("run", self.plan(devices=["host", "cuda:H100"], impossible="skip"), "--dry-run")
+        self.assertEqual(status, 0, errors)
+        self.assertTrue(any("skipped 1 impossible combination: no device cuda:H100" in line for line in errors), errors)
 
 
 if __name__ == "__main__":

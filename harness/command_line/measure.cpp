@@ -5,7 +5,6 @@
 #include "harness/command_line/sets.h"
 #include "harness/commands.h"
 #include "harness/isolation/isolated_sampler.h"
-#include "harness/ranks/launched.h"
 #include "scenes/error.h"
 
 #include <CLI/CLI.hpp>
@@ -241,19 +240,12 @@ Action add_run(CLI::App& app) {
         "that cell only, and the luck of a process is part of the noise");
     auto* timeout = app.add_option("--timeout", options.timeout,
                                    "seconds after which such a process is ended; no limit when left out");
-    if (launched_ranks() == nullptr) timeout->needs(isolate); // over ranks another process measures anyway
-    timeout->check(CLI::Range(0.001, 1e7))->option_text("S");
+    timeout->needs(isolate)->check(CLI::Range(0.001, 1e7))->option_text("S");
     app.add_option_function<std::string>(
-           "--deal",
-           [&options](const std::string& text) {
-               if (text != "compared" && text != "cells")
-                   throw InputError(fmt::format("--deal {}: give compared or cells", text));
-               options.deal_cells = text == "cells";
-           },
-           "under mpirun or srun, which cells of a plan go to a rank together: those whose times are "
-           "compared "
-           "(the default), or each by itself")
-        ->option_text("compared|cells");
+           "--shard", [&options](const std::string& text) { options.shard = parse_shard(text); },
+           "I/N: of a plan's groups, a scene with its frames each, those whose number from 0 modulo N is I; "
+           "slurm: as the task of a job array that this is")
+        ->option_text("I/N|slurm");
     app.add_option("--profile", options.profile, "only replay the frames N times, for a profiler")
         ->check(CLI::Range(1, 1000000));
     app.add_option("--dump-pairs", options.dump_pairs,

@@ -85,32 +85,24 @@ pid_t start(std::span<const std::string> arguments, const Descriptor& input, con
     return child;
 }
 
-enum class End { of_answer, of_output, of_time, given_up };
+enum class End { of_answer, of_output, of_time };
 
-/// The limits of a child from now on.
+/// A limit of so many seconds from now on; 0: none.
 class Deadline {
 public:
-    explicit Deadline(const ChildLimits& limits) : limits_(limits), begin_(Clock::now()) {}
+    explicit Deadline(double seconds) : seconds_(seconds), begin_(Clock::now()) {}
 
     /// Milliseconds for poll(); -1: no limit.
-    int wait_ms() const {
-        constexpr int between_asking = 100;
-        const int left = left_ms();
-        if (!limits_.give_up) return left;
-        return left < 0 ? between_asking : std::min(left, between_asking);
-    }
-    bool is_over() const { return left_ms() == 0; }
-    bool is_given_up() const { return limits_.give_up && limits_.give_up(); }
-
-private:
     int left_ms() const {
-        if (limits_.seconds <= 0) return -1;
+        if (seconds_ <= 0) return -1;
         const std::chrono::duration<double> left =
-            begin_ + std::chrono::duration<double>(limits_.seconds) - Clock::now();
+            begin_ + std::chrono::duration<double>(seconds_) - Clock::now();
         return std::max(0, static_cast<int>(std::min(left.count() * 1e3 + 1, 1e9)));
     }
+    bool is_over() const { return left_ms() == 0; }
 
-    const ChildLimits& limits_;
+private:
+    double seconds_;
     Clock::time_point begin_;
 };
 
@@ -133,15 +125,14 @@ bool take(const Descriptor& pipe, std::string& output) {
 
 /// Until the child has answered or closed its output, or a limit is reached.
 End converse(Descriptor& to, const Descriptor& from, std::string_view input, std::string& output,
-             const ChildLimits& limits) {
-    const Deadline deadline(limits);
+             double seconds) {
+    const Deadline deadline(seconds);
     for (;;) {
         // poll() leaves out descriptors below 0.
         const int hears = input.empty() ? -1 : to.number();
         std::array<pollfd, 2> ends{{{from.number(), POLLIN, 0}, {hears, POLLOUT, 0}}};
-        const int ready = poll(ends.data(), ends.size(), deadline.wait_ms());
+        const int ready = poll(ends.data(), ends.size(), deadline.left_ms());
         if (deadline.is_over()) return End::of_time;
-        if (deadline.is_given_up()) return End::given_up;
         if (ready < 0 && errno != EINTR) fail("poll", errno);
         if (ready < 0) continue;
         if (ends[1].revents != 0) feed(to, input);
@@ -157,12 +148,11 @@ End converse(Descriptor& to, const Descriptor& from, std::string_view input, std
 
 /// Whether the child closes its output in time, whatever it still prints.
 bool closes(const Descriptor& output, double seconds) {
-    const ChildLimits limits{.seconds = seconds};
-    const Deadline deadline(limits);
+    const Deadline deadline(seconds);
     std::array<char, 4096> rest{};
     while (!deadline.is_over()) {
         pollfd end{output.number(), POLLIN, 0};
-        if (poll(&end, 1, deadline.wait_ms()) <= 0) continue;
+        if (poll(&end, 1, deadline.left_ms()) <= 0) continue;
         if (::read(output.number(), rest.data(), rest.size()) == 0) return true;
     }
     return false;
@@ -205,17 +195,15 @@ ChildProcess::~ChildProcess() {
 
 bool ChildProcess::is_over() const { return !running_; }
 
-ChildResult ChildProcess::ask(const std::string& line, const ChildLimits& limits) {
+ChildResult ChildProcess::ask(const std::string& line, double seconds) {
     ChildResult result;
-    const auto end = converse(running_->to, running_->from, line + '\n', result.output, limits);
+    const auto end = converse(running_->to, running_->from, line + '\n', result.output, seconds);
     if (end == End::of_answer) return result;
     const auto running = std::exchange(running_, nullptr);
     if (end != End::of_output) kill(running->child, SIGKILL);
     const int status = waited_for(running->child);
-    result.given_up = end == End::given_up;
-    result.failure = end == End::of_time
-                         ? fmt::format("took longer than {:g} s and was ended", limits.seconds)
-                         : described(status);
+    result.failure = end == End::of_time ? fmt::format("took longer than {:g} s and was ended", seconds)
+                                         : described(status);
     return result;
 }
 

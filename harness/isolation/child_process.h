@@ -10,16 +10,8 @@ namespace tandem {
 
 /// What became of a question.
 struct ChildResult {
-    std::string output;    ///< of the process, up to the end of its answer
-    bool given_up = false; ///< by limits.give_up
-    std::string failure;   ///< "ended by signal 11 (Segmentation fault)"; empty behind an answer, or code 0
-};
-
-/// When a process is killed.
-struct ChildLimits {
-    double seconds = 0; ///< after so many; 0: never
-    /// Asked ten times a second: whether nobody waits for it any more; empty: somebody does.
-    std::function<bool()> give_up{};
+    std::string output;  ///< of the process, up to the end of its answer
+    std::string failure; ///< "ended by signal 11 (Segmentation fault)"; empty behind an answer, or code 0
 };
 
 /// Ends an answer on a child's standard output: what libraries print there has no such byte.
@@ -34,9 +26,9 @@ public:
     /// Lets it end, and kills it where it takes long.
     ~ChildProcess();
 
-    /// Gives it a line on its standard input and waits for the end of its answer. Without one, at its end or
-    /// a limit, which kills it, there is no more to be asked.
-    ChildResult ask(const std::string& line, const ChildLimits& limits);
+    /// Gives it a line on its standard input and waits for the end of its answer, `seconds` at most (0:
+    /// without a limit), after which it is killed. Without an answer there is no more to be asked.
+    ChildResult ask(const std::string& line, double seconds);
     bool is_over() const;
 
     ChildProcess(const ChildProcess&) = delete;

@@ -25,19 +25,16 @@ nlohmann::json answer_of(const ChildResult& result) {
         fmt::format("its process {}", result.failure.empty() ? "ended without an answer" : result.failure));
 }
 
-} // namespace
-
-nlohmann::json AnsweringProcess::ask(const nlohmann::json& request, const ChildLimits& limits) {
-    if (!child_) child_ = std::make_unique<ChildProcess>(std::array<std::string, 1>{"isolated"});
-    const auto result = child_->ask(request.dump(), limits);
-    if (child_->is_over()) child_.reset();
-    if (result.given_up) throw GivenUp();
-    auto answer = answer_of(result);
-    // An error may stick to its devices, and so does that one is not there.
-    if (answer.contains("failure") || answer.contains("input_error")) child_.reset();
+/// Asks a process of its own. Throws DeviceError where that ended without an answer, and InputError where the
+/// request was wrong.
+nlohmann::json ask_a_process(const nlohmann::json& request, double timeout) {
+    ChildProcess child(std::array<std::string, 1>{"isolated"});
+    auto answer = answer_of(child.ask(request.dump(), timeout));
     if (answer.contains("input_error")) throw InputError(answer["input_error"].get<std::string>());
     return answer;
 }
+
+} // namespace
 
 void leave_out_this_process(std::span<RoundConditions> rounds, std::uint32_t first) {
     for (auto& round : rounds)
@@ -49,8 +46,7 @@ void leave_out_this_process(std::span<RoundConditions> rounds, std::uint32_t fir
 
 void IsolatedSampler::ask(const char* work, const CheckOptions& options, std::size_t samples) {
     const auto request = request_json(options_, *this, {work, samples, options});
-    AnsweringProcess own;
-    const auto answer = (process_ != nullptr ? *process_ : own).ask(request, {options_.timeout, give_up_});
+    const auto answer = ask_a_process(request, options_.timeout);
     if (answer.contains("checked") && !answer["checked"].is_null()) {
         take_checked(state_, answer["checked"], cell_);
         const auto first = state_.rounds;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "harness/isolation/request.h"
 
-#include "harness/choosing/choice.h"
-
 #include <nlohmann/json.hpp>
 
 namespace tandem {
 
+namespace {
+
+/// Those of the options that say of what scene, which frames and how they are checked.
 nlohmann::json options_json(const RunOptions& options) {
     return {{"scene", options.scene},
             {"meshes", options.meshes},
@@ -31,36 +32,7 @@ void take_options(RunOptions& options, const nlohmann::json& json) {
     json.at("check_afresh").get_to(options.check_afresh);
 }
 
-nlohmann::json cell_json(const Cell& cell) {
-    auto candidates = nlohmann::json::array();
-    for (const auto& candidate : cell.candidates) candidates.push_back(cell_json(candidate));
-    return {{"algorithm", cell.algorithm->name()},
-            {"preset", cell.preset},
-            {"settings", cell.settings.texts()},
-            {"candidates", candidates},
-            {"chosen", cell.chosen ? nlohmann::json(choice_json(*cell.chosen)) : nlohmann::json()}};
-}
-
-Cell cell_of(const nlohmann::json& json, const DeviceGroup& devices) {
-    const auto& traversal = algorithm(json.at("algorithm").get<std::string>());
-    auto cell = make_cell(traversal, preset(traversal, json.at("preset").get<std::string>()),
-                          json.at("settings").get<SettingTexts>(), devices);
-    for (const auto& candidate : json.at("candidates"))
-        cell.candidates.push_back(cell_of(candidate, devices));
-    if (!json.at("chosen").is_null())
-        cell.chosen = std::make_shared<const Choice>(choice_of(json.at("chosen")));
-    return cell;
-}
-
-nlohmann::json choosing_json(const RunOptions& options, const Cell& cell) {
-    auto request = options_json(options);
-    request.update({{"work", "choose"},
-                    {"cell", cell_json(cell)},
-                    {"devices", name_of(cell.devices)},
-                    {"seconds", options.choose_seconds},
-                    {"afresh", options.choose_afresh}});
-    return request;
-}
+} // namespace
 
 nlohmann::json request_json(const RunOptions& options, const CellSampler& sampler, const IsolatedWork& work) {
     const auto& cell = sampler.cell();

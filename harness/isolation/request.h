@@ -14,19 +14,6 @@ struct IsolatedWork {
     CheckOptions check;      ///< its truths and progress are not sent
 };
 
-/// Those of the options that say of what scene, which frames and how they are checked.
-nlohmann::json options_json(const RunOptions& options);
-void take_options(RunOptions& options, const nlohmann::json& json);
-
-/// A cell but for its devices, with how it was chosen or what it is to be chosen from.
-nlohmann::json cell_json(const Cell& cell);
-/// The same back, on these devices. Throws InputError where it does not fit them.
-Cell cell_of(const nlohmann::json& json, const DeviceGroup& devices);
-
-/// Asks for a cell of auto to be decided: answered with "cell". `options` are those of the scene, its frames
-/// and of choosing.
-nlohmann::json choosing_json(const RunOptions& options, const Cell& cell);
-
 /// `options` are those of the scene, its frames and the check.
 nlohmann::json request_json(const RunOptions& options, const CellSampler& sampler, const IsolatedWork& work);
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The side of the process that answers.
-#include "harness/choosing/choose.h"
 #include "harness/inputs.h"
 #include "harness/isolation/child_process.h"
-#include "harness/isolation/described.h"
 #include "harness/isolation/isolated_sampler.h"
 #include "harness/isolation/request.h"
 #include "harness/job.h"
@@ -13,7 +11,6 @@
 
 #include <array>
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
 
 namespace tandem {
@@ -21,19 +18,6 @@ namespace tandem {
 namespace {
 
 using nlohmann::json;
-
-/// Devices that stay open from request to request.
-class OpenDevices {
-public:
-    DeviceGroup open(const RunOptions& options, const std::string& names) {
-        auto& backends = opened_[{names, options.memory}];
-        if (backends.empty()) backends = open_backends(std::array{names}, {});
-        return open_devices(options, backends, std::array{names}).front();
-    }
-
-private:
-    std::map<std::pair<std::string, std::uint64_t>, std::vector<BackendReport>> opened_; ///< by names, limit
-};
 
 /// Does what was asked for; a failure of the device leaves what was measured before.
 void work(LocalSampler& sampler, const IsolatedWork& asked, json& answer) {
@@ -48,29 +32,10 @@ void work(LocalSampler& sampler, const IsolatedWork& asked, json& answer) {
     }
 }
 
-json describe(const json& asked) {
-    return {
-        {"backends", backends_json(open_backends(asked.at("devices").get<std::vector<std::string>>(), {}))}};
-}
-
-/// A cell of auto, decided.
-json choose(const json& asked, OpenDevices& devices) {
-    RunOptions options;
-    take_options(options, asked);
-    const auto group = devices.open(options, asked.at("devices").get<std::string>());
-    auto job = open_job(options, {cell_of(asked.at("cell"), group)});
-    ChoosingOptions choosing;
-    asked.at("seconds").get_to(choosing.seconds);
-    asked.at("afresh").get_to(choosing.afresh);
-    choose(job.cells.front(), job.scene, job.range, choosing);
-    return {{"cell", cell_json(job.cells.front())}};
-}
-
-json answer_to(const json& asked, OpenDevices& devices) {
-    if (asked.at("work") == "describe") return describe(asked);
-    if (asked.at("work") == "choose") return choose(asked, devices);
+json answer_to(const json& asked) {
     auto request = request_of(asked);
-    const auto group = devices.open(request.options, request.devices);
+    const auto backends = open_backends(std::array{request.devices}, {});
+    const auto group = open_devices(request.options, backends, std::array{request.devices}).front();
     const auto& traversal = algorithm(request.algorithm);
     const auto job = open_job(
         request.options, {make_cell(traversal, preset(traversal, request.preset), request.settings, group)});
@@ -94,11 +59,10 @@ json answer_to(const json& asked, OpenDevices& devices) {
 
 int isolated_command() {
     end_with_parent();
-    OpenDevices devices;
     for (std::string line; std::getline(std::cin, line);) {
         json answer;
         try {
-            answer = answer_to(json::parse(line), devices);
+            answer = answer_to(json::parse(line));
         } catch (const InputError& error) {
             answer = {{"input_error", error.what()}};
         } catch (const std::exception& error) {

@@ -121,14 +121,18 @@ std::vector<std::string> devices_of(const PlanFile& plan) {
     return names;
 }
 
-CellGroups make_groups(const PlanFile& plan, const ChooseDevices& choose) {
+CellGroups make_groups(const PlanFile& plan, const ChooseDevices& choose, Shard shard) {
     CellGroups all;
     Unfit unfit = refuse;
     if (plan.skips_impossible) unfit = [&](const InputError& error) { ++all.impossible[error.what()]; };
     for (const auto& product : plan.products) add_product(all, product, choose, unfit);
     for (auto& group : all.groups) all.repeated += drop_repeated(group.cells);
     for (const auto& exclusion : plan.exclusions) exclude(all, exclusion, choose);
-    std::erase_if(all.groups, [](const auto& group) { return group.cells.empty(); });
+    all.numbered = all.groups.size();
+    std::vector<CellGroup> own;
+    for (std::size_t number = shard.index; number < all.groups.size(); number += shard.of)
+        if (!all.groups[number].cells.empty()) own.push_back(std::move(all.groups[number]));
+    all.groups = std::move(own);
     return all;
 }
 

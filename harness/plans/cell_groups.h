@@ -2,6 +2,7 @@
 #pragma once
 
 #include "harness/plans/plan_file.h"
+#include "harness/plans/shard.h"
 
 namespace tandem {
 
@@ -17,6 +18,7 @@ struct CellGroups {
     std::map<std::string, std::size_t> impossible; ///< why, and how many are skipped for it
     std::size_t repeated = 0;                      ///< named again, and dropped
     std::size_t excluded = 0;
+    std::size_t numbered = 0; ///< groups of all shards
 };
 
 /// What stands instead of the plan's own in every product: the fields that are not empty, and settings by
@@ -30,7 +32,9 @@ std::vector<std::string> devices_of(const PlanFile& plan);
 using ChooseDevices = std::function<std::vector<DeviceGroup>(const std::vector<std::string>& names)>;
 
 /// The cells of all products less the exclusions, by scene and frames in the order in which these come. Each
-/// group has a cell once. Throws InputError as plan(), and for an exclusion that matches no cell.
-CellGroups make_groups(const PlanFile& plan, const ChooseDevices& choose);
+/// group has a cell once. Groups are numbered as the plan names scenes and frames, whatever devices and cells
+/// there are, so that all machines number them alike; only those of `shard` are returned. Throws InputError
+/// as plan(), and for an exclusion that matches no cell.
+CellGroups make_groups(const PlanFile& plan, const ChooseDevices& choose, Shard shard = {});
 
 } // namespace tandem

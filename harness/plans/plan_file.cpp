@@ -20,8 +20,8 @@ using Texts = std::vector<std::string>;
 const Texts product_fields{"scenes", "frames", "algorithms", "presets", "settings", "devices"};
 
 /// Options of `tandem run` that take a value and that a plan may give.
-const Texts valued{"noise",          "seconds",    "repeat", "seed",    "truth",
-                   "truth-contacts", "degenerate", "memory", "timeout", "deal"};
+const Texts valued{"noise",          "seconds",    "repeat", "seed",   "truth",
+                   "truth-contacts", "degenerate", "memory", "timeout"};
 const Texts flags{"no-check", "no-count", "check-afresh", "isolate"};
 
 /// A number as a user would write it, or the string.

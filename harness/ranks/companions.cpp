@@ -4,9 +4,11 @@
 #include "algorithms/parameters/table.h"
 #include "algorithms/ranks/bytes.h"
 #include "harness/ranks/remote_part.h"
+#include "harness/run_parts.h"
 #include "scenes/error.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <unistd.h>
@@ -61,9 +63,10 @@ void refuse_what_ranks_cannot(const RunOptions& options) {
     if (options.isolate)
         throw InputError("--isolate makes a process of each cell, and ranks share one; leave it out");
     if (!options.trace.empty()) throw InputError("--trace shows one process; run it without the launcher");
-    for (const auto& name : options.request.algorithms)
-        if (name == automatic)
-            throw InputError("--algorithm auto chooses on one process; name what it chose there");
+    for (const auto& product : plan_of(options).products)
+        for (const auto& name : product.request.algorithms)
+            if (name == automatic)
+                throw InputError("--algorithm auto chooses on one process; name what it chose there");
 }
 
 } // namespace
@@ -87,12 +90,14 @@ Companions::~Companions() {
 }
 
 RunOptions Companions::own_options(const RunOptions& options) {
-    if (options.request.devices.size() > 1)
-        throw InputError(
-            "--device names several cells' devices, and all ranks share one cell; name one, or one "
-            "for each rank of a machine joined by +");
+    const auto devices = devices_of(plan_of(options));
+    if (devices.size() > 1)
+        throw InputError(fmt::format(
+            "{} are devices of several cells, and all ranks share each cell; name one by --device, "
+            "or one for each rank of a machine joined by +",
+            fmt::join(devices, ", ")));
     auto own = options;
-    names_ = options.request.devices.empty() ? "opencl:0" : options.request.devices.front();
+    names_ = devices.front();
     if (names_ == "all")
         throw InputError("--device all makes several cells; ranks share one, name their devices");
     own.request.devices = {

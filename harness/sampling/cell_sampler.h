@@ -17,9 +17,6 @@ struct CheckOptions {
     std::function<void(std::string_view)> progress = [](std::string_view) {};
 };
 
-/// A check or a round was not finished, since nobody waits for it any more.
-struct GivenUp {};
-
 /// One cell as it is measured: a check of every answer, then rounds. A round prepares a session anew, so that
 /// the luck of an allocation is part of the noise; warms up until replays stop falling; takes samples, each
 /// held against the checked answers; and one replay with a clock around every command.

@@ -79,8 +79,6 @@ bool Group::goes_on(Outcome& outcome, bool is_first, const Work& work) {
         outcome.failure = error.what();
     } catch (const std::bad_alloc&) {
         outcome.failure = "out of host memory; use fewer bodies or frames";
-    } catch (const GivenUp&) {
-        return !is_first; // as if it had not been begun
     }
     outcome.sampler->release();
     listener_.finished(outcome, sampling_);

@@ -25,7 +25,7 @@ Parts parts_of(const Row& row) {
     const auto changed = changes(cell);
     for (const auto& [name, value] : cell.settings.texts())
         parts.push_back({name, fmt::format("{}={}", name, value), true, changed.contains(name)});
-    parts.push_back({"device", "on " + (row.where.empty() ? name_of(cell.devices) : row.where)});
+    parts.push_back({"device", "on " + name_of(cell.devices)});
     if (!row.scene.empty()) parts.push_back({"scene", row.scene});
     return parts;
 }

@@ -13,7 +13,6 @@ struct Row {
     const Cell* cell;
     const Measurement* measurement;
     std::string scene = {}; ///< with frames; cells of one are comparable
-    std::string where = {}; ///< on what; empty: the devices' name
 };
 
 /// Cells in at most 100 columns, in milliseconds a frame: medians with half the width of their 95 % intervals
