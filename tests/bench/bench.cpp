@@ -5,7 +5,7 @@
 #include "algorithms/broad/broad_stage.h"
 #include "algorithms/contacts/reference.h"
 #include "tests/support/prepared_trees.h"
-#include "algorithms/shares/deal.h"
+#include "algorithms/shares/places.h"
 #include "algorithms/sources.h"
 #include "algorithms/answer/status.clh"
 #include "algorithms/traversal.h"
@@ -19,6 +19,7 @@
 namespace tandem {
 
 void register_oracle();
+void register_partition();
 
 namespace {
 
@@ -122,30 +123,6 @@ void broad(benchmark::State& state, Broad bound) {
     state.SetComplexityN(state.range(0));
 }
 
-/// A pile dealt to as many ranks as have 4,200 bodies each, as every one of them deals it.
-struct DealtPile {
-    explicit DealtPile(std::int64_t bodies)
-        : scene(make_scene(fmt::format("pile:bodies={},frames=1", bodies))),
-          speeds(static_cast<std::size_t>(bodies / 4200 + 1), 1.0),
-          deal(scene, {.k = 18}, speeds.size()) {
-        std::vector<std::uint32_t> all(scene.bodies.size());
-        std::iota(all.begin(), all.end(), 0u);
-        Places places(scene);
-        places.keep(scene.frame(0), all);
-        for (const auto body : all) balls.push_back(places.ball(body));
-    }
-
-    Scene scene;
-    std::vector<double> speeds;
-    Deal deal;
-    std::vector<Ball> balls;
-};
-
-void deal(benchmark::State& state) {
-    DealtPile pile(state.range(0));
-    for ([[maybe_unused]] auto _ : state) pile.deal.make(pile.balls, pile.speeds);
-}
-
 /// What a rank does in every frame: whether its bodies are still near where they were.
 void still_near(benchmark::State& state) {
     const auto scene = make_scene(fmt::format("pile:bodies={},frames=1", state.range(0)));
@@ -218,21 +195,13 @@ int main(int argc, char** argv) {
             ->Arg(2000)
             ->Arg(20000)
             ->Unit(benchmark::kMicrosecond);
-    // Once: a million bodies are dealt in seconds.
-    benchmark::RegisterBenchmark("deal, balls", tandem::deal)
-        ->Arg(20'000)
-        ->Arg(200'000)
-        ->Arg(1'000'000)
-        ->Iterations(1)
-        ->Repetitions(1)
-        ->Unit(benchmark::kMillisecond)
-        ->UseRealTime();
     benchmark::RegisterBenchmark("still near", tandem::still_near)
         ->Arg(10'000)
         ->Arg(100'000)
         ->Unit(benchmark::kMicrosecond)
         ->UseRealTime();
     tandem::register_oracle();
+    tandem::register_partition();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     benchmark::RunSpecifiedBenchmarks();
