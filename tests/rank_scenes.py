@@ -10,12 +10,34 @@ import time
 import unittest
 
 from program import PROGRAM, SMALL, Case, sets, tandem
-from ranks import ENVIRONMENT, job, launch, of, processes, wait_for
+from ranks import ENVIRONMENT, job, launch, of
 
 PILE = "pile:bodies=27,mesh=grain1,frames=2"
 ROOMS = sets({name: SMALL[name] for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")})
 STUBS = pathlib.Path(os.environ.get("CUDA_STUBS", "/nonexistent"))
 CELL = ["--device", "host", "--algorithm", "tiled", *ROOMS]
+
+
+def ranks_of(launcher):
+    """Processes of the ranks of that mpirun."""
+    found = []
+    for path in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            stat = (path / "stat").read_text().rsplit(")", 1)[1].split()
+            words = (path / "cmdline").read_bytes().split(b"\0")
+        except (FileNotFoundError, ProcessLookupError):
+            continue
+        if stat[0] not in "ZX" and int(stat[1]) == launcher and words[0] == str(PROGRAM).encode():
+            found.append(int(path.name))
+    return sorted(found)
+
+
+def wait_for(what, seconds=30):
+    end = time.monotonic() + seconds
+    while not (result := what()):
+        assert time.monotonic() < end, "nothing happened"
+        time.sleep(0.002)
+    return result
 
 
 class RankScenes(Case):
@@ -94,10 +116,10 @@ class RankScenes(Case):
         out = self.work / "killed.jsonl"
         words = of(2)("run", PILE, "plates", *CELL, "--seconds", 60, "--noise", 1e-9, "--truth", "none", "--out", out)
         process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
-        wait_for(lambda: len(processes(process.pid)[0]) == 2)
+        wait_for(lambda: len(ranks_of(process.pid)) == 2)
         time.sleep(2)
         begin = time.monotonic()
-        os.kill(processes(process.pid)[0][1], signal.SIGKILL)
+        os.kill(ranks_of(process.pid)[1], signal.SIGKILL)
         text = process.communicate(timeout=10)[1]
         self.assertLess(time.monotonic() - begin, 10)
         self.assertNotEqual(process.returncode, 0)
