@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/pictures.h"
 
-#include "harness/paper/python_package.h"
+#include "harness/external.h"
 #include "harness/passing_folder.h"
 #include "harness/programs.h"
 #include "harness/standard_streams.h"
@@ -18,18 +18,10 @@ namespace tandem {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-std::string render_script() {
-    const auto files = python_package();
-    const auto found = std::ranges::find(files, "tandem/paper/render.py", &PackageFile::path);
-    return std::string(found->text);
-}
-
-} // namespace
-
 Pictures::Pictures(std::string out)
-    : out_(std::move(out)), python_(python_with("numpy, PIL", "python3-numpy python3-pil", "--pictures")) {
+    : out_(std::move(out)),
+      script_(external_program("render")),
+      python_(python_with("numpy, PIL", "python3-numpy python3-pil", "--pictures")) {
     const auto folder = fs::path(out_).parent_path();
     std::error_code code;
     if (!folder.empty()) fs::create_directories(folder, code);
@@ -46,7 +38,7 @@ void Pictures::draw(const std::string& recording) const {
     frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
     write_glb(glb, scene, frames);
     const ProgramPlace place{"", flush_output() ? "" : "/dev/null", ""};
-    if (run_program({python_, "-c", render_script(), glb, out_}, place) != 0)
+    if (run_program({python_, script_, glb, out_}, place) != 0)
         throw InputError(
             fmt::format("--pictures: nothing drawn; draw them of {} with 'tandem export'", recording));
 }

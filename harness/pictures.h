@@ -17,7 +17,7 @@ public:
     void draw(const std::string& recording) const;
 
 private:
-    std::string out_, python_;
+    std::string out_, script_, python_;
 };
 
 } // namespace tandem

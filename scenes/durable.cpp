@@ -39,6 +39,4 @@ void sync(const std::string& folder, int (*how)(int)) {
 
 void sync_folder_of(const std::string& path) { sync(folder_of(path).string(), fsync); }
 
-void sync_file_system_of(const std::string& folder) { sync(folder, syncfs); }
-
 } // namespace tandem

@@ -10,7 +10,4 @@ namespace tandem {
 /// OutputError when the disk fails.
 void sync_folder_of(const std::string& path);
 
-/// Makes everything last that any process has written to the file system of a folder. Throws OutputError.
-void sync_file_system_of(const std::string& folder);
-
 } // namespace tandem

@@ -5,11 +5,11 @@
 
 namespace tandem {
 
-/// Figures of records with their data: scripts/figures, whose text the program holds, run by a Python that
-/// has matplotlib.
+/// Figures of records with their data, by scripts/figures, which is in libexec/tandem.
 class Figures {
 public:
-    /// Throws InputError when there is no such Python or the folder cannot be made.
+    /// Throws InputError when the script or a Python with matplotlib is missing, or the folder cannot be
+    /// made.
     explicit Figures(std::string folder);
 
     /// Draws all records of the file that have errors. Throws InputError when the script fails, which has
@@ -17,7 +17,7 @@ public:
     void draw(const std::string& records) const;
 
 private:
-    std::string folder_, python_;
+    std::string folder_, script_, python_;
 };
 
 } // namespace tandem

@@ -25,6 +25,16 @@ cmake --build "$work/consumer" >"$work/log" || { cat "$work/log" >&2; exit 1; }
 "$work/prefix/bin/tandem" completion bash | cmp - "$work/prefix/share/bash-completion/completions/tandem"
 "$work/prefix/bin/tandem" completion zsh | cmp - "$work/prefix/share/zsh/site-functions/_tandem"
 
+# A subcommand in Python, from the installed tree alone; where it is missing one line says so.
+(
+  cd "$work"
+  "$work/prefix/bin/tandem" paper --device host -o paper --dry-run | grep ' cells-plates ' >/dev/null
+  mv prefix/libexec libexec
+  status=0 && prefix/bin/tandem paper --device host -o paper --dry-run 2>said || status=$?
+  [ "$status" = 2 ] && [ "$(wc -l <said)" = 1 ] && grep -q 'tandem paper is not part of this installation' said
+  mv libexec prefix/libexec
+)
+
 # Scripts beside the program, which need nothing else of the tree: what records and exports they are given, they read.
 (
   cd "$work"

@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""command FOLDER: tables, figures, verdicts and index.html of a folder of 'tandem paper', from its records. Exit 2, and one line
-that says why, for a folder that has none; 3 when something cannot be written."""
+"""The command 'tandem paper': measures its steps, then makes tables, figures, verdicts and index.html from the records of its folder.
+Exit 2, and one line that says why, for bad use and a folder without records; 3 when a step failed or something cannot be written."""
+import argparse
 import csv
 import dataclasses
+import importlib.util
+import os
+import shutil
 import sys
 
-from .. import lines
-from . import claims, figures, page, pictures, tables
-from .folder import Folder
+from . import measuring
+
+DRAWS_WITH = ("matplotlib", "pandas", "scipy")
 
 
 def write_claims(folder, found):
+    from . import claims
     with open(folder.path / "claims.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, [field.name for field in dataclasses.fields(claims.Claim)], lineterminator="\n")
         writer.writeheader()
@@ -19,6 +24,8 @@ def write_claims(folder, found):
 
 def build(path):
     """Everything; returns the line that says what there is. Raises lines.RecordError, OSError."""
+    from . import claims, figures, page, pictures, tables
+    from .folder import Folder
     folder = Folder(path)
     made = tables.all_tables(folder)
     for table in made:
@@ -32,20 +39,67 @@ def build(path):
     return f"{folder.path / 'index.html'}: 7 tables, {len(drawn) - gaps} of {len(drawn)} figures, claims: {verdicts}"
 
 
-def main(arguments):
-    if len(arguments) != 1 or arguments[0] in ("-h", "--help"):
-        print(__doc__, file=sys.stdout if arguments else sys.stderr)
-        return 0 if arguments else 2
+def draw(path):
+    """The exit code."""
+    from .. import lines
     try:
-        print(build(arguments[0]))
+        print(build(path), flush=True)
     except lines.RecordError as error:
         print(f"tandem: {error}", file=sys.stderr)
         return 2
     except OSError as error:
-        print(f"tandem: {error.filename or arguments[0]}: cannot be written: {error.strerror}", file=sys.stderr)
+        print(f"tandem: {error.filename or path}: cannot be written: {error.strerror}", file=sys.stderr)
         return 3
     return 0
 
 
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+def check_packages():
+    """Goes on with the python3 of PATH where this one, the system's, lacks a package to draw with and that is another."""
+    missing = [name for name in DRAWS_WITH if importlib.util.find_spec(name) is None]
+    if not missing:
+        return
+    other = shutil.which("python3")
+    if other and not os.path.samefile(other, sys.executable) and "TANDEM_PYTHON_TRIED" not in os.environ:
+        os.environ["TANDEM_PYTHON_TRIED"] = "1"
+        os.execv(other, [other, *sys.argv])
+    raise measuring.BadUse(f"tandem paper needs python3 with {', '.join(missing)}; install {' '.join('python3-' + name for name in missing)}, or give "
+                           "--measure-only")
+
+
+def parsed(arguments):
+    parser = argparse.ArgumentParser(prog="tandem paper", description=__doc__)
+    parser.add_argument("-o", "--output", required=True)
+    parser.add_argument("--device", default="opencl:0")
+    parser.add_argument("--queue-bytes", type=int, default=0, help="what the paper's release allocates for queues on the device")
+    parser.add_argument("--size", default="small")
+    parser.add_argument("--steps", default="")
+    for name in ("again", "measure-only", "draw-only", "dry-run"):
+        parser.add_argument(f"--{name}", action="store_true")
+    return parser.parse_args(arguments)
+
+
+def main(arguments, program):
+    """`program`: the path of tandem, which the steps run."""
+    options = parsed(arguments)
+    try:
+        if not options.measure_only and not options.dry_run:
+            check_packages()  # before anything is measured
+        if options.draw_only:
+            return draw(options.output)
+        steps = measuring.steps_of(options.size, options.device, options.queue_bytes)
+        first, last = measuring.numbered(options.steps, len(steps))
+        folder = measuring.MeasuredFolder(options.output, options.size, options.device, program)
+        if options.dry_run:
+            measuring.list_steps(folder, steps)
+            return 0
+        if options.again:
+            for step in steps[first - 1:last]:
+                folder.forget(step)
+        worst = measuring.run_steps(folder, steps, first, last)
+    except measuring.BadUse as error:
+        print(f"tandem: {error}", file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"tandem: {error.filename or options.output}: {error.strerror}", file=sys.stderr)
+        return 3
+    return worst if options.measure_only else draw(options.output) and 3 or worst

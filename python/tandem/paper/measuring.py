@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: MIT
+"""The steps of 'tandem paper': what each runs, which have ended and how. Standard library only, so that a machine with a GPU
+needs nothing else to measure."""
+import ctypes
+import dataclasses
+import datetime
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import time
+
+PLANS = pathlib.Path(__file__).parent / "plans"
+
+
+class BadUse(Exception):
+    """One line: what, where, what to do."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Step:
+    """A command of the program, or a plan of cells for `tandem run`. Files are in the folder of results."""
+    name: str
+    says: str
+    seconds: float  # it took on the machine of the committed results
+    command: tuple  # words behind "tandem"
+    plan: object  # None, or written to plans/NAME.json before the command runs it
+
+    @property
+    def key(self):
+        """With the plan: a step is done again when that has changed."""
+        plan = "" if self.plan is None else json.dumps(self.plan, separators=(",", ":"), ensure_ascii=False)
+        return f"{' '.join(self.command)} {plan}"
+
+
+def _placed(value, names):
+    """The value with {NAME} replaced in every text of it."""
+    if isinstance(value, str):
+        for name, text in names.items():
+            value = value.replace("{" + name + "}", text)
+        return value
+    if isinstance(value, list):
+        return [_placed(one, names) for one in value]
+    if isinstance(value, dict):
+        return {key: _placed(one, names) for key, one in value.items()}
+    return value
+
+
+def steps_of(size, device, queue_bytes):
+    """The steps of a size, "small" or "full", in their order. queue_bytes: what the paper's release allocates for queues on the
+    device, a quarter of its memory, or what one buffer holds."""
+    path = PLANS / f"{size}.json"
+    if size not in ("small", "full"):
+        raise BadUse(f"--size {size}: give small or full")
+    names = {"device": device, "quarter": str(queue_bytes)}
+    steps = []
+    for one in json.loads(path.read_text())["steps"]:
+        plan = _placed(one["plan"], names) if "plan" in one else None
+        name = one["name"]
+        command = one.get("command") or ["run", f"plans/{name}.json", "--resume", "--out", f"records/{name}.jsonl"]
+        steps.append(Step(name, one["says"], one["seconds"], tuple(_placed(word, names) for word in command), plan))
+    return steps
+
+
+def numbered(text, count):
+    """(first, last) of "N" or "FIRST:LAST", from 1; all where the text is empty."""
+    if not text:
+        return 1, count
+    found = re.fullmatch(r"(\d+)(?::(\d+))?", text)
+    first, last = (int(found[1]), int(found[2] or found[1])) if found else (0, 0)
+    if not 1 <= first <= last <= count:
+        raise BadUse(f"--steps {text}: give N or FIRST:LAST of 1:{count}")
+    return first, last
+
+
+def told(seconds):
+    """"40 s", "7 min"."""
+    return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
+
+
+def _sync_folder(path):
+    descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _sync_file_system(path):
+    """Makes what any process has written there last."""
+    descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        ctypes.CDLL(None).syncfs(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+class Journal:
+    """A file of JSON lines that only grows; a line that append() has returned from outlasts a loss of power. A last line without an
+    end, which a kill has left, goes to FILE.torn."""
+
+    def __init__(self, path):
+        self.path = path
+        self._keep_whole_lines()
+        is_new = not path.exists()
+        self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o666)
+        if is_new:
+            _sync_folder(path.parent)
+
+    def _keep_whole_lines(self):
+        try:
+            data = self.path.read_bytes()
+        except FileNotFoundError:
+            return
+        end = data.rfind(b"\n") + 1
+        if end == len(data):
+            return
+        with open(f"{self.path}.torn", "ab") as torn:
+            torn.write(data[end:] + b"\n")
+            torn.flush()
+            os.fsync(torn.fileno())
+        _sync_folder(self.path.parent)
+        with open(self.path, "r+b") as file:
+            file.truncate(end)
+            os.fsync(file.fileno())
+
+    def lines(self):
+        for number, text in enumerate(self.path.read_text().splitlines(), 1):
+            try:
+                line = json.loads(text)
+            except ValueError:
+                line = None
+            if not isinstance(line, dict):
+                raise BadUse(f"{self.path}:{number}: is not a line of 'tandem paper'; name another folder")
+            yield line
+
+    def append(self, line):
+        data = (json.dumps(line, separators=(",", ":"), ensure_ascii=False) + "\n").encode()
+        if os.write(self._file, data) != len(data):
+            raise OSError(28, os.strerror(28), str(self.path))
+        os.fsync(self._file)
+
+
+class MeasuredFolder:
+    """steps.jsonl says which steps have ended and how; records/, plans/ and logs/ have a file a step. Of one size and one device."""
+
+    def __init__(self, path, size, device, program):
+        self.path, self.size, self.device, self.program = pathlib.Path(path), size, device, program
+        self.running, self.interrupted = None, False
+        for part in ("records", "plans", "logs"):
+            try:
+                (self.path / part).mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise BadUse(f"-o {path}: cannot be made a folder ({error.strerror}); name another") from None
+        self.journal = Journal(self.path / "steps.jsonl")
+        self.done = set()
+        for line in self.journal.lines():
+            if (line.get("size"), line.get("device")) != (size, device):
+                raise BadUse(f"-o {path}: has results of size {line.get('size', '?')} on {line.get('device', '?')}; name another folder, or "
+                             "that size and device")
+            (self.done.add if line.get("exit") == 0 else self.done.discard)(line.get("key"))
+
+    def is_done(self, step):
+        return step.key in self.done
+
+    def log(self, step):
+        return self.path / "logs" / f"{step.name}.txt"
+
+    def last_line(self, step):
+        try:
+            lines = [line for line in self.log(step).read_text(errors="replace").splitlines() if line]
+        except OSError:
+            lines = []
+        return lines[-1] if lines else ""
+
+    def forget(self, step):
+        """The step and its records."""
+        self.done.discard(step.key)
+        for word in step.command:
+            if word.endswith((".jsonl", ".frames")):
+                for name in (word, f"{word}.checkpoint"):
+                    (self.path / name).unlink(missing_ok=True)
+
+    def _words(self, step):
+        words = [self.program, *step.command]
+        if step.command[0] == "simulate" and "-o" in step.command:
+            recording = step.command[step.command.index("-o") + 1]
+            if (self.path / f"{recording}.checkpoint").exists():
+                words.append("--resume")
+        return words
+
+    def run(self, step, environment):
+        """Runs the step in a process of its own and says in steps.jsonl how it ended; its exit code, or 128 and the signal."""
+        if step.plan is not None:
+            (self.path / "plans" / f"{step.name}.json").write_text(json.dumps(step.plan, indent=2, ensure_ascii=False) + "\n")
+        self.log(step).unlink(missing_ok=True)
+        begin = time.monotonic()
+        with open(self.log(step), "ab") as log:
+            self.running = subprocess.Popen(self._words(step), cwd=self.path, stdout=log, stderr=log)
+            code = self.running.wait()
+        self.running = None
+        code = 128 - code if code < 0 else code
+        _sync_file_system(self.path)  # the line says for good that the step is done: what its programs have written has to last
+        now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
+        self.journal.append({"step": step.name, "size": self.size, "device": self.device, "exit": code, "seconds": time.monotonic() - begin,
+                             "says": step.says, "command": f"tandem {' '.join(step.command)}", "key": step.key, **environment, "date": now})
+        if code == 0:
+            self.done.add(step.key)
+        return code
+
+    def interrupt(self, *_):
+        """A signal that asks to end is handed to the step that runs; no other is begun."""
+        self.interrupted = True
+        if self.running is not None:
+            self.running.send_signal(signal.SIGTERM)
+
+
+def environment_of(program):
+    """Which build measures, by what the program says of itself."""
+    text = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
+    commit = re.search(r"commit (\w+)", text)[1]
+    return {"commit": "" if commit == "unknown" else commit, "dirty": ", dirty" in text}
+
+
+def list_steps(folder, steps):
+    for number, step in enumerate(steps, 1):
+        print(f"{number:>3}  {step.name:<18} {'done' if folder.is_done(step) else told(step.seconds):>6}  {step.says}")
+    left = sum(step.seconds for step in steps if not folder.is_done(step))
+    print(f"about {told(left)} left, as long as it took where the committed results were measured")
+
+
+def run_steps(folder, steps, first, last):
+    """Runs what is left of the steps; the worst exit code. One that fails stops none that follows."""
+    tell = lambda text: print(text, file=sys.stderr, flush=True)
+    environment = environment_of(folder.program)
+    left = sum(step.seconds for step in steps[first - 1:last] if not folder.is_done(step))
+    expected = real = 0.0
+    worst = 0
+    for which in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(which, folder.interrupt)
+    for number, step in enumerate(steps[first - 1:last], first):
+        if folder.interrupted:
+            break
+        if folder.is_done(step):
+            continue
+        pace = real / expected if expected > 0 else 1.0  # of this machine, against that of the committed results
+        tell(f"{number}/{len(steps)} {step.name}: {step.says} (about {told(step.seconds * pace)}; all about {told(left * pace)})")
+        begin = time.monotonic()
+        code = folder.run(step, environment)
+        real, expected, left = real + time.monotonic() - begin, expected + step.seconds, left - step.seconds
+        if code != 0 and not folder.interrupted:
+            tell(f"tandem: step {step.name} ended with {code}: {folder.last_line(step)}; its output is in {folder.path}/logs")
+            worst = max(worst, 1 if code == 1 else 3)
+    if folder.interrupted:
+        tell("tandem: interrupted; the same command goes on")
+        worst = max(worst, 3)
+    return worst
