@@ -71,7 +71,7 @@ class Reading(unittest.TestCase):
             with self.subTest(path.name):
                 cells = tandem.read(path).cells
                 rows = list(csv.reader(io.StringIO(done.stdout)))
-                self.assertEqual([*rows[0], "file"], list(cells.columns))
+                self.assertEqual([*rows[0], "file", "partial"], list(cells.columns))
                 self.assertEqual(len(rows) - 1, len(cells))
                 for name, *texts in zip(*rows):
                     for here, there in zip(cells[name], texts):
@@ -121,6 +121,40 @@ class Reading(unittest.TestCase):
         cells = tandem.read([one, other]).cells
         self.assertEqual(list(cells["file"].unique()), [str(one), str(other)])
         self.assertEqual(len(cells), len(tandem.read(one).cells) + len(tandem.read(other).cells))
+
+    def test_a_result_stands_once(self):
+        """An interrupted cell, the same gone on with in another session, copies, and two that contradict each other."""
+        line = json.loads((H200 / "plan.jsonl").read_text().splitlines()[0])
+        rounds = sorted(set(line["total_ns"]["rounds"]))
+
+        def with_rounds(count, session, factor=1, **fields):
+            record = json.loads(json.dumps(line | fields))
+            total = record["total_ns"]
+            kept = [i for i, of in enumerate(total["rounds"]) if of in rounds[:count]]
+            total["samples"], total["rounds"] = [total["samples"][i] * factor for i in kept], [total["rounds"][i] for i in kept]
+            record["session"], record["sampling"] = session, record["sampling"] | {"interrupted": count < len(rounds)}
+            return json.dumps(record) + "\n"
+
+        begun, whole, other = with_rounds(3, "a"), with_rounds(len(rounds), "b"), with_rounds(len(rounds), "c", 2)
+        with tempfile.TemporaryDirectory() as folder:
+            def read(*texts):
+                files = []
+                for number, text in enumerate(texts):
+                    files.append(pathlib.Path(folder) / f"{number}.jsonl")
+                    files[-1].write_text(text)
+                cells = tandem.read(files).cells
+                return list(zip(cells["session"], cells["partial"]))
+
+            self.assertEqual(read(begun), [("a", True)])
+            self.assertEqual(read(begun, whole), [("b", False)])
+            self.assertEqual(read(whole + begun + whole, whole, other), [("b", False), ("c", False)])
+            self.assertEqual(read(with_rounds(5, "a", 2), whole), [("a", True), ("b", False)])  # not what it went on with
+            gpus = [{**line["devices"][0], "id": f"cuda:{i}"} for i in range(2)]
+            self.assertEqual(len(read(with_rounds(9, "s", devices=gpus[:1]), with_rounds(9, "s", 2, devices=gpus[1:]))), 2)
+            with self.assertRaises(tandem.RecordError) as caught:
+                read(whole, begun + with_rounds(len(rounds), "b", 2))
+            self.assertIn("0.jsonl:1 and ", str(caught.exception))
+            self.assertIn("1.jsonl:2: contradict each other", str(caught.exception))
 
     def test_bad_files_are_one_line(self):
         good = (H200 / "seeds.jsonl").read_text().splitlines()[0]

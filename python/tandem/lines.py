@@ -50,3 +50,62 @@ def each(path):
         raise RecordError(f"{path}: cannot be read ({reason}); name a file of records") from None
     if number == 0:
         raise RecordError(f"{path}: has no record; name a file of records")
+
+
+def _rounds(record):
+    """Samples by round."""
+    total = record.get("total_ns") or {}
+    samples = total.get("samples", [])
+    rounds = {}
+    for of, ns in zip(total.get("rounds", range(len(samples))), samples):
+        rounds.setdefault(of, []).append(ns)
+    return rounds
+
+
+def _extends(more, less):
+    """Whether rounds have all of the others, and some besides: the same run, gone on with."""
+    return len(more) > len(less) > 0 and all(more.get(of) == samples for of, samples in less.items())
+
+
+def _same_run(record):
+    """What two records of one cell in one run of the program share; None where the run is not known."""
+    session = record.get("session")
+    return session and (record["key"], session, tuple(device["id"] for device in record["devices"]), record.get("chosen") is not None)
+
+
+def merged(paths):
+    """Every record of several files, its place and its file, each result once: a record whose rounds another one of its key goes on
+    with is left out, and so is a copy. Raises RecordError for files that are none, and for two records of one cell in one run that
+    contradict each other."""
+    rows = [(record, place, path) for path in paths for record, place in each(path)]
+    by_key = {}
+    for number, (record, *_) in enumerate(rows):
+        by_key.setdefault(record["key"], []).append(number)
+    dropped = set()
+    for numbers in by_key.values():
+        if len(numbers) > 1:
+            dropped |= _superseded([(number, *rows[number][:2]) for number in numbers])
+    return [row for number, row in enumerate(rows) if number not in dropped]
+
+
+def _superseded(rows):
+    """Numbers of the records of one key that take no part."""
+    rounds, runs = {}, {}
+    for number, record, place in rows:
+        try:
+            rounds[number], runs[number] = _rounds(record), _same_run(record)
+        except (KeyError, TypeError, AttributeError):
+            raise RecordError(f"{place}: a record that lacks fields of its schema; {WHAT_TO_GIVE}") from None
+    dropped = {number for number in rounds if any(_extends(rounds[other], rounds[number]) for other in rounds)}
+    first = {}
+    for number, record, place in rows:
+        run = runs[number]
+        if number in dropped or not run:
+            continue
+        if run not in first:
+            first[run] = record, place
+        elif record == first[run][0]:
+            dropped.add(number)
+        else:
+            raise RecordError(f"{first[run][1]} and {place}: contradict each other, being of one cell in one run; leave one of them out")
+    return dropped

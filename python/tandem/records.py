@@ -16,7 +16,7 @@ FIRST_COLUMNS = (
 WHOLE = ("bodies", "tetrahedra", "first_frame", "last_frame", "samples", "rounds", "launches", "waits", "candidate_pairs",
          "contacts", "missing", "extra", "contact_frames_wrong", "pairs_missed", "device_bytes")
 TIMES = ("ms", "ms_low", "ms_high", "device_span_ms")
-TRUTHS = ("converged", "disturbed", "dirty")
+TRUTHS = ("converged", "disturbed", "dirty", "partial")
 PARTS = ("samples", "stages", "kernels", "frames", "errors")  # beside cells
 SPREADS = ("median", "p99", "max")
 WORDS = ("status", "algorithm", "preset", "device", "device_name", "driver", "scene")
@@ -27,7 +27,8 @@ class Records:
     """Frames of the same records; column `cell` of the others is the index of `cells`. Times are milliseconds; launches, waits,
     bytes, pairs and contacts of a cell are sums over its frames.
 
-    cells: a row a record, of any status, in the order of the files: the columns of `tandem export --csv` and then `file`.
+    cells: a row a record, of any status, in the order of the files: the columns of `tandem export --csv`, then `file`, and `partial`:
+        the cell was interrupted before it had enough samples.
         `ms` is the median of a frame with its 95 % interval `ms_low` to `ms_high`; `stage_NAME_ms` of a stage on the device, on
         the host where it has no time there; `count_NAME` a counter of work; `set_NAME` a setting.
     samples: a row a replay: cell, sample, round, ms a frame. Rounds are what is independent, samples of one are not.
@@ -178,7 +179,7 @@ def _typed(column):
 
 def _cells(rows):
     groups = [sorted({name for row in rows for name in row if name.startswith(group)}) for group in ("stage_", "count_", "set_")]
-    table = pandas.DataFrame(rows, columns=[*FIRST_COLUMNS, *sum(groups, []), "file"])
+    table = pandas.DataFrame(rows, columns=[*FIRST_COLUMNS, *sum(groups, []), "file", "partial"])
     kinds = {name: "Int64" for name in (*WHOLE, *groups[1])} | {name: "float64" for name in (*TIMES, *groups[0])}
     kinds |= {name: "boolean" for name in TRUTHS} | {name: "category" for name in (*WORDS, "file")}
     table = table.astype(kinds)
@@ -196,21 +197,21 @@ def _table(rows, whole, words, times):
 
 
 def read(files):
-    """Records: of a path, or of several in their order; .jsonl, or .jsonl.xz. Raises RecordError: FILE:LINE, what it is instead
-    and what to do; a last line without an end is warned of and left out."""
+    """Records: of a path, or of several in their order, such as those of a plan's shards; .jsonl, or .jsonl.xz. A result stands in it
+    once: an interrupted cell's record is left out where another file or line has the cell gone on with. Raises RecordError:
+    FILE:LINE, what it is instead and what to do; a last line without an end is warned of and left out."""
     paths = [files] if isinstance(files, (str, os.PathLike)) else list(files)
     if not paths:
         raise lines.RecordError("no file is named; name files of records")
     rows = {name: [] for name in ("cells", *PARTS)}
-    for path in paths:
-        for record, place in lines.each(path):
-            try:
-                cell = _Cell(len(rows["cells"]), record)
-                rows["cells"].append(cell.row() | {"file": os.fspath(path)})
-                for name in PARTS:
-                    rows[name] += getattr(cell, name)()
-            except (KeyError, TypeError, AttributeError, IndexError):
-                raise lines.RecordError(f"{place}: a record that lacks fields of its schema; {lines.WHAT_TO_GIVE}") from None
+    for record, place, path in lines.merged(paths):
+        try:
+            cell = _Cell(len(rows["cells"]), record)
+            rows["cells"].append(cell.row() | {"file": os.fspath(path), "partial": bool(_at(record, "sampling", "interrupted"))})
+            for name in PARTS:
+                rows[name] += getattr(cell, name)()
+        except (KeyError, TypeError, AttributeError, IndexError):
+            raise lines.RecordError(f"{place}: a record that lacks fields of its schema; {lines.WHAT_TO_GIVE}") from None
     both = ("device_ms", "device_ms_low", "device_ms_high")
     return Records(_cells(rows["cells"]), _table(rows["samples"], ("sample", "round"), (), ("ms",)),
                    _table(rows["stages"], ("launches", "waits", "bytes"), ("stage",), (*both, "host_ms", "host_ms_low", "host_ms_high")),
