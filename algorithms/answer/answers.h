@@ -114,7 +114,7 @@ private:
     std::shared_ptr<AnswerBuffers> make(std::uint64_t pairs, std::uint64_t contacts) const;
     void widen(AnswerBuffers& set);
     std::vector<Column> contact_columns() const;
-    /// Of one contact, in all columns.
+    /// Bytes of one contact, in all columns.
     std::size_t contact_bytes() const;
 
     Device& device_;

@@ -40,7 +40,7 @@ public:
     /// A column. Throws OutOfMemory where there was no memory for a single row.
     const Buffer& buffer(std::size_t column = 0) const;
     std::size_t row_bytes(std::size_t column) const { return columns_[column].row_bytes; }
-    /// Of a row, in all columns.
+    /// Bytes of one row, in all columns.
     std::size_t row_bytes() const;
 
 private:

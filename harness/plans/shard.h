@@ -11,7 +11,8 @@ struct Shard {
     std::size_t index = 0, of = 1;
 };
 
-/// Of --shard: "I/N", or "slurm" for the task of a Slurm job array that this process is. Throws InputError.
+/// The shard that --shard asks for: "I/N", or "slurm" for the task of a Slurm job array that this process is.
+/// Throws InputError.
 Shard parse_shard(const std::string& text);
 
 } // namespace tandem

@@ -87,7 +87,7 @@ private:
         return cell;
     }
 
-    /// Of a frame: the first session's on the host, without a limit.
+    /// Answer of each frame: that of the first session on the host, without a limit.
     const Answer& expected(std::size_t scene, std::size_t frame, const SettingTexts& given) {
         const auto cell = cell_of(given);
         const auto key = std::tuple(scene, frame, text(cell));
