@@ -35,21 +35,28 @@ def _checked(text, place):
     return record
 
 
-def each(path):
-    """Every record of a file and "FILE:LINE"; a last line without an end is warned of and left out. Raises RecordError."""
+def numbered(path, torn):
+    """(line number, record) of every record of a file. A last line without an end is left out: `torn` is called with what to say of it.
+    Raises RecordError."""
     number = 0
     try:
         with _open(path) as file:
             for number, line in enumerate(file, 1):
                 if not line.endswith(b"\n"):
-                    warnings.warn(f"{path}:{number}: the last line has no end, being cut off or still written: it is ignored", stacklevel=3)
+                    torn(f"{path}:{number}: the last line has no end, being cut off or still written: it is ignored")
                     return
-                yield _checked(line, f"{path}:{number}"), f"{path}:{number}"
+                yield number, _checked(line, f"{path}:{number}")
     except (OSError, EOFError, lzma.LZMAError) as problem:
-        reason = getattr(problem, "strerror", None) or problem
+        reason = "is a folder" if isinstance(problem, IsADirectoryError) else getattr(problem, "strerror", None) or problem
         raise RecordError(f"{path}: cannot be read ({reason}); name a file of records") from None
     if number == 0:
-        raise RecordError(f"{path}: has no record; name a file of records")
+        raise RecordError(f"{path}: is empty; name a file of records")
+
+
+def each(path):
+    """Every record of a file and "FILE:LINE"; a last line without an end is warned of and left out. Raises RecordError."""
+    for number, record in numbered(path, lambda message: warnings.warn(message, stacklevel=4)):
+        yield record, f"{path}:{number}"
 
 
 def _rounds(record):

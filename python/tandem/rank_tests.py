@@ -19,22 +19,21 @@ def _doubled_ranks(values):
 
 def _two_sided(counts, at):
     below, here, above = counts[:at].sum(), counts[at], counts[at + 1:].sum()
-    return min(1.0, 2 * (min(below, above) + here) / (below + here + above))
+    return float(min(1.0, 2 * (min(below, above) + here) / (below + here + above))), True
 
 
 def _approximate(total, mean, variance):
-    if variance <= 0:
-        return 1.0
-    return math.erfc(max(0.0, abs(total - mean) - 0.5) / math.sqrt(2 * variance))
+    p = math.erfc(max(0.0, abs(total - mean) - 0.5) / math.sqrt(2 * variance)) if variance > 0 else 1.0
+    return p, False
 
 
-def signed_rank_p(differences):
-    """Wilcoxon's signed ranks; differences of nothing take no part."""
+def signed_ranks(differences):
+    """p of Wilcoxon's signed ranks, and whether it is exact; differences of nothing take no part."""
     differences = numpy.asarray(differences, float)
     differences = differences[differences != 0]
     n = len(differences)
     if n == 0:
-        return 1.0
+        return 1.0, True
     ranks, ties = _doubled_ranks(numpy.abs(differences))
     total = int(ranks[differences > 0].sum())
     if n > MOST_PAIRS:
@@ -46,8 +45,8 @@ def signed_rank_p(differences):
     return _two_sided(counts, total)
 
 
-def rank_sum_p(before, after):
-    """Wilcoxon's rank sums (Mann and Whitney's U)."""
+def rank_sums(before, after):
+    """p of Wilcoxon's rank sums (Mann and Whitney's U), and whether it is exact."""
     if len(before) > len(after):
         before, after = after, before
     n, m = len(before), len(after)

@@ -13,11 +13,9 @@ import subprocess
 import sys
 import time
 
+from ..errors import BadUse
+
 PLANS = pathlib.Path(__file__).parent / "plans"
-
-
-class BadUse(Exception):
-    """One line: what, where, what to do."""
 
 
 @dataclasses.dataclass(frozen=True)

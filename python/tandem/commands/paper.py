@@ -4,18 +4,15 @@ Exit 2, and one line that says why, for bad use and a folder without records; 3 
 import argparse
 import csv
 import dataclasses
-import importlib.util
-import os
-import shutil
-import sys
 
-from . import measuring
+from ..paper import measuring
+from . import check_packages, complain
 
 DRAWS_WITH = ("matplotlib", "pandas", "scipy")
 
 
 def write_claims(folder, found):
-    from . import claims
+    from ..paper import claims
     with open(folder.path / "claims.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, [field.name for field in dataclasses.fields(claims.Claim)], lineterminator="\n")
         writer.writeheader()
@@ -24,8 +21,8 @@ def write_claims(folder, found):
 
 def build(path):
     """Everything; returns the line that says what there is. Raises lines.RecordError, OSError."""
-    from . import claims, figures, page, pictures, tables
-    from .folder import Folder
+    from ..paper import claims, figures, page, pictures, tables
+    from ..paper.folder import Folder
     folder = Folder(path)
     made = tables.all_tables(folder)
     for table in made:
@@ -45,25 +42,10 @@ def draw(path):
     try:
         print(build(path), flush=True)
     except lines.RecordError as error:
-        print(f"tandem: {error}", file=sys.stderr)
-        return 2
+        return complain(error, 2)
     except OSError as error:
-        print(f"tandem: {error.filename or path}: cannot be written: {error.strerror}", file=sys.stderr)
-        return 3
+        return complain(f"{error.filename or path}: cannot be written: {error.strerror}", 3)
     return 0
-
-
-def check_packages():
-    """Goes on with the python3 of PATH where this one, the system's, lacks a package to draw with and that is another."""
-    missing = [name for name in DRAWS_WITH if importlib.util.find_spec(name) is None]
-    if not missing:
-        return
-    other = shutil.which("python3")
-    if other and not os.path.samefile(other, sys.executable) and "TANDEM_PYTHON_TRIED" not in os.environ:
-        os.environ["TANDEM_PYTHON_TRIED"] = "1"
-        os.execv(other, [other, *sys.argv])
-    raise measuring.BadUse(f"tandem paper needs python3 with {', '.join(missing)}; install {' '.join('python3-' + name for name in missing)}, or give "
-                           "--measure-only")
 
 
 def parsed(arguments):
@@ -83,7 +65,7 @@ def main(arguments, program):
     options = parsed(arguments)
     try:
         if not options.measure_only and not options.dry_run:
-            check_packages()  # before anything is measured
+            check_packages("tandem paper", DRAWS_WITH, ", or give --measure-only")  # before anything is measured
         if options.draw_only:
             return draw(options.output)
         steps = measuring.steps_of(options.size, options.device, options.queue_bytes)
@@ -97,9 +79,9 @@ def main(arguments, program):
                 folder.forget(step)
         worst = measuring.run_steps(folder, steps, first, last)
     except measuring.BadUse as error:
-        print(f"tandem: {error}", file=sys.stderr)
-        return 2
+        return complain(error, 2)
     except OSError as error:
-        print(f"tandem: {error.filename or options.output}: {error.strerror}", file=sys.stderr)
-        return 3
-    return worst if options.measure_only else draw(options.output) and 3 or worst
+        return complain(f"{error.filename or options.output}: {error.strerror}", 3)
+    if options.measure_only:
+        return worst
+    return 3 if draw(options.output) else worst

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+"""Subcommands of the program that are written in Python: libexec/tandem/NAME runs `main` of the module NAME. The program has checked
+their options and handed them over as --name=value."""
+import importlib.util
+import os
+import shutil
+import sys
+
+from ..errors import BadUse, OutputError
+
+
+def complain(problem, code):
+    """Prints the one line of a problem; returns the exit code."""
+    print(f"tandem: {problem}", file=sys.stderr)
+    return code
+
+
+def check_packages(command, names, instead=""):
+    """Goes on with the python3 of PATH where this one, the system's, lacks a package and that is another; BadUse where that lacks one
+    as well, or is none."""
+    missing = [name for name in names if importlib.util.find_spec(name) is None]
+    if not missing:
+        return
+    other = shutil.which("python3")
+    if other and not os.path.samefile(other, sys.executable) and "TANDEM_PYTHON_TRIED" not in os.environ:
+        os.environ["TANDEM_PYTHON_TRIED"] = "1"
+        os.execv(other, [other, *sys.argv])
+    raise BadUse(f"{command} needs python3 with {', '.join(missing)}; install {' '.join(f'python3-{name}' for name in missing)}{instead}")
+
+
+def _print(text):
+    """Text on standard output, to its end. Names of files need not be UTF-8."""
+    try:
+        sys.stdout.buffer.write(text.encode(errors="surrogateescape"))
+        sys.stdout.buffer.flush()
+    except OSError as problem:
+        # What is left of it would be written again when Python ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise OutputError(f"standard output could not be written ({problem.strerror})") from None
+
+
+def run(make):
+    """The exit code of a command. `make` returns its text and its exit code, and raises BadUse, RecordError or OutputError."""
+    from ..lines import RecordError
+    try:
+        text, code = make()
+        _print(text)
+        return code
+    except (BadUse, RecordError) as problem:
+        return complain(problem, 2)
+    except OutputError as problem:
+        return complain(problem, 3)

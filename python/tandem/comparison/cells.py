@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: MIT
+"""Records of cells, as far as they are compared; results/record.schema.json says what the fields mean."""
+import dataclasses
+import os
+import statistics
+
+from .. import lines
+
+RECORD_AGAIN = "record the cell again"
+
+
+@dataclasses.dataclass(frozen=True)
+class Answer:
+    """The digest of pairs or contacts."""
+    count: int
+    a: str
+    b: str
+
+
+@dataclasses.dataclass
+class RecordedCell:
+    """A record of one cell; `frames` is how many a sample replays. `names` are what names it, the most telling first; `settings` has the parameters of its scene as well.
+    `rounds` has the median of each round in nanoseconds, by its number, ascending: with schema 2 each sample is a round. `pairs` and
+    `contacts` are None where the record has no digest; a text that is not known is empty."""
+    line: int
+    schema: int
+    key: str
+    status: str
+    failure: str
+    names: dict
+    settings: dict
+    frames: int
+    on_gpus: bool
+    session: str
+    seed: int | None
+    samples: int
+    rounds: dict
+    pairs: Answer | None
+    contacts: Answer | None
+    commit: str
+    processor: str
+    dirty: bool
+
+    def times(self):
+        return list(self.rounds.values())
+
+
+@dataclasses.dataclass
+class RecordedCells:
+    """The records of one file, or of one commit in it. `commit` is the whole one, where one was asked for. `cells` has the last record
+    of each key that is ok, in the order of first lines; `left_out` those that failed, are wrong or have no samples. `repeated` counts
+    keys with several records that are ok; `torn`: the last line has no end and is ignored."""
+    path: str
+    commit: str
+    cells: list
+    left_out: list
+    commits: list
+    records: int
+    repeated: int
+    torn: bool
+
+
+class _NotARecord(Exception):
+    """What a line is instead of a record."""
+
+
+def _text(part, name):
+    value = part.get(name)
+    if value is not None and not isinstance(value, str):
+        raise TypeError(f"{name} must be a string")
+    return value or ""
+
+
+def _joined(devices, field):
+    return "+".join(device[field] for device in devices)
+
+
+def _split_scene(key, settings):
+    """The scene's name and its parameters, of "NAME:par=value,par=value"; the whole key where a parameter is none, or hides a setting."""
+    name, colon, rest = key.partition(":")
+    parameters = dict(part.partition("=")[::2] for part in rest.split(",")) if colon else {}
+    if not all("=" in part for part in rest.split(",") if colon) or parameters.keys() & settings.keys():
+        return key, {}
+    return name, parameters
+
+
+def _handling(record):
+    """What was done with flawed tetrahedra where that changes answers; old records do not say."""
+    error = record.get("error")
+    if not isinstance(error, dict) or "inputs" not in error:
+        return ""
+    handling = error["inputs"]["handling"]
+    return "" if handling == "flat" else f"degenerate={handling}"
+
+
+def _names(record):
+    settings = dict(record["settings"])
+    if not all(isinstance(value, str) for value in settings.values()):
+        raise TypeError("settings must be strings")
+    devices, frames, scene = record["devices"], record["frames"], record["scene"]
+    scene_name, parameters = _split_scene(scene["key"], settings)
+    names = {"algorithm": record["algorithm"], "preset": record["preset"], "devices": _joined(devices, "id"), "model": _joined(devices, "name"),
+             "driver": _joined(devices, "driver"), "scene": scene_name, "frames": f"frames {frames['first']}:{frames['last']}",
+             "handling": _handling(record), "digest": f"digest {scene['digest']}"}
+    return names, settings | parameters
+
+
+def _answer(record, name):
+    """Old records have the digest in `agreement`, where the answer was checked."""
+    for place in ("work", "agreement"):
+        part = record.get(place)
+        if isinstance(part, dict) and name in part:
+            return Answer(*(part[name][field] for field in ("count", "a", "b")))
+    return None
+
+
+def _rounds(record):
+    """How many samples there are, and the median of each round."""
+    total = record.get("total_ns")
+    samples = total["samples"] if total else []
+    numbers = total.get("rounds") if total and record["schema"] >= 3 else range(len(samples))
+    if numbers is None and samples:
+        raise _NotARecord(f"total_ns has no rounds, which schema 3 asks for; {RECORD_AGAIN}")
+    if len(numbers or ()) != len(samples):
+        raise _NotARecord(f"total_ns has {len(samples)} samples and {len(numbers)} rounds; {RECORD_AGAIN}")
+    rounds = {}
+    for number, ns in zip(numbers or (), samples):
+        if not ns > 0:
+            raise _NotARecord(f"a sample of {ns} ns is no time; {RECORD_AGAIN}")
+        rounds.setdefault(number, []).append(float(ns))
+    return len(samples), {number: statistics.median(rounds[number]) for number in sorted(rounds)}
+
+
+def _cell(record, line):
+    names, settings = _names(record)
+    samples, rounds = _rounds(record)
+    seed = (record.get("sampling") or {}).get("seed")
+    environment = record["environment"]
+    if not isinstance(environment["dirty"], bool):
+        raise TypeError("dirty must be true or false")
+    return RecordedCell(line, record["schema"], record["key"], record["status"], _text(record, "failure"), names, settings,
+                        record["frames"]["last"] - record["frames"]["first"] + 1, bool(record["devices"]) and all(device["kind"] == "gpu" for device in record["devices"]), _text(record, "session"),
+                        seed if isinstance(seed, int) else None, samples, rounds, _answer(record, "digest"), _answer(record, "contact_digest"),
+                        _text(environment, "commit"), _text(environment, "processor"), environment["dirty"])
+
+
+def recorded_cell(record, path, line):
+    """The cell of a record that stands in this line. Raises RecordError: PATH:LINE, what it is instead and what to do."""
+    try:
+        return _cell(record, line)
+    except _NotARecord as problem:
+        raise lines.RecordError(f"{path}:{line}: {problem}") from None
+    except KeyError as problem:
+        raise lines.RecordError(f"{path}:{line}: is no record of a cell (it has no {problem.args[0]}); {lines.WHAT_TO_GIVE}") from None
+    except (TypeError, AttributeError, ValueError) as problem:
+        raise lines.RecordError(f"{path}:{line}: is no record of a cell ({problem}); {lines.WHAT_TO_GIVE}") from None
+
+
+def _split_commit(file, commit):
+    """Path and commit, of a path or of PATH@COMMIT where no such file exists."""
+    name = os.fspath(file)
+    path, at, behind = name.rpartition("@")
+    if not at or os.path.exists(name):
+        return name, commit
+    if not behind:
+        raise lines.RecordError(f"{name}: no such file, and no commit behind the @; give FILE@COMMIT")
+    if commit:
+        raise lines.RecordError(f"{name}: commit {commit} is asked for as well; name one commit, behind the @ or by its option")
+    return path, behind
+
+
+def _commits(cells):
+    return list(dict.fromkeys(cell.commit for cell in cells))
+
+
+def _whole_commit(path, start, cells):
+    """The one commit that begins so."""
+    commits = _commits(cells)
+    found = [commit for commit in commits if commit.startswith(start)]
+    if not found:
+        raise lines.RecordError(f"{path}: no record of commit {start}; there are {', '.join(commits)}")
+    if len(found) > 1:
+        raise lines.RecordError(f"{path}: commit {start} may be {' or '.join(found)}; give more of it")
+    return found[0]
+
+
+def read_cells(file, commit=""):
+    """RecordedCells of a file: a path, or PATH@COMMIT where no such file exists. `commit`, or what stands behind the @, is the beginning
+    of the one commit whose records count; all count where it is empty. Raises RecordError."""
+    path, start = _split_commit(file, commit)
+    torn = []
+    records = [recorded_cell(record, path, line) for line, record in lines.numbered(path, torn.append)]
+    if not records:
+        raise lines.RecordError(f"{path}: its only line has no end; name a file of records")
+    if start:
+        start = _whole_commit(path, start, records)
+        records = [cell for cell in records if cell.commit == start]
+    cells, repeated, left_out = {}, set(), []
+    for cell in records:
+        if cell.status != "ok" or not cell.rounds:
+            left_out.append(cell)
+            continue
+        if cell.key in cells:
+            repeated.add(cell.key)
+        cells[cell.key] = cell
+    kept = list(cells.values())
+    return RecordedCells(path, start, kept, left_out, _commits(kept), len(records), len(repeated), bool(torn))
