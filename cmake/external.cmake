@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Subcommands in Python, as programs in libexec/tandem: beside the program in the build folder, and in the installed tree.
-foreach(command paper)
+foreach(command compare paper)
   file(CONFIGURE OUTPUT libexec/tandem/${command} @ONLY CONTENT [=[#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 # tandem @command@: the program starts this, and names itself in TANDEM_PROGRAM.
@@ -11,7 +11,7 @@ import sys
 sys.dont_write_bytecode = True
 installed = pathlib.Path(__file__).resolve().parent / "python"
 sys.path.insert(0, str(installed) if installed.is_dir() else "@PROJECT_SOURCE_DIR@/python")
-from tandem.@command@.command import main
+from tandem.commands.@command@ import main
 
 sys.exit(main(sys.argv[1:], os.environ["TANDEM_PROGRAM"]))
 ]=])

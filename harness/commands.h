@@ -64,15 +64,6 @@ struct ProfileOptions {
     bool all = false;     ///< a row for every kernel, however short
 };
 
-/// Options of `tandem compare`.
-struct CompareOptions {
-    std::string before, after;               ///< files of records, FILE or FILE@COMMIT
-    std::string commit_before, commit_after; ///< beginnings of commits; empty: of all
-    std::optional<double> threshold;         ///< percent; left out: by the kind of device
-    double level = 0.05;                     ///< probability of any false alarm
-    std::string format = "text";             ///< text, json or markdown
-};
-
 /// Options of `tandem devices`.
 struct DevicesOptions {
     bool json = false;                ///< one JSON document instead of lines
@@ -139,27 +130,13 @@ struct SimulateOptions {
     bool quiet = false;
 };
 
-/// Options of `tandem paper`.
-struct PaperOptions {
-    std::string folder;              ///< -o: tables, figures, records
-    std::string device = "opencl:0"; ///< one
-    std::string size = "small";      ///< or full
-    std::string steps;               ///< "FIRST:LAST" or "N", from 1; empty: all
-    bool again = false;              ///< these steps, also where they are done
-    bool dry_run = false;            ///< list the steps
-    bool measure_only = false;       ///< draw nothing
-    bool draw_only = false;          ///< what the folder has; measure nothing
-};
-
 /// Each returns the exit code: 0 ok, 1 a check failed, 3 a device failed. Bad use throws InputError.
 int run_command(const RunOptions& options);
 int check_command(const RunOptions& options);
 int accuracy_command(const AccuracyOptions& options);
 int profile_command(const ProfileOptions& options);
-int compare_command(const CompareOptions& options); ///< 1: something changed
 int simulate_command(const SimulateOptions& options);
 int export_command(const ExportOptions& options);
-int paper_command(const PaperOptions& options);
 int report_command(const ReportOptions& options);
 int view_command(const ViewOptions& options);
 int devices_command(const DevicesOptions& options);

@@ -161,7 +161,7 @@ class Reading(unittest.TestCase):
         without = json.dumps({name: value for name, value in json.loads(good).items() if name != "frames"})
         for text, words in ((f"{good}\nnot json\n", ":2: is not JSON"), ("[1]\n", ":1: is no record of a cell"), ("[" * 100000 + "\n", ":1: is not JSON"),
                             (good.replace('"schema":3', '"schema":1', 1) + "\n", "scripts/convert_records"),
-                            (good.replace('"schema":3', '"schema":9', 1) + "\n", "schema 9"), (f"{without}\n", "lacks fields"), ("", "has no record")):
+                            (good.replace('"schema":3', '"schema":9', 1) + "\n", "schema 9"), (f"{without}\n", "a record"), ("", "is empty")):
             with tempfile.NamedTemporaryFile("w", suffix=".jsonl") as file:
                 file.write(text)
                 file.flush()
@@ -253,7 +253,7 @@ class Comparing(unittest.TestCase):
                 self.expect_same(of(count, 100, "one"), of(count, 130, session))
 
     def test_nothing_in_common(self):
-        with self.assertRaisesRegex(tandem.RecordError, "no cell is in both"):
+        with self.assertRaisesRegex(tandem.RecordError, "have no cell in common"):
             tandem.compare(H200 / "seeds.jsonl", H200 / "thresholds.jsonl")
         with self.assertRaisesRegex(tandem.RecordError, "no record of commit abc"):
             tandem.compare(f"{H200}/seeds.jsonl@abc", H200 / "seeds.jsonl")

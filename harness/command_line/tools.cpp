@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// simulate, export and paper, and what lists devices, scenes and algorithms.
+// simulate and export, and what lists devices, scenes and algorithms.
 #include "algorithms/parameters/table.h"
 #include "harness/command_line/actions.h"
 #include "harness/command_line/sets.h"
@@ -108,26 +108,6 @@ Action add_export(CLI::App& app) {
         given->to_csv = csv->count() > 0;
         return export_command(*given);
     };
-}
-
-Action add_paper(CLI::App& app) {
-    auto given = std::make_shared<PaperOptions>();
-    auto& options = *given;
-    app.add_option("-o,--output", options.folder, "the folder of tables, figures, records and index.html");
-    app.add_option("--device", options.device, "where; opencl:0 when left out");
-    app.add_option("--size", options.size,
-                   "small|full: scenes for a processor, within 15 minutes on two cores, or those of the "
-                   "paper, for a GPU; small when left out")
-        ->option_text("small|full");
-    app.add_option("--steps", options.steps,
-                   "FIRST:LAST or N of those that --dry-run lists; all when left out");
-    app.add_flag("--again", options.again, "measure anew what is done already");
-    app.add_flag("--measure-only", options.measure_only,
-                 "draw nothing; --draw-only does so later, also on another machine");
-    app.add_flag("--draw-only", options.draw_only,
-                 "tables, figures and verdicts of what the folder has; measure nothing");
-    app.add_flag("--dry-run", options.dry_run, "list the steps and how long they take; measure none");
-    return [given] { return paper_command(*given); };
 }
 
 Action add_devices(CLI::App& app) {

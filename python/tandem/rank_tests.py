@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """p-values of two-sided rank tests, exact also with ties where that is little work: as tandem compare has them. (scipy's exact
 tests have none with ties.)"""
+import functools
 import math
 
 import numpy
@@ -27,6 +28,27 @@ def _approximate(total, mean, variance):
     return p, False
 
 
+@functools.lru_cache(maxsize=64)
+def _sets(ranks):
+    """How many sets of ranks there are, by their sum. Without ties, cells with equally many rounds have the same ranks."""
+    counts = numpy.zeros(sum(ranks) + 1)
+    counts[0] = 1
+    for rank in ranks:
+        counts[rank:] = counts[rank:] + counts[:-rank]
+    return counts
+
+
+@functools.lru_cache(maxsize=64)
+def _sets_of(size, ranks):
+    """Likewise sets of `size` ranks, which ascend."""
+    counts = numpy.zeros((size + 1, sum(ranks[-size:]) + 1))
+    counts[0, 0] = 1
+    for rank in ranks:
+        if rank < counts.shape[1]:
+            counts[1:, rank:] = counts[1:, rank:] + counts[:-1, :-rank]
+    return counts[size]
+
+
 def signed_ranks(differences):
     """p of Wilcoxon's signed ranks, and whether it is exact; differences of nothing take no part."""
     differences = numpy.asarray(differences, float)
@@ -38,11 +60,7 @@ def signed_ranks(differences):
     total = int(ranks[differences > 0].sum())
     if n > MOST_PAIRS:
         return _approximate(total / 2, n * (n + 1) / 4, n * (n + 1) * (2 * n + 1) / 24 - ties / 48)
-    counts = numpy.zeros(ranks.sum() + 1)  # sets of ranks by their sum
-    counts[0] = 1
-    for rank in ranks:
-        counts[rank:] = counts[rank:] + counts[:-rank]
-    return _two_sided(counts, total)
+    return _two_sided(_sets(tuple(sorted(ranks))), total)
 
 
 def rank_sums(before, after):
@@ -54,12 +72,7 @@ def rank_sums(before, after):
     total = int(ranks[:n].sum())
     if n * (n + m) > MOST_SUMS:
         return _approximate(total / 2, n * (n + m + 1) / 2, n * m / 12 * (n + m + 1 - ties / ((n + m) * (n + m - 1))))
-    counts = numpy.zeros((n + 1, numpy.sort(ranks)[-n:].sum() + 1))  # sets of so many ranks by their sum
-    counts[0, 0] = 1
-    for rank in numpy.sort(ranks):
-        if rank < counts.shape[1]:
-            counts[1:, rank:] = counts[1:, rank:] + counts[:-1, :-rank]
-    return _two_sided(counts[n], total)
+    return _two_sided(_sets_of(n, tuple(sorted(ranks))), total)
 
 
 def least_signed_rank_p(pairs):

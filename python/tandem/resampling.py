@@ -2,6 +2,7 @@
 """Ratios of medians with bootstrap intervals, to the bit as tandem compare makes them: from a fixed seed, with a generator that is
 specified to the bit (mt19937_64: Nishimura 2000, ACM TOMACS 10(4); the C++ standard has its constants)."""
 import dataclasses
+import functools
 import math
 
 import numpy
@@ -13,9 +14,19 @@ _UPPER, _LOWER = numpy.uint64(0xFFFFFFFF80000000), numpy.uint64(0x7FFFFFFF)
 _TWIST = numpy.uint64(0xB5026F5AA96619E9)
 
 
-def random_words(count, seed=SEED):
+_words = numpy.empty(0, dtype=numpy.uint64)  # of SEED, as many as have been asked for
+
+
+def random_words(count):
     """The first so many words of the generator."""
-    state = [seed]
+    global _words
+    if len(_words) < count:
+        _words = _made(max(count, 2 * len(_words)))
+    return _words[:count]
+
+
+def _made(count):
+    state = [SEED]
     for i in range(1, _WORDS):
         state.append((6364136223846793005 * (state[-1] ^ (state[-1] >> 62)) + i) % 2**64)
     state = numpy.array(state, dtype=numpy.uint64)
@@ -30,9 +41,25 @@ def random_words(count, seed=SEED):
         word ^= (word << numpy.uint64(17)) & numpy.uint64(0x71D67FFFEDA60000)
         word ^= (word << numpy.uint64(37)) & numpy.uint64(0xFFF7EEE000000000)
         words.append(word ^ (word >> numpy.uint64(43)))
-    return numpy.concatenate(words)[:count]
+    return numpy.concatenate(words)
 
 
+@functools.lru_cache(maxsize=64)
+def _drawn(*sizes):
+    """For each of several lists of values of these sizes: the numbers of the values that each resample draws of it."""
+    words = random_words(RESAMPLES * sum(sizes)).reshape(RESAMPLES, -1)
+    ends = numpy.cumsum(sizes)
+    return [(words[:, end - size:end] % numpy.uint64(size)).astype(int) for size, end in zip(sizes, ends)]
+
+
+def _medians(values, drawn):
+    """The median of each resample; numpy.median is slower on many short rows."""
+    rows = numpy.sort(values[drawn], axis=1)
+    middle = len(values) // 2
+    return rows[:, middle] if len(values) % 2 else (rows[:, middle - 1] + rows[:, middle]) / 2
+
+
+@functools.lru_cache(maxsize=256)
 def interval_tail(values):
     """The share of resamples on each side of a 95 % interval of so many values: expanded percentiles (Hesterberg 2015, 4.3)."""
     if values < 2:
@@ -60,16 +87,12 @@ def _ratio(log_ratio, values, logs):
 def paired_ratio(before, after):
     """Of values that belong together: the median of their ratios."""
     logs = numpy.log(numpy.asarray(after, float) / numpy.asarray(before, float))
-    words = random_words(RESAMPLES * len(logs)).reshape(RESAMPLES, -1)
-    drawn = logs[(words % numpy.uint64(len(logs))).astype(int)]
-    return _ratio(float(numpy.median(logs)), len(logs), numpy.median(drawn, axis=1))
+    return _ratio(float(numpy.median(logs)), len(logs), _medians(logs, *_drawn(len(logs))))
 
 
 def unpaired_ratio(before, after):
     """Of values that do not: the ratio of their medians."""
     before, after = numpy.asarray(before, float), numpy.asarray(after, float)
-    words = random_words(RESAMPLES * (len(before) + len(after))).reshape(RESAMPLES, -1)
-    old = before[(words[:, :len(before)] % numpy.uint64(len(before))).astype(int)]
-    new = after[(words[:, len(before):] % numpy.uint64(len(after))).astype(int)]
-    logs = numpy.log(numpy.median(new, axis=1)) - numpy.log(numpy.median(old, axis=1))
+    old, new = _drawn(len(before), len(after))
+    logs = numpy.log(_medians(after, new)) - numpy.log(_medians(before, old))
     return _ratio(math.log(numpy.median(after)) - math.log(numpy.median(before)), min(len(before), len(after)), logs)
