@@ -111,14 +111,16 @@ std::vector<std::string> algorithm_names() {
     return names;
 }
 
+std::string name_of(const testing::TestParamInfo<MemoryLimits::ParamType>& test) {
+    const auto& [device_name, algorithm_name, precision] = test.param;
+    return device_label(device_name) + "_" + algorithm_name + "_" + precision;
+}
+
 INSTANTIATE_TEST_SUITE_P(Devices, MemoryLimits,
                          testing::Combine(testing::ValuesIn(device_names()),
                                           testing::ValuesIn(algorithm_names()),
                                           testing::Values("float", "double")),
-                         [](const auto& test) {
-                             const auto& [device_name, algorithm_name, precision] = test.param;
-                             return device_label(device_name) + "_" + algorithm_name + "_" + precision;
-                         });
+                         name_of);
 
 struct Line {
     const char* algorithm;
