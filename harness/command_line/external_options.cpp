@@ -12,6 +12,10 @@ CLI::Option* add_external_option(CLI::App& app, const std::string& name, const s
     return app.add_option(name, CLI::callback_t{}, description);
 }
 
+CLI::Option* add_external_flag(CLI::App& app, const std::string& name, const std::string& description) {
+    return app.add_flag(name, description);
+}
+
 std::vector<std::string> given_words(const CLI::App& app) {
     std::vector<std::string> words;
     std::vector<std::string> arguments;

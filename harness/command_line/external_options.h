@@ -17,6 +17,9 @@ namespace tandem {
 /// Adds an option, or an argument, whose value an external subcommand reads.
 CLI::Option* add_external_option(CLI::App& app, const std::string& name, const std::string& description);
 
+/// A flag of one.
+CLI::Option* add_external_flag(CLI::App& app, const std::string& name, const std::string& description);
+
 /// The options of a subcommand that the line has, as "--name=value" or "--flag", then "--" and the arguments.
 std::vector<std::string> given_words(const CLI::App& app);
 

@@ -44,10 +44,12 @@ Action add_paper(CLI::App& app) {
                         "paper, for a GPU; small when left out")
         ->option_text("small|full");
     add_external_option(app, "--steps", "FIRST:LAST or N of those that --dry-run lists; all when left out");
-    app.add_flag("--again", "measure anew what is done already");
-    app.add_flag("--measure-only", "draw nothing; --draw-only does so later, also on another machine");
-    app.add_flag("--draw-only", "tables, figures and verdicts of what the folder has; measure nothing");
-    app.add_flag("--dry-run", "list the steps and how long they take; measure none");
+    add_external_flag(app, "--again", "measure anew what is done already");
+    add_external_flag(app, "--measure-only",
+                      "draw nothing; --draw-only does so later, also on another machine");
+    add_external_flag(app, "--draw-only",
+                      "tables, figures and verdicts of what the folder has; measure nothing");
+    add_external_flag(app, "--dry-run", "list the steps and how long they take; measure none");
     return [&app, device] { return run_paper(app, *device); };
 }
 
