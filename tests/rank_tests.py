@@ -9,11 +9,12 @@ import sys
 import unittest
 
 import numpy
+import scipy.stats
 
 from program import SOURCE
 
 sys.path.insert(0, str(SOURCE / "python"))
-from tandem import rank_tests, resampling  # noqa: E402
+from tandem import lines, rank_tests, resampling  # noqa: E402
 from tandem.comparison import matching  # noqa: E402
 
 
@@ -170,6 +171,21 @@ class Ratios(unittest.TestCase):
         for rounds in (10, 25):
             self.assertTrue(0.94 < coverage(resampling.unpaired_ratio, rounds) < 0.995, rounds)
             self.assertTrue(0.94 < coverage(resampling.paired_ratio, rounds) < 0.99, rounds)
+
+    def test_intervals_of_medians_are_those_of_the_program(self):
+        """To the bit: those of records, which the program wrote."""
+        found = 0
+        for name in ("h200/plan.jsonl", "h200/seeds.jsonl", "h100x2/shares.jsonl"):
+            for record, place in lines.each(SOURCE / "results" / name):
+                if record["total_ns"]:
+                    medians = [statistics.median(own) for own in lines.samples_by_round(record).values()]
+                    self.assertEqual(resampling.median_interval(medians), (record["total_ns"]["low"], record["total_ns"]["high"]), place)
+                    found += 1
+        self.assertGreater(found, 100)
+        self.assertEqual(resampling.median_interval([7]), (7, 7))
+        for values in (3, 10, 25):
+            tail = scipy.stats.norm.sf(math.sqrt(values / (values - 1)) * scipy.stats.t.ppf(0.975, values - 1))
+            self.assertAlmostEqual(resampling.interval_tail(values) / tail, 1, delta=1e-7)
 
     def test_error_is_the_deviation_of_what_is_estimated(self):
         random = numpy.random.default_rng(5)

@@ -3,10 +3,14 @@
 import json
 import lzma
 import os
+import re
 import warnings
 
 WHAT_TO_GIVE = "give files that 'tandem run --out' wrote"
 OLDEST, NEWEST = 2, 3
+# What a reader of fields raises where a record is not of its schema.
+FIELD_ERRORS = (KeyError, TypeError, AttributeError, IndexError, ValueError, ArithmeticError)
+_LONE_SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")  # or a pair
 
 
 class RecordError(ValueError):
@@ -17,11 +21,23 @@ def _open(path):
     return lzma.open(path, "rb") if os.fspath(path).endswith(".xz") else open(path, "rb")
 
 
-def _checked(text, place):
+def _no_constant(name):
+    raise ValueError(f"{name} is not JSON")
+
+
+def parsed(text, place):
+    """The value that the bytes of a line are in JSON, which has neither NaN nor halves of characters. Raises RecordError."""
     try:
-        record = json.loads(text)
+        value = json.loads(text, parse_constant=_no_constant)
+        if _LONE_SURROGATE.search(text):
+            json.dumps(value, ensure_ascii=False).encode()
     except (ValueError, RecursionError):
         raise RecordError(f"{place}: is not JSON; {WHAT_TO_GIVE}") from None
+    return value
+
+
+def _cell(text, place):
+    record = parsed(text, place)
     if not isinstance(record, dict) or "schema" not in record or "key" not in record:
         raise RecordError(f"{place}: is no record of a cell; {WHAT_TO_GIVE}")
     schema = record["schema"]
@@ -35,9 +51,9 @@ def _checked(text, place):
     return record
 
 
-def numbered(path, torn):
+def numbered(path, torn, check=_cell):
     """(line number, record) of every record of a file. A last line without an end is left out: `torn` is called with what to say of it.
-    Raises RecordError."""
+    `check` makes a record of the bytes of a line and "FILE:LINE"; without it the records are of cells. Raises RecordError."""
     number = 0
     try:
         with _open(path) as file:
@@ -45,7 +61,7 @@ def numbered(path, torn):
                 if not line.endswith(b"\n"):
                     torn(f"{path}:{number}: the last line has no end, being cut off or still written: it is ignored")
                     return
-                yield number, _checked(line, f"{path}:{number}")
+                yield number, check(line, f"{path}:{number}")
     except (OSError, EOFError, lzma.LZMAError) as problem:
         reason = "is a folder" if isinstance(problem, IsADirectoryError) else getattr(problem, "strerror", None) or problem
         raise RecordError(f"{path}: cannot be read ({reason}); name a file of records") from None
@@ -59,8 +75,8 @@ def each(path):
         yield record, f"{path}:{number}"
 
 
-def _rounds(record):
-    """Samples by round."""
+def samples_by_round(record):
+    """The samples of a record in nanoseconds, by the number of their round."""
     total = record.get("total_ns") or {}
     samples = total.get("samples", [])
     rounds = {}
@@ -100,7 +116,7 @@ def _superseded(rows):
     rounds, runs = {}, {}
     for number, record, place in rows:
         try:
-            rounds[number], runs[number] = _rounds(record), _same_run(record)
+            rounds[number], runs[number] = samples_by_round(record), _same_run(record)
         except (KeyError, TypeError, AttributeError):
             raise RecordError(f"{place}: a record that lacks fields of its schema; {WHAT_TO_GIVE}") from None
     dropped = {number for number in rounds if any(_extends(rounds[other], rounds[number]) for other in rounds)}

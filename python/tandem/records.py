@@ -6,16 +6,11 @@ import statistics
 
 import pandas
 
-from . import lines
+from . import cell_rows, lines
+from .cell_rows import at, interval
 
-FIRST_COLUMNS = (
-    "status", "failure", "algorithm", "preset", "device", "device_name", "driver", "scene", "scene_digest", "bodies", "tetrahedra",
-    "first_frame", "last_frame", "ms", "ms_low", "ms_high", "samples", "rounds", "converged", "disturbed", "device_span_ms",
-    "launches", "waits", "candidate_pairs", "contacts", "missing", "extra", "contact_frames_wrong", "pairs_missed",
-    "device_bytes", "commit", "dirty", "date", "session", "key")  # those of tandem export --csv
 WHOLE = ("bodies", "tetrahedra", "first_frame", "last_frame", "samples", "rounds", "launches", "waits", "candidate_pairs",
          "contacts", "missing", "extra", "contact_frames_wrong", "pairs_missed", "device_bytes")
-TIMES = ("ms", "ms_low", "ms_high", "device_span_ms")
 TRUTHS = ("converged", "disturbed", "dirty", "partial")
 PARTS = ("samples", "stages", "kernels", "frames", "errors")  # beside cells
 SPREADS = ("median", "p99", "max")
@@ -52,71 +47,15 @@ class Records:
         return Records(chosen, *(table[table["cell"].isin(chosen.index)] for table in (getattr(self, name) for name in PARTS)))
 
 
-def _at(record, *path):
-    for name in path:
-        if not isinstance(record, dict):
-            return None
-        record = record.get(name)
-    return record
-
-
-def _of_devices(record, field):
-    return "+".join(str(device[field]) for device in record["devices"])
-
-
-def _total(numbers):
-    return sum(numbers) if isinstance(numbers, list) else None
-
-
 class _Cell:
     """The rows of one record."""
 
     def __init__(self, number, record):
         self.number, self.record = number, record
-        self.count = record["frames"]["last"] - record["frames"]["first"] + 1
+        self.count = cell_rows.frames_of(record)
 
     def ms(self, ns):
-        return None if ns is None else ns / self.count / 1e6
-
-    def interval(self, name, times):
-        return {name: self.ms(_at(times, "median")), f"{name}_low": self.ms(_at(times, "low")), f"{name}_high": self.ms(_at(times, "high"))}
-
-    def row(self):
-        record = self.record
-        row = {name: record.get(name) for name in ("status", "failure", "algorithm", "preset", "session", "key")}
-        row |= {"device": _of_devices(record, "id"), "device_name": _of_devices(record, "name"), "driver": _of_devices(record, "driver")}
-        row |= {"scene": record["scene"]["key"], "scene_digest": record["scene"]["digest"]}
-        row |= {name: record["scene"][name] for name in ("bodies", "tetrahedra")}
-        row |= {"first_frame": record["frames"]["first"], "last_frame": record["frames"]["last"]}
-        row |= {name: record["environment"][name] for name in ("commit", "dirty", "date")}
-        return row | self._times() | self._answer() | {f"set_{name}": value for name, value in record["settings"].items()}
-
-    def _times(self):
-        record = self.record
-        row = self.interval("ms", record["total_ns"])
-        samples = _at(record, "total_ns", "samples")
-        row["samples"] = None if samples is None else len(samples)
-        row |= {name: _at(record, "sampling", name) for name in ("rounds", "converged")}
-        disturbed = _at(record, "conditions", "disturbed")
-        row["disturbed"] = bool(disturbed) if isinstance(disturbed, list) else None
-        row["device_span_ms"] = self.ms(_at(record, "device_span_ns", "median"))
-        stages = record["stages"]
-        if isinstance(stages, dict):
-            for name, stage in stages.items():
-                on_device = _at(stage, "device_ns", "median")
-                row[f"stage_{name}_ms"] = self.ms(on_device if on_device else _at(stage, "host_ns", "median"))
-            row |= {name: sum(stage.get(name, 0) for stage in stages.values()) for name in ("launches", "waits")}
-        return row
-
-    def _answer(self):
-        record = self.record
-        row = {name: _total(_at(record, "work", name)) for name in ("candidate_pairs", "contacts")}
-        row |= {name: _at(record, "agreement", name) for name in ("missing", "extra", "contact_frames_wrong")}
-        truth = _at(record, "error", "truth")
-        if isinstance(truth, dict):
-            row["pairs_missed"] = truth["missed_touching"] + truth["missed_overlapping"]
-        row["device_bytes"] = _at(record, "preparation", "device_bytes")
-        return row | {f"count_{name}": value for name, value in (_at(record, "work", "counters") or {}).items()}
+        return cell_rows.milliseconds(ns, self.count)
 
     def samples(self):
         total = self.record["total_ns"] or {}
@@ -126,7 +65,8 @@ class _Cell:
         return [{"cell": self.number, "sample": i, "round": of, "ms": self.ms(ns)} for i, (ns, of) in enumerate(zip(samples, rounds))]
 
     def stages(self):
-        return [{"cell": self.number, "stage": name, **self.interval("device_ms", stage.get("device_ns")), **self.interval("host_ms", stage.get("host_ns")),
+        return [{"cell": self.number, "stage": name, **interval("device_ms", stage.get("device_ns"), self.count),
+                 **interval("host_ms", stage.get("host_ns"), self.count),
                  **{what: stage.get(what) for what in ("launches", "waits", "bytes")}} for name, stage in (self.record["stages"] or {}).items()]
 
     def kernels(self):
@@ -137,11 +77,11 @@ class _Cell:
                 known = [value for value in (row.get(what), kernel.get(what)) if value is not None]
                 row[what] = max(known, default=None)
         times = self.record.get("kernel_times") or {}
-        return [{"cell": self.number, "kernel": name, **self.interval("device_ms", _at(times, name, "device_ns")),
-                 "launches": _at(times, name, "launches"), **used.get(name, {})} for name in {**times, **used}]
+        return [{"cell": self.number, "kernel": name, **interval("device_ms", at(times, name, "device_ns"), self.count),
+                 "launches": at(times, name, "launches"), **used.get(name, {})} for name in {**times, **used}]
 
     def frames(self):
-        replays = _at(self.record, "total_ns", "frames") or []
+        replays = at(self.record, "total_ns", "frames") or []
         work = self.record.get("work") or {}
         rows = []
         for i in range(self.count):
@@ -153,7 +93,7 @@ class _Cell:
         return rows
 
     def errors(self):
-        truth = _at(self.record, "error", "truth")
+        truth = at(self.record, "error", "truth")
         if not isinstance(truth, dict):
             return []
         missed = truth["missed_touching"] + truth["missed_overlapping"]
@@ -178,13 +118,14 @@ def _typed(column):
 
 
 def _cells(rows):
-    groups = [sorted({name for row in rows for name in row if name.startswith(group)}) for group in ("stage_", "count_", "set_")]
-    table = pandas.DataFrame(rows, columns=[*FIRST_COLUMNS, *sum(groups, []), "file", "partial"])
-    kinds = {name: "Int64" for name in (*WHOLE, *groups[1])} | {name: "float64" for name in (*TIMES, *groups[0])}
+    names = cell_rows.columns(rows)
+    stages, counters, settings = ([name for name in names if name.startswith(group)] for group in cell_rows.GROUPS)
+    table = pandas.DataFrame(rows, columns=[*names, "file", "partial"])
+    kinds = {name: "Int64" for name in (*WHOLE, *counters)} | {name: "float64" for name in (*cell_rows.TIMES, *stages)}
     kinds |= {name: "boolean" for name in TRUTHS} | {name: "category" for name in (*WORDS, "file")}
     table = table.astype(kinds)
     table["date"] = pandas.to_datetime(table["date"], utc=True)
-    for name in groups[2]:
+    for name in settings:
         table[name] = _typed(table[name])
     table.index.name = "cell"
     return table
@@ -207,13 +148,14 @@ def read(files):
     for record, place, path in lines.merged(paths):
         try:
             cell = _Cell(len(rows["cells"]), record)
-            rows["cells"].append(cell.row() | {"file": os.fspath(path), "partial": bool(_at(record, "sampling", "interrupted"))})
+            rows["cells"].append(cell_rows.row(record) | {"file": os.fspath(path), "partial": bool(at(record, "sampling", "interrupted"))})
             for name in PARTS:
                 rows[name] += getattr(cell, name)()
-        except (KeyError, TypeError, AttributeError, IndexError):
+        except lines.FIELD_ERRORS:
             raise lines.RecordError(f"{place}: a record that lacks fields of its schema; {lines.WHAT_TO_GIVE}") from None
     both = ("device_ms", "device_ms_low", "device_ms_high")
     return Records(_cells(rows["cells"]), _table(rows["samples"], ("sample", "round"), (), ("ms",)),
                    _table(rows["stages"], ("launches", "waits", "bytes"), ("stage",), (*both, "host_ms", "host_ms_low", "host_ms_high")),
                    _table(rows["kernels"], ("launches", "registers", "local_bytes", "spill_bytes"), ("kernel",), both),
-                   _table(rows["frames"], ("frame", "body_pairs", "candidate_pairs", "contacts"), (), ("ms",)), _table(rows["errors"], (), ("error",), SPREADS))
+                   _table(rows["frames"], ("frame", "body_pairs", "candidate_pairs", "contacts"), (), ("ms",)),
+                   _table(rows["errors"], (), ("error",), SPREADS))

@@ -6,7 +6,6 @@ import functools
 import math
 
 import numpy
-from scipy import special  # scipy.stats takes half a second to import
 
 SEED, RESAMPLES = 20180606, 1000
 _WORDS, _MIDDLE = 312, 156
@@ -59,13 +58,42 @@ def _medians(values, drawn):
     return rows[:, middle] if len(values) % 2 else (rows[:, middle - 1] + rows[:, middle]) / 2
 
 
-@functools.lru_cache(maxsize=256)
+def _within(angle, freedom):
+    """The probability that a variable of Student's distribution lies within tan(angle) sqrt(freedom) of 0 (Abramowitz and Stegun 1964,
+    26.7.3 and 26.7.4)."""
+    cosine, odd = math.cos(angle), freedom % 2 == 1
+    term = cosine if odd else 1.0
+    total = 0.0 if freedom == 1 else term
+    for n in range(3 if odd else 2, freedom, 2):
+        term *= cosine * cosine * (n - 1) / n
+        total += term
+    return 2 * (1 / math.pi) * (angle + math.sin(angle) * total) if odd else math.sin(angle) * total
+
+
+def _student_quantile(freedom):
+    """t with 97.5 % of Student's distribution below it."""
+    low, high = 0.0, math.pi / 2
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if _within(middle, freedom) < 0.95 else (low, middle)
+    return math.tan(low) * math.sqrt(freedom)
+
+
+@functools.cache
 def interval_tail(values):
     """The share of resamples on each side of a 95 % interval of so many values: expanded percentiles (Hesterberg 2015, 4.3)."""
     if values < 2:
         return 0.0
-    width = math.sqrt(values / (values - 1)) * special.stdtrit(values - 1, 0.975)
+    width = math.sqrt(values / (values - 1)) * _student_quantile(values - 1)
     return math.erfc(width / math.sqrt(2)) / 2
+
+
+def _quantile(ordered, fraction):
+    """Linear between order statistics (Hyndman and Fan 1996, definition 7). numpy.quantile rounds otherwise."""
+    at = fraction * (len(ordered) - 1)
+    below = math.floor(at)
+    above = min(below + 1, len(ordered) - 1)
+    return float(ordered[below] + (at - below) * (ordered[above] - ordered[below]))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -79,7 +107,8 @@ class Ratio:
 
 def _ratio(log_ratio, values, logs):
     tail = interval_tail(values)
-    low, high = numpy.quantile(logs, (tail, 1 - tail))
+    logs = numpy.sort(logs)
+    low, high = _quantile(logs, tail), _quantile(logs, 1 - tail)
     error = 0.0 if logs.min() == logs.max() else float(numpy.std(logs, ddof=1))
     return Ratio(math.exp(log_ratio), math.exp(low), math.exp(high), error)
 
@@ -96,3 +125,13 @@ def unpaired_ratio(before, after):
     old, new = _drawn(len(before), len(after))
     logs = numpy.log(_medians(after, new)) - numpy.log(_medians(before, old))
     return _ratio(math.log(numpy.median(after)) - math.log(numpy.median(before)), min(len(before), len(after)), logs)
+
+
+def median_interval(values):
+    """The 95 % interval of the median of values, made as the program makes those of its records."""
+    values = numpy.sort(numpy.asarray(values, float))
+    if values[0] == values[-1]:  # every resample has the same median
+        return float(values[0]), float(values[-1])
+    medians = numpy.sort(_medians(values, *_drawn(len(values))))
+    tail = interval_tail(len(values))
+    return _quantile(medians, tail), _quantile(medians, 1 - tail)

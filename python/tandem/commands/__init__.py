@@ -1,12 +1,25 @@
 # SPDX-License-Identifier: MIT
 """Subcommands of the program that are written in Python: libexec/tandem/NAME runs `main` of the module NAME. The program has checked
-their options and handed them over as --name=value."""
+their options and handed them over as --name=value. What they share, other programs of the package use as well."""
+import argparse
 import importlib.util
 import os
 import shutil
 import sys
 
 from ..errors import BadUse, OutputError
+
+
+class Parser(argparse.ArgumentParser):
+    """Raises BadUse instead of printing its usage."""
+
+    def error(self, message):
+        raise BadUse(f"{message}; see --help")
+
+
+def warn(message):
+    """Prints a line about input that is left out."""
+    print(message, file=sys.stderr)
 
 
 def complain(problem, code):
@@ -24,7 +37,7 @@ def check_packages(command, names, instead=""):
     other = shutil.which("python3")
     if other and not os.path.samefile(other, sys.executable) and "TANDEM_PYTHON_TRIED" not in os.environ:
         os.environ["TANDEM_PYTHON_TRIED"] = "1"
-        os.execv(other, [other, *sys.argv])
+        os.execv(other, [other, *sys.orig_argv[1:]])
     raise BadUse(f"{command} needs python3 with {', '.join(missing)}; install {' '.join(f'python3-{name}' for name in missing)}{instead}")
 
 

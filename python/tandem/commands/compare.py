@@ -18,7 +18,7 @@ def _parsed(arguments):
 
 
 def _make(options):
-    check_packages("tandem compare", ("numpy", "scipy"))
+    check_packages("tandem compare", ("numpy",))
     from .. import comparison
     from ..comparison import texts
     threshold = None if options.threshold is None else options.threshold / 100

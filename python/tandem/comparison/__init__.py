@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 
 from .. import lines
 from .cells import read_cells
-from .matching import VERDICTS, match
 from .notes import nothing_common
 
 if TYPE_CHECKING:
@@ -33,6 +32,7 @@ class Comparison:
 
 def matched_files(old, new, threshold=None, level=0.05, commits=("", "")):
     """Two RecordedCells and their Matched. Raises RecordError, also where no cell is in both."""
+    from .matching import match  # needs numpy, and reading cells does not
     before, after = read_cells(old, commits[0]), read_cells(new, commits[1])
     matched = match(before, after, threshold, level)
     if not matched.cells:
@@ -53,6 +53,8 @@ def compare(old, new, *, threshold=None, level=0.05):
     """Comparison of two files, as FILE or FILE@COMMIT. threshold: the change that counts, 0.01 for 1 %; 0.01 on GPUs and 0.03
     elsewhere when left out. level: the probability of any false alarm, all cells together. Raises RecordError."""
     import pandas
+
+    from .matching import VERDICTS
     before, after, matched = matched_files(old, new, threshold, level)
     rows = {cell.before.key: _row(cell) for cell in matched.cells}
     table = pandas.DataFrame.from_dict(rows, orient="index", columns=COLUMNS).rename_axis("key")

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""A record of a cell as one row, for 'tandem export --csv' and the frame of cells alike. The standard library is all it needs."""
+
+FIRST_COLUMNS = (
+    "status", "failure", "algorithm", "preset", "device", "device_name", "driver", "scene", "scene_digest", "bodies", "tetrahedra",
+    "first_frame", "last_frame", "ms", "ms_low", "ms_high", "samples", "rounds", "converged", "disturbed", "device_span_ms",
+    "launches", "waits", "candidate_pairs", "contacts", "missing", "extra", "contact_frames_wrong", "pairs_missed",
+    "device_bytes", "commit", "dirty", "date", "session", "key")
+GROUPS = ("stage_", "count_", "set_")  # of further columns
+TIMES = ("ms", "ms_low", "ms_high", "device_span_ms")
+
+
+def columns(rows):
+    """Those that every table has, then those of each group that one of the rows has, by name."""
+    return [*FIRST_COLUMNS, *(name for group in GROUPS for name in sorted({name for row in rows for name in row if name.startswith(group)}))]
+
+
+def is_time(column):
+    """Whether a column has milliseconds a frame."""
+    return column in TIMES or column.startswith("stage_")
+
+
+def at(record, *path):
+    """The value at a path of names; None where it ends early."""
+    for name in path:
+        if not isinstance(record, dict):
+            return None
+        record = record.get(name)
+    return record
+
+
+def frames_of(record):
+    """How many frames a sample of a record has."""
+    return record["frames"]["last"] - record["frames"]["first"] + 1
+
+
+def milliseconds(ns, frames):
+    """A frame's, of nanoseconds of all; None of None."""
+    return None if ns is None else ns / frames / 1e6
+
+
+def interval(name, times, frames):
+    """Milliseconds a frame of a summary of nanoseconds: its median and its 95 % interval, as three columns."""
+    ends = {name: "median", f"{name}_low": "low", f"{name}_high": "high"}
+    return {column: milliseconds(at(times, end), frames) for column, end in ends.items()}
+
+
+def _of_devices(record, field):
+    return "+".join(str(device[field]) for device in record["devices"])
+
+
+def _total(numbers):
+    return sum(numbers) if isinstance(numbers, list) else None
+
+
+def row(record):
+    """Values by column; None of what the record does not have. Launches, waits, pairs, contacts and counters are sums over all frames.
+    Raises one of lines.FIELD_ERRORS where the record is not of its schema."""
+    made = {name: record.get(name) for name in ("status", "failure", "algorithm", "preset", "session", "key")}
+    made |= {"device": _of_devices(record, "id"), "device_name": _of_devices(record, "name"), "driver": _of_devices(record, "driver")}
+    made |= {"scene": at(record, "scene", "key"), "scene_digest": at(record, "scene", "digest")}
+    made |= {name: at(record, "scene", name) for name in ("bodies", "tetrahedra")}
+    made |= {"first_frame": record["frames"]["first"], "last_frame": record["frames"]["last"]}
+    made |= {name: at(record, "environment", name) for name in ("commit", "dirty", "date")}
+    made |= _times(record) | _stages(record) | _answer(record)
+    return made | {f"set_{name}": value for name, value in (record.get("settings") or {}).items()}
+
+
+def _times(record):
+    frames, samples = frames_of(record), at(record, "total_ns", "samples")
+    disturbed = at(record, "conditions", "disturbed")
+    made = interval("ms", record.get("total_ns"), frames)
+    made["samples"] = None if samples is None else len(samples)
+    made |= {name: at(record, "sampling", name) for name in ("rounds", "converged")}
+    made["disturbed"] = bool(disturbed) if isinstance(disturbed, list) else None
+    made["device_span_ms"] = milliseconds(at(record, "device_span_ns", "median"), frames)
+    return made
+
+
+def _stages(record):
+    """A stage's time on the device, on the host where it has none there; launches and waits of all."""
+    frames, stages, made = frames_of(record), record.get("stages"), {}
+    if not isinstance(stages, dict):
+        return made
+    for name, stage in stages.items():
+        on_device = at(stage, "device_ns", "median")
+        made[f"stage_{name}_ms"] = milliseconds(on_device or at(stage, "host_ns", "median"), frames)
+    return made | {name: sum(stage.get(name, 0) for stage in stages.values()) for name in ("launches", "waits")}
+
+
+def _answer(record):
+    made = {name: _total(at(record, "work", name)) for name in ("candidate_pairs", "contacts")}
+    made |= {name: at(record, "agreement", name) for name in ("missing", "extra", "contact_frames_wrong")}
+    truth = at(record, "error", "truth")
+    if isinstance(truth, dict):
+        made["pairs_missed"] = truth["missed_touching"] + truth["missed_overlapping"]
+    made["device_bytes"] = at(record, "preparation", "device_bytes")
+    return made | {f"count_{name}": value for name, value in (at(record, "work", "counters") or {}).items()}
