@@ -1,22 +1,32 @@
 # SPDX-License-Identifier: MIT
-# Subcommands in Python, as programs in libexec/tandem: beside the program in the build folder, and in the installed tree.
-foreach(command compare paper)
-  file(CONFIGURE OUTPUT libexec/tandem/${command} @ONLY CONTENT [=[#!/usr/bin/env python3
+# tandem_external(NAME MODULE [TOOL]): a program that runs main() of a module of the Python package, as libexec/tandem/NAME beside
+# `tandem` in the build folder and in the installed tree. TOOL is its name among the installed tree's programs, for what users start.
+function(tandem_external name module)
+  file(CONFIGURE OUTPUT libexec/tandem/${name} @ONLY CONTENT [=[#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-# tandem @command@: the program starts this, and names itself in TANDEM_PROGRAM.
+# Runs tandem.@module@. The program tandem, where that starts this, names itself in TANDEM_PROGRAM.
 import os
 import pathlib
 import sys
 
 sys.dont_write_bytecode = True
-installed = pathlib.Path(__file__).resolve().parent / "python"
-sys.path.insert(0, str(installed) if installed.is_dir() else "@PROJECT_SOURCE_DIR@/python")
-from tandem.commands.@command@ import main
+here = pathlib.Path(__file__).resolve().parent
+installed = [place for place in (here / "python", here.parent / "libexec/tandem/python") if place.is_dir()]
+sys.path.insert(0, str(installed[0]) if installed else "@PROJECT_SOURCE_DIR@/python")
+from tandem.@module@ import main
 
-sys.exit(main(sys.argv[1:], os.environ["TANDEM_PROGRAM"]))
+sys.exit(main(sys.argv[1:], os.environ.get("TANDEM_PROGRAM", "tandem")))
 ]=])
-  install(PROGRAMS ${PROJECT_BINARY_DIR}/libexec/tandem/${command} DESTINATION libexec/tandem)
-endforeach()
+  install(PROGRAMS ${PROJECT_BINARY_DIR}/libexec/tandem/${name} DESTINATION libexec/tandem)
+  if(ARGC GREATER 2)
+    install(PROGRAMS ${PROJECT_BINARY_DIR}/libexec/tandem/${name} DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME ${ARGV2})
+  endif()
+endfunction()
+
+include(GNUInstallDirs)
+tandem_external(compare commands.compare)
+tandem_external(paper commands.paper)
+tandem_external(export-csv commands.export_csv)
 # What accuracy --figures and simulate --pictures draw with.
 foreach(script figures render)
   configure_file(scripts/${script} ${PROJECT_BINARY_DIR}/libexec/tandem/${script} COPYONLY)

@@ -3,11 +3,11 @@
 #include "algorithms/hierarchy/order.h"
 #include "algorithms/parameters/table.h"
 #include "harness/chunk_numbers.h"
-#include "harness/frame_contacts.h"
 #include "harness/dumps.h"
+#include "harness/external.h"
+#include "harness/frame_contacts.h"
 #include "harness/inputs.h"
 #include "harness/memory_reserve.h"
-#include "harness/table/records_csv.h"
 #include "harness/standard_streams.h"
 #include "scenes/error.h"
 #include "scenes/export/glb.h"
@@ -98,14 +98,9 @@ int export_csv(const ExportOptions& options) {
             "--csv makes a table of a file of records; --vtu, --glb, --mesh, --pose and --frames are of "
             "scenes, so leave them out");
     if (options.scene.empty()) throw InputError("--csv: no file of records; name it before --csv");
-    const auto table = records_as_csv(options.scene);
-    if (options.csv.empty()) {
-        put_text(table.text);
-        return 0;
-    }
-    const DumpFile file(options.csv, table.text);
-    put("{}: {} records of {}\n", options.csv, table.records, options.scene);
-    return 0;
+    std::vector<std::string> words{"--records=" + options.scene};
+    if (!options.csv.empty()) words.push_back("--output=" + options.csv);
+    return run_external("export-csv", words);
 }
 
 } // namespace

@@ -269,13 +269,23 @@ class Records(Case):
         other.write_text('{"schema":3}\n')
         empty.write_text("")
         self.bad(f"{other}:1: is no record of a cell", "export", other, "--csv")
-        self.bad(f"{empty}: has no record", "export", empty, "--csv")
+        self.bad(f"{empty}: is empty", "export", empty, "--csv")
         self.bad("cannot be read", "export", self.work / "none.jsonl", "--csv")
         self.bad("is a folder", "export", self.work, "--csv")
         self.bad("no file of records", "export", "--csv")
         self.bad("--csv makes a table of a file of records", "export", other, "--csv", "--glb", self.work / "x.glb")
+        torn = self.work / "torn.jsonl"
+        torn.write_text('{"schema"')
+        status, out, errors = tandem("export", torn, "--csv")
+        self.assertEqual((status, out, errors[1:]), (2, "", [f"tandem: {torn}: has no record; name a file of records"]))
         old = SOURCE / "results/h200/plates.jsonl"
         self.bad("cannot be written", "export", old, "--csv", self.work / "none" / "x.csv")
+        self.bad("writing failed (No space left on device)", "export", old, "--csv", "/dev/full")
+        record = json.loads(old.read_text().split("\n", 1)[0])
+        for change, expected in (({"frames": None}, "is no record of a cell"), ({"schema": 1}, "scripts/convert_records"), ({"schema": 4}, "schema 4"),
+                                 ({"settings": {"k": 8}}, "is no record of a cell"), ({"work": {"counters": 3}}, "lacks fields of its schema")):
+            other.write_text(json.dumps(record | change) + "\n")
+            self.bad([f"{other}:1: ", expected], "export", other, "--csv")
 
     def test_any_file_name_can_be_recorded(self):
         path = os.path.join(os.fsencode(self.work), b"na\xffme.msh")

@@ -6,7 +6,6 @@
 #include "harness/finished_cells.h"
 #include "harness/plans/plan_file.h"
 #include "harness/report/data.h"
-#include "harness/table/records_csv.h"
 #include "scenes/error.h"
 #include "scenes/read/read.h"
 #include "scenes/recording/bytes.h"
@@ -161,7 +160,6 @@ void read_all_records(std::string_view bytes) {
         } catch (const InputError&) {}
     };
     attempt([&] { compare::read_cells(path, ""); });
-    attempt([&] { records_as_csv(path); });
     attempt([&] { report::data_of(report::read_records({path}), 1 << 20); });
     attempt([&] { const FinishedCells finished(RecordFile(path), path); });
 }

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+"""tandem export --csv: the records of a file as a table of comma-separated values (RFC 4180). Each record has a line, of any status and
+in their order, under a line of names. Columns name and judge the cell, then come times in milliseconds a frame, counters and settings. What
+a record does not have is empty."""
+import json
+
+from .. import cell_rows, lines
+from ..comparison.cells import recorded_cell
+from ..errors import BadUse
+from . import Parser, run, warn
+
+
+def _parsed(arguments):
+    parser = Parser(prog="tandem export --csv", description=__doc__)
+    parser.add_argument("--records", required=True, metavar="FILE")
+    parser.add_argument("--output", default="", metavar="FILE.csv", help="standard output when left out")
+    return parser.parse_args(arguments)
+
+
+def _row(record, path, line):
+    recorded_cell(record, path, line)  # says what else it is
+    try:
+        return cell_rows.row(record)
+    except lines.FIELD_ERRORS:
+        raise lines.RecordError(f"{path}:{line}: a record that lacks fields of its schema; {lines.WHAT_TO_GIVE}") from None
+
+
+def _text(column, value):
+    if value is None or isinstance(value, str):
+        return value or ""
+    return f"{value:.9g}" if cell_rows.is_time(column) else json.dumps(value, separators=(",", ":"), sort_keys=True, ensure_ascii=False)
+
+
+def _quoted(text):
+    if not any(character in text for character in ',"\r\n'):
+        return text
+    return '"' + text.replace('"', '""') + '"'
+
+
+def as_csv(rows):
+    """The table of such rows as cell_rows.row() makes them."""
+    columns = cell_rows.columns(rows)
+    drawn = [columns, *([_text(column, row.get(column)) for column in columns] for row in rows)]
+    return "".join(",".join(map(_quoted, line)) + "\n" for line in drawn)
+
+
+def _write(path, text):
+    what = "cannot be written"
+    try:
+        with open(path, "wb") as file:
+            what = "writing failed"
+            file.write(text.encode(errors="surrogateescape"))
+    except OSError as problem:
+        raise BadUse(f"{path}: {what} ({problem.strerror}); choose another file") from None
+
+
+def _make(arguments):
+    options = _parsed(arguments)
+    rows = [_row(record, options.records, line) for line, record in lines.numbered(options.records, warn)]
+    if not rows:
+        raise lines.RecordError(f"{options.records}: has no record; name a file of records")
+    if not options.output:
+        return as_csv(rows), 0
+    _write(options.output, as_csv(rows))
+    return f"{options.output}: {len(rows)} records of {options.records}\n", 0
+
+
+def main(arguments, program=""):
+    return run(lambda: _make(arguments))
