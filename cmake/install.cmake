@@ -12,8 +12,8 @@ endif()
 install(TARGETS tandem-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES scripts/completion/tandem.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME tandem)
 install(FILES scripts/completion/_tandem DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
-# What reads records and exports, under names that are the project's own.
-foreach(script tables figures render convert_records)
+# What converts records and draws exports, under names that are the project's own; cmake/external.cmake has those in Python's package.
+foreach(script render convert_records)
   string(REPLACE _ - name tandem-${script})
   install(PROGRAMS scripts/${script} DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME ${name})
 endforeach()

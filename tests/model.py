@@ -1,9 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""model.py PROGRAM SOURCE: scripts/model: coefficients that are known, tables of microbenchmarks, bad input, and the tables of results/scaling."""
+"""model.py PROGRAM SOURCE: tandem.model: coefficients that are known, tables of microbenchmarks, bad input, and the tables of results/scaling."""
 import contextlib
-import importlib.machinery
-import importlib.util
 import io
 import json
 import lzma
@@ -15,10 +13,9 @@ import unittest
 from program import SOURCE, Case
 
 sys.dont_write_bytecode = True
-LOADER = importlib.machinery.SourceFileLoader("script_model", str(SOURCE / "scripts/model"))
-MODEL = importlib.util.module_from_spec(importlib.util.spec_from_loader(LOADER.name, LOADER))
-sys.modules[LOADER.name] = MODEL  # where dataclasses look for it
-LOADER.exec_module(MODEL)
+sys.path.insert(0, str(SOURCE / "python"))
+from tandem import model
+from tandem.model import fitting, loads, pages
 # Microseconds: of a frame, and of each count.
 KNOWN = {"refit": (15, {"tetrahedra": 2e-5}), "broad": (8, {"tile_pairs": 1e-4}), "walk": (30, {"body_pairs": 5e-3, "pairs": 4e-5}), "contact": (20,
                                                                                                                                                  {"pairs": 1e-4}),
@@ -42,27 +39,27 @@ def record(chance, bodies, devices, with_ranks=False, frames=2):
     """Of a scene shared evenly, as the known coefficients have it."""
     own, body_pairs, pairs = bodies // devices, int(bodies * chance.uniform(1, 12)), int(bodies * chance.uniform(500, 5000))
     scene = {"key": "made", "bodies": bodies, "tetrahedra": TETRAHEDRA * bodies}
-    line = {"status": "ok", "preset": "resident", "algorithm": "tiled", "settings": {"k": "18", "slabs": "three", "broad": "device"}, "scene": scene,
+    line = {"schema": 3, "key": "made", "status": "ok", "preset": "resident", "algorithm": "tiled", "settings": {"k": "18", "slabs": "three", "broad": "device"}, "scene": scene,
             "shares": None,
             "devices": [{"name": "made", "clock": "made"}] * devices, "frames": {"first": 0,
                                                                                  "last": frames - 1}, "work": {"body_pairs": [body_pairs] * frames,
                                                                                                                "candidate_pairs": [pairs] * frames},
             "preparation": {"device_bytes": 1e8 + 30 * TETRAHEDRA * bodies * devices + 45 * pairs}, "ranks": devices if with_ranks else None}
-    loads = []
+    parts = []
     for _ in range(devices):
         present = own if devices == 1 else int(own * chance.uniform(1.1, 1.6))
-        counts = MODEL.counts_of(scene, present, own, body_pairs / devices, pairs / devices, devices == 1, present if with_ranks else None)
+        counts = loads.counts_of(scene, present, own, body_pairs / devices, pairs / devices, devices == 1, present if with_ranks else None)
         us = {part: known_us(part, counts, chance) for part in KNOWN}
         exchange = {"messages": chance.randrange(1, 20) * frames, "bytes": chance.randrange(1000, 1000000) * frames} if with_ranks else None
         if exchange:
             exchange["host_ns"] = (EXCHANGE[0] * frames + 3 * exchange["messages"] + 2e-4 * exchange["bytes"]) * 1e3
-        loads.append({"ns": {"median": sum(us.values()) * frames * 1e3}, "bodies": [present] * frames, "body_pairs": [body_pairs / devices] * frames,
+        parts.append({"ns": {"median": sum(us.values()) * frames * 1e3}, "bodies": [present] * frames, "body_pairs": [body_pairs / devices] * frames,
                       "candidate_pairs": [pairs / devices] * frames, "exchange": exchange, "stages": stage_ns(us, frames)})
     beside = BESIDE * bodies * frames if with_ranks else 0
-    line["total_ns"] = {"median": max(l["ns"]["median"] + (l["exchange"] or {"host_ns": 0})["host_ns"] for l in loads) + beside}
-    line["stages"] = {name: {clock: {"median": ns} for clock, ns in stage.items()} for name, stage in loads[0]["stages"].items()}
+    line["total_ns"] = {"median": max(l["ns"]["median"] + (l["exchange"] or {"host_ns": 0})["host_ns"] for l in parts) + beside}
+    line["stages"] = {name: {clock: {"median": ns} for clock, ns in stage.items()} for name, stage in parts[0]["stages"].items()}
     if devices > 1:
-        line["shares"] = {"devices": loads}
+        line["shares"] = {"devices": parts}
     return line
 
 
@@ -74,16 +71,17 @@ def records():
 
 def said(*arguments):
     """(exit code, standard output, lines of standard error)."""
-    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as errors:
-        code = MODEL.main([str(argument) for argument in arguments])
-    return code, out.getvalue(), errors.getvalue().splitlines()
+    out = io.TextIOWrapper(io.BytesIO(), "utf-8", write_through=True)
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(io.StringIO()) as errors:
+        code = model.main([str(argument) for argument in arguments])
+    return code, out.buffer.getvalue().decode(), errors.getvalue().splitlines()
 
 
 class ModelCase(Case):
     def refused(self, expected, *arguments):
         code, _, errors = said(*arguments)
         self.assertEqual((code, len(errors)), (2, 1), (arguments, errors))
-        self.assertTrue(errors[0].startswith("model: "), errors)
+        self.assertTrue(errors[0].startswith("tandem: "), errors)
         self.assertIn(expected, errors[0])
 
     def file(self, name, lines):
@@ -95,7 +93,7 @@ class ModelCase(Case):
 
 class Fit(ModelCase):
     def test_known_coefficients_are_found(self):
-        (model,) = MODEL.fit(MODEL.read([self.file("made.jsonl.xz", records())])).values()
+        (model,) = fitting.fit(loads.read([self.file("made.jsonl.xz", records())], self.fail)).values()
         for part, (fixed, per) in KNOWN.items():
             term = model.parts[part]
             self.assertEqual(set(term.per), set(per), part)
@@ -109,7 +107,7 @@ class Fit(ModelCase):
         self.assertLess(abs(model.memory.per["pairs"] / 45 - 1), 0.05)
 
     def test_what_every_rank_takes_is_found(self):
-        every = MODEL.every_rank(MODEL.read([self.file("made.jsonl", records())]))
+        every = fitting.every_rank(loads.read([self.file("made.jsonl", records())], self.fail))
         self.assertEqual((every.bodies, every.ranks), (30000, 4))
         self.assertLess(abs(every.beside / BESIDE - 1), 0.01)
         largest = records()[-1]
@@ -117,13 +115,13 @@ class Fit(ModelCase):
 
     def test_no_coefficient_is_negative(self):
         counts = [{"tetrahedra": n, "pairs": m} for n, m in ((1e6, 10), (2e6, 20), (4e6, 5), (9e6, 50))]
-        term = MODEL.fitted(("tetrahedra", "pairs"), counts, [10 + c["tetrahedra"] * 2e-5 - 0.05 * c["pairs"] for c in counts])
+        term = fitting.fitted(("tetrahedra", "pairs"), counts, [10 + c["tetrahedra"] * 2e-5 - 0.05 * c["pairs"] for c in counts])
         self.assertEqual(term.per["pairs"], 0)
         self.assertGreater(min(term.fixed, term.per["tetrahedra"]), 0)
         self.assertGreater(max(term.errors), 1e-3)
 
     def test_what_does_not_differ_has_no_coefficient(self):
-        term = MODEL.fitted(("tetrahedra", "pairs"), [{"tetrahedra": n, "pairs": 7} for n in (1e5, 2e5, 3e5)], [12, 14, 16])
+        term = fitting.fitted(("tetrahedra", "pairs"), [{"tetrahedra": n, "pairs": 7} for n in (1e5, 2e5, 3e5)], [12, 14, 16])
         self.assertEqual(list(term.per), ["tetrahedra"])
 
     def test_bad_input(self):
@@ -131,10 +129,10 @@ class Fit(ModelCase):
         few = self.file("few.jsonl", good[:2])
         self.refused("2 records: too few", "--fit", few)
         self.refused("No such file", "--fit", self.work / "none.jsonl")
-        for name, lines, said_of in (("empty", [], "empty, no records"), ("text", [good[0], "no JSON\n"], "text.jsonl:2 is no record"), ("list", ["[]\n"],
-                                                                                                                                         ":1 is no record"),
-                                     ("half", [{**good[0], "work": None}], ":1 is no record"), ("frames", [{**good[0], "frames": {"first": 1, "last": 0}}],
-                                                                                                ":1 is no record")):
+        for name, lines, said_of in (("empty", [], "is empty"), ("text", [good[0], "no JSON\n"], "text.jsonl:2: is not JSON"), ("list", ["[]\n"],
+                                                                                                                                         ":1: is no record"),
+                                     ("half", [{**good[0], "work": None}], ":1: is no record"), ("frames", [{**good[0], "frames": {"first": 1, "last": 0}}],
+                                                                                                ":1: is no record")):
             self.refused(said_of, "--fit", self.file(f"{name}.jsonl", lines))
         self.refused("no such group; there are: made", "--group", "none", self.file("good.jsonl", good))
         self.refused("no record of ranks", "--group", "made", self.file("alone.jsonl", good[:10]))
@@ -145,7 +143,7 @@ class Fit(ModelCase):
                **{name: 4 for name in ("ghosts_mean", "ghosts_most", "neighbours_mean")}}
         other = {"run_type": "iteration", "name": "refit/host/8", "real_time": 1}
         path = self.file("bench.json", [json.dumps({"benchmarks": [{**one, "name": "partition, parts/4/125/iterations:1"}, {**met, "name": "ghosts, ranks/8/27/iterations:1"}, other]})])
-        made = MODEL.partitions(path)
+        made = pages.partitions(path)
         self.assertEqual(made["partition"].splitlines()[2:], ["| 4 | 125 | 2.00 | 4000.0 | 0.88 | 50 | 90 | 2.0 |"])
         self.assertEqual(made["ghosts"].splitlines()[2:], ["| 8 | 27 | 4 | 4 | 0.4 | 4.0 | 5 | 2.5 |"])
         good = self.file("good.jsonl", records())

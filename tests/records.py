@@ -283,7 +283,8 @@ class Records(Case):
         self.bad("writing failed (No space left on device)", "export", old, "--csv", "/dev/full")
         record = json.loads(old.read_text().split("\n", 1)[0])
         for change, expected in (({"frames": None}, "is no record of a cell"), ({"schema": 1}, "scripts/convert_records"), ({"schema": 4}, "schema 4"),
-                                 ({"settings": {"k": 8}}, "is no record of a cell"), ({"work": {"counters": 3}}, "lacks fields of its schema")):
+                                 ({"settings": {"k": 8}}, "is no record of a cell"), ({"work": {"counters": 3}}, "lacks fields of its schema"),
+                                 ({"frames": {"first": 1, "last": 0}}, "lacks fields of its schema")):
             other.write_text(json.dumps(record | change) + "\n")
             self.bad([f"{other}:1: ", expected], "export", other, "--csv")
 

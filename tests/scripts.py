@@ -1,8 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""scripts.py PROGRAM SOURCE: scripts that read records and exports (tables, figures, convert_records, render): over every committed
-file, over cells of every status, and over files that are no such files; and the committed microbenchmarks."""
+"""scripts.py PROGRAM SOURCE: what reads records and exports (tandem.tables, tandem.error_figures, tandem.answer, scripts/convert_records,
+scripts/render): over every committed file, over cells of every status, and over files that are no such files; and the committed
+microbenchmarks."""
 import contextlib
+import importlib
 import importlib.machinery
 import importlib.util
 import io
@@ -18,16 +20,18 @@ import subprocess
 import sys
 import unittest
 
-from program import LONG, SMALL, SOURCE, Case, sets, tandem
+from program import LONG, PROGRAM, SMALL, SOURCE, Case, sets, tandem
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(SOURCE / "scripts"))
+sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "python")]
 COMMITTED = sorted([*SOURCE.glob("results/*/*.jsonl"), *SOURCE.glob("results/*/*.jsonl.xz")])
-READERS = ("tables", "figures", "convert_records")
+MODULES = {"tables": "tandem.tables", "figures": "tandem.error_figures", "answer": "tandem.answer"}  # other names are those of scripts
 
 
 def loaded(name, scripts={}):
-    """The script as a module, once: starting a Python and reading its libraries takes longer than most files."""
+    """The module or script, loaded once: starting a Python and reading its libraries takes longer than most files."""
+    if name in MODULES:
+        return importlib.import_module(MODULES[name])
     if name not in scripts:
         loader = importlib.machinery.SourceFileLoader(f"script_{name}", str(SOURCE / "scripts" / name))
         scripts[name] = importlib.util.module_from_spec(importlib.util.spec_from_loader(loader.name, loader))
@@ -35,20 +39,27 @@ def loaded(name, scripts={}):
     return scripts[name]
 
 
+def called(module, *arguments):
+    """(exit code, standard output, lines of standard error) of main() of a module, in this process."""
+    out = io.TextIOWrapper(io.BytesIO(), "utf-8", write_through=True)
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(io.StringIO()) as errors:
+        try:
+            code = module.main([str(argument) for argument in arguments]) or 0
+        except SystemExit as end:  # with a text, which Python prints, or with a code
+            code = 1 if isinstance(end.code, str) else end.code
+            errors.write(end.code if isinstance(end.code, str) else "")
+    return code, out.buffer.getvalue().decode(), errors.getvalue().splitlines()
+
+
 def script(name, *arguments, address_space=None):
     """(exit code, standard output, lines of standard error): in this process unless with so many bytes of address space, or of a Python
     other than the scripts' own, which need not have their libraries."""
     if not address_space and name != "render" and os.path.realpath(sys.executable) == os.path.realpath("/usr/bin/python3"):
-        with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as errors:
-            try:
-                code = loaded(name).main([str(argument) for argument in arguments]) or 0
-            except SystemExit as end:  # with a text, which Python prints, or with a code
-                code = 1 if isinstance(end.code, str) else end.code
-                errors.write(end.code if isinstance(end.code, str) else "")
-        return code, out.getvalue(), errors.getvalue().splitlines()
+        return called(loaded(name), *arguments)
     limit = (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space))) if address_space else None
-    done = subprocess.run(["/usr/bin/python3", SOURCE / "scripts" / name, *map(str, arguments)], capture_output=True, text=True, timeout=500,
-                          preexec_fn=limit, cwd=SOURCE)
+    what = ["-B", "-m", MODULES[name]] if name in MODULES else [SOURCE / "scripts" / name]
+    done = subprocess.run(["/usr/bin/python3", *what, *map(str, arguments)], capture_output=True, text=True, timeout=500,
+                          preexec_fn=limit, cwd=SOURCE, env={**os.environ, "PYTHONPATH": str(SOURCE / "python")})
     return done.returncode, done.stdout, done.stderr.splitlines()
 
 
@@ -75,7 +86,7 @@ class Scripts(Case):
     def refused(self, name, expected, *arguments, code=2):
         status, text, errors = script(name, *arguments)
         self.assertEqual((status, len(errors)), (code, 1), (name, arguments, errors, text))
-        self.assertTrue(errors[0].startswith(f"{name}: "), errors)
+        self.assertTrue(errors[0].startswith("tandem: " if name in MODULES else f"{name}: "), errors)
         for part in [expected] if isinstance(expected, str) else expected:
             self.assertIn(part, errors[0])
 
@@ -139,30 +150,41 @@ class Scripts(Case):
 
     def test_files_that_are_none(self):
         record = committed("cpu/walks.jsonl")[0]
-        packed = lzma.compress(json.dumps(record).encode())
-        bad = {"text.jsonl": (b"no record\n", ":1 is no JSON"), "number.jsonl": (b"3\n", ":1 is no record of tandem"),
-               "list.jsonl": (b"[]\n", ":1 is no record of tandem"), "other.jsonl": (b'{"a": 1}\n', ":1 is no record of tandem"),
-               "deep.jsonl": (b"[" * 100000, ":1 is no JSON"), "bytes.jsonl": (bytes(range(256)), "is no JSON"),
-               "nan.jsonl": (json.dumps({**record, "total_ns": math.nan}).encode(), ":1 is no JSON"),
-               "torn.jsonl": (json.dumps(record).encode() + b'\n{"schema":3,"key"', ":2 is no JSON"),
-               "old.jsonl": (json.dumps({**record, "schema": 2}).encode(), [":1 is a record of schema 2, not 3", "scripts/convert_records"]),
-               "newer.jsonl": (json.dumps({**record, "schema": 9}).encode(), ":1 is a record of schema 9, not 3"),
-               "empty.jsonl": (b"", "empty, no records"), "empty.jsonl.xz": (lzma.compress(b""), "empty, no records"),
+        line = json.dumps(record).encode() + b"\n"
+        packed = lzma.compress(line)
+        bad = {"text.jsonl": (b"no record\n", ":1: is not JSON"), "number.jsonl": (b"3\n", ":1: is no record of tandem"),
+               "list.jsonl": (b"[]\n", ":1: is no record of tandem"), "other.jsonl": (b'{"a": 1}\n', ":1: is no record of tandem"),
+               "deep.jsonl": (b"[" * 100000 + b"\n", ":1: is not JSON"), "bytes.jsonl": (bytes(range(256)), "is not JSON"),
+               "nan.jsonl": (json.dumps({**record, "total_ns": math.nan}).encode() + b"\n", ":1: is not JSON"),
+               "half.jsonl": (b'{"key": "\\ud83d"}\n', ":1: is not JSON"), "second.jsonl": (line + b'{"schema":3,"key"\n', ":2: is not JSON"),
+               "torn.jsonl": (line[:100], "torn.jsonl: its only line has no end"),
+               "old.jsonl": (json.dumps({**record, "schema": 2}).encode() + b"\n", [":1: a record of schema 2", "scripts/convert_records"]),
+               "newer.jsonl": (json.dumps({**record, "schema": 9}).encode() + b"\n", [":1: a record of schema 9", "take the package"]),
+               "empty.jsonl": (b"", "is empty"), "empty.jsonl.xz": (lzma.compress(b""), "is empty"),
                "half.jsonl.xz": (packed[:len(packed) // 2], "half.jsonl.xz: "), "odd.jsonl.xz": (packed[:300] + b"odd" + packed[303:], "odd.jsonl.xz: ")}
         for name, (data, expected) in bad.items():
             path = self.work / name
             path.write_bytes(data)
             for reader in ("tables", "figures"):
                 with self.subTest(f"{reader} {name}"):
-                    self.refused(reader, expected, path, *([self.work / "none"] if reader == "figures" else []))
-        for name in ("text.jsonl", "list.jsonl", "bytes.jsonl", "torn.jsonl", "empty.jsonl", "half.jsonl.xz", "odd.jsonl.xz", "deep.jsonl"):
+                    # A line without an end is warned of, and may be all that there is.
+                    status, _, errors = script(reader, path, *([self.work / "none"] if reader == "figures" else []))
+                    self.assertEqual((status, len(errors)), (2, 1 + (name == "torn.jsonl")), errors)
+                    self.assertTrue(errors[-1].startswith("tandem: "), errors)
+                    for part in [expected] if isinstance(expected, str) else expected:
+                        self.assertIn(part, errors[-1])
+        for name in ("text.jsonl", "list.jsonl", "bytes.jsonl", "second.jsonl", "torn.jsonl", "empty.jsonl", "half.jsonl.xz", "odd.jsonl.xz", "deep.jsonl"):
             with self.subTest(f"convert_records {name}"):
                 self.refused("convert_records", name, self.work / name)
                 self.assertEqual((self.work / name).read_bytes(), bad[name][0])
-        for reader in READERS:
+        for reader, folder in (("tables", "is a folder"), ("figures", "is a folder"), ("convert_records", "directory")):
             more = [self.work / "none"] if reader == "figures" else []
             self.refused(reader, ["absent.jsonl", "No such file"], self.work / "absent.jsonl", *more)
-            self.refused(reader, ["directory"], self.work, *more)
+            self.refused(reader, folder, self.work, *more)
+        frameless = {**record, "frames": {"first": 1, "last": 0}}
+        self.refused("tables", "frameless.jsonl:1: is no record of a cell (ZeroDivisionError", self.file("frameless.jsonl", [frameless]))
+        self.refused("tables", "the following arguments are required")
+        self.refused("figures", "the following arguments are required", self.work / "text.jsonl")
         self.assertFalse((self.work / "none").exists())
         for fields in ("settings", "devices", "total_ns", "stages", "environment", "frames", "sampling"):
             for value in ({}, [], 3, "x"):
@@ -170,6 +192,37 @@ class Scripts(Case):
                 code, _, errors = script("tables", self.file("broken.jsonl", [broken]))
                 self.assertLessEqual((code, len(errors)), (2, 1), (fields, value, errors))
                 self.assertNotIn("Traceback", "".join(errors))
+
+    def test_a_last_line_without_an_end_is_left_out(self):
+        whole = self.file("whole.jsonl", committed("h200/accuracy.jsonl")[:2])
+        torn = self.work / "cut.jsonl"
+        torn.write_text(whole.read_text() + whole.read_text()[:100])
+        for reader, more in (("tables", []), ("figures", [self.work / "of the whole"])):
+            code, text, errors = script(reader, torn, *more)
+            self.assertEqual((code, text, len(errors)), (0, self.said(reader, whole, *more), 1))
+            self.assertIn("cut.jsonl:3: the last line has no end", errors[0])
+
+    def test_every_answer_to_odd_bytes_is_one_line(self):
+        """The files of the fuzz target of records, which readers in C++ are given as well."""
+        inputs = sorted((SOURCE / "tests/fuzz/corpus/records").iterdir())
+        self.assertGreater(len(inputs), 3)
+        export = importlib.import_module("tandem.commands.export_csv")
+        for path in inputs:
+            for read in (lambda: script("tables", path), lambda: script("figures", path, self.work / "odd"), lambda: called(export, f"--records={path}")):
+                code, _, errors = read()
+                errors = [line for line in errors if "the last line has no end" not in line]
+                self.assertIn((code, len(errors)), ((0, 0), (2, 1)), (path.name, errors))
+
+    def test_the_standard_library_is_enough(self):
+        """For reading, tables, exports and conversion: without the system's packages, and without those of users."""
+        walks, copy = SOURCE / "results/cpu/walks.jsonl", self.work / "walks.jsonl"
+        shutil.copy(walks, copy)
+        programs = PROGRAM.parent / "libexec/tandem"
+        for words in ((programs / "export-csv", f"--records={walks}"), (programs / "tables", walks), (SOURCE / "scripts/convert_records", copy)):
+            done = subprocess.run(["/usr/bin/python3", "-S", "-I", *map(str, words)], capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stderr), (0, ""), words)
+            self.assertGreater(len(done.stdout), 20)
+        self.assertEqual(copy.read_bytes(), walks.read_bytes())
 
     def test_cells_that_failed_or_are_wrong_are_shown_and_never_ranked(self):
         plates = {record["algorithm"] + record["preset"]: record for record in reversed(committed("h200/plates.jsonl"))
@@ -325,10 +378,14 @@ class Scripts(Case):
             self.assertEqual(script("answer", plan, "--write", copy), (0, "", []))
             self.assertEqual(copy.read_text(), text, page)
         copy.write_text("<!-- answer: nothing -->\n<!-- end -->\n")
-        for arguments, said in (((plan, "--write", copy), "no table 'nothing'"), ((self.work / "none.jsonl",), "No such file"), ((copy,), "is no record")):
-            status, _, errors = script("answer", *arguments)
-            self.assertEqual((status, len(errors)), (1, 1), errors)
-            self.assertIn(said, errors[0])
+        pile = SOURCE / "results/h200/pile.jsonl"
+        for arguments, expected in (((plan, "--write", copy), "no table 'nothing'"), ((plan, "--write", self.work / "none.md"), "none.md: cannot be read"),
+                                    ((self.work / "none.jsonl",), "No such file"), ((copy,), "is not JSON"), ((pile,), "pile.jsonl:1: is no record of a cell of the plan"),
+                                    ((plan, "--picture"), "expected one argument"), ((), "arguments are required")):
+            self.refused("answer", expected, *arguments)
+        self.refused("answer", "none/a.svg: cannot be written", plan, "--picture", self.work / "none/a.svg", code=3)
+        few = self.file("few.jsonl", committed("h200/plan.jsonl")[:3])
+        self.refused("answer", "--picture needs all scenes of the plan", few, "--picture", self.work / "few.svg")
 
     def test_the_table_of_what_was_tried_is_of_its_lines(self):
         tried, copy = SOURCE / "results/tried.jsonl", self.work / "page.md"
@@ -357,7 +414,7 @@ class Scripts(Case):
         self.assertEqual(words(SOURCE / "results/h200/answer.svg"), words(drawn))
 
     def test_numbers_of_the_readme_are_made(self):
-        """What was measured stands between the marks of scripts/answer alone."""
+        """What was measured stands between the marks of tandem.answer alone."""
         text = re.sub(r"<!-- answer: [a-z ]+ -->.*?<!-- end -->|^    .*?$", "", (SOURCE / "README.md").read_text(), flags=re.DOTALL | re.MULTILINE)
         self.assertEqual(re.findall(r"\d[\d.,]* ?(?:%|ms|us|ns|s|GB|GiB|MB|times|minutes|seconds)(?![A-Za-z])", text), [])
 

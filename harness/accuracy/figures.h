@@ -5,19 +5,19 @@
 
 namespace tandem {
 
-/// Figures of records with their data, by scripts/figures, which is in libexec/tandem.
+/// Figures of records with their data, by the package python/tandem/error_figures.
 class Figures {
 public:
-    /// Throws InputError when the script or a Python with matplotlib is missing, or the folder cannot be
+    /// Throws InputError when the package or a Python with matplotlib is missing, or the folder cannot be
     /// made.
     explicit Figures(std::string folder);
 
-    /// Draws all records of the file that have errors. Throws InputError when the script fails, which has
-    /// then said why on standard error.
+    /// Draws all records of the file that have errors. Throws InputError when that fails; standard error
+    /// then says why.
     void draw(const std::string& records) const;
 
 private:
-    std::string folder_, script_, python_;
+    std::string folder_;
 };
 
 } // namespace tandem

@@ -29,15 +29,15 @@ def complain(problem, code):
 
 
 def check_packages(command, names, instead=""):
-    """Goes on with the python3 of PATH where this one, the system's, lacks a package and that is another; BadUse where that lacks one
+    """Goes on with the system's python3, or where this is it with that of PATH, where this one lacks a package; BadUse where that lacks one
     as well, or is none."""
     missing = [name for name in names if importlib.util.find_spec(name) is None]
     if not missing:
         return
-    other = shutil.which("python3")
-    if other and not os.path.samefile(other, sys.executable) and "TANDEM_PYTHON_TRIED" not in os.environ:
-        os.environ["TANDEM_PYTHON_TRIED"] = "1"
-        os.execv(other, [other, *sys.orig_argv[1:]])
+    for other in (shutil.which("/usr/bin/python3"), shutil.which("python3")):
+        if other and not os.path.samefile(other, sys.executable) and "TANDEM_PYTHON_TRIED" not in os.environ:
+            os.environ["TANDEM_PYTHON_TRIED"] = "1"
+            os.execv(other, [other, *sys.orig_argv[1:]])
     raise BadUse(f"{command} needs python3 with {', '.join(missing)}; install {' '.join(f'python3-{name}' for name in missing)}{instead}")
 
 

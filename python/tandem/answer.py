@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: MIT
+"""python3 -m tandem.answer FILE.jsonl [--write README.md ... | --picture FILE.svg]: the tables of the README from the records of
+results/h200/plan.json, as Markdown: what a frame takes, what refit and walk take of it, and how many times as long as tiled the other walks
+take. --write puts each table between its marks, <!-- answer: NAME --> and <!-- end -->, of the pages; without it they are printed. --picture
+draws the README's first one instead (python3-matplotlib). Medians have the half width of their 95 % interval; ratios are of rounds taken side
+by side. Exit 2, and one line that says why, for a file that is not of that plan."""
+import argparse
+import itertools
+import re
+import statistics
+import sys
+
+from . import cell_rows, kinds, lines, markdown
+from .commands import Parser, check_packages, run, warn
+from .errors import BadUse, OutputError
+
+SCENES = {"plates": "plates, frames 20:121", "funnel": "funnel, frames 140:149", "glasses": "glasses, frames 140:149",
+          "0.05": "2,000 jacks, density 0.05", "0.2": "2,000 jacks, density 0.2"}
+METHODS = {"tiled": "tiled", "other": "tiled, other slabs", "chunked": "chunked, grouped", "sah": "chunked, grouped, tiled's trees",
+           "paper": "chunked, the paper's schedule", "fair": "gproximity fair", "chunked published": "chunked published",
+           "gproximity published": "gproximity published"}
+USUAL = ("tiled", "other", "chunked", "sah", "fair")
+WALK = ("refit", "seed", "traverse", "balance")
+
+
+def scene_of(record):
+    name = record["scene"]["key"]
+    density = re.search(r"density=([\d.]+)", name)
+    found = [density[1]] if density else [word for word in SCENES if word in name]
+    return found[0]
+
+
+def method_of(record):
+    settings, preset, algorithm = record["settings"], record["preset"], record["algorithm"]
+    if preset == "published":
+        return f"{algorithm} published"
+    if algorithm == "gproximity":
+        return "fair"
+    if algorithm == "tiled":
+        return "tiled" if "slabs" in record["asked"] else "other"  # slabs=usual was asked for and another value taken
+    return "sah" if settings["builder"] == "sah" else "paper" if settings["schedule"] == "item" else "chunked"
+
+
+class Cell:
+    """Milliseconds a frame by round: of samples, and device time of refit and walk of replays with a clock around every command."""
+
+    def __init__(self, record):
+        frames = cell_rows.frames_of(record)
+        self.total = {n: cell_rows.milliseconds(statistics.median(own), frames) for n, own in lines.samples_by_round(record).items()}
+        walks = [record["stages"][s]["device_ns"]["samples"] for s in WALK if s in record["stages"]]
+        self.walk = {n: cell_rows.milliseconds(sum(own), frames) for n, own in enumerate(zip(*walks))}
+        self.devices = {device["name"] for device in record["devices"]}
+
+
+def agrees(record):
+    """Whether the cell has the reference's answer."""
+    agreement = record["agreement"]
+    return record["status"] == "ok" and agreement["missing"] == agreement["extra"] == agreement["contact_frames_wrong"] == 0
+
+
+def read(path):
+    """Cells that are right, by scene, k and method; and of each record whether it has the reference's answer. Raises RecordError."""
+    cells, answers = {}, []
+    for place, kind, record in kinds.each(path, warn):
+        with kinds.fields_of("cell of the plan", place):
+            answers.append(agrees(record))
+            if record["status"] == "ok":
+                cells[(scene_of(record), record["settings"]["k"], method_of(record))] = Cell(record)
+    return cells, answers
+
+
+def text(value):
+    return f"{value:.3g}" if value < 100 else f"{value:,.0f}"
+
+
+def span(values):
+    """"1.4 to 2.1", of medians of ratios."""
+    low, high = text(min(values)), text(max(values))
+    return low if low == high else f"{low} to {high}"
+
+
+def with_width(values):
+    """"0.348 ± 0.002", as many digits as the width has."""
+    from .resampling import median_interval
+    values = list(values)
+    low, high = median_interval(values)
+    half, middle = (high - low) / 2, statistics.median(values)
+    digits = max(0, min(5, 2 - len(str(int(middle))) + 1 if half == 0 else -int(f"{half:e}".split("e")[1])))
+    return f"{middle:,.{digits}f} ± {half:.{digits}f}"
+
+
+def paired(cell, base, part="total"):
+    """resampling.Ratio of a cell's times over those of another one, of the rounds that both have."""
+    from .resampling import paired_ratio
+    above, below = getattr(cell, part), getattr(base, part)
+    common = [n for n in above if n in below]
+    return paired_ratio([below[n] for n in common], [above[n] for n in common])
+
+
+def ratio_text(cell, base, part):
+    """The ratio with its interval; ≈ where 1 lies in it."""
+    found = paired(cell, base, part)
+    about = "≈ " if found.low <= 1 <= found.high else ""
+    return f"{about}{text(found.value)} [{text(found.low)}, {text(found.high)}]"
+
+
+def table(cells, methods, cell_text):
+    """A row a scene and k, a column a method."""
+    rows = []
+    for scene, name in SCENES.items():
+        for k in ("8", "18"):
+            own = {m: cells.get((scene, k, m)) for m in METHODS}
+            if any(own[m] for m in methods):
+                rows.append([name, k, *(cell_text(own, m) for m in methods)])
+    return markdown.table(["scene", "k", *(METHODS[m] for m in methods)], rows).rstrip("\n")
+
+
+def tables(cells, answers):
+    """Texts by the names of their marks."""
+    plain = lambda part: lambda own, m: with_width(getattr(own[m], part).values()) if own[m] else ""
+    against = lambda part: lambda own, m: ratio_text(own[m], own["tiled"], part) if own[m] and own["tiled"] else ""
+    of_paper = {key[:2] for key in cells if "published" in key[2] or key[2] == "paper"}
+    published = {key: cell for key, cell in cells.items() if key[:2] in of_paper}
+    return {"first": first_lines(cells, answers), "frame": table(cells, USUAL, plain("total")), "walk": table(cells, USUAL, plain("walk")),
+            "frame ratios": table(cells, USUAL[1:], against("total")), "walk ratios": table(cells, USUAL[1:], against("walk")),
+            "published": table(published, ["chunked", "paper", "fair", "chunked published", "gproximity published"], plain("total"))}
+
+
+def first_lines(cells, answers):
+    """The answer in three lines: k = 18 and whole frames, unless they say something else."""
+    at = lambda scene, method, k="18": cells.get((scene, k, method))
+    scenes = [scene for scene in SCENES if all(at(scene, method) for method in ("tiled", "chunked", "fair"))]
+    next_best = [min(paired(at(s, other), at(s, "tiled")).value for other in ("chunked", "fair")) for s in scenes]
+    fixed = [paired(at(s, "fair"), at(s, "chunked")).value for s in scenes]
+    return (f"- **Fastest: the tiled walk** (`tiled`, tiles of 32 boxes against 32). A whole frame with contacts is {span(next_best)} times as fast\n"
+            "  as with the better of the other two (one NVIDIA H200, k = 18, everything on the device).\n"
+            "- **The paper's schedule, grouped** (`chunked`) is our form of it: a work-group shares its walks.\n"
+            f"  It {against_gproximity(fixed, 'scenes', ' ')}\n"
+            + paper_schedule(cells) +
+            f"- **Right**: {sum(answers)} of {len(answers)} cells of that plan found the reference's pairs and contacts, bit for bit; "
+            "that no pair that meets is missed is\n"
+            "  [proved](algorithms/bounds/README.md), and [tested](harness/accuracy/README.md) against the exact truth.")
+
+
+def against_gproximity(ratios, noun, each):
+    """Two sentences of gProximity's time over the walk's: where the walk wins, and where it loses."""
+    wins, loses = [v for v in ratios if v >= 1], [1 / v for v in ratios if v < 1]
+    if not loses:
+        return f"is {span(wins)} times as fast as gProximity in {len(wins)} of {len(ratios)} {noun}."
+    if not wins:
+        return f"takes {span(loses)} times as long as gProximity in {len(loses)} of {len(ratios)} {noun}."
+    rest = f"In the other{'s' if len(loses) > 1 else ''} it takes {span(loses)} times as long."
+    return f"is {span(wins)} times as fast as gProximity in {len(wins)} of {len(ratios)} {noun}.{each}{rest}"
+
+
+def paper_schedule(cells):
+    """What the paper's own schedule does where the plan has it, at any k."""
+    ratios = {key[:2]: paired(cells[(*key[:2], "fair")], cell).value for key, cell in cells.items()
+              if key[2] == "paper" and (*key[:2], "fair") in cells}
+    scenes = [scene for scene in SCENES if any(key[0] == scene for key in ratios)]
+    ks = " and ".join(sorted({k for _, k in ratios}, key=int))
+    return ("- **The paper's own schedule**, in which each work-item walks its own seeds, was measured in "
+            f"{len(scenes)} of these scenes (k = {ks}).\n"
+            f"  It {against_gproximity(list(ratios.values()), 'cells', ' ')}\n"
+            "  The paper's factors of 6 to 133 come mostly from uploads of empty queues.\n") if ratios else ""
+
+
+def title_of(cells, names):
+    """Which of the methods has the lowest median, and in how many scenes; names of devices as the records have them."""
+    fastest = [min(names, key=lambda method: statistics.median(cells[(scene, "18", method)].total.values())) for scene in SCENES]
+    counts = sorted(((fastest.count(method), name) for method, name in names.items() if method in fastest), reverse=True)
+    devices = sorted({name for (_, k, method), cell in cells.items() if k == "18" and method in names for name in cell.devices})
+    where = "in every scene" if len(counts) == 1 else f"in {counts[0][0]} of {len(SCENES)} scenes"
+    return f"Fastest {where}: {counts[0][1]}" + "".join(f"; in {count}: {name}" for count, name in counts[1:]) + f" ({', '.join(devices)})"
+
+
+def _draw_scene(ax, row, cells, shown):
+    """Medians with intervals of the walks in one scene; the first row names them all, the rest the fastest."""
+    from .resampling import median_interval
+    for method, (colour, marker, name) in shown.items():
+        values = list(cells[method].total.values())
+        middle = statistics.median(values)
+        ax.plot(median_interval(values), [row, row], color=colour, linewidth=3, alpha=0.6)
+        ax.plot(middle, row, marker, color=colour, markersize=7)
+        first = row == 0
+        if method == "tiled" or first:
+            label = f"{name}{' ' + text(middle) + ' ms' if method == 'tiled' else ''}" if first else text(middle)
+            side = {"tiled": "right"}.get(method, "left") if first else "center"
+            ax.annotate(label, (middle, row), xytext=(0, 8), textcoords="offset points", ha=side, color=colour, fontweight="bold", fontsize=8)
+
+
+def picture(cells, path):
+    """Milliseconds a frame of the three walks with intervals, a row a scene; the fastest is named. Raises BadUse where the plan's cells of
+    k = 18 are not all there, and OutputError."""
+    import matplotlib
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
+    shown = {"tiled": ("#0b5394", "o", "tiled"), "chunked": ("#6b7885", "s", "chunked, grouped"), "fair": ("#96753a", "D", "gProximity")}
+    for scene, method in itertools.product(SCENES, shown):
+        if (scene, "18", method) not in cells:
+            raise BadUse(f"--picture needs all scenes of the plan, and there is no cell of {METHODS[method]}, k = 18, {SCENES[scene]}")
+    with matplotlib.rc_context({"svg.hashsalt": "tandem", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False}):
+        figure, ax = plt.subplots(figsize=(7, 2.9), layout="constrained")
+        for row, scene in enumerate(SCENES):
+            _draw_scene(ax, row, {method: cells[(scene, "18", method)] for method in shown}, shown)
+        ax.set_yticks(range(len(SCENES)), SCENES.values())
+        ax.set_ylim(len(SCENES) - 0.5, -0.7)
+        ax.set(xscale="log", xlim=(0.025, 10), xlabel="milliseconds a frame, contacts included, k = 18; bars: 95 % intervals")
+        ax.set_title(title_of(cells, {method: name for method, (_, _, name) in shown.items()}), loc="left", fontweight="bold", fontsize=10.5)
+        ax.xaxis.set_major_formatter("{x:g}")
+        ax.grid(axis="x", alpha=0.25)
+        try:
+            figure.savefig(path, metadata={"Date": None})
+        except OSError as problem:
+            raise OutputError(f"{path}: cannot be written ({problem.strerror})") from None
+        finally:
+            plt.close(figure)
+
+
+def _parsed(arguments):
+    parser = Parser(prog="python3 -m tandem.answer", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("file", metavar="FILE.jsonl")
+    outputs = parser.add_mutually_exclusive_group()
+    outputs.add_argument("--write", nargs="+", default=[], metavar="README.md")
+    outputs.add_argument("--picture", metavar="FILE.svg")
+    return parser.parse_args(arguments)
+
+
+def _make(arguments):
+    options = _parsed(arguments)
+    check_packages("tandem.answer", ("numpy", *(("matplotlib",) if options.picture else ())))
+    cells, answers = read(options.file)
+    if options.picture:
+        picture(cells, options.picture)
+        return "", 0
+    made = tables(cells, answers)
+    for page in options.write:
+        markdown.rewrite(page, "answer", made)
+    return "" if options.write else "".join(f"{name}\n\n{one}\n\n" for name, one in made.items()), 0
+
+
+def main(arguments, program=""):
+    return run(lambda: _make(arguments))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: MIT
+"""python3 -m tandem.error_figures FILE.jsonl[.xz] ... FOLDER: draws what has errors against the truth (tandem accuracy) as three figures, each
+with its data beside it. pareto: time against candidates per meeting pair, and against the 99th percentiles of depth and normal error; cells
+that no other beats in both are named. cliffs: errors against difficulty of hard scenes. bars: missed and false pairs and time by kind
+of scene. Labels have the settings that differ; a panel without data says why. Other records of tandem, and cells that failed
+or are wrong, are left out. Exit 2, and one line that says why, for a file that is no file of records, also an empty one, and
+where nothing can be drawn; 3 when figures cannot be written. Needs python3-matplotlib."""
+import argparse
+import pathlib
+
+from ..commands import Parser, check_packages, run, warn
+from ..errors import BadUse, OutputError
+
+
+def _parsed(arguments):
+    parser = Parser(prog="python3 -m tandem.error_figures", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("files", nargs="+", metavar="FILE")
+    parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path)
+    return parser.parse_args(arguments)
+
+
+def draw(files, folder):
+    """Draws the records of these files; returns the line that says what there is. Raises RecordError, BadUse and OutputError."""
+    from .drawing import figures
+    from .points import read
+    points, left_out = read(files, warn)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise BadUse(f"cannot make the folder {folder}, the last argument: {problem.strerror}") from None
+    try:
+        names, more = figures(points, folder)
+    except OSError as problem:
+        raise OutputError(f"cannot write to {folder}: {problem.strerror}") from None
+    return f"{len(points)} records drawn: {names} in {folder}{more}" + (f"; {left_out} failed, wrong or untimed left out" if left_out else "") + "\n"
+
+
+def _make(arguments):
+    options = _parsed(arguments)
+    check_packages("tandem.error_figures", ("matplotlib",))
+    return draw(options.files, options.folder), 0
+
+
+def main(arguments, program=""):
+    return run(lambda: _make(arguments))

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+"""All figures, with their data beside them."""
+import csv
+
+import matplotlib
+import matplotlib.pyplot as plt
+
+from . import bars, cliffs, pareto
+from .points import swept
+
+SHOWN = ("k", "axes", "precision", "rounding", "decision", "contact_rule")
+STYLE = {"svg.hashsalt": "tandem", "font.size": 8, "axes.grid": True, "grid.alpha": 0.3, "legend.frameon": False}
+
+
+def _write_data(path, points):
+    settings = [*SHOWN, *(name for name in swept(points, ("cell", "device")) if name not in SHOWN)]
+    row = list(points[0].row())
+    first, last = row[:row.index("cell") + 1], row[row.index("ms"):]
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, [*first, *settings, *last], extrasaction="ignore", restval="")
+        writer.writeheader()
+        writer.writerows(p.row() for p in points)
+
+
+def _save(folder, name, drawn):
+    """Writes a figure and its data; its file's name, as the only item of a list, which is empty where nothing is drawn."""
+    if drawn is None:
+        return []
+    figure, points = drawn
+    figure.savefig(folder / f"{name}.svg", metadata={"Date": None}, bbox_inches="tight")
+    plt.close(figure)
+    _write_data(folder / f"{name}.csv", points)
+    return [f"{name}.svg"]
+
+
+def figures(points, folder):
+    """Draws all; returns which, and which scenes are not drawn, in words. Raises OSError."""
+    matplotlib.use("svg")
+    with matplotlib.rc_context(STYLE):
+        figures_by_name = {"bars": bars, "cliffs": cliffs, "pareto": pareto}
+        names = [file for name, module in figures_by_name.items() for file in _save(folder, name, module.draw(points))]
+    scenes = len(pareto.scenes_of(points))
+    return ", ".join(names), f"; pareto has the first {pareto.MOST_SCENES} scenes of {scenes}" if scenes > pareto.MOST_SCENES else ""

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: MIT
+"""Time against errors, a column a scene: cells that no other beats in both are joined and named."""
+import math
+import textwrap
+
+import matplotlib.pyplot as plt
+
+from .panels import few_ticks, note
+from .points import OF_CONTACTS, short_words, sweep_text, swept
+
+MOST_SCENES = 4
+MOST_NAMES = 5  # of a panel
+PALE, FRONT = "0.7", "#0b5394"
+
+
+def frontier(points, value, step):
+    """The points that no other beats in both time and value, by time; each has a value `step` times less than the one before."""
+    best, line = float("inf"), []
+    for p in sorted(points, key=lambda p: (p.ms, value(p))):
+        if value(p) * step <= best:
+            best = value(p)
+            line.append(p)
+    return line
+
+
+def _some_of(line, value):
+    """The ends of a long frontier, and the points after its largest steps."""
+    if len(line) <= MOST_NAMES:
+        return line
+    steps = sorted(range(1, len(line) - 1), key=lambda i: math.log(value(line[i - 1]) / value(line[i])), reverse=True)
+    return [line[i] for i in sorted({0, len(line) - 1, *steps[:MOST_NAMES - 2]})]
+
+
+def _alike(point, points, value):
+    """How many more points are not told apart from it: intervals that overlap, and its value to a thousandth."""
+    return sum(q is not point and q.low <= point.high and q.high >= point.low and abs(value(q) / value(point) - 1) < 1e-3 for q in points)
+
+
+def _message(line, names, value, gain):
+    first, last = line[0], line[-1]
+    if first is last:
+        return f"{names[first]}: the fastest, and nothing is better"
+    less = value(first) / value(last)
+    return (f"{names[first]}: the fastest; {names[last]}: {f'{less:.2f}' if less < 10 else f'{less:.0e}'} times {gain} for "
+            f"{last.ms / first.ms:.2f} times the time")
+
+
+def _draw_all(axes, points, value):
+    """Every point, pale; hollow where it misses pairs."""
+    for group, hollow in (([p for p in points if p.missed == 0], False), ([p for p in points if p.missed > 0], True)):
+        axes.hlines([value(p) for p in group], [p.low for p in group], [p.high for p in group], color=PALE, lw=0.8)
+        axes.plot([p.ms for p in group], [value(p) for p in group], "o", ms=3.5, mec=PALE, mfc="none" if hollow else PALE, ls="")
+    axes.set(xscale="log", yscale="log")
+
+
+def _draw_front(axes, points, value, line, names):
+    """The frontier, joined and named."""
+    middle = math.sqrt(min(q.ms for q in points) * max(q.ms for q in points))
+    axes.plot([p.ms for p in line], [value(p) for p in line], color=FRONT, lw=0.7, drawstyle="steps-post", zorder=0)
+    for p in line:
+        more = _alike(p, [q for q in points if q.missed == 0], value)
+        axes.hlines(value(p), p.low, p.high, color=FRONT, lw=1.6)
+        axes.plot(p.ms, value(p), "o", ms=5, color=FRONT)
+        late = p.ms > middle
+        axes.annotate(names[p] + (f" (and {more} alike)" if more else ""), (p.ms, value(p)), xytext=(-3 if late else 3, 5),
+                      textcoords="offset points", ha="right" if late else "left", fontsize=7, color=FRONT)
+
+
+def _scatter(axes, points, value, without, title, gain, step):
+    """A panel. A point of the frontier is named where it gains `step` times, by what tells it apart."""
+    axes.set(xlabel="ms a frame", ylabel=title)
+    known = [p for p in points if value(p) is not None]
+    points = [p for p in known if value(p) > 0 and p.ms > 0]
+    if not points:
+        note(axes, "nothing to draw: all are 0" if known else "nothing to draw: no cell was asked for this (--truth contacts)")
+        return
+    _draw_all(axes, points, value)
+    line = _some_of(frontier([p for p in points if p.missed == 0], value, step), value)
+    if line:
+        telling = swept(line, without) or swept(points, without)
+        names = {p: short_words(p, telling) or p.label for p in line}
+        _draw_front(axes, points, value, line, names)
+        axes.set_title("\n".join(textwrap.wrap(_message(line, names, value, gain), 80)), fontsize=8, loc="left")
+    axes.margins(x=0.1, y=0.15)
+    few_ticks(axes)
+    values = [value(p) for p in points]
+    if max(values) < 2 * min(values):  # no ticks that differ in the sixth digit
+        axes.set_ylim(min(values) / 2, max(values) * 2)
+
+
+def _column(panels, scene, own):
+    _scatter(panels[0], own, lambda p: p.ratio, OF_CONTACTS, "candidates per meeting pair", "fewer candidates", 1.01)
+    _scatter(panels[1], own, lambda p: p.depth, (), "depth error, 99th percentile, / L", "less error", 2)
+    _scatter(panels[2], own, lambda p: p.normal, (), "normal error, 99th percentile, degrees", "less error", 2)
+    title = f"{scene}: {sweep_text(swept(own)) or 'one cell'}. Pale: beaten in both; hollow: misses pairs that meet; bars: 95 % of the median"
+    panels[2].text(0, -0.32, "\n".join(textwrap.wrap(title, 100)), transform=panels[2].transAxes, fontsize=7, va="top", color="0.3")
+
+
+def scenes_of(points):
+    """Those that are not made to be hard."""
+    return [s for s in dict.fromkeys(p.scene for p in points) if not s.startswith("hard")]
+
+
+def draw(points):
+    """The figure of the first scenes and its points; None where there is no scene for it."""
+    shown = scenes_of(points)[:MOST_SCENES]
+    if not shown:
+        return None
+    figure, axes = plt.subplots(3, len(shown), figsize=(6.4 * len(shown), 9), squeeze=False, layout="constrained")
+    for column, scene in zip(axes.T, shown):
+        _column(column, scene, [p for p in points if p.scene == scene])
+    return figure, [p for p in points if p.scene in shown]

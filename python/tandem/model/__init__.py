@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+"""python3 -m tandem.model [FILE.jsonl[.xz] ...] [--write README.md]: what a frame costs a device, fitted to records of one device, of several and
+of ranks; and what the partitioner and the ghost lists take of many ranks in one process, by the microbenchmarks.
+
+Without files it takes those of a checkout: results/h100x2/*.jsonl*, results/h200/plan.jsonl and results/scaling/ranks.jsonl, and the
+microbenchmarks of results/cpu/bench.json. Coefficients are the non-negative ones with the least squares of relative errors, a stage at a time, of
+all records of one device, algorithm, k and slabs. --write puts each table between its marks, <!-- model: NAME --> and <!-- end -->; without it
+they are printed. --fit prints the coefficients of all groups, and no more. Exit 2, and one line that says why, for files that are no records, or
+too few to tell the terms apart."""
+import argparse
+import pathlib
+
+from .. import markdown
+from ..commands import Parser, check_packages, run, warn
+
+RESULTS = pathlib.Path(__file__).resolve().parents[3] / "results"
+
+
+def _parsed(arguments):
+    parser = Parser(prog="python3 -m tandem.model", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("files", nargs="*", metavar="FILE", type=pathlib.Path)
+    parser.add_argument("--partitions", type=pathlib.Path, default=RESULTS / "cpu/bench.json", metavar="FILE.json")
+    parser.add_argument("--write", action="append", default=[], metavar="README.md")
+    parser.add_argument("--group", default="tiled resident, k = 18, slabs=three", help="text in the names of groups (default: %(default)s)")
+    parser.add_argument("--fit", action="store_true", help="coefficients of all groups, and no more")
+    options = parser.parse_args(arguments)
+    options.files = options.files or [*sorted((RESULTS / "h100x2").glob("*.jsonl*")), RESULTS / "h200/plan.jsonl", RESULTS / "scaling/ranks.jsonl"]
+    return options
+
+
+def tables(options):
+    """Texts by the names of their marks. Raises RecordError and BadUse."""
+    from . import fitting, loads, pages
+    groups = loads.read(options.files, warn)
+    if options.fit:
+        return {"coefficients": pages.coefficients(fitting.fit(groups))}
+    models = {name: model for name, model in fitting.fit(groups, options.group).items() if not name.startswith("host ")}
+    return {"coefficients": pages.coefficients(models), "every rank": pages.every_rank(fitting.every_rank(groups)),
+            **pages.partitions(options.partitions)}
+
+
+def _make(arguments):
+    options = _parsed(arguments)
+    check_packages("tandem.model", ("numpy",))
+    made = tables(options)
+    for page in options.write:
+        markdown.rewrite(page, "model", made)
+    return "" if options.write else "\n\n".join(f"{name}\n\n{text}" for name, text in made.items()) + "\n", 0
+
+
+def main(arguments, program=""):
+    return run(lambda: _make(arguments))

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: MIT
+"""Names of cells and devices in tables: what tells them apart, and nothing else."""
+from ..varying import varying
+
+
+class Devices:
+    """Names of devices. An id that was several models or cards, in different files, has what tells them apart."""
+
+    def __init__(self):
+        self.cards = {}
+
+    def add(self, devices):
+        """What text() takes, of the devices of a record."""
+        own = tuple((d["id"], d["name"] + (" (PoCL)" if "PoCL" in d["driver"] else ""), d["hardware"] or "") for d in devices)
+        for identity, *card in own:
+            self.cards.setdefault(identity, {})[tuple(card)] = None
+        return own
+
+    def text(self, devices):
+        return "+".join(self._one(*device) for device in devices)
+
+    def _one(self, identity, name, hardware):
+        cards = self.cards[identity]
+        if len(cards) == 1:
+            return identity + (" (PoCL)" if name.endswith("(PoCL)") else "")
+        alike = sum(model == name for model, _ in cards) > 1
+        return f"{identity} {name}" + (f" {hardware[:4] or 'unknown'}" if alike else "")
+
+
+class Named:
+    """What any record of an algorithm is called by. Equal values are kept once: in long files they take most of the memory."""
+    _seen = {}
+
+    @classmethod
+    def once(cls, value):
+        return cls._seen.setdefault(value, value)
+
+    def __init__(self, record, devices, more=None):
+        # Devices that take a setting otherwise than asked, such as groups of one work-item, make no other cell of it.
+        settings = sorted({**record["settings"], **record.get("asked", {}), **(more or {})}.items())
+        self.settings = self.once(tuple(map(self.once, settings)))
+        self.family = self.once((record["algorithm"], record["preset"]))
+        self.devices = self.once(devices.add(record["devices"]))
+        self.commit = self.once(record["environment"]["commit"] or "")
+        self.place = record["scene"]["key"]
+        if "frames" in record:
+            self.place += f", frames {record['frames']['first']}:{record['frames']['last']}"
+
+
+def labels(rows, devices, known=()):
+    """(text, devices) of each Named: algorithm, preset, settings that differ among those of both but for the `known`, and commits where
+    nothing else differs."""
+    differ = varying({(row.family, row.settings) for row in rows})
+    texts = [" ".join([*row.family, *(f"{name}={value}" for name, value in row.settings if name not in known and (row.family, name) in differ)])
+             for row in rows]
+    commits, times = {}, {}
+    for row, text in zip(rows, texts):
+        commits.setdefault((text, row.devices), set()).add(row.commit)
+    for i, row in enumerate(rows):
+        if len(commits[texts[i], row.devices]) > 1:
+            texts[i] += f" @{row.commit[:7] or '?'}"
+        times[texts[i], row.devices] = again = times.get((texts[i], row.devices), 0) + 1
+        texts[i] += f" ({again})" if again > 1 else ""
+    return list(zip(texts, (devices.text(row.devices) for row in rows)))
