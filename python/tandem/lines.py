@@ -2,6 +2,7 @@
 """Lines of files of records, as 'tandem run --out' writes them: one JSON object a line."""
 import json
 import lzma
+import math
 import os
 import re
 import warnings
@@ -21,23 +22,27 @@ def _open(path):
     return lzma.open(path, "rb") if os.fspath(path).endswith(".xz") else open(path, "rb")
 
 
-def _no_constant(name):
-    raise ValueError(f"{name} is not JSON")
-
-
-def parsed(text, place):
-    """The value that the bytes of a line are in JSON, which has neither NaN nor halves of characters. Raises RecordError."""
-    try:
-        value = json.loads(text, parse_constant=_no_constant)
-        if _LONE_SURROGATE.search(text):
-            json.dumps(value, ensure_ascii=False).encode()
-    except (ValueError, RecursionError):
-        raise RecordError(f"{place}: is not JSON; {WHAT_TO_GIVE}") from None
+def _finite(text):
+    """A number of a JSON text. Raises ValueError for one that no double holds, for NaN and for Infinity."""
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"{text} is not JSON")
     return value
 
 
-def _cell(text, place):
-    record = parsed(text, place)
+def parsed(text, place, what_to_give=WHAT_TO_GIVE):
+    """The value that the bytes of a line are in JSON, which has neither NaN nor halves of characters. Raises RecordError."""
+    try:
+        value = json.loads(text, parse_float=_finite, parse_constant=_finite)
+        if _LONE_SURROGATE.search(text):
+            json.dumps(value, ensure_ascii=False).encode()
+    except (ValueError, RecursionError):
+        raise RecordError(f"{place}: is not JSON; {what_to_give}") from None
+    return value
+
+
+def checked_cell(record, place):
+    """The record, where it is one of a cell and of a schema that this package knows. Raises RecordError otherwise."""
     if not isinstance(record, dict) or "schema" not in record or "key" not in record:
         raise RecordError(f"{place}: is no record of a cell; {WHAT_TO_GIVE}")
     schema = record["schema"]
@@ -49,6 +54,10 @@ def _cell(text, place):
         raise RecordError(f"{place}: a record of schema {schema}, and this package knows {OLDEST} and {NEWEST}; take the package "
                           "of the program that wrote it")
     return record
+
+
+def _cell(text, place):
+    return checked_cell(parsed(text, place), place)
 
 
 def numbered(path, torn, check=_cell):
@@ -85,12 +94,12 @@ def samples_by_round(record):
     return rounds
 
 
-def _extends(more, less):
+def goes_on_with(more, less):
     """Whether rounds have all of the others, and some besides: the same run, gone on with."""
     return len(more) > len(less) > 0 and all(more.get(of) == samples for of, samples in less.items())
 
 
-def _same_run(record):
+def run_of(record):
     """What two records of one cell in one run of the program share; None where the run is not known."""
     session = record.get("session")
     return session and (record["key"], session, tuple(device["id"] for device in record["devices"]), record.get("chosen") is not None)
@@ -116,10 +125,10 @@ def _superseded(rows):
     rounds, runs = {}, {}
     for number, record, place in rows:
         try:
-            rounds[number], runs[number] = samples_by_round(record), _same_run(record)
+            rounds[number], runs[number] = samples_by_round(record), run_of(record)
         except (KeyError, TypeError, AttributeError):
             raise RecordError(f"{place}: a record that lacks fields of its schema; {WHAT_TO_GIVE}") from None
-    dropped = {number for number in rounds if any(_extends(rounds[other], rounds[number]) for other in rounds)}
+    dropped = {number for number in rounds if any(goes_on_with(rounds[other], rounds[number]) for other in rounds)}
     first = {}
     for number, record, place in rows:
         run = runs[number]

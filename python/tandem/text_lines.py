@@ -23,6 +23,12 @@ def paragraph(text, indent):
     return "".join(f"{line}\n" for line in (first, *(" " * indent + line for line in more)))
 
 
+def visible(text):
+    """A text in one line: control characters become escapes."""
+    names = {"\n": "\\n", "\t": "\\t"}
+    return "".join(names.get(c) or f"\\x{ord(c):02x}" if c < " " or c == "\x7f" else c for c in text)
+
+
 def one_line(text, most):
     """A text in one line: control characters become spaces, and what is longer than `most` characters is cut."""
     text = "".join(" " if character < " " or character == "\x7f" else character for character in text)

@@ -8,6 +8,7 @@ import shutil
 import sys
 
 from ..errors import BadUse, OutputError
+from ..text_lines import visible
 
 
 class Parser(argparse.ArgumentParser):
@@ -24,7 +25,7 @@ def warn(message):
 
 def complain(problem, code):
     """Prints the one line of a problem; returns the exit code."""
-    print(f"tandem: {problem}", file=sys.stderr)
+    print(f"tandem: {visible(str(problem))}", file=sys.stderr)
     return code
 
 
