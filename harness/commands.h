@@ -85,34 +85,15 @@ struct ExportOptions {
     std::vector<std::string> meshes, poses; ///< as of RunOptions
     std::string frames;                     ///< "FIRST:LAST" or "N"; empty: all
     std::size_t every = 1;                  ///< leave out frames between every so many
-    std::string vtu, glb;                   ///< a folder and a file
+    std::string vtu, glb, geometry;         ///< a folder and two files
     bool to_csv = false;                    ///< `scene` is a file of records; then nothing else is given
     std::string csv;                        ///< a file; empty: standard output
     std::string chunks;                     ///< a file of the meshes' chunks
     std::string builder = "morton";         ///< their order; as of the setting
     std::uint64_t chunk_bytes = 8000;       ///< their size by equations 1 to 3, with `k`
     std::string k = "8";                    ///< as of the setting
-    bool contacts = false;                  ///< beside the .vtu, found on `device`
+    bool contacts = false;                  ///< beside the .vtu and in the geometry, found on `device`
     std::string device = "host";
-};
-
-/// Options of `tandem view`.
-struct ViewOptions {
-    std::string scene;
-    std::vector<std::string> meshes, poses; ///< as of RunOptions
-    std::string frames;                     ///< "FIRST:LAST" or "N"; empty: all
-    std::size_t every = 1;                  ///< leave out frames between every so many
-    bool contacts = false;                  ///< found on `device`
-    std::string device = "host";
-    std::string output; ///< the page; empty: named after the scene
-};
-
-/// Options of `tandem report`.
-struct ReportOptions {
-    std::vector<std::string> files; ///< of records of any kinds
-    std::string against;            ///< a file of records that the one of `files` is compared with
-    std::string output = "report.html";
-    ViewOptions scene; ///< that the page shows as well; none when it names none
 };
 
 /// Options of `tandem simulate`.
@@ -137,8 +118,6 @@ int accuracy_command(const AccuracyOptions& options);
 int profile_command(const ProfileOptions& options);
 int simulate_command(const SimulateOptions& options);
 int export_command(const ExportOptions& options);
-int report_command(const ReportOptions& options);
-int view_command(const ViewOptions& options);
 int devices_command(const DevicesOptions& options);
 int scenes_command(bool json);
 int algorithms_command(const AlgorithmsOptions& options);

@@ -10,6 +10,7 @@
 #include "harness/memory_reserve.h"
 #include "harness/standard_streams.h"
 #include "scenes/error.h"
+#include "scenes/export/geometry.h"
 #include "scenes/export/glb.h"
 #include "scenes/export/vtk.h"
 
@@ -73,6 +74,16 @@ std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
     return found;
 }
 
+void export_geometry(const ExportOptions& options, const Scene& scene, std::span<const std::size_t> frames) {
+    std::optional<FrameContacts> finder;
+    GeometryParts parts{.chunks = chunk_numbers};
+    if (options.contacts) {
+        finder.emplace(options.device, scene);
+        parts.contacts = [&](const Frame& frame) { return finder->of(frame); };
+    }
+    write_geometry(options.geometry, scene, frames, parts);
+}
+
 /// Meshes do not move: frames have no part in it.
 void export_chunks(const ExportOptions& options, const Scene& scene) {
     const auto builder = static_cast<Builder>(parameters::builder.parse(options.builder));
@@ -92,43 +103,60 @@ void export_chunks(const ExportOptions& options, const Scene& scene) {
 }
 
 int export_csv(const ExportOptions& options) {
-    if (!options.vtu.empty() || !options.glb.empty() || !options.meshes.empty() || !options.poses.empty()
-        || !options.frames.empty())
+    if (!options.vtu.empty() || !options.glb.empty() || !options.geometry.empty() || !options.meshes.empty()
+        || !options.poses.empty() || !options.frames.empty())
         throw InputError(
-            "--csv makes a table of a file of records; --vtu, --glb, --mesh, --pose and --frames are of "
-            "scenes, so leave them out");
+            "--csv makes a table of a file of records; --vtu, --glb, --geometry, --mesh, --pose and --frames "
+            "are of scenes, so leave them out");
     if (options.scene.empty()) throw InputError("--csv: no file of records; name it before --csv");
     std::vector<std::string> words{"--records=" + options.scene};
     if (!options.csv.empty()) words.push_back("--output=" + options.csv);
     return run_external("export-csv", words);
 }
 
+/// Refuses combinations that name nothing to write, or one file twice.
+void check_outputs(const ExportOptions& options) {
+    const bool moves = !options.vtu.empty() || !options.glb.empty() || !options.geometry.empty();
+    if (!moves && options.chunks.empty())
+        throw InputError(
+            "nothing to export to; give --vtu FOLDER, --glb FILE, --geometry FILE, --chunks FILE or several, "
+            "or --csv for a file of records");
+    if (!moves && (!options.frames.empty() || options.every != 1))
+        throw InputError("--frames and --every go with --vtu FOLDER, --glb FILE or --geometry FILE; chunks "
+                         "are the same in every frame");
+    if (options.contacts && options.vtu.empty() && options.geometry.empty())
+        throw InputError("--contacts goes with --vtu FOLDER or --geometry FILE; a .glb has surfaces only");
+    const std::pair<const char*, std::string> files[] = {
+        {"--chunks", options.chunks}, {"--glb", options.glb}, {"--geometry", options.geometry}};
+    for (const auto& one : files)
+        for (const auto& other : files)
+            if (&one < &other && !one.second.empty() && one.second == other.second)
+                throw InputError(
+                    fmt::format("{} and {} name one file, {}; name two", one.first, other.first, one.second));
+}
+
 } // namespace
 
 int export_command(const ExportOptions& options) {
     if (options.to_csv) return export_csv(options);
-    const bool moves = !options.vtu.empty() || !options.glb.empty();
-    if (!moves && options.chunks.empty())
-        throw InputError("nothing to export to; give --vtu FOLDER, --glb FILE, --chunks FILE or several, or "
-                         "--csv for a file of records");
-    if (!moves && (!options.frames.empty() || options.every != 1))
-        throw InputError(
-            "--frames and --every go with --vtu FOLDER or --glb FILE; chunks are the same in every frame");
-    if (!options.chunks.empty() && options.chunks == options.glb)
-        throw InputError(fmt::format("--chunks and --glb name one file, {}; name two", options.glb));
+    check_outputs(options);
     const auto scene = open_scene(options);
     const auto [first, last] = named_frames(options.frames, scene);
     std::vector<std::size_t> frames;
     for (auto i = first; i <= last; i += options.every) frames.push_back(i);
     if (!options.chunks.empty()) export_chunks(options, scene);
-    const auto told = fmt::format("{} of frames {}:{} of {}", frames.size(), first, last, scene.key);
+    const auto summary = fmt::format("{} of frames {}:{} of {}", frames.size(), first, last, scene.key);
     if (!options.glb.empty()) {
         write_glb(options.glb, scene, frames);
-        put("{}: {}\n", options.glb, told);
+        put("{}: {}\n", options.glb, summary);
+    }
+    if (!options.geometry.empty()) {
+        export_geometry(options, scene, frames);
+        put("{}: {}\n", options.geometry, summary);
     }
     if (options.vtu.empty()) return 0;
     const auto found = export_vtu(options, scene, frames);
-    put("{}/bodies.pvd: {}\n", options.vtu, told);
+    put("{}/bodies.pvd: {}\n", options.vtu, summary);
     if (options.contacts) put("{}/contacts.pvd: {} contacts\n", options.vtu, found);
     return 0;
 }

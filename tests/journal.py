@@ -10,7 +10,7 @@ import sys
 import time
 import unittest
 
-from program import PROGRAM, Case, tandem
+from program import PROGRAM, SOURCE, Case, tandem
 
 LINE = b'{"what":"was there before"}\n'
 
@@ -99,12 +99,16 @@ class Journal(Case):
         """Each names the file that has no room, in one line, and exits alike."""
         scene = "pile:bodies=2,frames=2"
         for number, words in enumerate((("export", scene, "--frames", "0:1", "--vtu"), ("export", scene, "--frames", 0, "--glb"),
-                                        ("export", scene, "--chunks"), ("view", scene, "-o"),
+                                        ("export", scene, "--chunks"), ("export", scene, "--geometry"), ("report", SOURCE / "results/cpu/walks.jsonl", "-o"),
                                         ("simulate", "block", "--steps", 1, "--device", "host", "--quiet", "-o"))):
             out = self.work / f"limit{number}"
             status, _, errors = run(*words, out, before=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300)))
             self.assertEqual((status, len(errors)), (3, 1), (words, errors))
             self.assertRegex(errors[0], f"^tandem: {out}[^ ]*: writing failed \\(File too large\\)$")
+        # The geometry of a page is written first, in the folder for temporary files.
+        status, _, errors = run("view", scene, "-o", self.work / "page", before=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300)))
+        self.assertEqual((status, len(errors)), (3, 1), errors)
+        self.assertRegex(errors[0], "^tandem: .*/tandem-[^ ]*: writing failed \\(File too large\\)$")
 
     def test_files_beside_are_no_links(self):
         """Whose names follow from one that was given: what a link of that name leads to stays as it is."""

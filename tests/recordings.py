@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: MIT
 """recordings.py PROGRAM SOURCE: recordings and exports as a user meets them. The recordings are written here, by what
 scenes/recording/README.md says of their bytes."""
+import array
+import base64
 import csv
+import json
 import math
 import os
 import re
@@ -134,6 +137,49 @@ class Recordings(Case):
         self.assertEqual((status, errors), (0, []), text)
         self.assertEqual(glb.read_bytes()[:8], b"glTF\x02\0\0\0")
         self.assertEqual(struct.unpack("<I", glb.read_bytes()[8:12])[0], glb.stat().st_size)
+
+    def test_export_of_geometry(self):
+        """What the recording has, in the format of scenes/export/README.md."""
+        file, out = self.file("drawn.frames", self.whole), self.work / "drawn.json"
+        status, text, errors = tandem("export", file, "--frames", "2:8", "--every", 3, "--geometry", out, "--contacts")
+        self.assertEqual((status, errors), (0, []))
+        made = json.loads(out.read_text())
+        self.assertEqual(text, f"{out}: 3 of frames 2:8 of {made['key']}\n")
+        self.assertTrue(made["key"].startswith("recording:drawn,frames=10"), made["key"])
+        self.assertEqual((made["frames"], made["of_frames"], made["times"]), ([2, 5, 8], 3, [0.02, 0.05, 0.08]))
+        self.assertEqual((made["bodies"], made["of_bodies"], made["deformed"]), (4, 4, [[], [], []]))
+
+        def numbers(text, kind="H"):
+            return array.array(kind, base64.b64decode(text))
+        for number, poses in zip(made["frames"], made["poses"]):
+            values = numbers(poses)
+            for body, expected in enumerate(self.frames[number][1]):
+                seven = values[7 * body:7 * body + 7]
+                place = [low + size * value / 65535 for low, size, value in zip(made["lower"], made["size"], seven)]
+                x, y, z, w = ((value - 32768) / 32767 for value in seven[3:])
+                for value, exact in zip((*place, w, x, y, z), expected):
+                    self.assertAlmostEqual(value, exact, delta=1e-4)
+        mesh = made["meshes"][0]
+        triangles, points = numbers(mesh["triangles"]), numbers(mesh["points"])
+        self.assertEqual(set(triangles), set(range(len(points) // 3)))
+        self.assertEqual(len(numbers(mesh["chunks"], "B")), len(triangles) // 3)
+        self.assertEqual([*numbers(made["body_meshes"], "I")], [0] * 4)
+        found = 0
+        for contacts in made["contacts"]:
+            found += contacts["found"]
+            normals = numbers(contacts["normals"], "b")
+            self.assertEqual((len(numbers(contacts["points"])), len(normals)), (9000, 9000))  # no more are drawn of a frame
+            for i in range(0, 9000, 300):
+                self.assertAlmostEqual(math.hypot(*normals[i:i + 3]) / 127, 1, delta=0.02)
+        self.assertEqual(made["notes"], [f"9000 of {found} contacts are shown, evenly taken"])
+
+    def test_bad_geometry(self):
+        file = self.work / "bad.json"
+        for said, *arguments in (("--csv makes a table", "--csv", self.work / "x.csv"), ("name one file", "--glb", file),
+                                 ("name one file", "--chunks", file), ("frames 3:900", "--frames", "3:900"), ("--device requires --contacts", "--device", "host")):
+            self.bad(said, "export", "plates", "--geometry", file, *arguments)
+        self.bad("cannot be written", "export", "plates", "--frames", 0, "--geometry", self.work / "no/x.json")
+        self.assertFalse(file.exists())
 
     def test_export_of_meshes(self):
         folder = self.work / "meshes"

@@ -197,6 +197,7 @@ class Pages(Case):
         wrong["status"] = "wrong"
         wrong["total_ns"]["samples"] = [1] * len(wrong["total_ns"]["samples"])  # faster than any
         named["scene"]["key"], named["key"] = MARKUP, MARKUP
+        older["session"] = "an earlier one"  # in the same one it would be a copy, which is left out
         page = self.report(self.write("bad.jsonl", [failed, wrong, older, self.plan[2], named]))
         self.opened(page)
         self.assertEqual(self.column("status"), ["failed", "wrong", "ok, recorded again", "ok", "ok"])
@@ -208,6 +209,20 @@ class Pages(Case):
         self.assertEqual(self.browser.run("document.title"), "Report of tandem")
         self.assertEqual(self.browser.run("document.images.length"), 0)
         self.assertIn(MARKUP, self.column("scene"))
+
+    def test_interrupted_and_compressed(self):
+        """A cell that was resumed stands once, across files, compressed or not."""
+        interrupted = json.loads(json.dumps(self.plan[0]))
+        interrupted["session"], interrupted["sampling"]["interrupted"] = "another", True
+        for name in ("samples", "rounds", "frames"):
+            interrupted["total_ns"][name] = interrupted["total_ns"][name][:4]
+        whole = self.write("whole.jsonl", self.plan[:2])
+        packed = self.work / "packed.jsonl.xz"
+        packed.write_bytes(lzma.compress((json.dumps(interrupted) + "\n").encode()))
+        self.opened(self.report(packed, whole))
+        self.assertEqual(self.column("status"), ["ok", "ok"])
+        self.assertEqual(self.browser.run("document.getElementById('made').textContent.split('.')[0]"), "Of packed")
+        self.assertNotIn("recorded again", self.browser.run("document.getElementById('summary').textContent"))
 
     def test_against_is_what_compare_says(self):
         old, new = RECORDS / "tiled.jsonl", self.work / "new.jsonl"
@@ -230,16 +245,16 @@ class Pages(Case):
         self.bad("two sets of records", "report", old, new, "--against", old)
 
     def test_bad_files(self):
-        empty, other, text, packed = (self.work / name for name in ("empty.jsonl", "other.jsonl", "text.jsonl", "packed.jsonl.xz"))
+        empty, other, text, cut = (self.work / name for name in ("empty.jsonl", "other.jsonl", "text.jsonl", "cut.jsonl.xz"))
         empty.write_text("")
         self.write("other.jsonl", [{**self.plan[0], "schema": 4}])
         text.write_text("no record\n")
-        packed.write_bytes(lzma.compress(b"{}\n" * 100) + b"\n")
+        cut.write_bytes(lzma.compress((RECORDS / "plan.jsonl").read_bytes())[:1000])
         page = self.work / "none.html"
         self.bad("empty.jsonl: is empty", "report", empty, "-o", page)
         self.bad(["other.jsonl:1:", "schema 4"], "report", other, "-o", page)
         self.bad("text.jsonl:1: is not JSON", "report", text, "-o", page)
-        self.bad("xz -dk", "report", packed, "-o", page)
+        self.bad("cut.jsonl.xz: cannot be read", "report", cut, "-o", page)
         self.bad("cannot be read", "report", self.work / "nowhere.jsonl", "-o", page)
         self.write("profile.jsonl", [{**json.loads((RECORDS / "profile.jsonl").read_text().splitlines()[0]), "schema": 7}])
         self.bad("schema 7", "report", self.work / "profile.jsonl", "-o", page)

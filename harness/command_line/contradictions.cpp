@@ -53,7 +53,6 @@ constexpr Rule rules[] = {
     {"--resume", Together::must, "-o FILE", "that recording is what it goes on with"},
     {"--checkpoint", Together::must, "-o FILE", "checkpoints are kept beside a recording"},
     {"--pictures", Together::must, "-o FILE", "that recording is what they show"},
-    {"--contacts", Together::must, "--vtu FOLDER", "a .glb has surfaces only"},
     {"--chunks", Together::must_not, "--csv", "a file of records has no chunks"},
     {"--builder", Together::must, "--chunks FILE", only_chunks},
     {"--chunk-bytes", Together::must, "--chunks FILE", only_chunks},

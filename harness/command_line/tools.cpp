@@ -96,8 +96,12 @@ Action add_export(CLI::App& app) {
         ->check(CLI::Range(1, 1000000));
     app.add_option("--vtu", options.vtu, "into this folder for ParaView: tetrahedra of every frame");
     app.add_option("--glb", options.glb, "into this file for viewers: surfaces, moved by an animation");
+    app.add_option(
+        "--geometry", options.geometry,
+        "into this file as JSON for pages: surfaces, poses, deformed vertices, about 4 MB at most");
     add_chunk_options(app, options);
-    auto* contacts = app.add_flag("--contacts", options.contacts, "contacts of every frame beside the .vtu");
+    auto* contacts = app.add_flag("--contacts", options.contacts,
+                                  "contacts of every frame, beside the .vtu or in the geometry");
     app.add_option("--device", options.device, "the device that finds them; host when left out")
         ->needs(contacts);
     const auto* csv =

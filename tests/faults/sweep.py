@@ -78,7 +78,8 @@ class Sweep(Case):
                               "--set", "precision=float", "--set", "rounding=safe", *tiled, "--repeat", 1, "--out", out), out),
                 "simulate": (("simulate", "arch:segments=2", "--steps", 2, "--device", "host", "-o", folder / "a.frames", "--record", out, "--quiet",
                               "--dynamics", "absolute_tolerance=1"), out),
-                "export": (("export", "pile:bodies=2,frames=2", "--frames", "0:1", "--vtu", folder / "vtu", "--glb", folder / "a.glb", "--chunks", folder / "c.csv"), None)}
+                "export": (("export", "pile:bodies=2,frames=2", "--frames", "0:1", "--vtu", folder / "vtu", "--glb", folder / "a.glb", "--geometry", folder / "g.json",
+                            "--chunks", folder / "c.csv"), None)}
 
     def fault(self, command, family, at, number):
         """One run in a folder of its own, in which call `at` of a family fails; 0: none does, and what would is listed."""

@@ -5,7 +5,6 @@
 #include "harness/compare/cells.h"
 #include "harness/finished_cells.h"
 #include "harness/plans/plan_file.h"
-#include "harness/report/data.h"
 #include "scenes/error.h"
 #include "scenes/read/read.h"
 #include "scenes/recording/bytes.h"
@@ -160,7 +159,6 @@ void read_all_records(std::string_view bytes) {
         } catch (const InputError&) {}
     };
     attempt([&] { compare::read_cells(path, ""); });
-    attempt([&] { report::data_of(report::read_records({path}), 1 << 20); });
     attempt([&] { const FinishedCells finished(RecordFile(path), path); });
 }
 

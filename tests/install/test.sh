@@ -29,6 +29,10 @@ cmake --build "$work/consumer" >"$work/log" || { cat "$work/log" >&2; exit 1; }
 (
   cd "$work"
   "$work/prefix/bin/tandem" paper --device host -o paper --dry-run | grep ' cells-plates ' >/dev/null
+  if [ -e prefix/libexec/tandem/javascript/three/three.min.js ]; then
+    prefix/bin/tandem view plates --frames 0 -o page.html >/dev/null
+    grep -q 'id="data-scene"' page.html
+  fi
   mv prefix/libexec libexec
   status=0 && prefix/bin/tandem paper --device host -o paper --dry-run 2>said || status=$?
   [ "$status" = 2 ] && [ "$(wc -l <said)" = 1 ] && grep -q 'tandem paper is not part of this installation' said

@@ -134,6 +134,9 @@ TEST(Base64, ComesBack) {
     EXPECT_EQ(read::encode_base64("light work."), "bGlnaHQgd29yay4=");
     EXPECT_EQ(read::encode_base64("light work"), "bGlnaHQgd29yaw==");
     EXPECT_EQ(read::encode_base64("light wor"), "bGlnaHQgd29y");
+    EXPECT_EQ(read::encode_base64("f"), "Zg==");
+    EXPECT_EQ(read::encode_base64("foobar"), "Zm9vYmFy");
+    EXPECT_EQ(read::encode_base64("\xff\xfe\xfd"), "//79");
     EXPECT_EQ(read::encode_base64(""), "");
     std::string bytes;
     for (int i = 0; i < 256; ++i) {

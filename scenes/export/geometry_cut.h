@@ -5,20 +5,20 @@
 #include <string>
 #include <vector>
 
-namespace tandem::report {
+namespace tandem::exporting {
 
-/// How much of a scene a page may have.
-struct SceneBudget {
-    std::size_t bytes = 3'000'000;   ///< of meshes, poses and contacts; base64 makes four of three
-    std::size_t triangles = 400'000; ///< of distinct meshes
+/// How much of a scene goes into one JSON document.
+struct GeometryBudget {
+    std::size_t bytes = 3'000'000;   ///< all meshes, poses and contacts; base64 makes four of three
+    std::size_t triangles = 400'000; ///< all distinct meshes
     std::size_t drawn = 4'000'000;   ///< triangles of all bodies
-    std::size_t contacts = 3000;     ///< of a frame: more hide the bodies
+    std::size_t contacts = 3000;     ///< in a frame: more hide the bodies
 };
 
 /// What a scene would take.
-struct SceneSizes {
+struct GeometrySizes {
     struct OfMesh {
-        std::size_t vertices = 0, triangles = 0; ///< of its surface
+        std::size_t vertices = 0, triangles = 0; ///< its surface
         std::size_t bodies = 0, deformable = 0;  ///< that have it, and those of them that are deformable
     };
     std::vector<OfMesh> meshes{};
@@ -26,8 +26,8 @@ struct SceneSizes {
     bool contacts = false;
 };
 
-/// What of it is shown.
-struct SceneCut {
+/// Which part of it is shown.
+struct GeometryCut {
     std::vector<bool> boxed; ///< meshes whose bodies are drawn as boxes
     std::size_t bodies = 0, frames = 0;
     std::size_t contacts = 0; ///< a frame at most
@@ -37,6 +37,6 @@ struct SceneCut {
 std::size_t mesh_bytes(std::size_t vertices, std::size_t triangles);
 
 /// Boxes instead of the largest meshes, then the first bodies only, then fewer frames, then fewer contacts.
-SceneCut cut(const SceneSizes& sizes, const SceneBudget& budget);
+GeometryCut cut(const GeometrySizes& sizes, const GeometryBudget& budget);
 
-} // namespace tandem::report
+} // namespace tandem::exporting

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "harness/report/scene_cut.h"
+#include "scenes/export/geometry_cut.h"
 
 #include <algorithm>
 
-namespace tandem::report {
+namespace tandem::exporting {
 
 namespace {
 
@@ -18,11 +18,11 @@ struct Costs {
     std::size_t deformed = 0; ///< bytes of a frame's deformable bodies
 };
 
-std::size_t vertices_of(const SceneSizes::OfMesh& mesh, bool boxed) {
+std::size_t vertices_of(const GeometrySizes::OfMesh& mesh, bool boxed) {
     return boxed ? box_vertices : mesh.vertices;
 }
 
-Costs costs_of(const SceneSizes& sizes, const std::vector<bool>& boxed) {
+Costs costs_of(const GeometrySizes& sizes, const std::vector<bool>& boxed) {
     Costs costs;
     for (std::size_t i = 0; i < sizes.meshes.size(); ++i) {
         const auto& mesh = sizes.meshes[i];
@@ -36,7 +36,7 @@ Costs costs_of(const SceneSizes& sizes, const std::vector<bool>& boxed) {
 }
 
 /// The mesh that is no box yet and gives most of what there is too much of; none when all are.
-std::size_t largest(const SceneSizes& sizes, const std::vector<bool>& boxed, bool of_all_bodies) {
+std::size_t largest(const GeometrySizes& sizes, const std::vector<bool>& boxed, bool of_all_bodies) {
     std::size_t found = sizes.meshes.size();
     std::size_t most = 0;
     for (std::size_t i = 0; i < sizes.meshes.size(); ++i) {
@@ -55,8 +55,8 @@ std::size_t mesh_bytes(std::size_t vertices, std::size_t triangles) {
     return vertices * vertex_bytes + triangles * (3 * index_bytes + 1);
 }
 
-SceneCut cut(const SceneSizes& sizes, const SceneBudget& budget) {
-    SceneCut result{.boxed = std::vector<bool>(sizes.meshes.size(), false)};
+GeometryCut cut(const GeometrySizes& sizes, const GeometryBudget& budget) {
+    GeometryCut result{.boxed = std::vector<bool>(sizes.meshes.size(), false)};
     auto costs = costs_of(sizes, result.boxed);
     const auto half = budget.bytes / 2;
     while (costs.bytes > half || costs.triangles > budget.triangles || costs.drawn > budget.drawn
@@ -78,4 +78,4 @@ SceneCut cut(const SceneSizes& sizes, const SceneBudget& budget) {
     return result;
 }
 
-} // namespace tandem::report
+} // namespace tandem::exporting

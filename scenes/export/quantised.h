@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace tandem::report {
+namespace tandem::exporting {
 
-/// Points in a box that is as large as need be, 16 bits a coordinate: a pixel of any screen is larger.
+/// Points in a box, 16 bits a coordinate: a pixel of any screen is larger.
 class Quantised {
 public:
     explicit Quantised(const Eigen::AlignedBox3d& box)
@@ -20,8 +20,8 @@ public:
 
     void add(const Eigen::Vector3d& point, std::vector<std::uint16_t>& to) const {
         for (int axis = 0; axis < 3; ++axis) {
-            const double share = size_[axis] > 0 ? (point[axis] - lower_[axis]) / size_[axis] : 0;
-            to.push_back(static_cast<std::uint16_t>(std::lround(share * 65535)));
+            const double fraction = size_[axis] > 0 ? (point[axis] - lower_[axis]) / size_[axis] : 0;
+            to.push_back(static_cast<std::uint16_t>(std::lround(fraction * 65535)));
         }
     }
 
@@ -29,4 +29,4 @@ private:
     Eigen::Vector3d lower_, size_;
 };
 
-} // namespace tandem::report
+} // namespace tandem::exporting

@@ -1,31 +1,40 @@
 // SPDX-License-Identifier: MIT
-#include "harness/report/scene_data.h"
+#include "scenes/export/geometry.h"
 
-#include "harness/chunk_numbers.h"
-#include "harness/frame_contacts.h"
-#include "harness/report/base64.h"
-#include "harness/report/interned.h"
-#include "harness/report/quantised.h"
+#include "scenes/export/quantised.h"
 #include "scenes/export/world.h"
+#include "scenes/read/base64.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-namespace tandem::report {
+namespace tandem {
+
+namespace exporting {
 
 namespace {
 
-using exporting::Surface;
+using OrderedJson = nlohmann::ordered_json;
 using Points = std::vector<Eigen::Vector3d>;
 
-Json json_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+template<class Number>
+std::string base64_of(const std::vector<Number>& numbers) {
+    const auto bytes = std::as_bytes(std::span(numbers));
+    return read::encode_base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+/// Six digits, which no screen shows more of.
+double six_digits(double value) { return std::stod(fmt::format("{:.6g}", value)); }
+
+OrderedJson json_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /// The points as they are drawn, in a box of their own.
-Json points_json(const Points& points, const Quantised& in) {
+OrderedJson points_json(const Points& points, const Quantised& in) {
     std::vector<std::uint16_t> coordinates;
     for (const auto& point : points) in.add(point, coordinates);
-    return {{"lower", json_of(in.lower())}, {"size", json_of(in.size())}, {"points", base64(coordinates)}};
+    return {{"lower", json_of(in.lower())}, {"size", json_of(in.size())}, {"points", base64_of(coordinates)}};
 }
 
 Eigen::AlignedBox3d box_of(const Points& points) {
@@ -53,45 +62,51 @@ Points shown_points(const Surface& surface, const Points& vertices, bool boxed) 
     return boxed ? corners_of(box_of(points)) : points;
 }
 
+GeometrySizes sizes_of(const Scene& scene, const std::vector<Surface>& surfaces, std::size_t frames) {
+    GeometrySizes sizes{.bodies = scene.bodies.size(), .frames = frames};
+    for (const auto& surface : surfaces)
+        sizes.meshes.push_back({surface.vertices.size(), surface.triangles.size() / 3, 0, 0});
+    for (const auto& body : scene.bodies) {
+        ++sizes.meshes[body.mesh].bodies;
+        sizes.meshes[body.mesh].deformable += body.deformable ? 1 : 0;
+    }
+    return sizes;
+}
+
 /// Makes the JSON of one scene.
-class SceneJson {
+class GeometryJson {
 public:
-    SceneJson(const Scene& scene, std::span<const std::size_t> frames, const SceneBudget& budget,
-              bool contacts);
+    GeometryJson(const Scene& scene, std::span<const std::size_t> frames, const GeometryParts& parts,
+                 const GeometryBudget& budget);
 
     void add_meshes();
-    void add_frames(FrameContacts* finder);
+    void add_frames();
     std::string text();
 
 private:
     void choose_frames(std::span<const std::size_t> wanted);
     void note_what_is_left_out(std::size_t wanted);
-    void add_frame(const Frame& frame, FrameContacts* finder);
+    void add_frame(const Frame& frame);
     void add_contacts(const std::vector<ContactPoint>& found);
     void write_poses();
     void write_contacts();
 
     const Scene& scene_;
+    const GeometryParts& parts_;
     std::vector<Surface> surfaces_;
-    SceneCut cut_;
+    GeometryCut cut_;
     std::vector<std::size_t> frames_;
     std::vector<std::vector<Pose>> poses_;
-    std::vector<Points> points_, normals_; ///< of the contacts shown, by frame
-    Json json_, notes_ = Json::array();
+    std::vector<Points> points_, normals_; ///< the contacts shown, by frame
+    OrderedJson json_, notes_ = OrderedJson::array();
 };
 
-SceneJson::SceneJson(const Scene& scene, std::span<const std::size_t> frames, const SceneBudget& budget,
-                     bool contacts)
-    : scene_(scene) {
-    SceneSizes sizes{.bodies = scene.bodies.size(), .frames = frames.size(), .contacts = contacts};
-    for (const auto& mesh : scene.meshes) {
-        const auto& surface = surfaces_.emplace_back(exporting::surface_of(mesh));
-        sizes.meshes.push_back({surface.vertices.size(), surface.triangles.size() / 3, 0, 0});
-    }
-    for (const auto& body : scene.bodies) {
-        ++sizes.meshes[body.mesh].bodies;
-        sizes.meshes[body.mesh].deformable += body.deformable ? 1 : 0;
-    }
+GeometryJson::GeometryJson(const Scene& scene, std::span<const std::size_t> frames,
+                           const GeometryParts& parts, const GeometryBudget& budget)
+    : scene_(scene), parts_(parts) {
+    for (const auto& mesh : scene.meshes) surfaces_.push_back(surface_of(mesh));
+    auto sizes = sizes_of(scene, surfaces_, frames.size());
+    sizes.contacts = static_cast<bool>(parts.contacts);
     cut_ = cut(sizes, budget);
     choose_frames(frames);
     note_what_is_left_out(frames.size());
@@ -99,20 +114,21 @@ SceneJson::SceneJson(const Scene& scene, std::span<const std::size_t> frames, co
              {"key", scene.key},
              {"units", scene.units},
              {"frames", frames_},
+             {"of_frames", frames.size()},
              {"bodies", cut_.bodies},
              {"of_bodies", scene.bodies.size()},
              {"tetrahedra", tetrahedron_count(scene)}};
     if (scene.time)
-        for (const auto frame : frames_) json_["times"].push_back(rounded(scene.time(frame)));
+        for (const auto frame : frames_) json_["times"].push_back(six_digits(scene.time(frame)));
 }
 
-/// Of more than fit as many, evenly, the first and the last among them.
-void SceneJson::choose_frames(std::span<const std::size_t> wanted) {
+/// As many as fit, evenly spaced, the first and the last included.
+void GeometryJson::choose_frames(std::span<const std::size_t> wanted) {
     const auto last = std::max<std::size_t>(cut_.frames, 2) - 1;
     for (std::size_t i = 0; i < cut_.frames; ++i) frames_.push_back(wanted[i * (wanted.size() - 1) / last]);
 }
 
-void SceneJson::note_what_is_left_out(std::size_t wanted) {
+void GeometryJson::note_what_is_left_out(std::size_t wanted) {
     const auto boxed = std::ranges::count(cut_.boxed, true);
     if (boxed > 0)
         notes_.push_back(
@@ -126,8 +142,8 @@ void SceneJson::note_what_is_left_out(std::size_t wanted) {
         notes_.push_back(fmt::format("{} of {} frames are shown, evenly taken", cut_.frames, wanted));
 }
 
-void SceneJson::add_meshes() {
-    json_["meshes"] = Json::array();
+void GeometryJson::add_meshes() {
+    json_["meshes"] = OrderedJson::array();
     for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
         const auto& surface = surfaces_[i];
         const bool boxed = cut_.boxed[i];
@@ -137,14 +153,14 @@ void SceneJson::add_meshes() {
         const bool wide = points.size() > 65536;
         mesh["name"] = scene_.meshes[i].name;
         mesh["wide"] = wide;
-        mesh["triangles"] =
-            wide ? base64(triangles) : base64(std::vector<std::uint16_t>(triangles.begin(), triangles.end()));
+        mesh["triangles"] = wide ? base64_of(triangles)
+                                 : base64_of(std::vector<std::uint16_t>(triangles.begin(), triangles.end()));
         std::vector<std::uint8_t> chunks(triangles.size() / 3);
-        const auto numbers = chunk_numbers(scene_.meshes[i]);
+        const auto numbers = parts_.chunks(scene_.meshes[i]);
         if (!boxed)
             for (std::size_t t = 0; t < chunks.size(); ++t)
                 chunks[t] = static_cast<std::uint8_t>(numbers[surface.tetrahedra[t]] % 256);
-        mesh["chunks"] = base64(chunks);
+        mesh["chunks"] = base64_of(chunks);
         json_["meshes"].push_back(std::move(mesh));
     }
     std::vector<std::uint32_t> meshes;
@@ -154,13 +170,13 @@ void SceneJson::add_meshes() {
         meshes.push_back(of.mesh);
         kinds.push_back(static_cast<std::uint8_t>((of.fixed ? 1 : 0) + (of.deformable ? 2 : 0)));
     }
-    json_["body_meshes"] = base64(meshes);
-    json_["body_kinds"] = base64(kinds);
+    json_["body_meshes"] = base64_of(meshes);
+    json_["body_kinds"] = base64_of(kinds);
 }
 
-void SceneJson::add_frame(const Frame& frame, FrameContacts* finder) {
+void GeometryJson::add_frame(const Frame& frame) {
     poses_.emplace_back(frame.poses.begin(), frame.poses.begin() + static_cast<std::ptrdiff_t>(cut_.bodies));
-    Json deformed = Json::array();
+    OrderedJson deformed = OrderedJson::array();
     for (std::size_t body = 0; body < cut_.bodies; ++body) {
         const auto mesh = scene_.bodies[body].mesh;
         if (!scene_.bodies[body].deformable) continue;
@@ -168,11 +184,11 @@ void SceneJson::add_frame(const Frame& frame, FrameContacts* finder) {
         deformed.push_back(points_json(points, Quantised(box_of(points))));
     }
     json_["deformed"].push_back(std::move(deformed));
-    if (finder) add_contacts(finder->of(frame));
+    if (parts_.contacts) add_contacts(parts_.contacts(frame));
 }
 
-/// Of more than fit evenly as many.
-void SceneJson::add_contacts(const std::vector<ContactPoint>& found) {
+/// As many as fit, evenly spaced.
+void GeometryJson::add_contacts(const std::vector<ContactPoint>& found) {
     auto& points = points_.emplace_back();
     auto& normals = normals_.emplace_back();
     const auto shown = std::min(found.size(), cut_.contacts);
@@ -184,13 +200,13 @@ void SceneJson::add_contacts(const std::vector<ContactPoint>& found) {
     json_["contacts"].push_back({{"found", found.size()}});
 }
 
-void SceneJson::add_frames(FrameContacts* finder) {
-    for (const auto frame : frames_) add_frame(scene_.frame(frame), finder);
+void GeometryJson::add_frames() {
+    for (const auto frame : frames_) add_frame(scene_.frame(frame));
     write_poses();
-    if (finder) write_contacts();
+    if (parts_.contacts) write_contacts();
 }
 
-void SceneJson::write_poses() {
+void GeometryJson::write_poses() {
     Eigen::AlignedBox3d box;
     for (const auto& poses : poses_)
         for (const auto& pose : poses) box.extend(pose.translation);
@@ -205,11 +221,11 @@ void SceneJson::write_poses() {
                 numbers.push_back(
                     static_cast<std::uint16_t>(std::lround(std::clamp(x, -1.0, 1.0) * 32767) + 32768));
         }
-        json_["poses"].push_back(base64(numbers));
+        json_["poses"].push_back(base64_of(numbers));
     }
 }
 
-void SceneJson::write_contacts() {
+void GeometryJson::write_contacts() {
     Eigen::AlignedBox3d box;
     std::size_t all = 0;
     std::size_t shown = 0;
@@ -223,26 +239,33 @@ void SceneJson::write_contacts() {
                 normals.push_back(static_cast<std::int8_t>(std::lround(std::clamp(x, -1.0, 1.0) * 127)));
         auto& contacts = json_["contacts"][i];
         contacts.update(points_json(points_[i], in));
-        contacts["normals"] = base64(normals);
+        contacts["normals"] = base64_of(normals);
         all += contacts["found"].get<std::size_t>();
         shown += points_[i].size();
     }
     if (shown < all) notes_.push_back(fmt::format("{} of {} contacts are shown, evenly taken", shown, all));
 }
 
-std::string SceneJson::text() {
+std::string GeometryJson::text() {
     json_["notes"] = notes_;
-    return json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return json_.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
 } // namespace
 
-std::string scene_data(const Scene& scene, std::span<const std::size_t> frames, FrameContacts* finder,
-                       const SceneBudget& budget) {
-    SceneJson json(scene, frames, budget, finder != nullptr);
+} // namespace exporting
+
+std::string geometry_json(const Scene& scene, std::span<const std::size_t> frames, const GeometryParts& parts,
+                          const exporting::GeometryBudget& budget) {
+    exporting::GeometryJson json(scene, frames, parts, budget);
     json.add_meshes();
-    json.add_frames(finder);
+    json.add_frames();
     return json.text();
 }
 
-} // namespace tandem::report
+void write_geometry(const std::string& path, const Scene& scene, std::span<const std::size_t> frames,
+                    const GeometryParts& parts) {
+    exporting::write_file(path, geometry_json(scene, frames, parts) + "\n");
+}
+
+} // namespace tandem

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: MIT
+"""tandem report: records, and a scene, as one page for a browser."""
+import argparse
+import datetime
+import subprocess
+import sys
+
+from ..errors import BadUse
+from . import check_packages, run
+
+MOST_BYTES = 7_900_000
+
+
+def _parsed(arguments):
+    parser = argparse.ArgumentParser(prog="tandem report", description=__doc__, allow_abbrev=False)
+    parser.add_argument("files", nargs="+")
+    parser.add_argument("--output", default="report.html")
+    parser.add_argument("--against")
+    parser.add_argument("--scene")
+    parser.add_argument("--frames")
+    parser.add_argument("--every")
+    parser.add_argument("--contacts", action="store_true")
+    parser.add_argument("--device")
+    return parser.parse_args(arguments)
+
+
+def _counted(number, one, more):
+    return f"{number} {one if number == 1 else more}"
+
+
+def _contents(cells, records, files):
+    """"36 cells of 2 files", and what there is besides cells."""
+    counts = ((cells, "cell", "cells"), (len(records.profiles), "profile", "profiles"), (len(records.simulations), "simulation", "simulations"),
+              (len(records.ceilings), "device's ceilings", "devices' ceilings"))
+    return f"{', '.join(_counted(*one) for one in counts if one[0])} of {_counted(files, 'file', 'files')}"
+
+
+def _made_by(program):
+    """The program's version in one line, and the time."""
+    version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
+    return version, datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+def _add_scene(page, options, program):
+    """The key of the scene, as the command's line has it; empty where there is none."""
+    from ..report.scene import shown_scene, words_of
+    if not options.scene:
+        return ""
+    scene = shown_scene(program, words_of(options.scene, options))
+    page.data["scene"] = scene.json
+    return f", {scene.key}"
+
+
+def _write(options, program):
+    """The line of the command. Raises scene.ExportEnded besides what run() knows."""
+    from ..report.assembly import html_of, open_page, write_page
+    if options.against and len(options.files) != 1:
+        raise BadUse(f"--against {options.against}: two sets of records are compared; give one FILE beside it")
+    page = open_page("Report of tandem", True, bool(options.scene), program, "tandem report")
+    check_packages("tandem report", ("numpy", "scipy"))
+    from ..report.data import data_of, size_of
+    from ..report.differences import differences
+    from ..report.reading import read_records
+    records, empty = read_records(options.files), size_of(html_of(page))
+    if options.against:
+        page.data["differences"] = differences(options.against, options.files[0])
+    scene = _add_scene(page, options, program)
+    room = max(MOST_BYTES - empty - sum(map(size_of, page.data.values())), 0)
+    data = data_of(records, room, *_made_by(program))
+    page.data["records"] = data.json
+    written = write_page(options.output, page)
+    for note in data.notes:
+        print(f"tandem: {note}", file=sys.stderr)
+    return f"{options.output}: {_contents(data.cells, records, len(options.files))}{scene}, {written / 1e6:.1f} MB\n"
+
+
+def _make(options, program):
+    from ..report.scene import ExportEnded
+    try:
+        return _write(options, program), 0
+    except ExportEnded as ended:
+        return "", ended.code
+
+
+def main(arguments, program):
+    options = _parsed(arguments)
+    return run(lambda: _make(options, program))

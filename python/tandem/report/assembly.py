@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: MIT
+"""A page that needs nothing else: its own files, the libraries that it takes, and its data."""
+import dataclasses
+import os
+import pathlib
+import stat
+
+from ..errors import OutputError
+from ..files import replace_whole
+from .libraries import CHARTS, SCENES, scripts
+
+FOLDER = pathlib.Path(__file__).parent / "page"
+CHART_SCRIPTS = ("words.js", "tables.js", "charts.js", "figures.js")
+SCENE_SCRIPTS = ("scene.js", "scene_controls.js")
+
+
+@dataclasses.dataclass
+class Page:
+    """title; libraries: the texts of those that it takes; has_charts, has_scene: which of its own scripts it takes; data: {id: JSON text}."""
+    title: str
+    libraries: list = dataclasses.field(default_factory=list)
+    has_charts: bool = False
+    has_scene: bool = False
+    data: dict = dataclasses.field(default_factory=dict)
+
+
+def open_page(title, has_charts, has_scene, program, command):
+    """A Page without data. Raises BadUse where a library that it takes is missing."""
+    libraries = (CHARTS if has_charts else {}) | (SCENES if has_scene else {})
+    return Page(title, scripts(libraries, program, command), has_charts, has_scene)
+
+
+def _own(name):
+    return (FOLDER / name).read_text(encoding="utf-8")
+
+
+def _escaped(text):
+    return text.replace("&", "&amp;").replace("<", "&lt;")
+
+
+def _data_element(name, json):
+    """No text of a record can end its element."""
+    escaped = json.replace("<", "\\u003c")
+    return f'<script type="application/json" id="data-{name}">{escaped}</script>\n'
+
+
+def _script_element(script):
+    script = script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
+    return f"<script>\n{script}\n</script>\n"
+
+
+def html_of(page):
+    own = ["data.js", *(CHART_SCRIPTS if page.has_charts else ()), *(SCENE_SCRIPTS if page.has_scene else ()), "page.js"]
+    elements = [*(_data_element(*item) for item in page.data.items()), *map(_script_element, [*page.libraries, *map(_own, own)])]
+    html = _own("page.html").replace("/*styles*/", _own("page.css"), 1).replace("<!--title-->", _escaped(page.title))
+    return html.replace("<!--scripts-->", "".join(elements), 1)
+
+
+def write_page(path, page):
+    """Replaces the file, whole or not at all; returns its bytes. Raises OutputError."""
+    try:
+        is_file = stat.S_ISREG(os.stat(path).st_mode)
+    except OSError:
+        is_file = True  # what keeps it from being written is said then
+    if not is_file:
+        raise OutputError(f"{path}: is no file that could be replaced; choose another with -o")
+    # Names of files, and texts of records with half a surrogate pair, need not be UTF-8.
+    html = html_of(page).encode(errors="replace")
+    replace_whole(path, html)
+    return len(html)

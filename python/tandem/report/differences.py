@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: MIT
+"""By how much the cells of two files differ, for the page to draw: what 'tandem compare' says."""
+import os
+
+from ..comparison import matched_files
+from ..comparison.matching import VERDICTS
+from ..comparison.naming import label
+from ..comparison.notes import notes, summary
+from .data import dumped
+from .numbers import rounded
+
+MOST_SHOWN = 3000  # the first cells, and the page says of how many
+LEVEL = 0.05
+
+
+def _optional(value):
+    return None if value is None else rounded(value)
+
+
+def _row(cell, name):
+    row = {"label": name, "verdict": VERDICTS[cell.verdict]}
+    if cell.verdict == "another_answer":
+        return row
+    ratio = cell.ratio
+    return row | {"old": rounded(cell.before_ns / 1e6), "new": rounded(cell.after_ns / 1e6),
+                  "ratio": [rounded(value) for value in (ratio.value, ratio.low, ratio.high)], "p": _optional(cell.p_holm),
+                  "would_show": _optional(cell.least_effect)}
+
+
+def differences(old, new):
+    """JSON text. Raises RecordError as tandem compare does."""
+    before, after, matched = matched_files(old, new, level=LEVEL)
+    labels, common = label([cell.before for cell in matched.cells])
+    return dumped({"old": os.path.basename(old), "new": os.path.basename(new), "common": common, "summary": summary(matched, LEVEL),
+                   "notes": notes(before, after, matched), "of": len(matched.cells),
+                   "cells": list(map(_row, matched.cells[:MOST_SHOWN], labels))})

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""Profiles, ceilings and simulations as the page draws them. Each function raises one of lines.FIELD_ERRORS for a record that lacks
+fields of its schema."""
+import dataclasses
+import os
+
+from .numbers import at, count, is_number, number, rounded, text
+
+KERNEL_NUMBERS = ("share", "launches", "bytes", "operations", "bytes_per_s", "operations_per_s", "of_bytes", "of_operations", "over_floor",
+                  "occupancy")
+CEILINGS = ("bytes_per_s", "cached_bytes_per_s", "operations_per_s")
+HOST_PARTS = ("broad", "narrow", "reduce", "assemble", "solve", "move")
+MOST_RUNS, MOST_STEPS = 40, 600
+
+
+def _device_text(device):
+    return f"{text(device['id'])} ({text(device['name'])})"
+
+
+def _name(record):
+    name = (f"{text(record['algorithm'])} {text(record['preset'])} k = {record['settings'].get('k', '?')}, {text(record['scene']['key'])}, "
+            f"on {_device_text(record['devices'][0])}")
+    return name if record["status"] == "ok" else f"{text(record['status'])}: {name}"
+
+
+def _number_at(record, name):
+    value = record.get(name)
+    return rounded(value) if is_number(value) else None
+
+
+def _kernel(kernel):
+    ns = kernel["device_ns"]
+    shown = {"entry": text(kernel["entry"]), "stage": text(kernel["stage"]), "ms": [number(ns[name]) / 1e6 for name in ("median", "low", "high")]}
+    return shown | {name: _number_at(kernel, name) for name in KERNEL_NUMBERS} | {"bound": kernel.get("bound")}
+
+
+def shown_profile(record, path):
+    """`path`: the file of the record."""
+    ceilings = {name: _number_at(record["ceilings"], name) for name in CEILINGS}
+    return {"name": _name(record), "file": os.path.basename(path), "ceilings": ceilings, "kernels": list(map(_kernel, record["kernels"]))}
+
+
+def shown_ceilings(record):
+    shown = {"device": _device_text(record["device"]), "date": text(record["environment"]["date"])}
+    values = {name: rounded(number(record[name]["median"])) for name in sorted(record) if isinstance(record[name], dict) and "median" in record[name]}
+    return shown | ({"values": values} if values else {})
+
+
+@dataclasses.dataclass
+class _Run:
+    """Steps of one session, every so many where there are more than can be drawn. kept: [step, ms by part..., contacts found, contacts kept]."""
+    name: str
+    status: str = "not ended"
+    failure: str = ""
+    steps: int = 0
+    stride: int = 1
+    kept: list = dataclasses.field(default_factory=list)
+
+    def add(self, step):
+        self.steps += 1
+        if (self.steps - 1) % self.stride:
+            return
+        self.kept.append(step)
+        if len(self.kept) == MOST_STEPS:
+            self.stride *= 2
+            self.kept = self.kept[::2]
+
+    def shown(self):
+        return {"name": self.name, "status": self.status, "failure": self.failure, "steps": self.steps, "parts": list(HOST_PARTS), "kept": self.kept}
+
+
+def _step(line):
+    times = [rounded(number(line["host_ns"][part]) / 1e6) for part in HOST_PARTS]
+    return [count(line["step"]), *times, count(line["contacts_found"]), count(line["contacts_kept"])]
+
+
+class Simulations:
+    """Lines of simulations become curves of bounded length, one a session."""
+
+    def __init__(self):
+        self._runs = {}
+
+    def add(self, line, path):
+        run = self._runs.setdefault((path, text(line.get("session", ""))), _Run(os.path.basename(path)))
+        if line["kind"] == "step":
+            run.add(_step(line))
+            return
+        run.name = f"{text(at(line, 'scene', 'key'))}, contacts by {_name(line)}"
+        run.status = text(line["status"]) or "not ended"
+        if isinstance(line.get("failure"), str):
+            run.failure = line["failure"]
+
+    def shown(self):
+        return [run.shown() for run in list(self._runs.values())[:MOST_RUNS]]
+
+    @property
+    def left_out(self):
+        return max(len(self._runs) - MOST_RUNS, 0)

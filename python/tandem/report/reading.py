@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: MIT
+"""Files of records of any kinds, of one page."""
+import dataclasses
+import json
+import os
+
+from .. import kinds, lines
+from .other_records import Simulations, shown_ceilings, shown_profile
+from .shown_cells import shown_cell
+
+WHAT_TO_GIVE = "give files that 'tandem run --out', 'profile --out', 'simulate --record' or 'devices --measure --out' wrote"
+MOST_CELLS = 6000  # beyond so many, one a key
+MOST_OTHER_RECORDS = 200  # profiles, and records of ceilings
+LISTS = {"cell": "cells", "profile": "profiles", "simulation": "simulations", "ceilings": "ceilings"}  # for each kind of record
+
+
+@dataclasses.dataclass
+class Records:
+    """cells: ShownCells; cell_records: how many records of cells there were, shown or not, an interrupted one and what goes on with it as
+    one; files: {name, and how many of each kind}; notes: what a reader has to know: what was left out, lines that were cut off."""
+    cells: list = dataclasses.field(default_factory=list)
+    cell_records: int = 0
+    profiles: list = dataclasses.field(default_factory=list)
+    ceilings: list = dataclasses.field(default_factory=list)
+    simulations: list = dataclasses.field(default_factory=list)
+    files: list = dataclasses.field(default_factory=list)
+    notes: list = dataclasses.field(default_factory=list)
+
+
+class _Cells:
+    """ShownCells in the order of their records, by number, `most` at a time: of more, one a key. A record whose rounds another one of its
+    key goes on with is left out, and so is a copy."""
+
+    def __init__(self, most):
+        self.most, self.one_a_key = most, False
+        self.cells, self.of_key = {}, {}
+        self.records = self.added = self.older = self.left_out = self.left_out_wrong = 0
+
+    def add(self, cell):
+        numbers = self.of_key.get(cell.recorded.key, [])
+        if any(self.cells[number].goes_on_with(cell) or self.cells[number].is_copy_of(cell) for number in numbers):
+            return
+        interrupted = [number for number in numbers if cell.goes_on_with(self.cells[number])]
+        self._remove(interrupted)
+        self.records += 1 - len(interrupted)
+        if not self.one_a_key and len(self.cells) == self.most:
+            self._keep_newest()
+        numbers = self.of_key.get(cell.recorded.key, [])
+        if self.one_a_key and numbers:
+            self._replace(numbers[0], cell)
+        elif len(self.cells) == self.most:
+            self.left_out += 1
+            self.left_out_wrong += cell.recorded.status != "ok"
+        else:
+            self.added += 1
+            self.cells[self.added] = cell
+            self.of_key.setdefault(cell.recorded.key, []).append(self.added)
+
+    def _remove(self, numbers):
+        for number in numbers:
+            self.of_key[self.cells.pop(number).recorded.key].remove(number)
+
+    def _replace(self, number, cell):
+        self.older += 1
+        if cell.recorded.status == "ok" or self.cells[number].recorded.status != "ok":
+            self.cells[number] = cell
+
+    def mark_older(self):
+        """The last record of each key that is ok stands for it, or the last one where none is."""
+        for numbers in self.of_key.values():
+            good = [number for number in numbers if self.cells[number].recorded.status == "ok"]
+            newest = (good or numbers or [None])[-1]
+            for number in numbers:
+                self.cells[number].is_older = number != newest
+
+    def _keep_newest(self):
+        """From now on one record a key."""
+        self.one_a_key = True
+        self.mark_older()
+        older = [number for number, cell in self.cells.items() if cell.is_older]
+        self.older += len(older)
+        self._remove(older)
+
+    def notes(self):
+        if self.older:
+            yield f"{self.older} older records of cells that were recorded again are left out"
+        if self.left_out:
+            yield (f"{self.left_out} of {self.records} records of cells are left out, {self.left_out_wrong} of them failed or wrong: a page "
+                   f"has room for {self.most}; give fewer files, or the lines that matter")
+
+
+def _checked(text, place):
+    """The kind and the record of a line. Schemas of cells are checked where these are read."""
+    record = lines.parsed(text, place, WHAT_TO_GIVE)
+    kind = kinds.kind_of(record)
+    if kind is None:
+        raise lines.RecordError(f"{place}: is no record of tandem; {WHAT_TO_GIVE}")
+    known, schema = kinds.SCHEMAS[kind], record.get("schema")
+    if kind != "cell" and schema != known:
+        raise lines.RecordError(f"{place}: a record of schema {json.dumps(schema)}, and this program knows {known}; bring it to that with "
+                                "scripts/convert_records")
+    return LISTS[kind], record
+
+
+class _Reader:
+    """Reads file after file."""
+
+    def __init__(self, most):
+        self.records, self.cells, self.simulations = Records(), _Cells(most), Simulations()
+        self.left_out = 0
+
+    def read(self, path):
+        self.records.files.append({"name": os.path.basename(path), "cells": 0, "profiles": 0, "simulations": 0, "ceilings": 0})
+        number, before = 0, len(self.records.notes)
+        for number, (kind, record) in lines.numbered(path, self.records.notes.append, _checked):
+            try:
+                self._add(kind, record, path, number)
+            except lines.RecordError:
+                raise
+            except lines.FIELD_ERRORS:
+                raise lines.RecordError(f"{path}:{number}: a record that lacks fields of its schema; {WHAT_TO_GIVE}") from None
+        if number == 0 and len(self.records.notes) > before:
+            raise lines.RecordError(f"{path}: its only line has no end; name a file of records")
+
+    def _add(self, kind, record, path, line):
+        self.records.files[-1][kind] += 1
+        if kind == "cells":
+            self.cells.add(shown_cell(record, path, line, len(self.records.files) - 1))
+        elif kind == "simulations":
+            self.simulations.add(record, path)
+        else:
+            self._keep(kind, shown_profile(record, path) if kind == "profiles" else shown_ceilings(record))
+
+    def _keep(self, kind, shown):
+        kept = getattr(self.records, kind)
+        if len(kept) < MOST_OTHER_RECORDS:
+            kept.append(shown)
+        else:
+            self.left_out += 1
+
+    def finish(self):
+        records, cells = self.records, self.cells
+        cells.mark_older()
+        records.cells, records.cell_records = list(cells.cells.values()), cells.records
+        records.simulations = self.simulations.shown()
+        records.notes += cells.notes()
+        if self.left_out:
+            records.notes.append(f"{self.left_out} profiles or records of ceilings are left out: there is room for {MOST_OTHER_RECORDS} of each")
+        if self.simulations.left_out:
+            records.notes.append(f"the last {self.simulations.left_out} simulations are left out")
+        return records
+
+
+def read_records(files, most=MOST_CELLS):
+    """Records of files of any kinds. Raises RecordError: a file that is none, lines of other schemas."""
+    reader = _Reader(most)
+    for file in files:
+        reader.read(file)
+    return reader.finish()

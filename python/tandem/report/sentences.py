@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: MIT
+"""What groups say, in sentences: which cell is the fastest, by how much, how sure; which failed or were wrong."""
+import dataclasses
+import statistics
+
+from ..text_lines import one_line
+from .numbers import digits
+
+MOST_LETTERS = 900  # about cells that are not ranked
+
+
+def _label(group, cell):
+    return one_line(group.labels[group.cells.index(cell)], 300)
+
+
+def _milliseconds(cell):
+    """The median of a cell's rounds, a frame."""
+    return statistics.median(cell.recorded.times()) / cell.frames / 1e6
+
+
+def _held_against_fastest(ranked):
+    ratio = ranked.ratio
+    if not ranked.has_interval:
+        return f"takes {digits(ratio.value)} times as long, in one round: how sure is not known"
+    interval = f"[{digits(ratio.low)}, {digits(ratio.high)}]"
+    if not ranked.is_told_apart:
+        return f"is not told apart from it ({digits(ratio.value)} times its time {interval})"
+    return f"takes {digits(ratio.value)} times as long {interval}"
+
+
+def _fastest(group, cells):
+    first, *rest = group.ranked
+    name, ms = _label(group, first.cell), digits(_milliseconds(cells[first.cell]))
+    if not rest:
+        return f"{name} takes {ms} ms a frame; there is nothing to compare it with."
+    sentence = (f"{name} is the fastest of {len(group.ranked)} with {ms} ms a frame; the next, {_label(group, rest[0].cell)}, "
+                f"{_held_against_fastest(rest[0])}.")
+    if len(rest) > 1:
+        sentence += f" The slowest, {_label(group, rest[-1].cell)}, {_held_against_fastest(rest[-1])}."
+    return sentence
+
+
+def _not_ranked(group, cells):
+    """Sentences of what failed or was wrong, with the first of each named."""
+    sentences = ""
+    for number in group.cells:
+        cell = cells[number].recorded
+        if cell.status == "ok":
+            continue
+        failed = cell.status == "failed"
+        why = one_line(cell.failure, 200) if failed else "its answer is not the reference's"
+        sentences += f" {_label(group, number)} {'failed' if failed else 'was wrong'}, and is not ranked: {why}."
+        if len(sentences) > MOST_LETTERS:
+            return f"{sentences} There are more."
+    return sentences
+
+
+def group_sentences(group, cells):
+    if not group.ranked:
+        first = "None of its cells has times that count."
+    elif group.answers_differ:
+        first = "Its cells found different sets of candidate pairs, so that times are of different work: none is said to be the fastest."
+    else:
+        first = _fastest(group, cells)
+    return first + _not_ranked(group, cells)
+
+
+@dataclasses.dataclass
+class _Wins:
+    """How often an algorithm is the fastest, and told apart from the next; by how much the best of another algorithm is slower."""
+    all: int = 0
+    sure: int = 0
+    least: float = 0
+    most: float = 0
+
+    def add(self, ratio, is_told_apart):
+        self.least = ratio if self.all == 0 else min(self.least, ratio)
+        self.most = max(self.most, ratio)
+        self.all += 1
+        self.sure += is_told_apart
+
+
+def _wins(groups, cells):
+    """By algorithm, those with the most first."""
+    def algorithm(ranked):
+        return cells[ranked.cell].recorded.names["algorithm"]
+    wins = {}
+    for group in groups:
+        if not group.ranked or group.answers_differ:
+            continue
+        winner = algorithm(group.ranked[0])
+        after = next((ranked for ranked in group.ranked if algorithm(ranked) != winner), None)
+        if after is not None:
+            wins.setdefault(winner, _Wins()).add(after.ratio.value, after.is_told_apart)
+    return sorted(sorted(wins.items()), key=lambda item: -item[1].all)
+
+
+def _wins_sentence(wins):
+    contested = sum(won.all for _, won in wins)
+    parts = [f"{one_line(name, 100)} is the fastest in {won.all} of {contested} comparisons, told apart from the best other algorithm in "
+             f"{won.sure}, which takes {digits(won.least)}{f' to {digits(won.most)}' if won.all > 1 else ''} times as long" for name, won in wins]
+    return f"{'; '.join(parts)}."
+
+
+def summary_sentences(groups, cells):
+    """What all groups say together: how often which algorithm is the fastest, what takes no part."""
+    wins = _wins(groups, cells)
+    sentences = [_wins_sentence(wins)] if wins else []
+    failed, wrong = (sum(cell.recorded.status == status for cell in cells) for status in ("failed", "wrong"))
+    if failed + wrong > 0:
+        sentences.append(f"{failed} failed and {wrong} gave a wrong answer: they are shown as such and never ranked.")
+    older = sum(cell.is_older for cell in cells)
+    if older:
+        sentences.append(f"{older} were recorded again later: the last record that is ok counts.")
+    if not all(cell.recorded.on_gpus for cell in cells):
+        sentences.append("Times of processors say nothing of a GPU.")
+    return sentences

@@ -1,0 +1,414 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""python_report.py PROGRAM SOURCE: what a page says of records, from the package python/tandem/report alone: groups, ranks, sentences, what
+there is no room for, interrupted cells, damaged records, libraries that are missing, pages that no text can break out of."""
+import copy
+import json
+import lzma
+import os
+import random
+import signal
+import subprocess
+import sys
+import unittest
+import unittest.mock
+
+from program import PROGRAM, SOURCE, Case, tandem
+
+sys.path.insert(0, str(SOURCE / "python"))
+from tandem import lines
+from tandem.comparison.cells import Answer, RecordedCell
+from tandem.errors import BadUse, OutputError
+from tandem.files import replace_whole
+from tandem.report import assembly, libraries
+from tandem.report.conditions import conditions_text, sampling_text
+from tandem.report.data import data_of
+from tandem.report.groups import groups_of
+from tandem.report.other_records import Simulations
+from tandem.report.reading import Records, read_records
+from tandem.report.sentences import group_sentences, summary_sentences
+from tandem.report.shown_cells import FIELDS, ShownCell
+
+H200 = SOURCE / "results/h200"
+ONE_MS = [1.0, 1.01, 0.99, 1.0, 1.02, 0.98, 1.0, 1.01, 0.99, 1.0]
+TWO_MS = [2 * ms for ms in ONE_MS]
+
+
+def cell_of(algorithm, rounds, k="18", **changes):
+    """A cell with these times of its rounds, in ms of its one frame."""
+    names = {"algorithm": algorithm, "preset": "resident", "devices": "cuda:0", "model": "GPU", "driver": "1", "scene": "pile",
+             "frames": "frames 0:0", "handling": "", "digest": "digest 1"}
+    recorded = RecordedCell(line=1, schema=3, key=f"{algorithm}|k={k}", status="ok", failure="", names=names, settings={"k": k}, frames=1,
+                            on_gpus=True, session="", seed=None, samples=len(rounds), rounds={i: 1e6 * ms for i, ms in enumerate(rounds)},
+                            pairs=None, contacts=None, commit="", processor="", dirty=False)
+    for name, value in changes.items():
+        setattr(recorded, name, value)
+    return ShownCell(recorded, "pile:bodies=3", "pile", "1", row=[f"text {algorithm}"] * (len(FIELDS) - 1))
+
+
+def said(cells):
+    """The groups, and the sentences of the first."""
+    groups = groups_of(cells)
+    return groups, group_sentences(groups[0], cells)
+
+
+class Sentences(unittest.TestCase):
+    def test_the_fastest_and_by_how_much(self):
+        cells = [cell_of("slow", TWO_MS), cell_of("quick", ONE_MS)]
+        groups, sentences = said(cells)
+        self.assertEqual([group.title for group in groups], ["pile, frames 0:0, k = 18, on cuda:0 (GPU)"])
+        self.assertEqual([ranked.cell for ranked in groups[0].ranked], [1, 0])
+        self.assertIn("quick is the fastest of 2 with 1.000 ms a frame; the next, slow, takes 2.000 times as long [", sentences)
+        summary = summary_sentences(groups, cells)
+        self.assertIn("quick is the fastest in 1 of 1 comparisons, told apart from the best other algorithm in 1, which takes 2.000", summary[0])
+        self.assertEqual(len(summary), 1)
+
+    def test_the_slowest_of_three(self):
+        _, sentences = said([cell_of("a", ONE_MS), cell_of("b", TWO_MS), cell_of("c", [3 * ms for ms in ONE_MS])])
+        self.assertIn("a is the fastest of 3 with 1.000 ms a frame; the next, b, takes 2.000", sentences)
+        self.assertIn("The slowest, c, takes 3.000 times as long", sentences)
+
+    def test_what_is_not_told_apart(self):
+        nearly = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
+        groups, sentences = said([cell_of("a", ONE_MS), cell_of("b", nearly)])
+        self.assertFalse(groups[0].ranked[1].is_told_apart)
+        self.assertIn("is not told apart from it (1.000 times its time [", sentences)
+
+    def test_one_round_is_not_sure(self):
+        groups, sentences = said([cell_of("a", [1.0]), cell_of("b", [2.0])])
+        self.assertFalse(groups[0].ranked[1].is_told_apart)
+        self.assertIn("takes 2.000 times as long, in one round: how sure is not known", sentences)
+
+    def test_rounds_of_one_session_are_pairs(self):
+        """Rounds that rise and fall together are told apart, which those of two sessions are not."""
+        tide = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]
+        for sessions, is_told_apart in ((("s", "s"), True), (("s", "t"), False)):
+            cells = [cell_of(name, [factor * ms for ms in tide], session=session)
+                     for name, factor, session in zip("ab", (1, 1.05), sessions)]
+            self.assertEqual(groups_of(cells)[0].ranked[1].is_told_apart, is_told_apart)
+
+    def test_failed_wrong_and_older_are_never_ranked(self):
+        cells = [cell_of("a", TWO_MS), cell_of("b", ONE_MS, status="wrong"), cell_of("c", ONE_MS, status="failed", failure="no memory"),
+                 cell_of("d", ONE_MS)]
+        cells[3].is_older = True
+        groups, sentences = said(cells)
+        self.assertEqual([ranked.cell for ranked in groups[0].ranked], [0])
+        self.assertIn("a takes 2.000 ms a frame; there is nothing to compare it with.", sentences)
+        self.assertIn("b was wrong, and is not ranked: its answer is not the reference's.", sentences)
+        self.assertIn("c failed, and is not ranked: no memory.", sentences)
+        summary = summary_sentences(groups, cells)
+        self.assertIn("1 failed and 1 gave a wrong answer", summary[0])
+        self.assertIn("1 were recorded again later", summary[1])
+
+    def test_of_many_failures_some_are_named(self):
+        _, sentences = said([cell_of(f"a{i}", [], status="failed", failure="x" * 150) for i in range(40)])
+        self.assertTrue(sentences.startswith("None of its cells has times that count."), sentences)
+        self.assertTrue(sentences.endswith(" There are more."), sentences)
+        self.assertLess(len(sentences), 1300)
+
+    def test_other_bounds_are_another_group(self):
+        self.assertEqual(len(groups_of([cell_of("a", ONE_MS), cell_of("a", TWO_MS, "8")])), 2)
+
+    def test_different_answers_have_no_fastest(self):
+        cells = [cell_of("a", ONE_MS, pairs=Answer(3, "1", "2")), cell_of("b", TWO_MS, pairs=Answer(4, "1", "2"))]
+        groups, sentences = said(cells)
+        self.assertIn("none is said to be the fastest", sentences)
+        self.assertEqual(summary_sentences(groups, cells), [])
+
+    def test_without_pairs_nothing_is_ranked(self):
+        groups, _ = said([cell_of("a", ONE_MS, pairs=Answer(0, "0", "0")), cell_of("b", TWO_MS)])
+        self.assertEqual([ranked.cell for ranked in groups[0].ranked], [1])
+
+    def test_processors(self):
+        cells = [cell_of("a", ONE_MS, on_gpus=False)]
+        self.assertEqual(summary_sentences(groups_of(cells), cells), ["Times of processors say nothing of a GPU."])
+
+
+class Conditions(unittest.TestCase):
+    def test_readings_before_and_after(self):
+        def reading(mhz, celsius, processes, busy):
+            return {"gpus": [{"sm_mhz": mhz, "temperature_c": celsius, "power_w": None, "other_processes": processes}],
+                    "processor": {"mhz": [2100, None, 2300], "other_cores": busy}}
+        conditions = {"before": reading(1980, 41, 0, 0.5), "after": reading(1980, 52, 0, 0.25), "disturbed": [{"why": "clocks fell"}]}
+        self.assertEqual(conditions_text({"conditions": conditions}), "GPU at 1980 MHz, 41 to 52 °C, processor at 2100 to 2300 MHz, "
+                         "cores busy with others: 0.25 to 0.5, 1 doubtful round, the first: clocks fell")
+        conditions["after"] = reading(1755, 52, 2, 0.25)
+        self.assertIn("GPU at 1755 to 1980 MHz", conditions_text({"conditions": conditions}))
+        self.assertIn("other processes on it: 0 to 2", conditions_text({"conditions": conditions}))
+        self.assertEqual(conditions_text({}), "not recorded")
+
+    def test_samples(self):
+        self.assertEqual(sampling_text({}), "not recorded")
+        self.assertEqual(sampling_text({"sampling": {"converged": True, "outliers": 0, "drift": None}}), "nothing speaks against it")
+        self.assertEqual(sampling_text({"sampling": {"converged": False, "interrupted": True, "outliers": 3, "drift": 0.0123}}),
+                         "its interval stayed wider than asked for, interrupted before it was sampled enough, outliers: 3, drifted by 1.2 %")
+
+
+class Data(unittest.TestCase):
+    def test_leaves_out_the_last_cells_and_says_so(self):
+        data = data_of(Records(cells=[cell_of(f"a{i}", ONE_MS) for i in range(200)]), 40_000, "", "")
+        self.assertLess(len(data.json), 50_000)
+        made = json.loads(data.json)
+        self.assertLess(len(made["cells"]), 200)
+        self.assertGreater(len(made["cells"]), 10)
+        self.assertEqual((len(made["cells"]), made["notes"]), (data.cells, data.notes))
+        self.assertIn("of 200 cells are left out", data.notes[0])
+
+    def test_curves_go_before_cells(self):
+        cells = [cell_of(f"a{i}", ONE_MS) for i in range(20)]
+        for cell in cells:
+            cell.curve, cell.rounds = [0.123] * 500, [1.5] * 10
+        whole = json.loads(data_of(Records(cells=copy.deepcopy(cells)), 1_000_000, "", "").json)
+        self.assertEqual((whole["notes"], sum(curve is None for curve in whole["curves"])), ([], 0))
+        less = json.loads(data_of(Records(cells=cells), 40_000, "", "").json)
+        self.assertEqual(len(less["cells"]), 20)
+        missing = sum(curve is None for curve in less["curves"])
+        self.assertTrue(0 < missing < 20, missing)
+        self.assertEqual(less["notes"], [f"times by frame or by round of some cells are left out ({missing} lists), so that the page stays small"])
+
+    def test_values_in_common_stand_once(self):
+        made = json.loads(data_of(Records(cells=[cell_of("a", ONE_MS), cell_of("a", TWO_MS)]), 1_000_000, "p", "d").json)
+        self.assertEqual(made["values"], ["text a"])
+        self.assertEqual((made["program"], made["date"], made["fields"][-1]), ("p", "d", "label"))
+        self.assertEqual([row[0] for row in made["cells"]], [0, 0])
+
+
+class Reading(Case):
+    def setUp(self):
+        self.record = json.loads((H200 / "plan.jsonl").read_text().splitlines()[0])
+
+    def changed(self, **changes):
+        return {**copy.deepcopy(self.record), **changes}
+
+    def of_rounds(self, count, session, factor=1, **changes):
+        record = self.changed(session=session, **changes)
+        total = record["total_ns"]
+        total["samples"] = [round(factor * ns) for ns in (self.record["total_ns"]["samples"] * count)[:count]]
+        total["rounds"] = list(range(count))
+        return record
+
+    def file(self, *records, name="some.jsonl", end="\n"):
+        path = self.work / name
+        text = "\n".join(json.dumps(record) for record in records) + end
+        path.write_bytes(lzma.compress(text.encode()) if name.endswith(".xz") else text.encode())
+        return str(path)
+
+    def read(self, *records, **how):
+        return read_records([self.file(*records)], **how)
+
+    def shown(self, records):
+        return [(cell.recorded.session, cell.is_older) for cell in records.cells]
+
+    def test_a_record_and_what_goes_on_with_it(self):
+        begun, whole = self.of_rounds(3, "a"), self.of_rounds(9, "b")
+        for records in ((begun, whole), (whole, begun)):
+            read = self.read(*records)
+            self.assertEqual((self.shown(read), read.cell_records, read.notes), ([("b", False)], 1, []))
+        files = [self.file(begun, name="begun.jsonl"), self.file(whole, name="whole.jsonl.xz")]
+        read = read_records(files)
+        self.assertEqual(self.shown(read), [("b", False)])
+        self.assertEqual([(file["name"], file["cells"]) for file in read.files], [("begun.jsonl", 1), ("whole.jsonl.xz", 1)])
+        self.assertEqual(read.cells[0].row[list(FIELDS).index("file")], 1)
+
+    def test_other_times_are_another_record(self):
+        read = self.read(self.of_rounds(3, "a", 2), self.of_rounds(9, "b"))
+        self.assertEqual((self.shown(read), read.cell_records), ([("a", True), ("b", False)], 2))
+
+    def test_a_copy_stands_once(self):
+        self.assertEqual(self.shown(self.read(self.of_rounds(9, "a"), self.of_rounds(9, "a"))), [("a", False)])
+
+    def test_the_last_that_is_ok_stands_for_its_key(self):
+        failed = self.changed(session="f", status="failed", failure="lost", total_ns=None)
+        good, again = self.of_rounds(5, "a"), self.of_rounds(5, "b", 2)
+        for records, older in (((good, again), [True, False]), ((good, failed), [False, True]), ((failed, good), [True, False]),
+                               ((failed, {**failed, "session": "g"}), [True, False]), ((good, failed, again), [True, True, False])):
+            self.assertEqual([cell.is_older for cell in self.read(*records).cells], older)
+
+    def test_of_too_many_one_a_key_is_kept(self):
+        keys = [self.of_rounds(5, f"{i}", 1 + i / 100, key=f"key {i % 4}") for i in range(8)]
+        read = self.read(*keys, most=6)
+        self.assertEqual([cell.recorded.session for cell in read.cells], ["6", "7", "4", "5"])
+        self.assertEqual(read.notes, ["4 older records of cells that were recorded again are left out"])
+        read = self.read(*keys, self.of_rounds(5, "w", status="wrong", key="another"), most=3)
+        self.assertEqual(len(read.cells), 3)
+        self.assertRegex(read.notes[-1], "^[0-9]+ of 9 records of cells are left out, 1 of them failed or wrong: a page has room for 3; ")
+
+    def test_a_torn_line_is_ignored_and_said(self):
+        read = read_records([self.file(self.record, self.record, end="")])
+        self.assertEqual(len(read.cells), 1)
+        self.assertRegex(read.notes[0], r"some\.jsonl:2: the last line has no end, being cut off or still written: it is ignored$")
+        with self.assertRaisesRegex(lines.RecordError, "its only line has no end; name a file of records"):
+            read_records([self.file(self.record, end="")])
+
+    def test_numbers_that_json_has_not(self):
+        for text in ('{"key": NaN}', '{"key": -Infinity}', '{"key": 1e999}', '{"key": 1' + "0" * 5000 + "}", "[" * 100_000, "\\"):
+            path = self.work / "numbers.jsonl"
+            path.write_text(text + "\n")
+            with self.assertRaisesRegex(lines.RecordError, "numbers.jsonl:1: is not JSON; give files that 'tandem run --out'"):
+                read_records([str(path)])
+
+    def test_damaged_records_are_one_line(self):
+        """Each part of records of every kind is left out or becomes something else: they are shown, or one line says where they stand."""
+        chance = random.Random(20180606)
+        sources = [H200 / name for name in ("plan.jsonl", "accuracy.jsonl", "profile.jsonl", "ceilings.jsonl", "simulation-funnel.jsonl")]
+        shown = refused = 0
+        for source in sources:
+            record = self.short(json.loads(source.read_text().splitlines()[-1]))
+            for damaged in self.damaged(record, chance):
+                path = self.file(damaged)
+                try:
+                    json.loads(data_of(read_records([path]), 1_000_000, "", "").json, parse_constant=self.fail)
+                    shown += 1
+                except lines.RecordError as error:
+                    self.assertTrue(str(error).startswith(f"{path}:1: "), error)
+                    refused += 1
+        self.assertGreater(shown, 100)
+        self.assertGreater(refused, 100)
+
+    def short(self, value):
+        """With lists of two, which are as good as longer ones here."""
+        if isinstance(value, dict):
+            return {name: self.short(part) for name, part in value.items() if name not in ("breakdown_ns", "chosen")}
+        return list(map(self.short, value[:2])) if isinstance(value, list) else value
+
+    def damaged(self, record, chance):
+        def places(value, path=()):
+            yield path
+            if isinstance(value, dict):
+                for name, part in value.items():
+                    yield from places(part, (*path, name))
+            elif isinstance(value, list) and value:
+                yield from places(value[0], (*path, 0))
+        for path in list(places(record))[1:]:
+            for replacement in chance.sample([None, True, "text", "\ud800", -1, 1.5, 10**400, [], [None], [[1]], {}, {"median": "x"}, "left out"], 3):
+                damaged = copy.deepcopy(record)
+                part = damaged
+                for name in path[:-1]:
+                    part = part[name]
+                if replacement == "left out":
+                    del part[path[-1]]
+                else:
+                    part[path[-1]] = replacement
+                yield damaged
+
+    def test_simulations_are_bounded(self):
+        line = {"kind": "step", "session": "s", "host_ns": dict.fromkeys(("broad", "narrow", "reduce", "assemble", "solve", "move"), 1e6),
+                "contacts_found": 2, "contacts_kept": 1}
+        simulations = Simulations()
+        for step in range(5000):
+            simulations.add({**line, "step": step}, "x.jsonl")
+        for session in range(50):
+            simulations.add({**line, "step": 0, "session": str(session)}, "x.jsonl")
+        shown = simulations.shown()
+        self.assertEqual((len(shown), simulations.left_out, shown[0]["steps"], shown[0]["status"]), (40, 11, 5000, "not ended"))
+        steps = [kept[0] for kept in shown[0]["kept"]]
+        self.assertEqual(steps, list(range(0, 5000, steps[1])))
+        self.assertTrue(250 < len(steps) <= 600, len(steps))
+        self.assertEqual(shown[0]["kept"][0], [0, 1, 1, 1, 1, 1, 1, 2, 1])
+
+
+class Pages(Case):
+    def test_data_cannot_end_its_element(self):
+        page = assembly.Page("<b> & c", data={"records": '{"a":"</script><!--<img>"}'})
+        html = assembly.html_of(page)
+        self.assertIn('{"a":"\\u003c/script>\\u003c!--\\u003cimg>"}', html)
+        self.assertNotIn("<img>", html)
+        self.assertIn("<title>&lt;b> &amp; c</title>", html)
+        self.assertIn("default-src 'none'", html)
+        self.assertIn("THE SOFTWARE IS PROVIDED", html)
+
+    def test_scripts_cannot_end_their_element(self):
+        html = assembly.html_of(assembly.Page("t", libraries=["let a = '</script>' + '<!--';"]))
+        self.assertIn("let a = '<\\/script>' + '<\\!--';", html)
+
+    def test_libraries(self):
+        names = {**libraries.CHARTS, **libraries.SCENES}
+        with unittest.mock.patch.dict(os.environ, TANDEM_JAVASCRIPT=str(self.work / "javascript")):
+            for name, package in names.items():
+                with self.assertRaisesRegex(BadUse, f"{os.path.basename(name)}, and there is no .*javascript/{name}; install {package} "):
+                    libraries.scripts(names, PROGRAM, "tandem view")
+                path = self.work / "javascript" / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(name)
+            self.assertEqual(libraries.scripts(names, PROGRAM, "tandem view"), list(names))
+        beside = self.work / "bin/tandem", self.work / "libexec/tandem/javascript/chart.js/chart.min.js"
+        for path in beside:
+            path.parent.mkdir(parents=True)
+            path.write_text("beside")
+        with unittest.mock.patch.dict(os.environ):
+            os.environ.pop("TANDEM_JAVASCRIPT", None)
+            self.assertEqual(libraries.scripts(libraries.CHARTS, beside[0], ""), ["beside"])
+
+    def test_missing_libraries_end_both_commands(self):
+        nowhere = {"TANDEM_JAVASCRIPT": str(self.work / "nowhere")}
+        page = self.work / "x.html"
+        self.bad(["tandem report needs chart.min.js", "libjs-chart.js"], "report", H200 / "plan.jsonl", "-o", page, environment=nowhere)
+        self.bad(["tandem view needs three.min.js", "libjs-three"], "view", "plates", "-o", page, environment=nowhere)
+        self.assertFalse(page.exists())
+
+    def test_files_are_whole_or_as_they_were(self):
+        path = self.work / "whole.txt"
+        replace_whole(str(path), b"one")
+        (self.work / "whole.txt.partial").write_text("what a kill has left")
+        replace_whole(str(path), b"two" * 1_000_000)
+        self.assertEqual(path.read_bytes(), b"two" * 1_000_000)
+        self.assertFalse((self.work / "whole.txt.partial").exists())
+        os.symlink(path, self.work / "linked.txt.partial")
+        with self.assertRaisesRegex(OutputError, "linked.txt.partial: is a link"):
+            replace_whole(str(self.work / "linked.txt"), b"three")
+        self.assertEqual(path.read_bytes(), b"two" * 1_000_000)
+        with self.assertRaisesRegex(OutputError, "nowhere/x.partial: cannot be written"):
+            replace_whole(str(self.work / "nowhere/x"), b"")
+
+
+class Commands(Case):
+    """What both commands do with the scene, which another process of the program exports."""
+
+    def test_errors_of_the_export_are_the_only_line(self):
+        out = ("-o", self.work / "none.html")
+        self.bad("the nearest is 'plates'", "view", "plats", *out)
+        self.bad("no scene; name one", "view", *out)
+        self.bad("frames 3:900", "report", H200 / "ceilings.jsonl", "--scene", "plates", "--frames", "3:900", *out)
+        self.bad("--device all: one device finds contacts", "view", "plates", "--contacts", "--device", "all", *out)
+        self.bad("more --pose than --mesh", "view", "--mesh", self.good, "--pose", "1 0 0 1 0 0 0", "--pose", "0 0 0 1 0 0 0", *out)
+        self.bad("--every", "view", "plates", "--every", 0, *out)
+        self.bad("--frames requires --scene", "report", H200 / "ceilings.jsonl", "--frames", 0, *out)
+        self.assertFalse((self.work / "none.html").exists())
+
+    def test_options_reach_the_export(self):
+        page = self.work / "meshes.html"
+        status, out, errors = tandem("view", "--mesh", self.good, "--mesh", self.good, "--pose", "-1 0 0 1 0 0 0", "--contacts", "-o", page)
+        self.assertEqual((status, errors), (0, []))
+        self.assertRegex(out, r"^.*meshes\.html: 1 frame of .*, 0\.9 MB\n$")
+        scene = json.loads(page.read_text().split('id="data-scene">')[1].split("</script>")[0])
+        self.assertEqual((scene["bodies"], scene["frames"], len(scene["contacts"])), (2, [0], 1))
+        status, out, _ = tandem("view", "plates", "--frames", "2:9", "--every", 3, "-o", page)
+        self.assertRegex(out, r": 3 frames of plates")
+        done = subprocess.run([PROGRAM, "view", "plates", "--frames", "0"], cwd=self.work, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr, (self.work / "plates.html").exists()), (0, "", True))
+
+    def end_group(self, group):
+        """What goes on where the test has failed."""
+        try:
+            os.killpg(group, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+
+    def test_a_signal_ends_the_export_and_leaves_nothing(self):
+        folder = self.work / "temporary"
+        folder.mkdir()
+        minutes = ("pile:bodies=2000,frames=300", "--contacts")
+        process = subprocess.Popen([PROGRAM, "view", *minutes, "-o", self.work / "ended.html"], stderr=subprocess.PIPE, text=True,
+                                   env={**os.environ, "TMPDIR": str(folder)}, start_new_session=True)
+        self.addCleanup(self.end_group, process.pid)
+        while not any(folder.iterdir()) and process.poll() is None:
+            pass
+        process.terminate()
+        _, errors = process.communicate(timeout=30)
+        self.assertEqual((process.returncode, errors), (143, ""))
+        self.assertEqual(list(folder.iterdir()), [])
+        self.assertFalse((self.work / "ended.html").exists())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)
