@@ -124,7 +124,10 @@ class Reading(Files):
         refused("scripts/convert_records", schema=1)
         refused("a record of schema 4", schema=4)
         for change in ({"schema": "2"}, {"devices": 3}, {"environment": None}, {"settings": {"k": 8}}, {"scene": {}}, {"frames": []}, {"work": {"digest": 3}},
-                       {"error": {"inputs": 7}}, {"sampling": 3}, {"session": 5}, {"total_ns": 4}, {"total_ns": {"samples": ["a"], "rounds": [0]}}):
+                       {"error": {"inputs": 7}}, {"sampling": 3}, {"session": 5}, {"algorithm": 5}, {"preset": None}, {"frames": {"first": "0", "last": 9}}, {"frames": {"first": True, "last": 9}},
+                       {"scene": {"key": 3, "digest": ""}}, {"scene": {"key": "pile", "digest": 3}}, {"work": {"digest": {"count": "3", "a": "", "b": ""}}},
+                       {"work": {"digest": {"count": 3, "a": [], "b": ""}}}, {"environment": {"dirty": 0}},
+                       {"devices": [{"id": 0, "name": "", "driver": "", "kind": "gpu"}]}, {"total_ns": 4}, {"total_ns": {"samples": ["a"], "rounds": [0]}}):
             refused(":1: is no record of a cell (", **change)
         refused("a sample of 0 ns is no time", total_ns={"samples": [0], "rounds": [0]})
         refused("2 samples and 1 rounds", total_ns={"samples": [1, 2], "rounds": [0]})

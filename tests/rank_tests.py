@@ -141,6 +141,13 @@ class Ratios(unittest.TestCase):
         self.assertAlmostEqual(ratio.value, 3.5 / 2, places=15)
         self.assertTrue(ratio.low <= ratio.value <= ratio.high)
 
+    def test_the_programs_ratio_is_the_same(self):
+        """tests/unit/sampling_ratio.cpp has the same numbers of the program's table."""
+        logs = [0.01 * (i * 7 % 11) - 0.03 for i in range(12)]
+        ratio = resampling.paired_ratio([1] * 12, numpy.exp(logs))
+        for value, expected in ((ratio.value, 1.015113064615719), (ratio.low, 0.9801986733067553), (ratio.high, 1.0512710963760241)):
+            self.assertAlmostEqual(value, expected, delta=1e-14)
+
     def test_generator_is_the_standards(self):
         """The 10,000th word of mt19937_64 from its default seed is in the C++ standard, [rand.predef]."""
         words, seed = resampling._words, resampling.SEED

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/table/table.h"
 
-#include "harness/compare/ratio.h"
 #include "harness/ranks/companions.h"
+#include "harness/sampling/ratio.h"
 #include "harness/statistics.h"
 #include "harness/table/columns.h"
 #include "harness/table/labels.h"
@@ -216,12 +216,12 @@ std::string shares_table(const Row& row, const std::string& label) {
 }
 
 /// By rounds, which the two took side by side.
-compare::Ratio ratio_of(const Measurement& above, const Measurement& below) {
+Ratio ratio_of(const Measurement& above, const Measurement& below) {
     const auto a = round_medians(above.totals(), above.rounds());
     const auto b = round_medians(below.totals(), below.rounds());
     std::vector<double> logs;
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) logs.push_back(std::log(a[i] / b[i]));
-    return compare::paired_ratio(logs);
+    return paired_ratio(logs);
 }
 
 std::string quotient(double above, double below) {

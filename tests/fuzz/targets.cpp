@@ -2,7 +2,6 @@
 // What reads bytes that came from elsewhere, as libFuzzer calls it: TANDEM_FUZZ names the reader. An
 // InputError is an answer, everything else that leaves a reader is a defect.
 #include "harness/command_line/command_line.h"
-#include "harness/compare/cells.h"
 #include "harness/finished_cells.h"
 #include "harness/plans/plan_file.h"
 #include "scenes/error.h"
@@ -150,16 +149,10 @@ void read_checkpoint_of_block(std::string_view given) {
     simulation.step([](const Frame&, std::vector<ContactPoint>& contacts) { contacts.clear(); });
 }
 
-/// Everything that reads records goes through the same file, each whatever the others said.
-void read_all_records(std::string_view bytes) {
+/// What --resume reads of a file of records.
+void read_records(std::string_view bytes) {
     const auto path = file_of("fuzz.jsonl", bytes);
-    const auto attempt = [](const auto& read) {
-        try {
-            read();
-        } catch (const InputError&) {}
-    };
-    attempt([&] { compare::read_cells(path, ""); });
-    attempt([&] { const FinishedCells finished(RecordFile(path), path); });
+    const FinishedCells finished(RecordFile(path), path);
 }
 
 /// A word a line; nothing that they ask for is done.
@@ -179,7 +172,7 @@ const std::map<std::string, void (*)(std::string_view)> targets{{"mesh", read_an
                                                                 {"scene", read_scene},
                                                                 {"plan", read_some_plan},
                                                                 {"recording", read_recording},
-                                                                {"records", read_all_records},
+                                                                {"records", read_records},
                                                                 {"words", read_words},
                                                                 {"checkpoint", read_checkpoint_of_block}};
 

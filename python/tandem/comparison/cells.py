@@ -7,6 +7,7 @@ import statistics
 from .. import lines
 
 RECORD_AGAIN = "record the cell again"
+NAMES_OF = {str: "string", int: "number", bool: "truth value"}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -71,8 +72,16 @@ def _text(part, name):
     return value or ""
 
 
+def _needed(part, name, kind=str):
+    """A field that has to be there, and of this kind."""
+    value = part[name]
+    if not isinstance(value, kind) or isinstance(value, bool) is not (kind is bool):
+        raise TypeError(f"{name} must be a {NAMES_OF[kind]}")
+    return value
+
+
 def _joined(devices, field):
-    return "+".join(device[field] for device in devices)
+    return "+".join(_needed(device, field) for device in devices)
 
 
 def _split_scene(key, settings):
@@ -98,10 +107,10 @@ def _names(record):
     if not all(isinstance(value, str) for value in settings.values()):
         raise TypeError("settings must be strings")
     devices, frames, scene = record["devices"], record["frames"], record["scene"]
-    scene_name, parameters = _split_scene(scene["key"], settings)
-    names = {"algorithm": record["algorithm"], "preset": record["preset"], "devices": _joined(devices, "id"), "model": _joined(devices, "name"),
-             "driver": _joined(devices, "driver"), "scene": scene_name, "frames": f"frames {frames['first']}:{frames['last']}",
-             "handling": _handling(record), "digest": f"digest {scene['digest']}"}
+    scene_name, parameters = _split_scene(_needed(scene, "key"), settings)
+    names = {"algorithm": _needed(record, "algorithm"), "preset": _needed(record, "preset"), "devices": _joined(devices, "id"), "model": _joined(devices, "name"),
+             "driver": _joined(devices, "driver"), "scene": scene_name, "frames": f"frames {_needed(frames, 'first', int)}:{_needed(frames, 'last', int)}",
+             "handling": _handling(record), "digest": f"digest {_needed(scene, 'digest')}"}
     return names, settings | parameters
 
 
@@ -110,7 +119,7 @@ def _answer(record, name):
     for place in ("work", "agreement"):
         part = record.get(place)
         if isinstance(part, dict) and name in part:
-            return Answer(*(part[name][field] for field in ("count", "a", "b")))
+            return Answer(_needed(part[name], "count", int), _needed(part[name], "a"), _needed(part[name], "b"))
     return None
 
 
@@ -136,12 +145,10 @@ def _cell(record, line):
     samples, rounds = _rounds(record)
     seed = (record.get("sampling") or {}).get("seed")
     environment = record["environment"]
-    if not isinstance(environment["dirty"], bool):
-        raise TypeError("dirty must be true or false")
     return RecordedCell(line, record["schema"], record["key"], record["status"], _text(record, "failure"), names, settings,
                         record["frames"]["last"] - record["frames"]["first"] + 1, bool(record["devices"]) and all(device["kind"] == "gpu" for device in record["devices"]), _text(record, "session"),
                         seed if isinstance(seed, int) else None, samples, rounds, _answer(record, "digest"), _answer(record, "contact_digest"),
-                        _text(environment, "commit"), _text(environment, "processor"), environment["dirty"])
+                        _text(environment, "commit"), _text(environment, "processor"), _needed(environment, "dirty", bool))
 
 
 def recorded_cell(record, path, line):

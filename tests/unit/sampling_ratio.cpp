@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "harness/sampling/ratio.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+#include <vector>
+
+namespace tandem {
+namespace {
+
+/// From the normal distribution with this deviation, the same on every machine (Box and Muller 1958).
+std::vector<double> noise(std::mt19937_64& random, std::size_t count, double deviation) {
+    const auto share = [&] { return (static_cast<double>(random() >> 11) + 0.5) / 9007199254740992.0; };
+    std::vector<double> values(count);
+    for (auto& value : values) {
+        const double radius = std::sqrt(-2 * std::log(share()));
+        value = deviation * radius * std::cos(6.283185307179586 * share());
+    }
+    return values;
+}
+
+TEST(SamplingRatio, ByHand) {
+    const std::vector<double> logs{std::log(1.1), std::log(1.2), std::log(1.4)};
+    EXPECT_DOUBLE_EQ(paired_ratio(logs).value, 1.2);
+}
+
+TEST(SamplingRatio, EqualValuesHaveNoInterval) {
+    const auto ratio = paired_ratio(std::vector<double>(7, 0.5));
+    EXPECT_DOUBLE_EQ(ratio.low, ratio.value);
+    EXPECT_DOUBLE_EQ(ratio.high, ratio.value);
+}
+
+/// tests/rank_tests.py has the same numbers of tandem.resampling.
+TEST(SamplingRatio, IsThatOfThePythonPackage) {
+    std::vector<double> logs;
+    for (int i = 0; i < 12; ++i) logs.push_back(0.01 * (i * 7 % 11) - 0.03);
+    const auto ratio = paired_ratio(logs);
+    EXPECT_NEAR(ratio.value, 1.015113064615719, 1e-14);
+    EXPECT_NEAR(ratio.low, 0.9801986733067553, 1e-14);
+    EXPECT_NEAR(ratio.high, 1.0512710963760241, 1e-14);
+}
+
+// 3 standard errors of 1,000 draws are 2 %.
+TEST(SamplingRatio, IntervalsHoldTheTruth) {
+    std::mt19937_64 random(4);
+    for (const std::size_t rounds : {10, 25}) {
+        int held = 0;
+        for (int i = 0; i < 1000; ++i) {
+            auto logs = noise(random, rounds, 0.03);
+            for (auto& log : logs) log += std::log(1.1);
+            const auto ratio = paired_ratio(logs);
+            held += ratio.low <= 1.1 && ratio.high >= 1.1 ? 1 : 0;
+        }
+        EXPECT_GT(held, 940) << rounds;
+        EXPECT_LT(held, 990) << rounds;
+    }
+}
+
+} // namespace
+} // namespace tandem
