@@ -20,7 +20,8 @@ class Answer:
 
 @dataclasses.dataclass
 class RecordedCell:
-    """A record of one cell; `frames` is how many a sample replays. `names` are what names it, the most telling first; `settings` has the parameters of its scene as well.
+    """A record of one cell; `frames` is how many a sample replays. `names` are what names it, the most telling first; `settings` has the
+    parameters of its scene as well.
     `rounds` has the median of each round in nanoseconds, by its number, ascending: with schema 2 each sample is a round. `pairs` and
     `contacts` are None where the record has no digest; a text that is not known is empty."""
     line: int
@@ -108,8 +109,9 @@ def _names(record):
         raise TypeError("settings must be strings")
     devices, frames, scene = record["devices"], record["frames"], record["scene"]
     scene_name, parameters = _split_scene(_needed(scene, "key"), settings)
-    names = {"algorithm": _needed(record, "algorithm"), "preset": _needed(record, "preset"), "devices": _joined(devices, "id"), "model": _joined(devices, "name"),
-             "driver": _joined(devices, "driver"), "scene": scene_name, "frames": f"frames {_needed(frames, 'first', int)}:{_needed(frames, 'last', int)}",
+    span = f"frames {_needed(frames, 'first', int)}:{_needed(frames, 'last', int)}"
+    names = {"algorithm": _needed(record, "algorithm"), "preset": _needed(record, "preset"), "devices": _joined(devices, "id"),
+             "model": _joined(devices, "name"), "driver": _joined(devices, "driver"), "scene": scene_name, "frames": span,
              "handling": _handling(record), "digest": f"digest {_needed(scene, 'digest')}"}
     return names, settings | parameters
 
@@ -143,12 +145,15 @@ def _rounds(record):
 def _cell(record, line):
     names, settings = _names(record)
     samples, rounds = _rounds(record)
+    devices, frames, environment = record["devices"], record["frames"], record["environment"]
     seed = (record.get("sampling") or {}).get("seed")
-    environment = record["environment"]
-    return RecordedCell(line, record["schema"], record["key"], record["status"], _text(record, "failure"), names, settings,
-                        record["frames"]["last"] - record["frames"]["first"] + 1, bool(record["devices"]) and all(device["kind"] == "gpu" for device in record["devices"]), _text(record, "session"),
-                        seed if isinstance(seed, int) else None, samples, rounds, _answer(record, "digest"), _answer(record, "contact_digest"),
-                        _text(environment, "commit"), _text(environment, "processor"), _needed(environment, "dirty", bool))
+    return RecordedCell(
+        line=line, schema=record["schema"], key=_needed(record, "key"), status=_needed(record, "status"), failure=_text(record, "failure"),
+        names=names, settings=settings, frames=frames["last"] - frames["first"] + 1,
+        on_gpus=bool(devices) and all(device["kind"] == "gpu" for device in devices), session=_text(record, "session"),
+        seed=seed if isinstance(seed, int) else None, samples=samples, rounds=rounds, pairs=_answer(record, "digest"),
+        contacts=_answer(record, "contact_digest"), commit=_text(environment, "commit"), processor=_text(environment, "processor"),
+        dirty=_needed(environment, "dirty", bool))
 
 
 def recorded_cell(record, path, line):
