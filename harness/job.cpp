@@ -6,6 +6,7 @@
 #include "harness/inputs.h"
 #include "harness/isolation/isolated_sampler.h"
 #include "harness/key.h"
+#include "harness/ranks/rank_team.h"
 #include "harness/record/record.h"
 #include "harness/sampling/local_sampler.h"
 #include "harness/standard_streams.h"
@@ -84,9 +85,11 @@ CellResult end_cell(const Outcome& outcome, const Sampling& sampling, const Job&
     result.measurement = outcome.sampler->measurement();
     result.measured = outcome.failure.empty();
     result.converged = outcome.converged;
-    const bool recorded = sink.end(
-        result, make_record(*result.cell, job.scene, job.range, result.measurement, outcome, sampling),
-        outcome.failure);
+    const bool recorded =
+        !is_first(result.cell->team)
+        || sink.end(result,
+                    make_record(*result.cell, job.scene, job.range, result.measurement, outcome, sampling),
+                    outcome.failure);
     if (!result.measured || !recorded)
         result.code = 3;
     else
@@ -98,9 +101,22 @@ std::string asked_key(const Cell& cell, const Job& job) {
     return key_of(cell, cell.settings, job.scene, job.range);
 }
 
+/// What rank 0 has of a cell that an earlier run began; of one process its own.
+CellState shared_state(const Cell& cell, CellState own) {
+    if (cell.team == nullptr || !cell.team->decided(own.is_checked())) return own;
+    const auto text = cell.team->decided(
+        nlohmann::json{{"checked", checked_json(own)}, {"rounds", rounds_json(own, 0)}}.dump());
+    if (cell.team->is_first()) return own;
+    const auto json = nlohmann::json::parse(text);
+    CellState state;
+    take_checked(state, json.at("checked"), cell);
+    take_rounds(state, json.at("rounds"));
+    return state;
+}
+
 std::unique_ptr<CellSampler> make_sampler(const Cell& cell, const Job& job, References& references,
                                           ResultSink& sink) {
-    auto state = sink.state(cell, asked_key(cell, job));
+    auto state = shared_state(cell, sink.state(cell, asked_key(cell, job)));
     if (job.options.isolate) return std::make_unique<IsolatedSampler>(cell, job.options, std::move(state));
     return std::make_unique<LocalSampler>(cell, job.scene, job.range, references, std::move(state));
 }

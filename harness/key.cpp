@@ -2,7 +2,7 @@
 #include "harness/key.h"
 
 #include "harness/device_models.h"
-#include "harness/ranks/companions.h"
+#include "harness/ranks/rank_team.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -11,9 +11,9 @@ namespace tandem {
 
 namespace {
 
-std::string models_of(const DeviceGroup& devices) {
+std::string models_of(const Cell& cell) {
     std::string models;
-    for (const auto& info : infos_of(devices)) models += (models.empty() ? "" : "+") + model_of(info);
+    for (const auto& info : infos_of(cell)) models += (models.empty() ? "" : "+") + model_of(info);
     return models;
 }
 
@@ -37,9 +37,9 @@ std::string with_settings(const std::string& before_settings, const SettingTexts
 }
 
 std::string key_of(const Cell& cell, const Settings& settings, const Scene& scene, const FrameRange& range) {
-    return with_settings(fmt::format("{}|{}|{}@{:016x}|{}:{}{}", cell.algorithm->name(),
-                                     models_of(cell.devices), scene.key, scene.digest, range.first(),
-                                     range.last(), handling_key(range.flaws())),
+    return with_settings(fmt::format("{}|{}|{}@{:016x}|{}:{}{}", cell.algorithm->name(), models_of(cell),
+                                     scene.key, scene.digest, range.first(), range.last(),
+                                     handling_key(range.flaws())),
                          settings.texts());
 }
 

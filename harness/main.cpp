@@ -34,13 +34,14 @@ int guarded(const Work& work) { // memory may be short before it begins: no std:
 }
 
 int run(int argc, char** argv) {
-    const auto command = [=] { return guarded([=] { return tandem::read_command_line(argc, argv)(); }); };
+    const auto read = [=] { return tandem::read_command_line(argc, argv); };
     return guarded([&] {
         const tandem::MemoryReserve reserve;
         const tandem::Launched launched;
         auto* ranks = tandem::launched_ranks();
-        if (ranks == nullptr) return command();
-        return tandem::run_launched(*ranks, {argv + std::min(argc, 1), argv + argc}, command);
+        if (ranks == nullptr) return guarded([&] { return read()(); });
+        return tandem::run_launched(*ranks, {argv + std::min(argc, 1), argv + argc}, read,
+                                    [](const std::function<int()>& work) { return guarded(work); });
     });
 }
 

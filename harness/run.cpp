@@ -11,15 +11,16 @@
 #include "harness/key.h"
 #include "harness/plans/cell_groups.h"
 #include "harness/progress.h"
-#include "harness/ranks/companions.h"
 #include "harness/ranks/launched.h"
 #include "harness/ranks/launched_run.h"
+#include "harness/ranks/rank_team.h"
 #include "harness/run_parts.h"
 #include "harness/sampling/replays.h"
 #include "harness/standard_streams.h"
 #include "harness/timeline/trace_frame.h"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <map>
 
@@ -29,13 +30,16 @@ namespace {
 
 /// Writes what was asked for in a replay of its own: files take longer than frames.
 void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts) {
-    if (!pairs && !contacts) return;
+    if (job.options.dump_pairs.empty() && job.options.dump_contacts.empty()) return;
     const auto session = prepare_session(cell, job.scene);
     for (std::size_t i = 0; i < job.range.size(); ++i) {
-        announce_frame(i);
         const auto result = session->run(*job.range.frame(i));
-        if (pairs) pairs.pairs(job.range.first() + i, result.download());
-        if (contacts) contacts.contacts(job.range.first() + i, result.download_contacts());
+        // Ranks download together, and the first one writes.
+        if (!job.options.dump_pairs.empty())
+            if (const auto found = result.download(); pairs) pairs.pairs(job.range.first() + i, found);
+        if (!job.options.dump_contacts.empty())
+            if (const auto found = result.download_contacts(); contacts)
+                contacts.contacts(job.range.first() + i, found);
     }
 }
 
@@ -68,15 +72,32 @@ void choose_cells(Job& job, const RunOptions& options, const Progress& progress)
     }
 }
 
+/// What the cells of a job measure, in their order.
+std::string keys_of(const Job& job) {
+    std::string keys;
+    for (const auto& cell : job.cells) keys += key_of(cell, cell.settings, job.scene, job.range) + "\n";
+    return keys;
+}
+
+void refuse_what_ranks_cannot(const RunOptions& options) {
+    if (options.isolate)
+        throw InputError("--isolate makes a process of each cell, and ranks share one; leave it out");
+    if (!options.trace.empty()) throw InputError("--trace shows one process; run it without the launcher");
+    for (const auto& product : plan_of(options).products)
+        for (const auto& name : product.request.algorithms)
+            if (name == automatic)
+                throw InputError("--algorithm auto chooses on one process; name what it chose there");
+}
+
 /// A run of the command: its groups of cells, one after the other.
 class Run {
 public:
-    explicit Run(const RunOptions& options);
+    Run(const RunOptions& options, RankTeam* team);
     int go();
 
 private:
     void check_one_group() const;
-    Job open(const CellGroup& group, const Unfit& unfit) const;
+    std::unique_ptr<Job> open(const CellGroup& group, const Unfit& unfit) const;
     void open_files();
     int measure(Job& job);
     void print(const Job& job, const std::map<const Cell*, CellResult>& results) const;
@@ -85,7 +106,11 @@ private:
     int list_all();
     void list(const Job& job);
 
+    void open_team();
+    bool is_over() const;
+
     const RunOptions& options_;
+    RankTeam* const team_; ///< null: one process
     std::vector<BackendReport> backends_;
     CellGroups all_;
     std::optional<RecordFile> file_;
@@ -99,19 +124,33 @@ private:
     bool interrupted_ = false;
 };
 
-Run::Run(const RunOptions& options) : options_(options), progress_(options.quiet) {
-    const auto plan = plan_of(options);
-    const auto names = devices_of(plan);
-    backends_ = open_backends(names, options.require);
-    check_required(backends_, options.require);
-    limit_memory(options, backends_);
-    all_ = make_groups(
-        plan, [&](const auto& asked) { return choose_devices(backends_, asked); }, options.shard);
-    tell_left_out(all_);
-    if (options.shard.of > 1)
-        put("shard {}/{}: {} of {} groups\n", options.shard.index, options.shard.of, all_.groups.size(),
-            all_.numbered);
-    check_one_group();
+Run::Run(const RunOptions& options, RankTeam* team)
+    : options_(options), team_(team), progress_(options.quiet) {
+    together(team_, [&] {
+        const auto plan = plan_of(options_);
+        const auto names = devices_of(plan);
+        backends_ = open_backends(names, options_.require);
+        check_required(backends_, options_.require);
+        limit_memory(options_, backends_);
+        const auto choose = [&](const auto& asked) {
+            if (team_ == nullptr || !asks_for_each(asked[0])) return choose_devices(backends_, asked);
+            return choose_devices(backends_, std::array{team_->own_of_each(asked[0], backends_)});
+        };
+        all_ = make_groups(plan, choose, options_.shard);
+        tell_left_out(all_);
+        if (options_.shard.of > 1)
+            put("shard {}/{}: {} of {} groups\n", options_.shard.index, options_.shard.of, all_.groups.size(),
+                all_.numbered);
+        check_one_group();
+    });
+    if (team_ != nullptr && !all_.groups.empty()) open_team();
+}
+
+/// All cells have one device on each rank.
+void Run::open_team() {
+    for (auto& group : all_.groups)
+        for (auto& cell : group.cells) cell.team = team_;
+    team_->open(*all_.groups.front().cells.front().devices.front());
 }
 
 /// Of what is written of the first finished cell.
@@ -126,18 +165,26 @@ void Run::check_one_group() const {
 /// Once nothing is wrong with what was asked for: a mistake leaves no empty files behind.
 void Run::open_files() {
     if (file_) return;
-    file_.emplace(options_.dry_run && !options_.resume ? std::string() : options_.out);
-    if (options_.resume) finished_ = FinishedCells(*file_, options_.out);
-    if (options_.dry_run) return;
-    unfinished_ = Unfinished(options_.out, options_.resume);
-    pairs_.emplace(options_.dump_pairs, pairs_header);
-    contacts_.emplace(options_.dump_contacts, contacts_header);
-    trace_.emplace(options_.trace);
+    together(team_, [&] {
+        const bool writes = is_first(team_);
+        const auto path = [&](const std::string& given) { return writes ? given : std::string(); };
+        file_.emplace(path(options_.dry_run && !options_.resume ? std::string() : options_.out));
+        if (options_.resume && writes) finished_ = FinishedCells(*file_, options_.out);
+        if (options_.dry_run) return;
+        if (writes) unfinished_ = Unfinished(options_.out, options_.resume);
+        pairs_.emplace(path(options_.dump_pairs), pairs_header);
+        contacts_.emplace(path(options_.dump_contacts), contacts_header);
+        trace_.emplace(path(options_.trace));
+    });
 }
+
+/// An interrupt, or a file that cannot be written.
+bool Run::is_over() const { return decided(team_, interrupted_ || file_->failed()); }
 
 void Run::leave_out_finished(Job& job) {
     left_out_ += std::erase_if(job.cells, [&](const Cell& cell) {
-        if (!cell.candidates.empty() || !finished_.has(cell, job.scene, job.range)) return false;
+        if (!cell.candidates.empty()) return false;
+        if (!decided(team_, finished_.has(cell, job.scene, job.range))) return false;
         unfinished_.forget(key_of(cell, cell.settings, job.scene, job.range));
         return true;
     });
@@ -160,6 +207,7 @@ int Run::measure(Job& job) {
     if (options_.truth != TruthAmount::none) measuring.check.truths = &truths;
     measuring.unfinished = &unfinished_;
     measuring.stop = Interrupt::asked;
+    measuring.seed = decided(team_, measuring.seed);
     References references(job.scene, job.range, checks_folder(options_));
     std::map<const Cell*, CellResult> results;
     int code = 0;
@@ -173,8 +221,9 @@ int Run::measure(Job& job) {
     // Last, for a file that cannot be written ends the run.
     for (const auto& cell : job.cells)
         if (const auto found = results.find(&cell); found != results.end() && found->second.measured) {
-            if (!file_->failed()) dump(cell, job, *pairs_, *contacts_);
-            if (!file_->failed() && *trace_) trace_->write(trace_frame(cell, job));
+            const bool goes_on = !decided(team_, file_->failed());
+            if (goes_on) dump(cell, job, *pairs_, *contacts_);
+            if (goes_on && !options_.trace.empty()) trace_->write(trace_frame(cell, job));
             break;
         }
     return code;
@@ -201,12 +250,17 @@ int Run::end(int code) {
     return 3;
 }
 
-Job Run::open(const CellGroup& group, const Unfit& unfit) const {
+std::unique_ptr<Job> Run::open(const CellGroup& group, const Unfit& unfit) const {
     auto own = options_;
     own.scene = group.scene;
     own.frames = group.frames;
     const bool skips = options_.plan && options_.plan->skips_impossible;
-    return open_job(own, group.cells, skips ? unfit : Unfit(refuse));
+    std::unique_ptr<Job> job;
+    together(team_, [&] {
+        job = std::make_unique<Job>(open_scene(own), own, group.cells, skips ? unfit : Unfit(refuse));
+    });
+    if (team_ != nullptr) team_->check_same(keys_of(*job));
+    return job;
 }
 
 int Run::go() {
@@ -218,28 +272,27 @@ int Run::go() {
     const Interrupt interrupt;
     int code = 0;
     for (const auto& group : all_.groups) {
-        auto job = open(group, tell_skipped);
-        if (companions() != nullptr) companions()->open(job.options, *job.cells.front().devices.front());
+        const auto job = open(group, tell_skipped);
         open_files();
-        leave_out_finished(job);
-        if (job.cells.empty()) continue;
-        print_scene(job.scene, job.range);
-        choose_cells(job, options_, progress_);
-        code = std::max(code, options_.profile > 0 ? profile(job, options_.profile) : measure(job));
-        if (interrupted_ || file_->failed()) break;
+        leave_out_finished(*job);
+        if (job->cells.empty()) continue;
+        print_scene(job->scene, job->range);
+        choose_cells(*job, options_, progress_);
+        code = std::max(code, options_.profile > 0 ? profile(*job, options_.profile) : measure(*job));
+        if (is_over()) break;
     }
-    return options_.profile > 0 ? code : end(code);
+    return decided(team_, options_.profile > 0 ? code : end(code));
 }
 
 /// --dry-run: what cannot be opened yet, such as a recording that is to be made, leaves the rest to be seen.
 int Run::list_all() {
     std::size_t unopened = 0;
     for (const auto& group : all_.groups) try {
-            auto job = open(group, tell_skipped);
+            const auto job = open(group, tell_skipped);
             open_files();
-            leave_out_finished(job);
-            print_scene(job.scene, job.range);
-            list(job);
+            leave_out_finished(*job);
+            print_scene(job->scene, job->range);
+            list(*job);
         } catch (const InputError& error) {
             if (all_.groups.size() == 1) throw;
             tell("tandem: {} cells cannot be listed: {}\n", group.cells.size(), error.what());
@@ -259,10 +312,15 @@ int run_command(const RunOptions& options) {
     auto* ranks = launched_ranks();
     if (ranks == nullptr) {
         if (options.shard.of == 1) tell_tasks_are_no_ranks();
-        return Run(options).go();
+        return Run(options, nullptr).go();
     }
-    Companions companions(*ranks, options);
-    return Run(companions.own_options(options)).go();
+    RankTeam team(*ranks);
+    auto own = options;
+    team.together([&] {
+        refuse_what_ranks_cannot(options);
+        own.request.devices = {team.own_device(options)};
+    });
+    return Run(own, &team).go();
 }
 
 } // namespace tandem

@@ -15,6 +15,7 @@ namespace {
 
 /// Of the first write to standard output that failed; 0: none.
 int output_error = 0;
+bool is_silent = false;
 
 void do_nothing(int) {}
 
@@ -44,11 +45,17 @@ bool prints_colour() {
 }
 
 void put_text(std::string_view text) {
-    if (output_error != 0) return;
+    if (output_error != 0 || is_silent) return;
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) output_error = errno;
 }
 
-void tell_text(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
+void tell_text(std::string_view text) {
+    if (!is_silent) tell_text_from_every_rank(text);
+}
+
+void silence_streams() { is_silent = true; }
+
+void tell_text_from_every_rank(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
 
 bool flush_output() {
     if (std::fflush(stdout) != 0 && output_error == 0) output_error = errno;

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """rank_scenes.py PROGRAM SOURCE: scenes whose frames the ranks of a job of MPI share."""
+import json
 import os
 import pathlib
 import re
@@ -9,11 +10,12 @@ import subprocess
 import time
 import unittest
 
-from program import PROGRAM, SMALL, Case, sets, tandem
+from program import LONG, PROGRAM, SMALL, Case, sets, tandem
 from ranks import ENVIRONMENT, job, launch, of
 
 PILE = "pile:bodies=27,mesh=grain1,frames=2"
 ROOMS = sets({name: SMALL[name] for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")})
+SKEWED_CLOCKS = os.environ.get("SKEWED_CLOCKS", "")
 STUBS = pathlib.Path(os.environ.get("CUDA_STUBS", "/nonexistent"))
 CELL = ["--device", "host", "--algorithm", "tiled", *ROOMS]
 
@@ -102,7 +104,8 @@ class RankScenes(Case):
         stubs = {"LD_LIBRARY_PATH": str(STUBS / "driver"), "TANDEM_NVRTC": str(STUBS / "nvrtc/libnvrtc.so"), "TANDEM_CUPTI": "", "STUB_DEVICES": "2"}
         stubs = ["env", *(f"{name}={value}" for name, value in stubs.items())]
         common = ["run", PILE, "--repeat", 1, "--truth", "none", "--no-check", "--algorithm", "tiled", "--device"]
-        for shown, asked, expected in ((("0,1", "0,1"), "cuda:0+cuda:1", "cuda:1"), (("0", "1"), "cuda:0", "cuda:0"), (("1", "0"), "cuda:0", "cuda:0")):
+        for shown, asked, expected in ((("0,1", "0,1"), "cuda:0+cuda:1", "cuda:1"), (("0,1", "0,1"), "cuda:each", "cuda:1"),
+                                       (("0", "1"), "cuda:0", "cuda:0"), (("1", "0"), "cuda:0", "cuda:0")):
             status, text, errors = launch(job(*([*stubs, f"CUDA_VISIBLE_DEVICES={which}"] for which in shown))(*common, asked))
             self.assertEqual((status, errors), (0, []), text)
             self.assertIn(f"rank 1, {expected}", text)
@@ -111,6 +114,23 @@ class RankScenes(Case):
             status, text, errors = launch(job(*([*stubs, f"CUDA_VISIBLE_DEVICES={which}"] for which in shown))(*common, asked))
             self.assertEqual((status, len(errors)), (2, 1), (text, errors))
             self.assertIn(expected, errors[0])
+
+    @unittest.skipUnless(SKEWED_CLOCKS, "no skewed clocks; ctest names them")
+    def test_ranks_decide_together_whatever_their_clocks_say(self):
+        """Each rank has a clock of its own pace and sleeps at random; what depends on clocks is rank 0's to decide."""
+        common = ["run", PILE, "--algorithm", "chunked,tiled", "--device", "host", *ROOMS, "--truth", "none", "--seconds", 0.8, "--noise", 1e-9]
+        digests = set()
+        for seed in range(20 if LONG else 6):
+            ranks, out = (2, 4)[seed % 2], self.work / f"skewed{seed}.jsonl"
+            skew = ["env", f"LD_PRELOAD={SKEWED_CLOCKS}", f"SKEW_SEED={seed}"]
+            status, text, errors = launch(job(*([skew] * ranks))(*common, "--out", out), timeout=60)
+            self.assertEqual((status, errors), (0, []), text)
+            records = self.records(out)
+            self.assertEqual(sorted(record["algorithm"] for record in records), ["chunked", "tiled"])
+            digests |= {json.dumps(record["work"]["digest"]) for record in records}
+            for record in records:
+                self.assertGreaterEqual(len(set(record["total_ns"]["rounds"])), 10)
+        self.assertEqual(len(digests), 1)
 
     def test_a_rank_that_dies_ends_the_job_and_records_are_whole(self):
         out = self.work / "killed.jsonl"

@@ -2,7 +2,7 @@
 #include "algorithms/ranks/rank_session.h"
 
 #include "algorithms/parameters/table.h"
-#include "algorithms/ranks/bytes.h"
+#include "algorithms/ranks/agreement.h"
 #include "algorithms/ranks/present.h"
 #include "scenes/error.h"
 
@@ -235,8 +235,8 @@ void RankSession::fail(const std::vector<Report>& all) const {
     const auto failed =
         std::ranges::find_if(all, [](const Report& report) { return !report.failure.empty(); });
     if (failed == all.end()) return;
-    if (failed->is_memory) throw OutOfMemory(failed->failure);
-    throw DeviceError(failed->failure);
+    if (failed->is_memory) throw SharedError<OutOfMemory>(failed->failure);
+    throw SharedError<DeviceError>(failed->failure);
 }
 
 /// Of all ranks.

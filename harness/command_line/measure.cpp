@@ -256,11 +256,11 @@ Action add_run(CLI::App& app) {
     app.add_flag("!--no-count", options.count, "leave out the replay that counts work");
     app.add_flag("!--no-check", options.check, "do not compare with the reference");
     add_check_afresh(app, options);
-    app.callback([given, line = &app] { take_plan(*line, given->options); });
-    return [given] {
+    app.callback([given, line = &app] {
+        take_plan(*line, given->options);
         given->options.request.sets = sets_of(given->sets, given->options);
-        return run_command(given->options);
-    };
+    });
+    return [given] { return run_command(given->options); };
 }
 
 Action add_isolated(CLI::App& app) {

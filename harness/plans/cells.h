@@ -11,7 +11,8 @@
 
 namespace tandem {
 
-struct Choice; // choosing/choice.h
+struct Choice;  // choosing/choice.h
+class RankTeam; // ranks/rank_team.h
 
 /// algorithm x settings x devices; the scene and frames are those of the run.
 struct Cell {
@@ -19,6 +20,7 @@ struct Cell {
     std::string preset;
     Settings settings; ///< resolved
     DeviceGroup devices;
+    RankTeam* team = nullptr; ///< the ranks of a job that measure it together; null: this process alone
     /// Of `auto`: the cells it may become, which give the same answer; until one is chosen it is the first.
     std::vector<Cell> candidates{};
     std::shared_ptr<const Choice> chosen{}; ///< how it was chosen; null where the user did

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "harness/ranks/launched_run.h"
 
+#include "algorithms/ranks/agreement.h"
 #include "harness/environment.h"
 #include "harness/interrupt.h"
-#include "harness/ranks/companions.h"
 #include "harness/ranks/environment.h"
 #include "harness/ranks/launched.h"
 #include "harness/standard_streams.h"
@@ -45,49 +45,54 @@ std::string disagreement(Ranks& ranks, const std::vector<std::string>& words) {
     return {};
 }
 
-/// The others end with the first.
-int lead(Ranks& ranks, const std::function<int()>& command) {
-    const int code = command();
-    flush_output(); // a launcher may end all ranks once one has ended
-    const auto text = json{{"do", "end"}, {"code", code}}.dump();
-    for (int rank = 1; rank < ranks.size(); ++rank) ranks.send(rank, std::as_bytes(std::span(text)));
-    return code;
+/// An error that is one rank's alone ends the job: the others may wait for this rank.
+int end_job(Ranks& ranks, const std::exception& error) {
+    tell_from_every_rank("tandem: rank {}: {}; it ends the job\n", ranks.rank(), error.what());
+    ranks.abort(3);
+    return 3; // which g++ 12 misses behind a virtual function that does not return
 }
 
-/// The next message of the first rank. MPI waits by polling without a pause, which takes a whole core from
-/// what is being measured.
-json next_message(Ranks& ranks) {
-    while (!ranks.is_there()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    const auto message = ranks.receive();
-    const auto* text = reinterpret_cast<const char*>(message.bytes.data());
-    return json::parse(text, text + message.bytes.size());
-}
-
-/// Does what the first rank asks for, until its command has ended; returns the command's exit code. A rank
-/// that cannot go on ends the job.
-int follow(Ranks& ranks) {
+/// All ranks run the command. What they print is the same, and the first one's counts.
+int run_on_all(Ranks& ranks, const ReadLine& read) {
+    if (!ranks.is_first()) silence_streams();
     try {
-        const Interrupt interrupt; // the first rank decides what a signal ends
-        for (;;) {
-            const auto message = next_message(ranks);
-            if (message.at("do") == "end") return message.at("code").get<int>();
-            serve_companion(ranks);
-        }
+        std::function<int()> act;
+        run_together(ranks, [&] { act = read(); });
+        return act();
     } catch (const std::exception& error) {
-        tell("tandem: rank {}: {}; it ends the job\n", ranks.rank(), error.what());
-        ranks.abort(3);
-        return 3; // which g++ 12 misses behind a virtual function that does not return
+        if (dynamic_cast<const OfAllRanks*>(&error) != nullptr) throw;
+        return end_job(ranks, error);
     }
+}
+
+/// The exit code of rank 0, once it has printed everything: a launcher may end all ranks once one has ended.
+/// MPI waits by polling without a pause, which would take a core each.
+int end_with_rank_0(Ranks& ranks, int code) {
+    if (ranks.is_first()) {
+        flush_output();
+        for (int rank = 1; rank < ranks.size(); ++rank) ranks.send(rank, std::as_bytes(std::span(&code, 1)));
+        return code;
+    }
+    const Interrupt interrupt; // rank 0 decides what a signal ends
+    while (!ranks.is_there()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return MessageReader(ranks.receive().bytes).read<int>();
 }
 
 } // namespace
 
-int run_launched(Ranks& ranks, const std::vector<std::string>& words, const std::function<int()>& command) {
+int run_launched(Ranks& ranks, const std::vector<std::string>& words, const ReadLine& read,
+                 const Guard& guard) {
     if (const auto why = disagreement(ranks, words); !why.empty()) {
         if (ranks.is_first()) tell("tandem: {}\n", why);
         return 2;
     }
-    return ranks.is_first() ? lead(ranks, command) : follow(ranks);
+    const bool is_run = !words.empty() && words.front() == "run";
+    int code = 0;
+    if (is_run)
+        code = guard([&] { return run_on_all(ranks, read); });
+    else if (ranks.is_first())
+        code = guard([&] { return read()(); });
+    return end_with_rank_0(ranks, code);
 }
 
 void tell_others_wait(const std::string& command) {

@@ -5,7 +5,7 @@
 #include "harness/choosing/choice.h"
 #include "harness/environment.h"
 #include "harness/key.h"
-#include "harness/ranks/companions.h"
+#include "harness/ranks/rank_team.h"
 #include "harness/record/parts.h"
 
 #include <fmt/format.h>
@@ -78,11 +78,6 @@ Json record_timed_device(const Device& device) {
 
 Json record_devices(const DeviceGroup& devices) {
     Json json = Json::array();
-    if (companions() != nullptr) {
-        for (const auto& info : infos_of(devices)) json.push_back(record_device(info));
-        json.front()["clock"] = devices.front()->clock();
-        return json;
-    }
     for (const auto* device : devices) json.push_back(record_timed_device(*device));
     return json;
 }
@@ -159,6 +154,9 @@ std::string status_of(const Measurement& m, const std::string& failure) {
 /// another than this one's.
 Json devices_json(const Measurement& m, const Cell& cell) {
     auto json = record_devices(cell.devices);
+    if (cell.team != nullptr) // rank 0's clock is known
+        for (std::size_t rank = 1; rank < cell.team->devices().size(); ++rank)
+            json.push_back(record_device(cell.team->devices()[rank]));
     for (std::size_t i = 0; i < json.size(); ++i) {
         std::set<std::string> clocks;
         for (const auto& replay : m.breakdowns)
@@ -190,7 +188,7 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["scene"] = record_scene(scene);
     json["frames"] = {{"first", range.first()}, {"last", range.last()}};
     json["devices"] = devices_json(m, cell);
-    json["ranks"] = companions() != nullptr ? Json(infos_of(cell.devices).size()) : Json();
+    json["ranks"] = cell.team != nullptr ? Json(cell.team->devices().size()) : Json();
     const bool measured = failure.empty();
     json["sampling"] = record_parts::sampling_json(m, cell, outcome, sampling);
     json["conditions"] = record_parts::conditions_json(m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/ranks/companions.h"
+#include "harness/ranks/rank_team.h"
 #include "harness/record/parts.h"
 #include "harness/statistics.h"
 
@@ -62,7 +62,7 @@ Json shares_json(const Measurement& m, const Cell& cell) {
     std::vector<double> imbalances;
     for (const auto& sample : m.samples) imbalances.push_back(sample.imbalance().value_or(1));
     std::ranges::sort(imbalances);
-    const auto infos = infos_of(cell.devices);
+    const auto infos = infos_of(cell);
     Json devices = Json::array();
     for (std::size_t i = 0; i < m.shared.front().size(); ++i)
         devices.push_back({{"device", infos[i].id},

@@ -53,14 +53,19 @@ void LocalSampler::compare(std::size_t index, const FrameResult& result, const D
                            const Digest& contacts) {
     auto& agreement = out_.agreement;
     ++agreement.frames;
-    const auto known = expected_digests(index);
     const bool has_contacts = makes_contacts();
-    if (digest == known.pairs && (!has_contacts || contacts == known.contacts)) return;
+    const auto differs = [&] {
+        const auto known = expected_digests(index);
+        return digest != known.pairs || (has_contacts && contacts != known.contacts);
+    };
+    if (!decided(cell_.team, is_first(cell_.team) && differs())) return;
+    const auto pairs = result.has_pairs() ? result.download() : std::vector<Pair>{};
+    if (!is_first(cell_.team)) return;
     // Digests may have been kept by an earlier process; an answer is called wrong by what this one computes.
     const auto& expected = references_.answer(geometry_, contact_settings_of(out_.settings), index);
     if (digest != expected.digest) {
         if (result.has_pairs()) {
-            const auto found = difference(expected.pairs, result.download());
+            const auto found = difference(expected.pairs, pairs);
             agreement.missing += found.missing;
             agreement.extra += found.extra;
         } else {
@@ -76,15 +81,23 @@ ReferenceDigests LocalSampler::expected_digests(std::size_t index) {
     return references_.digests(geometry_, contact_settings_of(out_.settings), index);
 }
 
-/// The truth keeps errors by digest, so that the answer is downloaded only when no other cell gave the same.
+/// The truth keeps errors by digest, so that the answer is downloaded only when no other cell gave the same;
+/// where ranks download it together they always do.
 void LocalSampler::add_errors(Truths& truths, std::size_t index, const FrameResult& result,
                               const Digest& digest, const Digest& contacts, const Report& report) {
     FrameAnswer answer;
     answer.pairs = digest;
     answer.contacts = contacts;
     answer.makes_contacts = makes_contacts();
-    answer.download = [&] { return result.download(); };
-    answer.download_contacts = [&] { return result.download_contacts(); };
+    std::vector<Pair> pairs;
+    std::vector<ContactPoint> points;
+    if (cell_.team != nullptr) {
+        pairs = result.download();
+        points = result.download_contacts();
+        if (!cell_.team->is_first()) return;
+    }
+    answer.download = [&] { return cell_.team != nullptr ? pairs : result.download(); };
+    answer.download_contacts = [&] { return cell_.team != nullptr ? points : result.download_contacts(); };
     if (!out_.errors) out_.errors.emplace();
     out_.errors->add(truths.errors(geometry_, index, answer, report));
 }
@@ -110,8 +123,9 @@ void LocalSampler::look(std::size_t index, const FrameResult& result, const Chec
     auto digest = counted ? Digest{result.count, 0, 0} : result.digest();
     const auto contacts = result.contact_digest();
     if (options.check) {
-        const auto expected = expected_digests(index).pairs;
-        if (counted && result.count == expected.count) digest = expected;
+        if (counted && is_first(cell_.team))
+            if (const auto expected = expected_digests(index).pairs; result.count == expected.count)
+                digest = expected;
         compare(index, result, digest, contacts);
     }
     if (options.truths != nullptr && result.has_pairs())
@@ -155,7 +169,10 @@ void LocalSampler::warm_up() {
     std::int64_t spent = 0;
     auto least = std::numeric_limits<std::int64_t>::max();
     int without_gain = 0;
-    while ((without_gain < patience || spent < least_warming_ns) && spent < longest_warming_ns) {
+    const auto goes_on = [&] {
+        return (without_gain < patience || spent < least_warming_ns) && spent < longest_warming_ns;
+    };
+    while (decided(cell_.team, goes_on())) {
         state_.replay_ns = replays_->timed([](std::size_t, const FrameResult&) {}).total_ns();
         spent += state_.replay_ns;
         const bool fell = static_cast<double>(state_.replay_ns) < static_cast<double>(least) * (1 - falling);

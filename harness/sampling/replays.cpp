@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampling/replays.h"
 
-#include "harness/ranks/companions.h"
-
 #include <algorithm>
 #include <fmt/format.h>
 #include <limits>
@@ -50,15 +48,16 @@ void add_host_work(const Trace& trace, std::map<std::string, HostWorkSample>& wo
     }
 }
 
-/// What the other ranks of a job did of a frame.
-void add_companions(InstrumentedReplay& replay, StageSamples& sum) {
-    if (companions() == nullptr) return;
-    const auto all = companions()->stages();
-    for (std::size_t rank = 1; rank < all.size(); ++rank)
-        for (std::size_t stage = 0; stage < sum.size(); ++stage) {
-            sum[stage] += all[rank][stage];
-            replay.by_device[rank][stage] += all[rank][stage];
-        }
+/// What each device did of a frame: those of this process, or one of each rank.
+std::vector<StageSamples> stages_of(RankTeam* team, const std::vector<Trace>& traces) {
+    std::vector<StageSamples> stages;
+    for (const auto& trace : traces) stages.push_back(by_stage(trace));
+    if (team == nullptr) return stages;
+    const auto own = stages.front();
+    stages.clear();
+    for (const auto& bytes : team->gather(std::as_bytes(std::span(own))))
+        stages.push_back(MessageReader(bytes).read<StageSamples>());
+    return stages;
 }
 
 } // namespace
@@ -77,7 +76,19 @@ Replays::Replays(const Cell& cell, const Scene& scene, const FrameRange& range)
 }
 
 void Replays::wait() {
-    for (auto* device : cell_.devices) device->finish();
+    together(cell_.team, [&] {
+        for (auto* device : cell_.devices) device->finish();
+    });
+}
+
+/// Once all ranks have it and all devices are idle.
+std::shared_ptr<const Frame> Replays::next_frame(std::size_t index) {
+    std::shared_ptr<const Frame> frame;
+    together(cell_.team, [&] {
+        frame = range_.frame(index);
+        for (auto* device : cell_.devices) device->finish();
+    });
+    return frame;
 }
 
 std::uint64_t Replays::submissions() const {
@@ -91,34 +102,33 @@ InstrumentedReplay Replays::instrumented() {
     for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
     const ranges::Range cell(name_.c_str());
     InstrumentedReplay replay;
-    replay.by_device.resize(infos_of(cell_.devices).size());
-    if (companions() != nullptr) companions()->set_clocks(Clocks::on);
+    replay.by_device.resize(infos_of(cell_).size());
     for (std::size_t i = 0; i < range_.size(); ++i) {
-        const auto frame = range_.frame(i);
+        const auto frame = next_frame(i);
         const ranges::Range stretch(frame_names_[i].c_str());
-        announce_frame(i);
-        wait();
         const auto begin = Clock::now();
         const auto result = session_->run(*frame);
         replay.frame_ns.push_back(since(begin));
+        std::vector<Trace> traces;
+        together(cell_.team, [&] {
+            for (auto* device : cell_.devices) traces.push_back(device->finish());
+        });
         auto& sum = replay.stages.emplace_back();
         std::int64_t span = 0; // the longest of the devices, -1 when one does not tell
-        for (std::size_t number = 0; number < cell_.devices.size(); ++number) {
-            const auto trace = cell_.devices[number]->finish();
-            const auto own = by_stage(trace);
-            for (std::size_t stage = 0; stage < own.size(); ++stage) {
-                sum[stage] += own[stage];
-                replay.by_device[number][stage] += own[stage];
-            }
+        for (const auto& trace : traces) {
             add_kernels(trace, replay.kernels);
             add_host_work(trace, replay.host_work);
             const auto own_span = device_span(trace);
             span = span < 0 || own_span < 0 ? -1 : std::max(span, own_span);
         }
-        add_companions(replay, sum);
+        const auto stages = stages_of(cell_.team, traces);
+        for (std::size_t number = 0; number < stages.size(); ++number)
+            for (std::size_t stage = 0; stage < sum.size(); ++stage) {
+                sum[stage] += stages[number][stage];
+                replay.by_device[number][stage] += stages[number][stage];
+            }
         replay.span_ns.push_back(span);
     }
-    if (companions() != nullptr) companions()->set_clocks(Clocks::off);
     for (auto* device : cell_.devices) {
         replay.clocks.push_back(device->clock());
         device->set_clocks(Clocks::off);
@@ -129,12 +139,8 @@ InstrumentedReplay Replays::instrumented() {
 std::vector<Trace> Replays::traced(std::size_t index) {
     const ranges::Range cell(name_.c_str());
     session_->reset();
-    for (std::size_t i = 0; i < index; ++i) {
-        announce_frame(i);
-        session_->run(*range_.frame(i));
-    }
-    const auto frame = range_.frame(index);
-    announce_frame(index);
+    for (std::size_t i = 0; i < index; ++i) session_->run(*next_frame(i));
+    const auto frame = next_frame(index);
     session_->run(*frame);
     for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
     const ranges::Range stretch(frame_names_[index].c_str());
@@ -150,8 +156,7 @@ std::map<std::string_view, std::uint64_t> Replays::counted() {
     session_->reset();
     session_->count_work(true);
     for (std::size_t i = 0; i < range_.size(); ++i) {
-        announce_frame(i);
-        const auto result = session_->run(*range_.frame(i));
+        const auto result = session_->run(*next_frame(i));
         for (const auto& counter : cell_.algorithm->counters()) {
             const auto found = result.work.find(counter.name);
             if (found == result.work.end()) continue;

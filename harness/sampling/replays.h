@@ -3,12 +3,13 @@
 
 #include "backends/ranges.h"
 #include "harness/frames.h"
-#include "harness/ranks/companions.h"
+#include "harness/ranks/rank_team.h"
 #include "harness/sampling/measurement.h"
 
 namespace tandem {
 
-/// A session of a cell and the ways to replay the frames with it. Every function may throw DeviceError.
+/// A session of a cell and the ways to replay the frames with it. Every function may throw DeviceError. Ranks
+/// that measure the cell together call each function together, and those of results in `look`.
 class Replays {
 public:
     /// Prepares the session and waits until it is. All must outlive this.
@@ -28,10 +29,8 @@ public:
         session_->reset();
         TimedReplay replay;
         for (std::size_t i = 0; i < range_.size(); ++i) {
-            const auto frame = range_.frame(i);
+            const auto frame = next_frame(i);
             const ranges::Range stretch(frame_names_[i].c_str());
-            announce_frame(i);
-            wait();
             const auto begin = std::chrono::steady_clock::now();
             const auto result = session_->run(*frame);
             replay.frame_ns.push_back(since(begin));
@@ -53,6 +52,7 @@ public:
     std::uint64_t submissions() const;
 
 private:
+    std::shared_ptr<const Frame> next_frame(std::size_t index);
     void wait();
 
     const Cell& cell_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampling/rounds.h"
 
+#include "harness/ranks/rank_team.h"
 #include "harness/statistics.h"
 
 #include <algorithm>
@@ -29,6 +30,8 @@ public:
 private:
     /// The first round of a cell, or another; false when it failed, or has been sampled enough, and is
     /// finished.
+    RankTeam* team() const { return outcomes_.empty() ? nullptr : outcomes_.front().sampler->cell().team; }
+    bool stops() const { return decided(team(), listener_.stop()); }
     template<class Work>
     bool goes_on(Outcome& outcome, bool is_first, const Work& work);
     bool begin(Outcome& outcome);
@@ -46,10 +49,11 @@ private:
 
 std::size_t Group::next_samples(const CellSampler& cell) const {
     const auto& repeat = sampling_.enough.repeat;
-    if (!repeat) return cell.samples_a_round();
+    if (!repeat) return decided(team(), cell.samples_a_round());
     const auto left = *repeat - std::min(*repeat, cell.measurement().samples.size());
     // One a round, but where every round would take long before its sample.
-    return std::min(left, cell.preparation_is_long() ? cell.samples_a_round() : std::size_t{1});
+    return decided(team(),
+                   std::min(left, cell.preparation_is_long() ? cell.samples_a_round() : std::size_t{1}));
 }
 
 bool Group::is_enough(Outcome& outcome) const {
@@ -71,13 +75,16 @@ template<class Work>
 bool Group::goes_on(Outcome& outcome, bool is_first, const Work& work) {
     try {
         work();
-        if (!is_enough(outcome)) {
+        if (!decided(team(), is_enough(outcome))) {
             listener_.kept(*outcome.sampler, is_first);
             return true;
         }
     } catch (const DeviceError& error) {
+        // An error of one rank alone ends the job: the others wait for it.
+        if (team() != nullptr && dynamic_cast<const OfAllRanks*>(&error) == nullptr) throw;
         outcome.failure = error.what();
     } catch (const std::bad_alloc&) {
+        if (team() != nullptr) throw;
         outcome.failure = "out of host memory; use fewer bodies or frames";
     }
     outcome.sampler->release();
@@ -120,18 +127,18 @@ bool Group::run() {
     for (auto& outcome : outcomes_) outcome.sampler->go_on_from(next);
     std::vector<Outcome*> left;
     for (auto& outcome : outcomes_) {
-        if (listener_.stop()) break;
+        if (stops()) break;
         if (begin(outcome)) left.push_back(&outcome);
     }
-    while (!left.empty() && !listener_.stop()) {
+    while (!left.empty() && !stops()) {
         // std::shuffle is not the same everywhere; this is.
         for (std::size_t i = left.size(); i > 1; --i) std::swap(left[i - 1], left[random_() % i]);
         std::vector<Outcome*> going;
         for (auto* outcome : left)
-            if (listener_.stop() || round(*outcome)) going.push_back(outcome);
+            if (stops() || round(*outcome)) going.push_back(outcome);
         left = std::move(going);
     }
-    sampling_.interrupted = listener_.stop();
+    sampling_.interrupted = stops();
     for (auto* outcome : left) listener_.finished(*outcome, sampling_);
     return sampling_.interrupted;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/table/table.h"
 
-#include "harness/ranks/companions.h"
+#include "harness/ranks/rank_team.h"
 #include "harness/sampling/ratio.h"
 #include "harness/statistics.h"
 #include "harness/table/columns.h"
@@ -195,13 +195,14 @@ double share_ms(const Measurement& m, std::size_t device) {
 std::string shares_table(const Row& row, const std::string& label) {
     const auto& m = *row.measurement;
     if (m.shared.empty() || m.samples.empty() || m.breakdowns.empty()) return {};
-    const auto infos = infos_of(row.cell->devices);
+    const auto infos = infos_of(*row.cell);
     std::vector<std::string> devices;
     std::vector<Column> columns{{"bodies", {}}, {"body pairs", {}}, {"pairs", {}}, {"ms/frame", {}}};
     for (const auto stage : all_stages())
         columns.push_back({std::string(stage_names[static_cast<std::size_t>(stage)]), {}});
     for (std::size_t i = 0; i < m.shared.front().size(); ++i) {
-        devices.push_back(companions() != nullptr ? fmt::format("rank {}, {}", i, infos[i].id) : infos[i].id);
+        devices.push_back(row.cell->team != nullptr ? fmt::format("rank {}, {}", i, infos[i].id)
+                                                    : infos[i].id);
         columns[0].texts.push_back(short_count(mean_over_frames(m, i, &SharedWork::bodies)));
         columns[1].texts.push_back(short_count(mean_over_frames(m, i, &SharedWork::body_pairs)));
         columns[2].texts.push_back(short_count(mean_over_frames(m, i, &SharedWork::pairs)));
