@@ -11,6 +11,7 @@ WHAT_TO_GIVE = "give files that 'tandem run --out' wrote"
 OLDEST, NEWEST = 2, 3
 # What a reader of fields raises where a record is not of its schema.
 FIELD_ERRORS = (KeyError, TypeError, AttributeError, IndexError, ValueError, ArithmeticError)
+_LARGE = re.compile(rb"[eE]\+?\d{3}|\d{300}")  # a number that may be beyond all doubles
 _LONE_SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")  # or a pair
 
 
@@ -33,7 +34,7 @@ def _finite(text):
 def parsed(text, place, what_to_give=WHAT_TO_GIVE):
     """The value that the bytes of a line are in JSON, which has neither NaN nor halves of characters. Raises RecordError."""
     try:
-        value = json.loads(text, parse_float=_finite, parse_constant=_finite)
+        value = json.loads(text, parse_float=_finite if _LARGE.search(text) else float, parse_constant=_finite)
         if _LONE_SURROGATE.search(text):
             json.dumps(value, ensure_ascii=False).encode()
     except (ValueError, RecursionError):

