@@ -73,12 +73,4 @@ std::string visible(std::string_view text) {
     return shown;
 }
 
-std::string one_line(std::string text, std::size_t most) {
-    for (auto& byte : text)
-        if (static_cast<unsigned char>(byte) < ' ' || byte == '\x7f') byte = ' ';
-    if (text.size() <= most) return text;
-    while (most > 0 && goes_on(text[most])) --most;
-    return text.substr(0, most) + "...";
-}
-
 } // namespace tandem

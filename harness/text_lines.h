@@ -24,7 +24,4 @@ std::string paragraph(std::string_view text, std::size_t indent);
 /// A text with its control characters written out (\\n, \\x1b): what a file's own words make of a message.
 std::string visible(std::string_view text);
 
-/// A text in one line: control characters become spaces, and what is longer than `most` bytes is cut.
-std::string one_line(std::string text, std::size_t most);
-
 } // namespace tandem
