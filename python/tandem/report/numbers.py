@@ -33,12 +33,3 @@ def text(value):
     if not isinstance(value, str):
         raise TypeError(f"{value!r} is no text")
     return value
-
-
-def at(record, *path):
-    """The value at a path of names; None where it ends early."""
-    for name in path:
-        if not isinstance(record, dict):
-            return None
-        record = record.get(name)
-    return record

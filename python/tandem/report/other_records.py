@@ -4,7 +4,8 @@ fields of its schema."""
 import dataclasses
 import os
 
-from .numbers import at, count, is_number, number, rounded, text
+from ..cell_rows import at
+from .numbers import count, is_number, number, rounded, text
 
 KERNEL_NUMBERS = ("share", "launches", "bytes", "operations", "bytes_per_s", "operations_per_s", "of_bytes", "of_operations", "over_floor",
                   "occupancy")

@@ -4,10 +4,11 @@ import dataclasses
 import statistics
 
 from .. import lines
+from ..cell_rows import at
 from ..comparison.cells import RecordedCell, recorded_cell
 from ..text_lines import one_line
 from .conditions import conditions_text, sampling_text
-from .numbers import at, count, is_number, number, rounded, text
+from .numbers import count, is_number, number, rounded, text
 
 # The columns of ShownCell.row, and whether cells have values in common there: the page has each of these once.
 FIELDS = {"algorithm": True, "preset": True, "device": True, "driver": True, "scene": True, "frames": True, "status": True, "failure": True,
