@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/chunked/chunked.h"
-#include "algorithms/embree/embree.h"
+#include "algorithms/baselines/embree/embree.h"
 #include "algorithms/gproximity/gproximity.h"
 #include "algorithms/sources.h"
 #include "algorithms/tiled/tiled.h"
 #include "algorithms/traversal.h"
-#include "scenes/digest.h"
-#include "scenes/error.h"
+#include "base/digest.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <array>

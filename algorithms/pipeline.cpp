@@ -2,7 +2,7 @@
 #include "algorithms/pipeline.h"
 
 #include "algorithms/parameters/table.h"
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -3,8 +3,8 @@
 
 #include "algorithms/answer/answers.h"
 #include "algorithms/answer/status.h"
-#include "algorithms/broad/body_pairs.h"
-#include "algorithms/contacts/contact_stage.h"
+#include "algorithms/broad_phase/body_pairs.h"
+#include "algorithms/narrow_phase/contact_stage.h"
 #include "algorithms/steps.h"
 
 namespace tandem {

@@ -4,10 +4,10 @@
 #include "algorithms/bodies/origin.h"
 #include "algorithms/pipeline.h"
 #include "algorithms/published/published_session.h"
-#include "algorithms/ranks/rank_session.h"
+#include "algorithms/distributed/rank_session.h"
 #include "algorithms/resident_session.h"
-#include "algorithms/split_session.h"
-#include "scenes/error.h"
+#include "algorithms/distributed/split_session.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,7 +3,7 @@
 
 #include "algorithms/bodies/pack_stage.h"
 #include "algorithms/pipeline.h"
-#include "algorithms/shares/share.h"
+#include "algorithms/distributed/share.h"
 
 #include <array>
 

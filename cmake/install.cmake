@@ -23,7 +23,7 @@ set(public_headers
   algorithms/traversal.h algorithms/device_frame.h algorithms/cost.h algorithms/answer/frame_result.h
   algorithms/parameters/parameter.h algorithms/parameters/choices.h algorithms/parameters/table.h
   algorithms/bounds/geometry.h algorithms/bodies/range.h scenes/scene.h scenes/dynamics.h
-  scenes/contact.h scenes/simulate/simulation.h scenes/mesh.h scenes/builtin.h scenes/error.h)
+  scenes/contact.h scenes/simulate/simulation.h scenes/mesh.h scenes/builtin.h base/error.h)
 if(TANDEM_HAS_MPI)
   list(APPEND public_headers backends/mpi/mpi_ranks.h)
 endif()

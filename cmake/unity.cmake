@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # tandem_unity(TARGET [EXPRESSION...]): compiles the files of a folder together, which takes a third of the time. Unnamed
 # namespaces of files that are compiled together are one: files whose names there are others' as well make a unit of
-# their own for each EXPRESSION that their path, from the root and without .cpp, matches.
+# their own for each EXPRESSION that their path, from the root and without .cpp, matches. Scenes are compiled one by one:
+# each has a make() of its own.
 function(tandem_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   get_target_property(sources ${target} SOURCES)
@@ -12,6 +13,9 @@ function(tandem_unity target)
       continue()
     endif()
     cmake_path(GET path PARENT_PATH group)
+    if(group STREQUAL "scenes/kinds")
+      continue()
+    endif()
     foreach(expression ${ARGN})
       if(path MATCHES "^${expression}\\.cpp$")
         set(group ${expression})

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "harness/command_line/command_line.h"
-#include "harness/memory_reserve.h"
-#include "harness/ranks/launched.h"
-#include "harness/ranks/launched_run.h"
-#include "harness/standard_streams.h"
-#include "harness/text_lines.h"
-#include "scenes/error.h"
+#include "harness/commands/options/command_line.h"
+#include "harness/commands/memory_reserve.h"
+#include "harness/sampling/ranks/launched.h"
+#include "harness/sampling/ranks/launched_run.h"
+#include "harness/commands/standard_streams.h"
+#include "harness/commands/text_lines.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/assembly.h"
 
-#include "scenes/random.h"
+#include "base/random.h"
 #include "scenes/refine.h"
 #include "scenes/shapes.h"
 

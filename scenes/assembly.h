@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "scenes/memory.h"
+#include "scenes/body_memory.h"
 #include "scenes/parameters.h"
 
 namespace tandem {

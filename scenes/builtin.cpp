@@ -2,7 +2,7 @@
 #include "scenes/builtin.h"
 
 #include "scenes/embedded.h"
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/read/read.h"
 
 namespace tandem {

@@ -2,7 +2,7 @@
 #include "scenes/describe_dynamics.h"
 
 #include "scenes/describe_settings.h"
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/motion.h"
 #include "scenes/overlap.h"
 

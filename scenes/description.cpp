@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/builtin.h"
 #include "scenes/describe_dynamics.h"
+#include "base/digest.h"
 #include "scenes/digest.h"
-#include "scenes/error.h"
-#include "scenes/memory.h"
+#include "base/error.h"
+#include "base/memory.h"
 #include "scenes/motion.h"
 #include "scenes/parameters.h"
-#include "scenes/read_json.h"
+#include "base/read_json.h"
 #include "scenes/shapes.h"
 
 #include <algorithm>

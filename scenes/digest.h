@@ -5,9 +5,6 @@
 
 namespace tandem {
 
-/// 64-bit digest of a text, for keys of scenes that have no parameters.
-std::uint64_t digest_of(std::string_view text);
-
 /// 64-bit digest of a frame: poses, vertices of deformable bodies, and what is skipped.
 std::uint64_t digest_of(const Frame& frame);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/digest.h"
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/hard/hard.h"
 #include "scenes/parameters.h"
 #include "scenes/recording/recording.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/mesh.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/faces.h"
 
 #include <cmath>

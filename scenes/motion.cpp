@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/motion.h"
 
-#include "scenes/random.h"
+#include "base/random.h"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/refine.h"
 
-#include "scenes/error.h"
-#include "scenes/memory.h"
+#include "base/error.h"
+#include "base/memory.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/shapes.h"
 
-#include "scenes/error.h"
-#include "scenes/random.h"
+#include "base/error.h"
+#include "base/random.h"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -2,10 +2,10 @@
 #include "algorithms/answer/answers.h"
 
 #include "algorithms/answer/digest.h"
-#include "algorithms/contacts/reference.h"
+#include "algorithms/narrow_phase/reference.h"
 #include "algorithms/parameters/table.h"
 #include "algorithms/sources.h"
-#include "scenes/parallel.h"
+#include "base/parallel.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -144,7 +144,7 @@ AnswerTools::AnswerTools(std::shared_ptr<const Bodies> bodies, LaunchShape shape
     expand_kernel_ = device().compile(source, "expand_pairs", defines);
     count_kernel_ = device().compile(source, "count_by_body", defines);
     if (contacts)
-        contacts_kernel_ = device().compile(kernel_source("algorithms/contacts/digest_contacts.cl"),
+        contacts_kernel_ = device().compile(kernel_source("algorithms/narrow_phase/digest_contacts.cl"),
                                             "digest_contacts", defines);
 }
 

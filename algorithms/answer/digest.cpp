@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/answer/digest.h"
 
-#include "scenes/parallel.h"
+#include "base/parallel.h"
 
 namespace tandem {
 

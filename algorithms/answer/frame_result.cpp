@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/answer/frame_result.h"
 
-#include "scenes/parallel.h"
+#include "base/parallel.h"
 
 namespace tandem {
 

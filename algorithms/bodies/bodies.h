@@ -3,7 +3,7 @@
 
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/hierarchy/order.h"
-#include "algorithms/shares/share.h"
+#include "algorithms/distributed/share.h"
 #include "scenes/scene.h"
 
 namespace tandem {

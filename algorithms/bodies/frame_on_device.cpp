@@ -2,7 +2,7 @@
 #include "algorithms/bodies/frame_on_device.h"
 
 #include "algorithms/bodies/range.h"
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <cmath>
 #include <fmt/format.h>

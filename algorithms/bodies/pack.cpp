@@ -49,7 +49,8 @@ void pack_vertices(std::vector<std::byte>& out, const Geometry& geometry, const 
     write_vertices(out.data() + at, geometry, mesh, vertices);
 }
 
-/// The order of operations is part of the answer: the reference has the same (harness/world_vertices.cpp).
+/// The order of operations is part of the answer: the reference has the same
+/// (harness/verify/world_vertices.cpp).
 std::array<double, 12> pose_rows(const Pose& pose) {
     const auto& q = pose.rotation;
     const double length = std::sqrt((q.w() * q.w() + q.x() * q.x()) + (q.y() * q.y() + q.z() * q.z()));

@@ -4,7 +4,7 @@
 #include "algorithms/bodies/range.h"
 #include "algorithms/sources.h"
 #include "backends/upload.h"
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/bounds/geometry.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <initializer_list>

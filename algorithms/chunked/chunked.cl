@@ -2,7 +2,7 @@
 // The chunked static scheduler (paper, sections 3.2 and 3.3): pairs of chunks are the seeds, and which
 // work-items walk them is fixed beforehand.
 #include "backends/portable.h"
-#include "algorithms/broad/body_pairs.clh"
+#include "algorithms/broad_phase/body_pairs.clh"
 #include "algorithms/chunked/walk.clh"
 
 #ifndef ROOT_TEST

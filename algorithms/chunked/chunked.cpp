@@ -6,7 +6,7 @@
 #include "algorithms/published/chunked_seeds.h"
 #include "algorithms/cost.h"
 #include "algorithms/pipeline.h"
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <bit>
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 // global memory and works on a local queue loaded from its top; an idle counter ends the launch; balancing
 // evens the queues out.
 #include "backends/portable.h"
-#include "algorithms/broad/body_pairs.clh"
+#include "algorithms/broad_phase/body_pairs.clh"
 #include "algorithms/answer/emit.clh"
 #include "algorithms/gproximity/queues.clh"
 #include "algorithms/hierarchy/node.clh"

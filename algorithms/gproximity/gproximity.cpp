@@ -5,7 +5,7 @@
 #include "algorithms/cost.h"
 #include "algorithms/pipeline.h"
 #include "algorithms/published/queue_words.h"
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <bit>

@@ -2,7 +2,7 @@
 #include "algorithms/gproximity/gproximity_settings.h"
 
 #include "algorithms/gproximity/queues.clh"
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <array>

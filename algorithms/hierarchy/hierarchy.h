@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/shares/share.h"
+#include "algorithms/distributed/share.h"
 #include "backends/device.h"
 #include "scenes/scene.h"
 

@@ -3,7 +3,7 @@
 
 #include "algorithms/sources.h"
 #include "algorithms/tiled/tile_pairs.clh"
-#include "scenes/error.h"
+#include "base/error.h"
 
 namespace tandem {
 

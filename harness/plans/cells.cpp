@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/plans/cells.h"
 
-#include "harness/choosing/candidates.h"
-#include "scenes/error.h"
+#include "harness/plans/choosing/candidates.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <fmt/format.h>

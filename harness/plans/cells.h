@@ -2,8 +2,8 @@
 #pragma once
 
 #include "algorithms/traversal.h"
-#include "harness/device_groups.h"
-#include "scenes/error.h"
+#include "harness/plans/device_groups.h"
+#include "base/error.h"
 
 #include <functional>
 #include <memory>

@@ -3,8 +3,8 @@
 
 #include "harness/plans/ranges.h"
 #include "scenes/describe.h"
-#include "scenes/error.h"
-#include "scenes/read_json.h"
+#include "base/error.h"
+#include "base/read_json.h"
 
 #include <algorithm>
 #include <filesystem>

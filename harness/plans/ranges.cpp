@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/plans/ranges.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <charconv>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/plans/shard.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <charconv>
 #include <cstdlib>

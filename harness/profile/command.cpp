@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // `tandem profile`.
-#include "harness/ceilings.h"
-#include "harness/commands.h"
-#include "harness/inputs.h"
-#include "harness/interrupt.h"
-#include "harness/job.h"
+#include "harness/profile/ceilings.h"
+#include "harness/commands/commands.h"
+#include "harness/plans/inputs.h"
+#include "harness/sampling/interrupt.h"
+#include "harness/plans/job.h"
 #include "harness/profile/output.h"
 #include "harness/sampling/local_sampler.h"
-#include "harness/standard_streams.h"
-#include "harness/timeline/trace_frame.h"
-#include "scenes/error.h"
+#include "harness/commands/standard_streams.h"
+#include "harness/profile/timeline/trace_frame.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <deque>

@@ -5,7 +5,7 @@
 #include "algorithms/cost.h"
 #include "harness/profile/limits.h"
 #include "harness/sampling/measurement.h"
-#include "harness/statistics.h"
+#include "harness/sampling/statistics.h"
 
 #include <optional>
 #include <string_view>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "harness/profile/limits.h"
 
-#include "harness/ceilings.h"
+#include "harness/profile/ceilings.h"
 #include "harness/record/record.h"
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <fmt/format.h>

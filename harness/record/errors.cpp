@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "harness/flaws.h"
+#include "harness/verify/flaws.h"
 #include "harness/record/parts.h"
-#include "harness/statistics.h"
+#include "harness/sampling/statistics.h"
 
 #include <algorithm>
 #include <span>

@@ -2,10 +2,10 @@
 #include "harness/record/record.h"
 
 #include "backends/hardware.h"
-#include "harness/choosing/choice.h"
-#include "harness/environment.h"
-#include "harness/key.h"
-#include "harness/ranks/rank_team.h"
+#include "harness/plans/choosing/choice.h"
+#include "harness/record/environment.h"
+#include "harness/plans/key.h"
+#include "harness/sampling/ranks/rank_team.h"
 #include "harness/record/parts.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "harness/ranks/rank_team.h"
+#include "harness/sampling/ranks/rank_team.h"
 #include "harness/record/parts.h"
-#include "harness/statistics.h"
+#include "harness/sampling/statistics.h"
 
 namespace tandem::record_parts {
 

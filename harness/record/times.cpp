@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/parts.h"
-#include "harness/statistics.h"
+#include "harness/sampling/statistics.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/accuracy/truths.h"
-#include "harness/references.h"
+#include "harness/verify/accuracy/truths.h"
+#include "harness/verify/references.h"
 #include "harness/sampling/cell_state.h"
 
 #include <functional>

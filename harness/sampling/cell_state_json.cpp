@@ -2,7 +2,7 @@
 // States of cells as JSON: a list of the fields of every structure in them.
 #include "harness/sampling/cell_state.h"
 
-#include "harness/accuracy/answer_errors_json.h"
+#include "harness/verify/accuracy/answer_errors_json.h"
 
 namespace tandem {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampling/measurement.h"
 
-#include "harness/statistics.h"
+#include "harness/sampling/statistics.h"
 
 #include <algorithm>
 #include <numeric>

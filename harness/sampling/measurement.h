@@ -2,8 +2,8 @@
 // What measuring a cell gives.
 #pragma once
 
-#include "harness/accuracy/answer_errors.h"
-#include "harness/conditions.h"
+#include "harness/verify/accuracy/answer_errors.h"
+#include "harness/sampling/conditions.h"
 #include "harness/plans/cells.h"
 
 #include <chrono>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "backends/ranges.h"
-#include "harness/frames.h"
-#include "harness/ranks/rank_team.h"
+#include "harness/plans/frames.h"
+#include "harness/sampling/ranks/rank_team.h"
 #include "harness/sampling/measurement.h"
 
 namespace tandem {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/sampling/rounds.h"
 
-#include "harness/ranks/rank_team.h"
-#include "harness/statistics.h"
+#include "harness/sampling/ranks/rank_team.h"
+#include "harness/sampling/statistics.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 
 #include "algorithms/parameters/table.h"
 #include "python/core/arrays.h"
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 #include <nanobind/stl/vector.h>

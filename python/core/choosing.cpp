@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "python/core/choosing.h"
 
-#include "harness/choosing/search.h"
-#include "harness/statistics.h"
+#include "harness/plans/choosing/search.h"
+#include "harness/sampling/statistics.h"
 
 #include <chrono>
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 
 #include "algorithms/bodies/range.h"
 #include "backends/cuda/cuda_device.h"
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <charconv>

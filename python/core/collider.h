@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/traversal.h"
-#include "harness/device_groups.h"
+#include "harness/plans/device_groups.h"
 #include "python/core/choosing.h"
 #include "python/core/device_input.h"
 

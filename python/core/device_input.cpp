@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "python/core/device_input.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #include "python/core/errors.h"
 
 #include "backends/device.h"
-#include "scenes/error.h"
+#include "base/error.h"
 
 namespace nb = nanobind;
 

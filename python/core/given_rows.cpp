@@ -2,7 +2,7 @@
 #include "python/core/given_rows.h"
 
 #include "python/core/exchange.h"
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <charconv>
 #include <fmt/format.h>

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "algorithms/device_frame.h"
-#include "harness/device_groups.h"
+#include "harness/plans/device_groups.h"
 
 #include <memory>
 #include <nanobind/nanobind.h>

@@ -139,7 +139,7 @@ def first_lines(cells, answers):
             + paper_schedule(cells) +
             f"- **Right**: {sum(answers)} of {len(answers)} cells of that plan found the reference's pairs and contacts, bit for bit; "
             "that no pair that meets is missed is\n"
-            "  [proved](algorithms/bounds/README.md), and [tested](harness/accuracy/README.md) against the exact truth.")
+            "  [proved](algorithms/bounds/README.md), and [tested](harness/verify/accuracy/README.md) against the exact truth.")
 
 
 def against_gproximity(ratios, noun, each):

@@ -22,7 +22,7 @@ class Digest(NamedTuple):
 class Contacts(NamedTuple):
     """Contacts of a frame, sorted by pair and feature: columns of one array of records, so that no column is a copy."""
     pairs: numpy.ndarray     #: (n, 4) int32: body a, tetrahedron a, body b, tetrahedron b; body a < body b
-    features: numpy.ndarray  #: (n,) uint32: which of the pair's contacts, as algorithms/contacts numbers them
+    features: numpy.ndarray  #: (n,) uint32: which of the pair's contacts, as algorithms/narrow_phase numbers them
     points: numpy.ndarray    #: (n, 3) float64: in the world, in the meshes' unit
     normals: numpy.ndarray   #: (n, 3) float64: of length 1, out of body a
     depths: numpy.ndarray    #: (n,) float64: in the meshes' unit, < 0 inside

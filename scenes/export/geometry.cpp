@@ -3,7 +3,7 @@
 
 #include "scenes/export/quantised.h"
 #include "scenes/export/world.h"
-#include "scenes/read/base64.h"
+#include "base/base64.h"
 
 #include <algorithm>
 #include <cmath>

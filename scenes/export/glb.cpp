@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/export/glb.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/export/glb_animation.h"
 #include "scenes/export/world.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/export/vtk_xml.h"
 
-#include "scenes/read/base64.h"
+#include "base/base64.h"
 #include "scenes/recording/bytes.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "scenes/random.h"
+#include "base/random.h"
 #include "scenes/scene.h"
 
 #include <optional>
@@ -23,9 +23,9 @@ struct HardPair {
 /// Where the truth of a family comes from.
 enum class HardTruth : std::uint8_t {
     construction, ///< known when the pair or scene is made
-    oracle,       ///< the exact decision (harness/oracle)
+    oracle,       ///< the exact decision (harness/verify/oracle)
     program,      ///< its linear program: tetrahedra of no volume
-    geometry      ///< exact intersection and depth (harness/oracle/contact_truth.h)
+    geometry      ///< exact intersection and depth (geometry/contact_truth.h)
 };
 
 /// "construction", "oracle", ...

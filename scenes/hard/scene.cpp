@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Families of hard cases as scenes.
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/hard/hard.h"
 #include "scenes/hard/solids.h"
 #include "scenes/parameters.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/read/cursor.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 #include <limits>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/read/scanner.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/read/vtu_data.h"
 
-#include "scenes/read/base64.h"
+#include "base/base64.h"
 
 #include <algorithm>
 #include <charconv>

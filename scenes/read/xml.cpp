@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/read/xml.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/read/scanner.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/recording/frame.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/motion.h"
 #include "scenes/read/cursor.h"
 #include "scenes/recording/bytes.h"

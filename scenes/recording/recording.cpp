@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/recording/recording.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/read/cursor.h"
 
 #include <cmath>

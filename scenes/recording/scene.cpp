@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "base/digest.h"
 #include "scenes/digest.h"
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/recording/bytes.h"
 #include "scenes/recording/recording.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/recording/writer.h"
 
-#include "scenes/durable.h"
-#include "scenes/error.h"
+#include "base/durable.h"
+#include "base/error.h"
 
 #include <cmath>
 #include <fmt/format.h>

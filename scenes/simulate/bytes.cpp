@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/simulate/bytes.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <cstring>
 #include <fmt/format.h>

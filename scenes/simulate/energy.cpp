@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/simulate/algebra.h"
 #include "scenes/simulate/motion_state.h"
 #include "scenes/simulate/stabilize.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/simulate/mass.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/simulate/algebra.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/simulate/reduce.h"
 
-#include "scenes/parallel.h"
+#include "base/parallel.h"
 #include "scenes/simulate/algebra.h"
 #include "scenes/simulate/cells.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/simulate/step.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/simulate/algebra.h"
 #include "scenes/simulate/reduce.h"
 #include "scenes/simulate/solve.h"

@@ -2,7 +2,7 @@
 #include "scenes/simulate/surface_normals.h"
 
 #include "scenes/motion.h"
-#include "scenes/parallel.h"
+#include "base/parallel.h"
 #include "scenes/simulate/algebra.h"
 #include "scenes/simulate/cone.h"
 #include "scenes/simulate/stabilize.h"

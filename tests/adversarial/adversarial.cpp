@@ -5,11 +5,11 @@
 // adversarial --counter E [--algorithm A,B] [--device D,E]: 2^E pairs, counted by every algorithm; exit 1
 // when a count is wrong. --help lists all options.
 #include "backends/registry.h"
-#include "harness/adversarial.h"
-#include "harness/environment.h"
+#include "harness/verify/adversarial.h"
+#include "harness/record/environment.h"
 #include "harness/plans/cells.h"
 #include "harness/sampling/measurement.h"
-#include "scenes/error.h"
+#include "base/error.h"
 #include "tests/support/tried.h"
 
 #include <CLI/CLI.hpp>

@@ -5,7 +5,7 @@
 #include "algorithms/answer/emit.clh"
 #include "algorithms/bodies/body.clh"
 #include "algorithms/bounds/volume.clh"
-#include "algorithms/broad/body_pairs.clh"
+#include "algorithms/broad_phase/body_pairs.clh"
 
 // A tree over n items has n - 1 inner nodes, depth after depth from the root, which is 0, and behind them the
 // leaves in the order of their items. A node is K reals. The rows of an inner node's children, two node

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Microbenchmarks of the stages, on every device there is. Iterations are timed by the host around one wait;
 // ratios within one run mean something, times of a processor nothing about a GPU.
-#include "algorithms/broad/broad.h"
-#include "algorithms/broad/broad_stage.h"
-#include "algorithms/contacts/reference.h"
+#include "algorithms/broad_phase/broad.h"
+#include "algorithms/broad_phase/broad_stage.h"
+#include "algorithms/narrow_phase/reference.h"
 #include "tests/support/prepared_trees.h"
-#include "algorithms/shares/places.h"
+#include "algorithms/distributed/places.h"
 #include "algorithms/sources.h"
 #include "algorithms/answer/status.clh"
 #include "algorithms/traversal.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The oracle: time of one pair by family, and of a million candidate pairs of a scene on all cores.
-#include "harness/oracle/contact_truth.h"
-#include "harness/oracle/frame_truth.h"
-#include "harness/reference.h"
+#include "geometry/contact_truth.h"
+#include "harness/verify/oracle/frame_truth.h"
+#include "harness/verify/reference.h"
 #include "tests/support/oracle_pairs.h"
 
 #include <benchmark/benchmark.h>

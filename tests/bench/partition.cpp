@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Microbenchmarks of many ranks in one process: the partitioner, which each rank runs by itself for all
 // bodies, and the ghost lists, which ranks find together. Bodies are jacks of a pile, density 0.2.
-#include "algorithms/ranks/halo.h"
+#include "algorithms/distributed/halo.h"
 #include "tests/support/thread_ranks.h"
 
 #include <benchmark/benchmark.h>

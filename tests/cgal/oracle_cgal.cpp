@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The oracle against another exact decision: CGAL's, with exact predicates. Closed sets; both with volume,
 // since CGAL's needs it.
-#include "algorithms/contacts/exact/facets.h"
-#include "algorithms/contacts/exact/lattice.h"
+#include "geometry/facets.h"
+#include "geometry/lattice.h"
 #include "tests/support/oracle_pairs.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

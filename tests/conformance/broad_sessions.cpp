@@ -4,8 +4,8 @@
 #include "broad_support.h"
 
 #include "algorithms/bounds/geometry.h"
-#include "harness/reference.h"
-#include "scenes/error.h"
+#include "harness/verify/reference.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/broad/broad_stage.h"
+#include "algorithms/broad_phase/broad_stage.h"
 #include "algorithms/answer/status.clh"
 #include "tests/support/cells.h"
 #include "tests/support/prepared_trees.h"

@@ -4,7 +4,7 @@
 #include "tests/support/cells.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/scenes.h"
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Contact rules and decisions through sessions, on stones that touch: both algorithms' buffers and schedules.
-#include "algorithms/contacts/contact_settings.h"
-#include "harness/oracle/frame_truth.h"
+#include "algorithms/narrow_phase/contact_settings.h"
+#include "harness/verify/oracle/frame_truth.h"
 #include "scenes/builtin.h"
 #include "tests/support/cells.h"
 #include "tests/support/oracle_nested.h"

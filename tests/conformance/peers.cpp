@@ -2,7 +2,7 @@
 // Peers: found by name and in no list of all algorithms, with the answer of the project's own or a refusal.
 #include "backends/host/host_device.h"
 #include "scenes/builtin.h"
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/hard/hard.h"
 #include "tests/support/cells.h"
 #include "tests/support/flawed.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the others are compared with: the sweep against brute force, and the host's broad phases against both.
-#include "algorithms/broad/broad.h"
+#include "algorithms/broad_phase/broad.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
 

@@ -2,7 +2,7 @@
 // Sessions on several devices, each of which owns bodies: who needs what, deals that end, pairs that are
 // given, and answers that are those of one device whatever happens.
 #include "algorithms/resident_session.h"
-#include "harness/reference.h"
+#include "harness/verify/reference.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
 

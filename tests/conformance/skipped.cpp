@@ -2,8 +2,8 @@
 // Tetrahedra that a frame skips: in no pair of any algorithm, in no bound, and back in the next frame.
 #include "algorithms/published/published_frame.h"
 #include "tests/support/prepared_trees.h"
-#include "harness/frames.h"
-#include "harness/oracle/frame_truth.h"
+#include "harness/plans/frames.h"
+#include "harness/verify/oracle/frame_truth.h"
 #include "tests/support/cells.h"
 #include "tests/support/flawed.h"
 #include "tests/support/long_form.h"

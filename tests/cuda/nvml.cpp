@@ -3,7 +3,7 @@
 #include "backends/cuda/nvml.h"
 
 #include "backends/hardware.h"
-#include "harness/conditions.h"
+#include "harness/sampling/conditions.h"
 #include "tests/cuda/stubbed.h"
 
 #include <chrono>

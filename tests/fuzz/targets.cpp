@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What reads bytes that came from elsewhere, as libFuzzer calls it: TANDEM_FUZZ names the reader. An
 // InputError is an answer, everything else that leaves a reader is a defect.
-#include "harness/command_line/command_line.h"
-#include "harness/finished_cells.h"
+#include "harness/commands/options/command_line.h"
+#include "harness/record/finished_cells.h"
 #include "harness/plans/plan_file.h"
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/read/read.h"
 #include "scenes/recording/bytes.h"
 #include "scenes/recording/checkpoint.h"

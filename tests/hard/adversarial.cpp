@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Lists of pairs, bounded and tested by the kernels of the walks, against the exact truth.
-#include "harness/adversarial.h"
-#include "scenes/error.h"
+#include "harness/verify/adversarial.h"
+#include "base/error.h"
 #include "tests/hard/support.h"
 #include "tests/support/cells.h"
 

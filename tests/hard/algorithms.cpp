@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Every algorithm on every device: nothing that meets is missed, in any family, with rounding=safe.
-#include "harness/frames.h"
-#include "harness/oracle/frame_truth.h"
-#include "scenes/error.h"
+#include "harness/plans/frames.h"
+#include "harness/verify/oracle/frame_truth.h"
+#include "base/error.h"
 #include "scenes/hard/hard.h"
 #include "tests/support/cells.h"
 #include "tests/support/flawed.h"

@@ -3,9 +3,9 @@
 #include "tests/hard/support.h"
 
 #include "algorithms/bounds/geometry.h"
-#include "harness/oracle/contact_truth.h"
-#include "harness/oracle/frame_truth.h"
-#include "harness/world_vertices.h"
+#include "geometry/contact_truth.h"
+#include "harness/verify/oracle/frame_truth.h"
+#include "harness/verify/world_vertices.h"
 
 #include <gtest/gtest.h>
 

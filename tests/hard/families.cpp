@@ -3,8 +3,8 @@
 #include "tests/hard/support.h"
 
 #include "algorithms/bodies/range.h"
-#include "harness/oracle/frame_truth.h"
-#include "scenes/error.h"
+#include "harness/verify/oracle/frame_truth.h"
+#include "base/error.h"
 #include "tests/support/scenes.h"
 
 #include <gmock/gmock.h>

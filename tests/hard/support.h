@@ -2,7 +2,7 @@
 // What the tests measure of families of hard cases: the truth, and methods that are known to fail.
 #pragma once
 
-#include "algorithms/contacts/exact/decision.h"
+#include "geometry/decision.h"
 #include "scenes/hard/hard.h"
 
 #include <algorithm>

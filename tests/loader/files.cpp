@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/loader/files.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/mesh.h"
 
 #include <filesystem>

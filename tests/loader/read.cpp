@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tests/loader/files.h"
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/read/read.h"
 
 #include <cstdlib>

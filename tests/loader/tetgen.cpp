@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tests/loader/files.h"
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/mesh.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Who is near bodies of a rank, and who is next, against bounds of all bodies.
-#include "algorithms/ranks/halo.h"
+#include "algorithms/distributed/halo.h"
 
 #include "tests/ranks/job.h"
 

@@ -3,9 +3,9 @@
 // pair is found once, and an error of one rank is one of all. Every rank runs every test.
 #include "algorithms/answer/digest.h"
 #include "algorithms/bodies/ball.h"
-#include "algorithms/ranks/bytes.h"
+#include "algorithms/distributed/bytes.h"
 #include "backends/mpi/mpi_ranks.h"
-#include "scenes/error.h"
+#include "base/error.h"
 #include "tests/ranks/job.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"

@@ -4,8 +4,8 @@
 // limits, whose frames run whole, in batches or not at all. Buffers are guarded (support/cells.h). One line a
 // tenth. Exit 1 where a frame has another answer than the same cell without a limit on the host, or the
 // process, its open files or the device's buffers have grown; 3 where a kernel wrote past a buffer's end.
-#include "harness/environment.h"
-#include "scenes/error.h"
+#include "harness/record/environment.h"
+#include "base/error.h"
 #include "tests/support/limited.h"
 #include "tests/support/scenes.h"
 #include "tests/support/tried.h"

@@ -4,8 +4,8 @@
 #include "algorithms/parameters/table.h"
 #include "algorithms/traversal.h"
 #include "backends/registry.h"
-#include "harness/reference.h"
-#include "scenes/random.h"
+#include "harness/verify/reference.h"
+#include "base/random.h"
 
 #include <algorithm>
 #include <set>

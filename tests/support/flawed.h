@@ -2,7 +2,7 @@
 // Scenes with tetrahedra of zero volume and with coordinates that are not finite.
 #pragma once
 
-#include "harness/oracle/volume.h"
+#include "geometry/volume.h"
 #include "scenes/contact.h"
 #include "tests/support/scenes.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <filesystem>
 #include <fstream>

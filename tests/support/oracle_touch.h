@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/contacts/exact/decision.h"
-#include "scenes/random.h"
+#include "geometry/decision.h"
+#include "base/random.h"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "scenes/digest.h"
-#include "scenes/error.h"
-#include "scenes/random.h"
+#include "base/error.h"
+#include "base/random.h"
 #include "scenes/scene.h"
 
 namespace tandem::testing_support {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/environment.h"
+#include "harness/record/environment.h"
 
 #include <cstdint>
 #include <cstdlib>

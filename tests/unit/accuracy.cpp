@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "harness/accuracy/answer_errors.h"
-#include "harness/accuracy/hull.h"
-#include "harness/accuracy/truths.h"
+#include "harness/verify/accuracy/answer_errors.h"
+#include "harness/verify/accuracy/hull.h"
+#include "harness/verify/accuracy/truths.h"
 #include "tests/support/scenes.h"
 
 #include <gmock/gmock.h>

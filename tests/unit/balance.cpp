@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // How fast devices are held to be, and when bodies had better be dealt anew.
-#include "algorithms/shares/balance.h"
+#include "algorithms/distributed/balance.h"
 
 #include <array>
 #include <cmath>

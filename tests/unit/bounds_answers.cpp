@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Candidate pairs by rounding and placement: which answers have to be equal, which must not be compared, and
 // that kernels, reference and broad phase mean the same slabs.
-#include "algorithms/broad/broad.h"
-#include "algorithms/broad/broad.h"
+#include "algorithms/broad_phase/broad.h"
+#include "algorithms/broad_phase/broad.h"
 #include "harness/sampling/local_sampler.h"
-#include "scenes/error.h"
+#include "base/error.h"
 #include "tests/support/cells.h"
 #include "tests/support/leaf_slabs.h"
 #include "tests/support/sanitized.h"

@@ -3,9 +3,9 @@
 // slabs widened by it (placement exact) keep every pair that meets where the poses put it exactly.
 #include "algorithms/bodies/drift.h"
 #include "algorithms/bodies/pack.h"
-#include "harness/oracle/drift.h"
-#include "harness/oracle/frame_truth.h"
-#include "harness/oracle/posed.h"
+#include "harness/verify/oracle/drift.h"
+#include "harness/verify/oracle/frame_truth.h"
+#include "harness/verify/oracle/posed.h"
 #include "tests/support/cells.h"
 #include "tests/support/leaf_slabs.h"
 #include "tests/support/scenes.h"

@@ -2,7 +2,7 @@
 // What each rounding of slabs promises, on the slabs that the host's kernels make: pairs that touch or
 // overlap (the oracle says which), drawn so that rounding has every chance to tell them apart.
 // TANDEM_DRAWS=N: N pairs for each precision instead of a few.
-#include "algorithms/contacts/exact/decision.h"
+#include "geometry/decision.h"
 #include "tests/support/cells.h"
 #include "tests/support/leaf_slabs.h"
 #include "tests/support/sanitized.h"

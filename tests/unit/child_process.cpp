@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A process that answers line by line: what it prints besides, its end, and limits.
-#include "harness/isolation/child_process.h"
+#include "harness/sampling/isolation/child_process.h"
 
 #include <array>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "harness/choosing/candidates.h"
-#include "harness/choosing/choice_cache.h"
+#include "harness/plans/choosing/candidates.h"
+#include "harness/plans/choosing/choice_cache.h"
 
 #include "scenes/scene.h"
 #include "tests/support/cells.h"

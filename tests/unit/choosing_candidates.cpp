@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "harness/choosing/candidates.h"
+#include "harness/plans/choosing/candidates.h"
 
-#include "scenes/error.h"
+#include "base/error.h"
 #include "tests/support/cells.h"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "harness/choosing/search.h"
+#include "harness/plans/choosing/search.h"
 
-#include "scenes/random.h"
+#include "base/random.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

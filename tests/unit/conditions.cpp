@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // What the machine was like, from trees of files in place of /proc and /sys.
-#include "harness/conditions.h"
-#include "harness/isolation/isolated_sampler.h"
+#include "harness/sampling/conditions.h"
+#include "harness/sampling/isolation/isolated_sampler.h"
 
 #include "backends/hardware.h"
 #include "backends/host/host_device.h"
-#include "harness/control_group.h"
+#include "harness/sampling/control_group.h"
 #include "harness/record/record.h"
 #include "tests/support/folder.h"
 

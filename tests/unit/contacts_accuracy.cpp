@@ -3,7 +3,7 @@
 // room's README.
 #include "contacts_pairs.h"
 
-#include "harness/accuracy/answer_errors.h"
+#include "harness/verify/accuracy/answer_errors.h"
 #include "tests/support/oracle_nested.h"
 #include "tests/support/oracle_pairs.h"
 

@@ -2,7 +2,7 @@
 // Setting decision against the exact oracle, on pairs that touch, nearly touch and keep clear.
 #include "contacts_pairs.h"
 
-#include "algorithms/contacts/reference_pair.h"
+#include "algorithms/narrow_phase/reference_pair.h"
 #include "tests/support/oracle_pairs.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include "contacts_pairs.h"
 
 #include "algorithms/answer/status.clh"
-#include "algorithms/contacts/contact_stage.h"
+#include "algorithms/narrow_phase/contact_stage.h"
 #include "algorithms/sources.h"
 #include "backends/registry.h"
 #include "scenes/hard/hard.h"
@@ -118,7 +118,7 @@ public:
 private:
     void launch(const std::string& file, std::string_view entry, const Defines& defines,
                 std::span<const Argument> arguments) {
-        const auto kernel = device_.compile(kernel_source("algorithms/contacts/" + file), entry, defines);
+        const auto kernel = device_.compile(kernel_source("algorithms/narrow_phase/" + file), entry, defines);
         device_.launch(kernel, {16, group_size_}, arguments);
     }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/contacts/reference.h"
-#include "algorithms/contacts/exact/decision.h"
+#include "algorithms/narrow_phase/reference.h"
+#include "geometry/decision.h"
 
 #include <cmath>
 #include <limits>

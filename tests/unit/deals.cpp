@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Deals of bodies to shares: who has which pair, when they end, and what work they expect.
-#include "algorithms/shares/deal.h"
+#include "algorithms/distributed/deal.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // Which part of a scene its geometry for pages has, and in which form.
 #include "scenes/export/geometry.h"
 #include "scenes/export/quantised.h"
-#include "scenes/read/base64.h"
+#include "base/base64.h"
 
 #include <array>
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/export/vtk.h"
 #include "scenes/motion.h"
-#include "scenes/read/base64.h"
+#include "base/base64.h"
 #include "tests/support/folder.h"
 #include "tests/support/scenes.h"
 

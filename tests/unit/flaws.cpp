@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Flawed tetrahedra of frames: counted, named, refused or skipped.
-#include "harness/frames.h"
-#include "scenes/error.h"
+#include "harness/plans/frames.h"
+#include "base/error.h"
 #include "tests/support/flawed.h"
 
 #include <gmock/gmock.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Frames of a range: held where they fit, made again where they do not, and the same answers either way.
-#include "harness/frames.h"
+#include "harness/plans/frames.h"
 
-#include "harness/accuracy/answer_errors_json.h"
-#include "harness/choosing/trials.h"
+#include "harness/verify/accuracy/answer_errors_json.h"
+#include "harness/plans/choosing/trials.h"
 #include "harness/sampling/local_sampler.h"
-#include "scenes/parallel.h"
+#include "base/parallel.h"
 #include "tests/support/cells.h"
 #include "tests/support/flawed.h"
 #include "tests/support/heap.h"

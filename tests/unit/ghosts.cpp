@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Ghost bodies of many ranks, which are threads of this process.
-#include "algorithms/ranks/halo.h"
+#include "algorithms/distributed/halo.h"
 #include "tests/support/thread_ranks.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/journal.h"
+#include "harness/record/journal.h"
 
 #include "tests/support/folder.h"
 

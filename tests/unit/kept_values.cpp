@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/kept_values.h"
+#include "harness/verify/kept_values.h"
 
 #include <filesystem>
 #include <fstream>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "harness/oracle/contact_truth.h"
-#include "harness/oracle/exact_contact.h"
-#include "harness/oracle/rounding.h"
+#include "geometry/contact_truth.h"
+#include "geometry/exact_contact.h"
+#include "geometry/rounding.h"
 #include "tests/support/oracle_pairs.h"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The exact decision on pairs whose answer is known by construction, from every tier on.
-#include "algorithms/contacts/exact/decision.h"
+#include "geometry/decision.h"
 #include "tests/support/oracle_pairs.h"
 
 #include <gtest/gtest.h>

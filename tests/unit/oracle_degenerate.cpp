@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tetrahedra of no volume: they touch what they meet.
-#include "algorithms/contacts/exact/lattice.h"
-#include "algorithms/contacts/exact/program.h"
+#include "geometry/lattice.h"
+#include "geometry/program.h"
 #include "tests/support/oracle_pairs.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Every tier gives the answer of the slowest one, and the filter certifies nothing that is not so.
-#include "algorithms/contacts/exact/filter.h"
-#include "algorithms/contacts/exact/lattice.h"
-#include "scenes/parallel.h"
+#include "geometry/filter.h"
+#include "geometry/lattice.h"
+#include "base/parallel.h"
 #include "tests/support/oracle_pairs.h"
 #include "tests/support/sanitized.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "harness/oracle/frame_truth.h"
-#include "harness/reference.h"
-#include "harness/world_vertices.h"
-#include "scenes/error.h"
+#include "harness/verify/oracle/frame_truth.h"
+#include "harness/verify/reference.h"
+#include "harness/verify/world_vertices.h"
+#include "base/error.h"
 #include "tests/support/scenes.h"
 
 #include <algorithm>

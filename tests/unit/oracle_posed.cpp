@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The truth of poses: what the filter certifies of corners that are a little off holds for all of them, and
 // with rationals for the rest every pair is decided as rationals alone decide it.
-#include "algorithms/contacts/exact/filter.h"
-#include "harness/oracle/frame_truth.h"
-#include "algorithms/contacts/exact/lattice.h"
-#include "harness/oracle/posed.h"
-#include "harness/oracle/superset.h"
-#include "scenes/parallel.h"
+#include "geometry/filter.h"
+#include "harness/verify/oracle/frame_truth.h"
+#include "geometry/lattice.h"
+#include "harness/verify/oracle/posed.h"
+#include "harness/verify/oracle/superset.h"
+#include "base/parallel.h"
 #include "tests/support/oracle_pairs.h"
 #include "tests/support/scenes.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Whether a tetrahedron has a volume, and the volume of a hull of points.
-#include "harness/oracle/contact_truth.h"
-#include "algorithms/contacts/exact/filter.h"
-#include "algorithms/contacts/exact/lattice.h"
-#include "harness/oracle/volume.h"
+#include "geometry/contact_truth.h"
+#include "geometry/filter.h"
+#include "geometry/lattice.h"
+#include "geometry/volume.h"
 #include "tests/support/oracle_pairs.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where coordinates count from with origin=auto, and what a scene far away then gives: what it gives near by.
 #include "algorithms/bodies/origin.h"
-#include "harness/frames.h"
+#include "harness/plans/frames.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
 

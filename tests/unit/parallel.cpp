@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "scenes/parallel.h"
+#include "base/parallel.h"
 
-#include "scenes/random.h"
+#include "base/random.h"
 
 #include <gtest/gtest.h>
 #include <numeric>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A kernel's time against what it had to do: ceilings, floors, and which of them bounds it.
 #include "harness/profile/output.h"
-#include "scenes/error.h"
+#include "base/error.h"
 #include "tests/support/folder.h"
 
 #include <gmock/gmock.h>

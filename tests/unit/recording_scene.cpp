@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/frames.h"
+#include "harness/plans/frames.h"
 #include "tests/support/folder.h"
 #include "tests/support/recordings.h"
 

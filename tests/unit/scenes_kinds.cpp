@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/builtin.h"
 #include "scenes/digest.h"
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/scene.h"
 #include "tests/support/scenes.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/builtin.h"
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/refine.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/overlap.h"
 #include "scenes/scene.h"
 #include "tests/support/scenes.h"

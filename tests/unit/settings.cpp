@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/traversal.h"
-#include "scenes/error.h"
+#include "base/error.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scenes/random.h"
+#include "base/random.h"
 #include "scenes/simulate/solve.h"
 #include "tests/unit/simulate_rows.h"
 #include "tests/unit/simulate_support.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scenes/error.h"
+#include "base/error.h"
 #include "scenes/simulate/mass.h"
 #include "tests/unit/simulate_support.h"
 

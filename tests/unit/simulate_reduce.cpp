@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scenes/random.h"
+#include "base/random.h"
 #include "scenes/simulate/reduce.h"
 
 #include <algorithm>

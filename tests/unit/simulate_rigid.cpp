@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/motion.h"
-#include "scenes/random.h"
+#include "base/random.h"
 #include "scenes/simulate/step.h"
 #include "tests/unit/simulate_support.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/unit/simulate_support.h"
 
-#include "algorithms/contacts/reference.h"
+#include "algorithms/narrow_phase/reference.h"
 #include "scenes/motion.h"
 
 #include <algorithm>

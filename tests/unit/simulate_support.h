@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/contacts/contact_settings.h"
+#include "algorithms/narrow_phase/contact_settings.h"
 #include "scenes/simulate/simulation.h"
 
 namespace tandem::test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Boxes that overlap, against all pairs one by one: few and many, strewn over cells or along a line, and with
 // some that are larger than all others together.
-#include "algorithms/broad/slab_sweep.h"
+#include "algorithms/broad_phase/slab_sweep.h"
 
 #include <gtest/gtest.h>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/statistics.h"
+#include "harness/sampling/statistics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Timelines of frames that were made up: clocks, lanes, and files that are whole or not there.
-#include "harness/timeline/timeline.h"
-#include "scenes/error.h"
+#include "harness/profile/timeline/timeline.h"
+#include "base/error.h"
 #include "tests/support/folder.h"
 
 #include <gmock/gmock.h>

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/baselines/embree/embree_trees.h"
+
+namespace tandem {
+
+/// A call of rtcCollide for each body pair; leaf tests and answers are the project's.
+class EmbreeWalker final : public Walker {
+public:
+    /// `trees` must outlive this.
+    EmbreeWalker(EmbreeTrees& trees, const Ground& ground);
+
+    /// Kernel collide_embree, of the body pairs in a buffer with `pair_room` rows.
+    static void run(const std::uint32_t* body_pairs, std::uint32_t pair_room, std::uint32_t* found,
+                    std::uint32_t capacity, std::uint32_t* status, const EmbreeWalker* walker);
+
+private:
+    /// A body pair, and where its candidate pairs go.
+    struct Meeting;
+
+    void do_compile(const WalkBuild& build) override { build_ = build; }
+    void do_launch(const WalkTask& task) override;
+    bool do_grow(const Status&) override { return false; }
+    void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
+
+    template<bool tolerant>
+    static void hand_over(void* meeting, RTCCollision* collisions, unsigned count);
+
+    EmbreeTrees& trees_;
+    RTCCollideFunc leaf_test_;
+    WalkBuild build_;
+    Kernel kernel_;
+    Buffer self_; ///< this, as an argument of the kernel
+};
+
+} // namespace tandem

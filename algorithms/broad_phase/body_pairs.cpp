@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/broad_phase/body_pairs.h"
+
+#include "algorithms/bodies/bodies.h"
+#include "algorithms/parameters/table.h"
+#include "base/error.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tandem {
+
+BodyPairs::BodyPairs(const Ground& ground, const Hierarchy& hierarchy, Status::Writes writes)
+    : hierarchy_(hierarchy),
+      shape_(ground.shape),
+      bodies_(ground.bodies),
+      first_capacity_(static_cast<std::uint64_t>(ground.settings[parameters::body_pair_capacity])),
+      device_(ground.device),
+      scene_(ground.scene),
+      geometry_(ground.bodies.geometry()),
+      writes_(writes),
+      rows_(ground.device, "body pairs", sizeof(BodyPair), 0) {
+    const auto who = ground.settings[parameters::broad];
+    if (who == Broad::device)
+        make_stage();
+    else
+        broad_.emplace(ground.scene, geometry_, who);
+}
+
+void BodyPairs::make_stage() {
+    if (stage_) return;
+    stage_ = std::make_unique<BroadStage>(bodies_, hierarchy_, shape_);
+    const auto rows = std::clamp<std::uint64_t>(stage_->most_pairs(), 1, first_capacity_);
+    if (rows > rows_.capacity()) rows_ = GrowableBuffer(device_, "body pairs", sizeof(BodyPair), rows);
+}
+
+void BodyPairs::upload(std::span<const BodyPair> pairs) {
+    on_host_ = pairs;
+    searches_ = false;
+    if (pairs.size() > rows_.capacity()) rows_.grow(pairs.size());
+    const StageScope scope(device_, Stage::write);
+    device_.upload(rows_.buffer(), std::as_bytes(pairs), 0, writes_ == Status::Writes::blocking);
+}
+
+void BodyPairs::upload_given(std::span<const BodyPair> given) {
+    if (given.size() > GrowableBuffer::most)
+        throw InputError(
+            fmt::format("run() was given {} body pairs; kernels number at most 2^32 - 1", given.size()));
+    upload(given);
+}
+
+void BodyPairs::begin_there(std::optional<std::span<const BodyPair>> given) {
+    if (given) {
+        upload_given(*given);
+        return;
+    }
+    make_stage();
+    on_host_ = {};
+    searches_ = true;
+    if (!sorted_) stage_->sort_by_volumes();
+    sorted_ = true;
+}
+
+void BodyPairs::begin(const Frame& frame, std::optional<std::span<const BodyPair>> given) {
+    if (given) {
+        upload_given(*given);
+    } else if (!broad_) {
+        on_host_ = {};
+        searches_ = true;
+        // Once a session: bodies move little from frame to frame, and a stale order costs time, not pairs.
+        if (!sorted_) stage_->sort(frame);
+        sorted_ = true;
+    } else {
+        {
+            const HostWork work(device_, Stage::broad, "body pairs");
+            found_ = broad_->pairs(frame);
+            std::erase_if(found_, [this](BodyPair pair) { return !has(pair); });
+        }
+        upload(found_);
+    }
+}
+
+void BodyPairs::take(const Share& share) {
+    roles_ = roles_in(share, scene_.bodies.size());
+    if (stage_) stage_->take(share);
+    sorted_ = true;
+}
+
+/// Whether the share has that pair.
+bool BodyPairs::has(BodyPair pair) const {
+    if (roles_.empty()) return true;
+    const auto a = roles_[pair.a], b = roles_[pair.b];
+    return a != Role::none && b != Role::none && (a == Role::own || b == Role::own);
+}
+
+void BodyPairs::begin_part(std::span<const BodyPair> part) { upload(part); }
+
+void BodyPairs::launch(const Status& status) {
+    if (searches_) stage_->launch(rows_.buffer(), rows_.capacity(), status.buffer());
+}
+
+bool BodyPairs::grow(const Status& status) {
+    const auto found = status.counter(STATUS_BODY_PAIRS);
+    if (!searches_ || found <= rows_.capacity()) return false;
+    rows_.grow(found);
+    return true;
+}
+
+std::vector<BodyPair> BodyPairs::list(const Frame* frame, const Status& status) const {
+    if (!searches_) return {on_host_.begin(), on_host_.end()};
+    const auto found = status.counter(STATUS_BODY_PAIRS);
+    if (found > rows_.capacity()) {
+        if (frame == nullptr)
+            throw OutOfMemory(fmt::format("{}: there is no memory left for {} body pairs; raise --memory, or "
+                                          "take fewer bodies",
+                                          device_.info().id, found));
+        const HostWork work(device_, Stage::broad, "body pairs");
+        auto all = BroadSweep(scene_, geometry_, Broad::tight).pairs(*frame);
+        std::erase_if(all, [this](BodyPair pair) { return !has(pair); });
+        return all;
+    }
+    std::vector<BodyPair> pairs(found);
+    {
+        const StageScope scope(device_, Stage::read);
+        device_.download(rows_.buffer(), std::as_writable_bytes(std::span(pairs)));
+    }
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+} // namespace tandem

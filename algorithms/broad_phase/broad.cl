@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// Body pairs from the volumes that refit has just made: all pairs of bodies whose root k-DOPs overlap, two
+// fixed bodies left out. Bodies stand in an order that keeps neighbours together, fixed ones last, in tiles
+// of BROAD_TILE. Tiles whose unions are apart are skipped; of the others every body is tested with every one.
+#include "backends/portable.h"
+#include "algorithms/broad_phase/tile.clh"
+#include "algorithms/answer/status.clh"
+#include "algorithms/bounds/volume.clh"
+
+// A volume here is DIRECTIONS rows {lower, upper}.
+
+DEVICE RealPair slab_of(GLOBAL const real* volumes, GLOBAL const uint* order, uint position, uint axis) {
+    GLOBAL const real* root = volume_of(volumes, order[position]);
+    RealPair slab;
+    slab.x = root[axis];
+    slab.y = root[axis + DIRECTIONS];
+    return slab;
+}
+
+// Copies the root volumes of a tile into the order of bodies and makes their union. A work-group a tile.
+KERNEL void bound_tiles(GLOBAL const real* volumes, GLOBAL const uint* order, uint body_count,
+                        GLOBAL RealPair* roots, GLOBAL RealPair* unions) {
+    LOCAL_ARRAY(RealPair, tile, BROAD_TILE * DIRECTIONS);
+    const uint first = GROUP_ID * BROAD_TILE;
+    const uint count = body_count - first < BROAD_TILE ? body_count - first : BROAD_TILE;
+    for (uint i = LOCAL_ID; i < count * DIRECTIONS; i += GROUP_SIZE) {
+        const RealPair slab = slab_of(volumes, order, first + i / DIRECTIONS, i % DIRECTIONS);
+        tile[i] = slab;
+        roots[(ulong)first * DIRECTIONS + i] = slab;
+    }
+    BARRIER;
+    for (uint axis = LOCAL_ID; axis < DIRECTIONS; axis += GROUP_SIZE) {
+        RealPair all = tile[axis];
+        for (uint i = 1; i < count; ++i) {
+            const RealPair own = tile[i * DIRECTIONS + axis];
+            all.x = MINIMUM(own.x, all.x);
+            all.y = MAXIMUM(own.y, all.y);
+        }
+        unions[(ulong)GROUP_ID * DIRECTIONS + axis] = all;
+    }
+}
+
+// Whether pairs of these tiles are to be looked at; each pair of tiles is, once.
+DEVICE int tiles_overlap(GLOBAL const RealPair* unions, uint row, uint column) {
+    GLOBAL const RealPair* a = unions + (ulong)row * DIRECTIONS;
+    GLOBAL const RealPair* b = unions + (ulong)column * DIRECTIONS;
+    if (column < row) return 0;
+    for (int axis = 0; axis < DIRECTIONS; ++axis)
+        if (starts_beyond(a[axis].x, b[axis].y) || starts_beyond(b[axis].x, a[axis].y)) return 0;
+    return 1;
+}
+
+// Closed overlap: touching overlaps. Most bodies are apart on their first axes, so that whole groups leave.
+DEVICE int volumes_overlap(const RealPair* a, LOCAL const RealPair* b) {
+    int apart = 0;
+    UNROLL for (int axis = 0; axis < DIRECTIONS; ++axis) {
+        const RealPair slab = b[axis];
+        apart |= starts_beyond(a[axis].x, slab.y);
+        apart |= starts_beyond(slab.x, a[axis].y);
+        if (axis % 3 == 2 && apart) return 0;
+    }
+    return !apart;
+}
+
+// Bit c: the body at `position` overlaps column c, which follows it in the order.
+DEVICE uint overlapping_columns(GLOBAL const RealPair* roots, int is_only_tile, uint position,
+                                LOCAL const RealPair* columns, uint first, uint count) {
+    RealPair own[DIRECTIONS];
+    uint hits = 0;
+    UNROLL for (int axis = 0; axis < DIRECTIONS; ++axis) own[axis] =
+        is_only_tile ? columns[position * DIRECTIONS + axis] : roots[(ulong)position * DIRECTIONS + axis];
+    NO_UNROLL for (uint column = 0; column < count; ++column) {
+        if (volumes_overlap(own, columns + column * DIRECTIONS)) hits |= 1u << column;
+    }
+    return position < first ? hits : hits & 0xfffffffeu << (position - first);
+}
+
+DEVICE uint count_bits(uint bits) {
+    uint count = 0;
+    for (; bits != 0u; bits &= bits - 1u) ++count;
+    return count;
+}
+
+// Writes the body pairs of one row from number `index` on, as far as there is room.
+DEVICE void write_pairs(GLOBAL uint* pairs, uint capacity, uint index, GLOBAL const uint* order,
+                        uint position, uint first, uint hits) {
+    for (; hits != 0u; hits &= hits - 1u, ++index) {
+        const uint column = 31u - COUNT_LEADING_ZEROS(hits & (~hits + 1u));
+        const uint a = order[position];
+        const uint b = order[first + column];
+        if (index >= capacity) return;
+        pairs[2u * (ulong)index] = a < b ? a : b;
+        pairs[2u * (ulong)index + 1u] = a < b ? b : a;
+    }
+}
+
+// A group's shared words.
+#define CHOSEN 0 // pairs of tiles to look at
+#define FOUND 1  // body pairs of one round
+#define PLACE 2  // where they go
+
+// A work-group takes pairs of tiles a fixed stride apart, a work-item one, and keeps those whose unions
+// overlap; then it does these one after the other, a work-item a row. One addition to the counter a round.
+// Of bodies that are one tile the volumes are enough: no bound_tiles comes before.
+// Loops with barriers run once at least: PoCL 3.1 gets others wrong.
+KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* roots,
+                            GLOBAL const RealPair* unions, GLOBAL const uint* order, uint body_count,
+                            uint moving_count, GLOBAL uint* pairs, uint capacity, GLOBAL uint* status) {
+    LOCAL_ARRAY(RealPair, columns, BROAD_TILE * DIRECTIONS);
+    LOCAL_ARRAY(uint, chosen, GROUP_SIZE);
+    LOCAL_ARRAY(uint, shared, 3);
+    const uint tiles = (body_count + BROAD_TILE - 1u) / BROAD_TILE;
+    const uint total = (moving_count + BROAD_TILE - 1u) / BROAD_TILE * tiles;
+    const int is_only_tile = tiles == 1u;
+    uint start = GROUP_ID;
+    do {
+        const uint tile_pair = start + LOCAL_ID * GROUP_COUNT;
+        if (LOCAL_ID == 0u) shared[CHOSEN] = 0u;
+        BARRIER;
+        if (tile_pair < total
+            && (is_only_tile || tiles_overlap(unions, tile_pair / tiles, tile_pair % tiles)))
+            chosen[LOCAL_ATOMIC_ADD(shared + CHOSEN, 1u)] = tile_pair;
+        BARRIER;
+        const uint count = shared[CHOSEN];
+        uint i = 0;
+        do {
+            const uint rows_from = i < count ? chosen[i] / tiles * BROAD_TILE : moving_count;
+            const uint from = i < count ? chosen[i] % tiles * BROAD_TILE : body_count;
+            const uint rest = body_count - from;
+            const uint column_count = rest < BROAD_TILE ? rest : BROAD_TILE;
+            const uint rows_end =
+                moving_count - rows_from < BROAD_TILE ? moving_count : rows_from + BROAD_TILE;
+            uint row = rows_from + LOCAL_ID;
+            uint rows_done = rows_from;
+            NO_UNROLL for (uint c = LOCAL_ID; c < column_count; c += GROUP_SIZE) {
+                UNROLL for (int axis = 0; axis < DIRECTIONS; ++axis) {
+                    columns[c * DIRECTIONS + axis] = is_only_tile
+                                                         ? slab_of(volumes, order, from + c, (uint)axis)
+                                                         : roots[(ulong)(from + c) * DIRECTIONS + axis];
+                }
+            }
+            do {
+                if (LOCAL_ID == 0u) shared[FOUND] = 0u;
+                BARRIER;
+                const uint hits = row < rows_end ? overlapping_columns(roots, is_only_tile, row, columns,
+                                                                       from, column_count)
+                                                 : 0u;
+                const uint place = hits != 0u ? LOCAL_ATOMIC_ADD(shared + FOUND, count_bits(hits)) : 0u;
+                BARRIER;
+                if (LOCAL_ID == 0u && shared[FOUND] != 0u)
+                    shared[PLACE] = counter_add(status + STATUS_BODY_PAIRS, shared[FOUND]);
+                BARRIER;
+                if (hits != 0u) write_pairs(pairs, capacity, shared[PLACE] + place, order, row, from, hits);
+                row += GROUP_SIZE;
+                rows_done += GROUP_SIZE;
+            } while (rows_done < rows_end);
+            ++i;
+        } while (i < count);
+        start += GROUP_COUNT * GROUP_SIZE;
+    } while (start < total);
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/broad_phase/broad.h"
+
+#include "algorithms/bodies/ball.h"
+#include "algorithms/bodies/drift.h"
+#include "algorithms/broad_phase/slab_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tandem {
+
+namespace {
+
+/// Roundings on the way from a body's vertex to a slab: input, rotation (4), two sums, and E of a safe corner
+/// (4), doubled for good measure and for the bound on the drift from the pose (6; placement = exact). Below
+/// the least normal number they lose underflow() besides.
+constexpr double rounding_steps = 24;
+
+/// What published rounding adds, in integer directions: its tolerance is one of unit directions, shared by
+/// two bodies; three times as much covers the roundings of the test.
+constexpr double published_slack = 3 * 0.5 * 10 * 0x1p-23;
+
+} // namespace
+
+BroadSweep::BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound)
+    : scene_(scene),
+      bound_(bound),
+      roundoff_(std::ldexp(1.0, geometry.precision == Precision::fp64 ? -53 : -24)),
+      underflow_(underflow(geometry.precision)),
+      tolerance_(geometry.rounding == Rounding::published ? published_slack : 0) {
+    for (const auto& d : directions(geometry)) directions_.emplace_back(d[0], d[1], d[2]);
+    for (const auto& mesh : scene.meshes) shapes_.push_back(shape_of(mesh.vertices));
+}
+
+BroadSweep::Shape BroadSweep::shape_of(const std::vector<Eigen::Vector3d>& vertices) const {
+    const auto ball = ball_around(vertices);
+    Shape shape{ball.centre, Eigen::Vector3d::Zero(), ball.radius, reach_of(vertices)};
+    for (const auto& v : vertices) shape.half = shape.half.cwiseMax((v - shape.centre).cwiseAbs());
+    return shape;
+}
+
+void BroadSweep::bound_rigid(const Shape& shape, const Pose& pose, double* slabs) const {
+    const Eigen::Matrix3d rotation = pose.rotation.normalized().toRotationMatrix();
+    const Eigen::Vector3d centre = rotation * shape.centre + pose.translation;
+    const double slack =
+        rounding_steps * roundoff_ * (pose.translation.lpNorm<1>() + 2 * shape.reach) + underflow_;
+    for (const auto& d : directions_) {
+        const double reach = bound_ == Broad::sphere ? shape.radius * d.norm()
+                                                     : (rotation.transpose() * d).cwiseAbs().dot(shape.half);
+        const double middle = d.dot(centre);
+        const double width = reach * (1 + 8 * std::numeric_limits<double>::epsilon()) + slack * d.lpNorm<1>()
+                             + tolerance_ * d.norm();
+        *slabs++ = middle - width;
+        *slabs++ = middle + width;
+    }
+}
+
+void BroadSweep::bound_deformed(const std::vector<Eigen::Vector3d>& vertices, double* slabs) const {
+    const auto shape = shape_of(vertices);
+    for (const auto& d : directions_) {
+        double lower = d.dot(shape.centre) - shape.radius * d.norm();
+        double upper = d.dot(shape.centre) + shape.radius * d.norm();
+        if (bound_ == Broad::tight) {
+            lower = std::numeric_limits<double>::infinity();
+            upper = -lower;
+            for (const auto& v : vertices) {
+                lower = std::min(lower, d.dot(v));
+                upper = std::max(upper, d.dot(v));
+            }
+        }
+        const double slack = (rounding_steps * roundoff_ * 2 * shape.reach + underflow_) * d.lpNorm<1>()
+                             + tolerance_ * d.norm();
+        *slabs++ = lower - slack;
+        *slabs++ = upper + slack;
+    }
+}
+
+/// A point that moves by `margin` moves by no more along a unit direction.
+void BroadSweep::widen(double* slabs, double margin) const {
+    for (const auto& d : directions_) {
+        const double width = margin * d.norm() * (1 + 8 * std::numeric_limits<double>::epsilon());
+        *slabs++ -= width;
+        *slabs++ += width;
+    }
+}
+
+std::size_t BroadSweep::sweep_direction(const std::vector<double>& slabs) const {
+    const auto stride = 2 * directions_.size();
+    const auto bodies = scene_.bodies.size();
+    std::size_t best = 0;
+    double most = -1;
+    for (std::size_t axis = 0; axis < directions_.size(); ++axis) {
+        double sum = 0;
+        double squares = 0;
+        for (std::size_t body = 0; body < bodies; ++body) {
+            const double middle = slabs[body * stride + 2 * axis] / directions_[axis].norm();
+            sum += middle;
+            squares += middle * middle;
+        }
+        const double spread = squares - sum * sum / static_cast<double>(bodies);
+        if (spread > most) {
+            most = spread;
+            best = axis;
+        }
+    }
+    return best;
+}
+
+void BroadSweep::bound(const Frame& frame, std::uint32_t body, double margin, double* slabs) const {
+    if (scene_.bodies[body].deformable)
+        bound_deformed(frame.deformed[body], slabs);
+    else
+        bound_rigid(shapes_[scene_.bodies[body].mesh], frame.poses[body], slabs);
+    if (margin > 0) widen(slabs, margin);
+}
+
+std::vector<BodyPair> BroadSweep::pairs(const Frame& frame, std::span<const double> margins) const {
+    const auto stride = 2 * directions_.size();
+    std::vector<double> slabs(scene_.bodies.size() * stride);
+    for (std::uint32_t body = 0; body < scene_.bodies.size(); ++body)
+        bound(frame, body, margins.empty() ? 0 : margins[body], &slabs[body * stride]);
+    return swept(slabs);
+}
+
+std::vector<BodyPair> BroadSweep::pairs(std::span<const Ball> balls) const {
+    std::vector<double> slabs;
+    for (const auto& ball : balls)
+        for (const auto& d : directions_) {
+            slabs.push_back(d.dot(ball.centre) - ball.radius * d.norm());
+            slabs.push_back(d.dot(ball.centre) + ball.radius * d.norm());
+        }
+    return swept(slabs);
+}
+
+/// Pairs of bodies whose slabs overlap along all directions.
+std::vector<BodyPair> BroadSweep::swept(const std::vector<double>& slabs) const {
+    auto pairs = overlapping(slabs, directions_.size(), sweep_direction(slabs));
+    std::erase_if(
+        pairs, [this](BodyPair pair) { return scene_.bodies[pair.a].fixed && scene_.bodies[pair.b].fixed; });
+    return pairs;
+}
+
+} // namespace tandem

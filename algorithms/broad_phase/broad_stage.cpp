@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/broad_phase/broad_stage.h"
+
+#include "algorithms/broad_phase/tile.clh"
+#include "algorithms/bodies/ball.h"
+#include "algorithms/sources.h"
+#include "base/error.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+constexpr std::uint32_t most_bodies = (1u << 15) * BROAD_TILE; ///< 2^30 pairs of tiles, numbered by a word
+
+std::uint32_t tiles_of(std::uint32_t bodies) { return (bodies + BROAD_TILE - 1) / BROAD_TILE; }
+
+} // namespace
+
+BroadStage::BroadStage(const Bodies& bodies, const Hierarchy& hierarchy, LaunchShape shape)
+    : bodies_(bodies), hierarchy_(hierarchy) {
+    shape_.group_size = std::min<std::uint32_t>(shape.group_size, BROAD_TILE);
+    shape_.groups = shape.groups * (shape.group_size / shape_.group_size);
+    const auto count = bodies.count();
+    if (count > most_bodies)
+        throw InputError(fmt::format("setting broad=device takes at most {} bodies and the scene has {}; "
+                                     "choose broad=tight",
+                                     most_bodies, count));
+    for (const auto& mesh : bodies.scene().meshes) mesh_centres_.push_back(box_centre(mesh.vertices));
+    auto& device = bodies.device();
+    const auto& geometry = bodies.geometry();
+    const auto defines = geometry_defines(geometry, shape_.group_size);
+    const auto& source = kernel_source("algorithms/broad_phase/broad.cl");
+    if (tiles_of(count) > 1) bound_ = device.compile(source, "bound_tiles", defines);
+    find_ = device.compile(source, "find_body_pairs", defines);
+    const auto volume = static_cast<std::uint64_t>(geometry.k) * real_bytes(geometry);
+    order_ = device.allocate(std::uint64_t{count} * 4, "order of bodies");
+    roots_ = device.allocate(count * volume, "root volumes");
+    unions_ = device.allocate(tiles_of(count) * volume, "unions of tiles");
+}
+
+std::uint64_t BroadStage::most_pairs() const {
+    const std::uint64_t bodies = bodies_.count();
+    return bodies * (bodies - 1) / 2;
+}
+
+std::vector<Eigen::Vector3d> BroadStage::centres(const Frame& frame) const {
+    std::vector<Eigen::Vector3d> centres;
+    const auto& bodies = bodies_.scene().bodies;
+    for (std::size_t body = 0; body < bodies.size(); ++body) {
+        const auto& pose = frame.poses[body];
+        centres.push_back(bodies[body].deformable
+                              ? box_centre(frame.deformed[body])
+                              : pose.rotation.normalized() * mesh_centres_[bodies[body].mesh]
+                                    + pose.translation);
+    }
+    return centres;
+}
+
+/// Along the first three directions, which span space.
+template<class Real>
+std::vector<Eigen::Vector3d> BroadStage::centres_of_volumes() const {
+    const auto k = static_cast<std::size_t>(bodies_.geometry().k);
+    std::vector<Real> slabs(bodies_.count() * k);
+    {
+        const StageScope scope(bodies_.device(), Stage::read);
+        bodies_.device().download(hierarchy_.volumes(), std::as_writable_bytes(std::span(slabs)));
+    }
+    std::vector<Eigen::Vector3d> centres(bodies_.count());
+    for (std::size_t body = 0; body < centres.size(); ++body)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto lower = static_cast<double>(slabs[body * k + i]);
+            const auto upper = static_cast<double>(slabs[body * k + k / 2 + i]);
+            centres[body][static_cast<Eigen::Index>(i)] = 0.5 * (lower + upper);
+        }
+    return centres;
+}
+
+void BroadStage::sort(const Frame& frame) { sort(centres(frame)); }
+
+void BroadStage::sort_by_volumes() {
+    sort(bodies_.geometry().precision == Precision::fp64 ? centres_of_volumes<double>()
+                                                         : centres_of_volumes<float>());
+}
+
+void BroadStage::sort(const std::vector<Eigen::Vector3d>& centres) {
+    std::vector<std::uint32_t> order;
+    {
+        const HostWork work(bodies_.device(), Stage::broad, "sort bodies");
+        order = morton_order(centres);
+        const auto moving = [&](std::uint32_t body) { return !bodies_.scene().bodies[body].fixed; };
+        const auto fixed = std::stable_partition(order.begin(), order.end(), moving);
+        moving_count_ = static_cast<std::uint32_t>(fixed - order.begin());
+    }
+    upload(order);
+}
+
+void BroadStage::take(const Share& share) {
+    auto order = share.own;
+    order.insert(order.end(), share.others.begin(), share.others.end());
+    moving_count_ = static_cast<std::uint32_t>(share.own.size());
+    upload(order);
+}
+
+void BroadStage::upload(const std::vector<std::uint32_t>& order) {
+    count_ = static_cast<std::uint32_t>(order.size());
+    if (order.empty()) return;
+    const StageScope scope(bodies_.device(), Stage::write);
+    bodies_.device().upload(order_, bytes_of(order));
+}
+
+void BroadStage::launch(const Buffer& pairs, std::uint32_t capacity, const Buffer& status) {
+    const StageScope scope(bodies_.device(), Stage::broad);
+    if (tiles_of(count_) > 1) {
+        const std::array<Argument, 5> bound{hierarchy_.volumes(), order_, count_, roots_, unions_};
+        bodies_.device().launch(bound_, {tiles_of(count_), shape_.group_size}, bound);
+    }
+    const std::array<Argument, 9> find{hierarchy_.volumes(), roots_, unions_,  order_, count_,
+                                       moving_count_,        pairs,  capacity, status};
+    const auto tile_pairs = tiles_of(moving_count_) * tiles_of(count_);
+    bodies_.device().launch(find_, {std::max(1u, std::min(shape_.groups, tile_pairs)), shape_.group_size},
+                            find);
+}
+
+} // namespace tandem

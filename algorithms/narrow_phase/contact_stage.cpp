@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/narrow_phase/contact_stage.h"
+
+#include "algorithms/narrow_phase/open_pairs.clh"
+#include "algorithms/sources.h"
+
+#include <algorithm>
+
+namespace tandem {
+
+namespace {
+
+/// What a round of all three kernels takes at most.
+constexpr std::uint64_t most_waiting = std::uint64_t{1} << OPEN_PAIR_BITS;
+/// Lists for fewer pairs are not tried when memory is short.
+constexpr std::uint64_t least_waiting = 1024;
+
+/// No larger groups than kernels of this stage have local memory for; of a GPU's unit, 2048 / `divisor` of
+/// its work-items.
+LaunchShape shape_for(LaunchShape shape, std::uint32_t divisor) {
+    constexpr std::uint32_t largest = 128;
+    const auto items = std::uint64_t{shape.groups} * shape.group_size / divisor;
+    const auto size = std::min(shape.group_size, largest);
+    return {size, static_cast<std::uint32_t>(std::max<std::uint64_t>(1, items / size))};
+}
+
+} // namespace
+
+ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings, LaunchShape shape,
+                           Launches launches)
+    : bodies_(bodies), shape_(shape_for(shape, 1)), few_shape_(shape_for(shape, 2)) {
+    auto& device = bodies.device();
+    auto defines = row_defines(bodies.geometry(), shape_.group_size);
+    define(defines, parameters::pair_layout, bodies_.pair_layout());
+    define(defines, parameters::contact_rule, settings.rule);
+    if (settings.decision != DecisionPrecision::fp32)
+        decision_ = std::make_unique<DecisionStage>(bodies, settings.decision, shape);
+    const auto& last = kernel_source("algorithms/narrow_phase/contacts.cl");
+    if (launches == Launches::apart) {
+        defines["DECIDED"] = decision_ && !decides_open() ? "1" : "0";
+        certify_ =
+            device.compile(kernel_source("algorithms/narrow_phase/certify.cl"), "certify_pairs", defines);
+        defines["DECIDED"] = decision_ ? "1" : "0";
+        separate_ =
+            device.compile(kernel_source("algorithms/narrow_phase/separate.cl"), "separate_pairs", defines);
+        defines["AT_ONCE"] = "0";
+        generate_ = device.compile(last, "generate_contacts", defines);
+    }
+    if (launches == Launches::at_once || device.info().is_gpu) {
+        defines["DECIDED"] = decision_ ? "1" : "0";
+        defines["AT_ONCE"] = "1";
+        at_once_ = device.compile(last, "generate_contacts", defines);
+    }
+    nothing_ = device.allocate(4, "nothing");
+    waiting_ = GrowableBuffer(device, {{"pairs to be tested", 4}, {"pairs that meet", 4}}, 0);
+}
+
+/// Makes lists for so many pairs, or for fewer where memory is short: there are more launches then.
+void ContactStage::reserve(std::uint64_t pairs) {
+    for (auto rows = std::min(pairs, most_waiting); rows > waiting_.capacity(); rows /= 2) {
+        try {
+            waiting_.reserve(rows);
+        } catch (const OutOfMemory&) {
+            if (rows <= least_waiting) throw;
+        }
+    }
+}
+
+/// The lists of those that meet among pairs first..end - 1; both lists are empty before.
+void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first, std::uint32_t end,
+                                const Status& status) {
+    auto& device = bodies_.device();
+    const Grid grid{shape_.groups, shape_.group_size};
+    const std::array<Argument, 12> certify{answer.pairs.buffer(),
+                                           first,
+                                           end,
+                                           bodies_.owners(),
+                                           bodies_.poses(),
+                                           bodies_.tetrahedra(),
+                                           bodies_.vertices(),
+                                           bodies_.boundary(),
+                                           verdicts(),
+                                           waiting_.buffer(LIST_OPEN),
+                                           waiting_.buffer(LIST_MEETING),
+                                           status.buffer()};
+    device.launch(certify_, grid, certify);
+    if (decides_open())
+        decision_->launch_open(answer.pairs.buffer(), first, end, waiting_.buffer(LIST_OPEN), status);
+    const std::array<Argument, 11> separate{answer.pairs.buffer(),
+                                            first,
+                                            bodies_.owners(),
+                                            bodies_.poses(),
+                                            bodies_.tetrahedra(),
+                                            bodies_.vertices(),
+                                            bodies_.boundary(),
+                                            verdicts(),
+                                            waiting_.buffer(LIST_OPEN),
+                                            waiting_.buffer(LIST_MEETING),
+                                            status.buffer()};
+    device.launch(separate_, grid, separate);
+}
+
+/// Contacts of the list of those that meet, or of pairs first..end - 1.
+void ContactStage::generate(const Kernel& kernel, LaunchShape shape, const AnswerBuffers& answer,
+                            std::uint32_t first, std::uint32_t end, const Status& status) {
+    const std::array<Argument, 14> arguments{answer.pairs.buffer(),
+                                             first,
+                                             end,
+                                             bodies_.owners(),
+                                             bodies_.poses(),
+                                             bodies_.tetrahedra(),
+                                             bodies_.vertices(),
+                                             bodies_.boundary(),
+                                             verdicts(),
+                                             waiting_.capacity() > 0 ? waiting_.buffer(LIST_MEETING)
+                                                                     : nothing_,
+                                             answer.contacts.buffer(contact_ids),
+                                             answer.contacts.buffer(contact_values),
+                                             answer.contacts.capacity(),
+                                             status.buffer()};
+    bodies_.device().launch(kernel, {shape.groups, shape.group_size}, arguments);
+}
+
+void ContactStage::launch(const AnswerBuffers& answer, std::uint64_t first, std::uint64_t end,
+                          const Status& status) {
+    auto& device = bodies_.device();
+    const StageScope scope(device, Stage::contact);
+    // No more than a pair for each work-item that runs: what counts then is the way of one, and launches.
+    const bool few = expected_ && *expected_ <= std::uint64_t{few_shape_.groups} * few_shape_.group_size / 2;
+    const bool at_once = at_once_ && (few || !generate_);
+    if (decision_) decision_->reserve(end);
+    if (decision_ && (at_once || !decides_open()))
+        decision_->launch(answer.pairs.buffer(), first, end, status);
+    if (at_once) {
+        auto shape = few_shape_;
+        const auto size = shape.group_size;
+        if (few) shape.groups = groups_.enough_for((*expected_ + size - 1) / size, shape.groups);
+        generate(at_once_, shape, answer, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end),
+                 status);
+        return;
+    }
+    reserve(end - first);
+    bool waiting = status.counter(STATUS_WAITING) != 0; // those of a launch before
+    for (auto from = first; from < end; from += waiting_.capacity()) {
+        if (waiting) device.clear(status.buffer(), STATUS_WAITING_WORDS * 4, STATUS_WAITING * 4);
+        const auto begin = static_cast<std::uint32_t>(from);
+        const auto to = static_cast<std::uint32_t>(std::min(end, from + waiting_.capacity()));
+        find_meeting(answer, begin, to, status);
+        generate(generate_, shape_, answer, begin, to, status);
+        waiting = true;
+    }
+}
+
+} // namespace tandem

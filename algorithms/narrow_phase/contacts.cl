@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// Contacts between candidate pairs: 2 words (pair, feature) and 8 reals (point, normal, depth, 0) each.
+// README.md here has the rule.
+#include "backends/portable.h"
+
+#include "algorithms/narrow_phase/trial.clh"
+#include "algorithms/narrow_phase/waiting.clh"
+
+// 1: generate_contacts goes all the way with every pair, as the paper's release does in one launch; 0: it is
+// the last of three kernels and makes the contacts of the pairs that the other two found meeting.
+#ifndef AT_ONCE
+#define AT_ONCE 0
+#endif
+
+// What becomes of a pair by certificate and tests.
+DEVICE int try_pair(const Candidates* all, uint index) {
+    int edge = -1;
+    const int state = try_certificate(all, index, &edge);
+    return state == OPEN ? try_all(all, index, edge) : state;
+}
+
+// The words of a group's local memory here: how many contacts are on the tray and beside it, which are 0
+// between steps; how many rows there are to write from the tray, and from which row of the answer on.
+#define ON_TRAY 0
+#define BESIDE 1
+#define ROWS 2
+#define FIRST_ROW 3
+
+// Gives the contacts of a group their places, in one piece, and writes them; the whole group comes here.
+DEVICE void write_together(const Draft* draft, uint index, const Tray* tray, LOCAL uint* group,
+                           const Sink* sink) {
+    const uint staged = draft->count != 0u ? staged_of(draft) : 0u;
+    const uint others = draft->count - staged;
+    const uint before = staged != 0u ? LOCAL_ATOMIC_ADD(group + ON_TRAY, staged) : 0u;
+    const uint before_others = others != 0u ? LOCAL_ATOMIC_ADD(group + BESIDE, others) : 0u;
+    for (uint i = 0; i < staged; ++i)
+        tray->in_order[before + i] = (unsigned short)(i * GROUP_SIZE + LOCAL_ID);
+    BARRIER;
+    if (LOCAL_ID == 0u) {
+        const uint count = group[ON_TRAY] + group[BESIDE];
+        group[ROWS] = group[ON_TRAY];
+        group[FIRST_ROW] = count != 0u ? counter_add(sink->status + STATUS_CONTACTS, count) : 0u;
+        group[ON_TRAY] = group[BESIDE] = 0u;
+    }
+    BARRIER;
+    const uint rows = group[ROWS];
+    const ulong slot = group[FIRST_ROW];
+    write_staged(tray, rows, slot, sink);
+    if (others != 0u) write_others(draft, staged, index, slot + rows + before_others, sink);
+    BARRIER;
+}
+
+// `meeting`: read unless AT_ONCE. `first`, `pair_capacity` and `verdicts` as in certify_pairs, when AT_ONCE.
+KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_capacity,
+                              GLOBAL const uint* owners, GLOBAL const real* poses,
+                              GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
+                              GLOBAL const uchar* boundary, GLOBAL const uchar* verdicts,
+                              GLOBAL const uint* meeting, GLOBAL uint* contact_ids,
+                              GLOBAL real* contact_values, uint contact_capacity, GLOBAL uint* status) {
+    LOCAL_ARRAY(uint, group, GROUP_WORDS);
+    LOCAL_ARRAY(RealRow, touches, STAGED * GROUP_SIZE);
+    LOCAL_ARRAY(RealRow, origins, GROUP_SIZE);
+    LOCAL_ARRAY(RealRow, normals, GROUP_SIZE);
+    LOCAL_ARRAY(uint, pairs, GROUP_SIZE);
+    LOCAL_ARRAY(unsigned short, in_order, STAGED* GROUP_SIZE);
+    LOCAL_ARRAY(uchar, features, STAGED * GROUP_SIZE);
+    const Tray tray = {touches, features, origins, normals, pairs, in_order};
+    const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
+    const Sink sink = {contact_ids, contact_values, status, contact_capacity};
+    const ulong count =
+        AT_ONCE ? stored(status + STATUS_PAIRS, pair_capacity) : status[STATUS_WAITING + LIST_MEETING];
+    ulong start = (AT_ONCE ? (ulong)first : 0u) + GROUP_ID * (uint)GROUP_SIZE;
+    begin_group(group);
+    do {
+        uint index = 0;
+        int state = STEPPED;
+        if (start + LOCAL_ID < count) {
+            index = AT_ONCE ? (uint)(start + LOCAL_ID) : meeting[start + LOCAL_ID];
+            state = MEETING;
+            if (AT_ONCE) {
+                const int apart = DECIDED && verdicts[index] == VERDICT_APART;
+                state = apart ? REJECTED : try_pair(&all, index);
+                count_state(state, group);
+                if (state == MEETING && has_no_normal(&all, index)) state = STEPPED;
+            }
+        }
+        Draft draft;
+        draft.count = 0u;
+        if (state == MEETING) draft_contacts(&all, index, &draft, &tray);
+        write_together(&draft, index, &tray, group, &sink);
+        start += GLOBAL_COUNT;
+    } while (start < count);
+    if (AT_ONCE) end_group(group, status);
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/narrow_phase/contact_settings.h"
+#include "algorithms/answer/growable_buffer.h"
+#include "algorithms/answer/status.h"
+#include "algorithms/bodies/bodies.h"
+#include "algorithms/traversal.h"
+
+namespace tandem {
+
+/// Decides with certainty which candidate pairs in a buffer meet: settings decision=recheck, fp64 and exact.
+/// STATUS_UNDECIDED_BY_FILTER counts the pairs that the filter, STATUS_UNDECIDED_BY_DOUBLE those that double
+/// could not decide.
+class DecisionStage {
+public:
+    DecisionStage(const Bodies& bodies, DecisionPrecision decision, LaunchShape shape);
+
+    /// Whether pairs that have a certificate need no verdict: double by itself has none.
+    bool takes_certificates() const { return decision_ != DecisionPrecision::fp64; }
+    /// Room for verdicts of so many pairs, as what follows needs it. Throws OutOfMemory.
+    void reserve(std::uint64_t pairs);
+    /// Enqueues verdicts for pairs `first`..`end` - 1 of `found`, as far as `status` has counted so many.
+    /// With decision=exact it waits for the counts and, where there are any, for the pairs that double cannot
+    /// decide; throws OutOfMemory then.
+    void launch(const Buffer& found, std::uint64_t first, std::uint64_t end, const Status& status);
+    /// The same for those of them that certify_pairs has left in list `open`.
+    void launch_open(const Buffer& found, std::uint64_t first, std::uint64_t end, const Buffer& open,
+                     const Status& status);
+
+    /// A byte a pair, VERDICT_* of candidates.clh.
+    const Buffer& verdicts() const { return decided_.buffer(verdict); }
+
+private:
+    void filter(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
+                const Buffer& open, const Status& status);
+    void recheck(const Buffer& found, std::uint64_t first, std::uint64_t end, const Status& status);
+    void decide(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
+                const std::array<Argument, 3>& own, const Status& status);
+    void settle(const Buffer& found, const Status& status);
+
+    const Bodies& bodies_;
+    DecisionPrecision decision_;
+    LaunchShape shape_;
+    /// Columns of what is known of pairs: verdicts, and numbers of pairs that are undecided.
+    enum DecisionColumn : std::size_t { verdict, undecided_by_double, undecided_by_filter };
+    /// The last column, or any buffer where no kernel reads that.
+    const Buffer& filtered() const {
+        return decided_.buffer(takes_certificates() ? undecided_by_filter : undecided_by_double);
+    }
+    GrowableBuffer decided_;   ///< by pair
+    Buffer corners_, answers_; ///< of the pairs the host decides; they live until their commands are done
+    Kernel filter_, filter_open_, recheck_, gather_, settle_;
+};
+
+} // namespace tandem

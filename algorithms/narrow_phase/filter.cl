@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// The certified filter in the cell's precision: a verdict for every pair, and a list of those it cannot
+// decide. A certificate comes first, by this kernel or, of the pairs that OVER_OPEN leaves, by certify_pairs
+// before it.
+#include "backends/portable.h"
+
+#define CERTAIN_IN_DOUBLE 0
+#include "algorithms/narrow_phase/certainty.clh"
+#include "algorithms/narrow_phase/certificate.clh"
+#include "algorithms/narrow_phase/open_pairs.clh"
+
+// 1: of the pairs in the list `open` only, whose words are counted from `first`.
+#ifndef OVER_OPEN
+#define OVER_OPEN 0
+#endif
+
+DEVICE int filtered(const Candidates* all, uint index) {
+    Point a[4];
+    Point b[4];
+    load_pair(all, index, a, b);
+    if (!OVER_OPEN) {
+        const int certain = certificate_of(a, b);
+        if (certain != CERTAIN_NOTHING) return certain == CERTAIN_APART ? VERDICT_APART : VERDICT_MEETS;
+    }
+    return certain_verdict(a, b);
+}
+
+// `undecided_by_filter` has room for every pair.
+KERNEL void filter_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* owners,
+                         GLOBAL const real* poses, GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
+                         GLOBAL const uint* open, GLOBAL uchar* verdicts, GLOBAL uint* undecided_by_filter,
+                         GLOBAL uint* status) {
+    const Candidates all = {found, owners, poses, tetrahedra, vertices, 0};
+    const ulong count =
+        OVER_OPEN ? status[STATUS_WAITING + LIST_OPEN] : stored(status + STATUS_PAIRS, pair_capacity);
+    for (ulong i = (OVER_OPEN ? 0u : (ulong)first) + GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
+        const uint index = OVER_OPEN ? first + PAIR_OF_OPEN(open[i]) : (uint)i;
+        const int verdict = filtered(&all, index);
+        verdicts[index] = (uchar)verdict;
+        if (verdict == VERDICT_OPEN)
+            undecided_by_filter[counter_add(status + STATUS_UNDECIDED_BY_FILTER, 1u)] = index;
+    }
+}

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/narrow_phase/reference.h"
+
+#include "geometry/meet_exactly.h"
+#include "algorithms/narrow_phase/reference_pair.h"
+
+namespace tandem {
+
+namespace {
+
+using namespace contact_reference;
+
+/// A tetrahedron's corners in ascending order and which of the given ones they are.
+template<class Real>
+struct Sorted {
+    Corners<Real> corners;
+    std::array<unsigned, 4> names{0, 1, 2, 3};
+
+    explicit Sorted(const Corners<Real>& given) {
+        std::stable_sort(names.begin(), names.end(), [&](auto i, auto j) { return given[i] < given[j]; });
+        for (unsigned i = 0; i < 4; ++i) corners[i] = given[names[i]];
+    }
+};
+
+/// The number of a feature of the sorted pair in the given one. `own`, `other`: whose feature it is, and the
+/// rest.
+template<class Real>
+unsigned given_feature(unsigned feature, const Sorted<Real>& own, const Sorted<Real>& other,
+                       unsigned given_owner) {
+    if (feature < 8) return 4 * given_owner + own.names[feature % 4];
+    const unsigned edge = (feature - 8) % 24 / 4;
+    const auto [low, high] = std::minmax(own.names[edge_ends[edge][0]], own.names[edge_ends[edge][1]]);
+    unsigned number = 0;
+    while (edge_ends[number][0] != low || edge_ends[number][1] != high) ++number;
+    return 8 + 24 * given_owner + 4 * number + other.names[feature % 4];
+}
+
+bool is_canonical(ContactRule rule) {
+    return rule != ContactRule::opposing && rule != ContactRule::published;
+}
+
+/// Bit i of the given faces as that of the sorted corner it is opposite to.
+template<class Real>
+unsigned sorted_faces(unsigned given, const Sorted<Real>& sorted) {
+    unsigned faces = 0;
+    for (unsigned i = 0; i < 4; ++i)
+        if ((given & 1u << sorted.names[i]) != 0) faces |= 1u << i;
+    return faces;
+}
+
+template<class Real>
+std::vector<Contact<Real>> sorted_contacts(const ReferencePair<Real>& pair, ContactRule rule,
+                                           const Boundaries& boundaries) {
+    if (rule == ContactRule::vertex) return vertex_contacts(pair, boundaries);
+    if (rule == ContactRule::consistent) return consistent_contacts(pair, boundaries);
+    return axis_contacts(pair, rule, boundaries);
+}
+
+template<class Real>
+Corners<double> widened(const Corners<Real>& corners) {
+    Corners<double> result;
+    for (unsigned i = 0; i < 4; ++i)
+        for (unsigned k = 0; k < 3; ++k) result[i][k] = static_cast<double>(corners[i][k]);
+    return result;
+}
+
+/// Whether the decision tells the pair apart before contacts are made.
+template<class Real>
+bool decided_apart(const Corners<Real>& a, const Corners<Real>& b, DecisionPrecision decision,
+                   ContactCounts& counts) {
+    if (decision == DecisionPrecision::fp32) return false;
+    unsigned verdict = 0;
+    if (decision != DecisionPrecision::fp64) verdict = certificate(a, b);
+    if (verdict == 0 && decision != DecisionPrecision::fp64) verdict = certain_verdict(a, b);
+    if (verdict == 0 && decision != DecisionPrecision::fp64) ++counts.undecided_by_filter;
+    if (verdict == 0) {
+        verdict = certain_verdict(widened(a), widened(b));
+        counts.undecided_by_double += verdict == 0 ? 1 : 0;
+    }
+    if (verdict == 0 && decision == DecisionPrecision::exact)
+        verdict = meet_exactly(widened(a), widened(b)) ? 2 : 1;
+    return verdict == 1;
+}
+
+template<class Real>
+bool finite(const Corners<Real>& corners) {
+    return std::all_of(corners.begin(), corners.end(), [](const auto& corner) {
+        return std::all_of(corner.begin(), corner.end(), [](Real x) { return std::isfinite(x); });
+    });
+}
+
+/// Loads the pair and tells it apart unless it has been decided; false: it makes no contacts, and is counted.
+template<class Real>
+bool meets(ReferencePair<Real>& pair, const Corners<Real>& a, const Corners<Real>& b, bool decided,
+           ContactCounts& counts) {
+    if (!pair.load(a, b)) {
+        ++counts.degenerate;
+        return false;
+    }
+    if (decided || !pair.separated()) return true;
+    ++counts.rejected;
+    return false;
+}
+
+template<class Real>
+std::vector<Contact<Real>> canonical_contacts(const Corners<Real>& a, const Corners<Real>& b,
+                                              const Boundaries& given, const ContactSettings& settings,
+                                              ContactCounts& counts) {
+    if (!finite(a) || !finite(b)) {
+        ++counts.degenerate;
+        return {};
+    }
+    Sorted<Real> first(a), second(b);
+    Boundaries boundaries{sorted_faces(given[0], first), sorted_faces(given[1], second)};
+    const bool swapped = second.corners < first.corners;
+    if (swapped) {
+        std::swap(first, second);
+        std::swap(boundaries[0], boundaries[1]);
+    }
+    ReferencePair<Real> pair;
+    if (!meets(pair, first.corners, second.corners, settings.decision != DecisionPrecision::fp32, counts))
+        return {};
+    auto contacts = sorted_contacts(pair, settings.rule, boundaries);
+    for (auto& contact : contacts) {
+        const unsigned owner = contact.feature < 8 ? contact.feature / 4 : contact.feature < 32 ? 0 : 1;
+        const unsigned given_owner = swapped ? 1 - owner : owner;
+        contact.feature = owner == 0 ? given_feature(contact.feature, first, second, given_owner)
+                                     : given_feature(contact.feature, second, first, given_owner);
+        if (swapped)
+            for (Real& x : contact.normal) x = -x + Real(0);
+    }
+    std::sort(contacts.begin(), contacts.end(),
+              [](const auto& p, const auto& q) { return p.feature < q.feature; });
+    return contacts;
+}
+
+} // namespace
+
+template<class Real>
+std::vector<Contact<Real>> reference_contacts(const Corners<Real>& a, const Corners<Real>& b,
+                                              unsigned boundary_a, unsigned boundary_b, ContactCounts& counts,
+                                              const ContactSettings& settings) {
+    if (decided_apart(a, b, settings.decision, counts)) {
+        ++counts.rejected;
+        return {};
+    }
+    const Boundaries boundaries{boundary_a, boundary_b};
+    if (is_canonical(settings.rule)) return canonical_contacts(a, b, boundaries, settings, counts);
+    ReferencePair<Real> pair;
+    if (!meets(pair, a, b, settings.decision != DecisionPrecision::fp32, counts)) return {};
+    return settings.rule == ContactRule::published ? published_contacts(pair, boundaries)
+                                                   : opposing_contacts(pair, boundaries);
+}
+
+template std::vector<Contact<float>> reference_contacts(const Corners<float>&, const Corners<float>&,
+                                                        unsigned, unsigned, ContactCounts&,
+                                                        const ContactSettings&);
+template std::vector<Contact<double>> reference_contacts(const Corners<double>&, const Corners<double>&,
+                                                         unsigned, unsigned, ContactCounts&,
+                                                         const ContactSettings&);
+
+} // namespace tandem

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+// One pair as the serial reference sees it: loaded, told apart, and the features of what its two have in
+// common.
+#pragma once
+
+#include "algorithms/narrow_phase/reference_geometry.h"
+
+namespace tandem::contact_reference {
+
+/// What two tetrahedra have in common at one feature.
+template<class Real>
+struct Meeting {
+    unsigned feature = 0;
+    Vector<Real> point{}; ///< local
+};
+
+template<class Real>
+struct ReferencePair {
+    static inline const Real shortest = std::ldexp(Real(1), -96); ///< axis that is tried
+
+    std::array<Tetrahedron<Real>, 2> solids;
+    std::array<Corners<Real>, 2> world;
+    std::array<Corners<Real>, 2> axes; ///< the normals before they are made unit vectors
+    Vector<Real> origin{};
+    Real size = 0;
+    Real scale = 1;
+
+    /// False when the pair is degenerate.
+    bool load(const Corners<Real>& a, const Corners<Real>& b) {
+        const Real longest_allowed = std::ldexp(Real(1), std::numeric_limits<Real>::max_exponent - 5);
+        world = {a, b};
+        origin = a[0];
+        for (unsigned i = 0; i < 4; ++i) {
+            solids[0].corners[i] = a[i] - origin;
+            solids[1].corners[i] = b[i] - origin;
+        }
+        for (const auto& solid : solids)
+            for (const auto& corner : solid.corners)
+                for (const Real value : corner) {
+                    if (!std::isfinite(value) || std::abs(value) > longest_allowed) return false;
+                    size = std::max(size, std::abs(value));
+                }
+        scale = scale_of(size);
+        size *= scale;
+        for (auto& solid : solids)
+            for (auto& corner : solid.corners) corner = corner * scale;
+        const auto normals_a = outward_normals(a);
+        const auto normals_b = outward_normals(b);
+        if (!normals_a || !normals_b) return false;
+        axes = {*normals_a, *normals_b};
+        for (unsigned i = 0; i < 8; ++i) solids[i / 4].normals[i % 4] = unit(axes[i / 4][i % 4]);
+        return true;
+    }
+
+    Real tolerance() const { return 32 * unit_roundoff<Real> * size; }
+
+    /// Lowest and highest projections of A, then of B.
+    std::array<Real, 4> extents(const Vector<Real>& axis) const {
+        std::array<Real, 4> result;
+        for (unsigned s = 0; s < 2; ++s) {
+            const auto& c = solids[s].corners;
+            const auto [low, high] =
+                std::minmax({dot(axis, c[0]), dot(axis, c[1]), dot(axis, c[2]), dot(axis, c[3])});
+            result[2 * s] = low;
+            result[2 * s + 1] = high;
+        }
+        return result;
+    }
+
+    bool separated() const {
+        static const Real lengthen = std::ldexp(Real(1), std::numeric_limits<Real>::digits == 24 ? 64 : 978);
+        for (const auto& some : axes)
+            for (const auto& axis : some)
+                if (separated_along(largest(axis) < shortest ? axis * lengthen : axis)) return true;
+        for (const auto& [i, j] : edge_ends)
+            for (const auto& [k, l] : edge_ends) {
+                const auto& a = solids[0].corners;
+                const auto& b = solids[1].corners;
+                if (separated_along(cross(a[j] - a[i], b[l] - b[k]))) return true;
+            }
+        return false;
+    }
+
+    /// Corners inside the other and edges through its faces, in ascending order of feature.
+    std::vector<Meeting<Real>> meetings() const {
+        std::vector<Meeting<Real>> result;
+        for (unsigned owner = 0; owner < 2; ++owner)
+            for (unsigned corner = 0; corner < 4; ++corner)
+                if (inside(solids[1 - owner], solids[owner].corners[corner], 4, tolerance()))
+                    result.push_back({4 * owner + corner, solids[owner].corners[corner]});
+        for (unsigned owner = 0; owner < 2; ++owner)
+            for (unsigned edge = 0; edge < 6; ++edge)
+                for (unsigned face = 0; face < 4; ++face) {
+                    const auto [ahead, behind] = ends(owner, edge, face);
+                    if (std::min(std::abs(ahead), std::abs(behind)) <= tolerance()) continue;
+                    if ((ahead > 0) == (behind > 0)) continue;
+                    const auto p = crossing(owner, edge, face);
+                    if (inside(solids[1 - owner], p, face, tolerance()))
+                        result.push_back({8 + 24 * owner + 4 * edge + face, p});
+                }
+        return result;
+    }
+
+    /// Whether p is at most `near` in front of all faces of the solid but `skipped`.
+    bool inside(const Tetrahedron<Real>& solid, const Vector<Real>& p, unsigned skipped, Real near) const {
+        for (unsigned face = 0; face < 4; ++face)
+            if (face != skipped && solid.distance(face, p) > near) return false;
+        return true;
+    }
+
+    /// Distances of an edge's ends from a face of the other.
+    std::pair<Real, Real> ends(unsigned owner, unsigned edge, unsigned face) const {
+        const auto& corners = solids[owner].corners;
+        const auto& other = solids[1 - owner];
+        return {other.distance(face, corners[edge_ends[edge][0]]),
+                other.distance(face, corners[edge_ends[edge][1]])};
+    }
+
+    Vector<Real> crossing(unsigned owner, unsigned edge, unsigned face) const {
+        const auto& from = solids[owner].corners[edge_ends[edge][0]];
+        const auto& to = solids[owner].corners[edge_ends[edge][1]];
+        const auto [ahead, behind] = ends(owner, edge, face);
+        return from + (to - from) * (ahead / (ahead - behind));
+    }
+
+    Contact<Real> contact(const Meeting<Real>& meeting, const Vector<Real>& normal, Real depth) const {
+        const Vector<Real> no_negative_zero{};
+        return {meeting.feature, meeting.point / scale + origin + no_negative_zero, normal + no_negative_zero,
+                depth / scale + Real(0)};
+    }
+
+private:
+    bool separated_along(const Vector<Real>& axis) const {
+        const Real norm = taxicab(axis);
+        if (norm < shortest) return false;
+        const auto [low_a, high_a, low_b, high_b] = extents(axis);
+        const Real enough = 12 * unit_roundoff<Real> * norm * size;
+        return low_b - high_a > enough || low_a - high_b > enough;
+    }
+};
+
+/// Bits of the boundary faces of A and of B.
+using Boundaries = std::array<unsigned, 2>;
+
+/// Contacts of a loaded pair by each rule, in ascending order of feature. All but the first two want it in
+/// canonical order.
+template<class Real>
+std::vector<Contact<Real>> opposing_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
+template<class Real>
+std::vector<Contact<Real>> published_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
+/// Rules sat, clip, restricted and growth, which have one normal and depth a pair.
+template<class Real>
+std::vector<Contact<Real>> axis_contacts(const ReferencePair<Real>& pair, ContactRule rule,
+                                         const Boundaries& boundaries);
+template<class Real>
+std::vector<Contact<Real>> vertex_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
+template<class Real>
+std::vector<Contact<Real>> consistent_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
+
+/// What distances of corners behind faces are certain of: 1 apart, 2 they meet, 0 neither. That it is certain
+/// may depend on the order of corners and of the two; what it is does not.
+template<class Real>
+unsigned certificate(const Corners<Real>& a, const Corners<Real>& b);
+
+/// What arithmetic in Real is certain of: 1 apart, 2 they meet, 0 neither. Order of corners and of the two
+/// makes no difference.
+template<class Real>
+unsigned certain_verdict(const Corners<Real>& a, const Corners<Real>& b);
+
+} // namespace tandem::contact_reference

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "base/error.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace tandem {
+
+namespace {
+
+/// Levenshtein's distance, one row at a time.
+std::size_t distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        auto diagonal = std::exchange(row[0], i);
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const auto changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            diagonal = row[j];
+            row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
+        }
+    }
+    return row.back();
+}
+
+} // namespace
+
+std::string nearest(std::string_view name, std::span<const std::string> candidates) {
+    const auto best =
+        std::min_element(candidates.begin(), candidates.end(),
+                         [&](const auto& a, const auto& b) { return distance(name, a) < distance(name, b); });
+    return best == candidates.end() ? std::string() : *best;
+}
+
+std::string unknown(std::string_view what, std::string_view name, std::span<const std::string> candidates) {
+    if (candidates.empty()) return fmt::format("unknown {} '{}'; there is none", what, name);
+    return fmt::format("unknown {} '{}'; the nearest is '{}' (there are: {})", what, name,
+                       nearest(name, candidates), fmt::join(candidates, ", "));
+}
+
+} // namespace tandem

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "geometry/decision.h"
+#include "geometry/facets.h"
+
+#include <gmpxx.h>
+#include <span>
+#include <vector>
+
+namespace tandem::oracle {
+
+__extension__ using Int128 = __int128;
+
+/// Both tetrahedra in units of 2^exponent, relative to A's first corner: exact.
+template<class Number>
+struct Lattice {
+    Points<Number> a, b;
+    int exponent = 0;
+};
+
+/// For coordinates at most 2^40 units apart from A's first corner, so that differences are below 2^41 and
+/// every number in facets.h below 3 * 2 * 2^(3 * 41) < 2^126; nothing for others. Coordinates must be finite.
+std::optional<Lattice<Int128>> small_lattice(const TetraCorners& a, const TetraCorners& b);
+
+/// For all finite coordinates.
+Lattice<mpz_class> big_lattice(const TetraCorners& a, const TetraCorners& b);
+
+/// Finite points in units of 2^exponent, relative to the first one: exact.
+struct LatticePoints {
+    std::vector<Vector<mpz_class>> points;
+    int exponent = 0;
+};
+LatticePoints lattice_points(std::span<const std::array<double, 3>> points);
+
+} // namespace tandem::oracle

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+// tandem algorithms: all of them in short, or those that are named at length.
+#include "algorithms/traversal.h"
+#include "harness/commands/commands.h"
+#include "harness/commands/standard_streams.h"
+#include "harness/commands/text_lines.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+namespace tandem {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> words_of(const Parameter& parameter) {
+    std::vector<std::string> words;
+    for (const auto& word : parameter.choices()) words.emplace_back(word.text);
+    return words;
+}
+
+/// What auto tries of it.
+std::vector<std::string> alternatives_of(const Parameter& parameter) {
+    std::vector<std::string> texts;
+    for (const auto value : parameter.alternatives()) texts.push_back(parameter.text(value));
+    return texts;
+}
+
+/// "1..1024", or its words.
+std::string values_of(const Parameter& parameter) {
+    return parameter.choices().empty() ? fmt::format("{}..{}", parameter.least, parameter.most)
+                                       : fmt::format("{}", fmt::join(words_of(parameter), ", "));
+}
+
+/// All settings as they take effect in a preset.
+Settings settings_of(const Traversal& traversal, const Preset& preset) {
+    return resolve(traversal.parameters(), preset.values, {}, traversal.name());
+}
+
+/// "NAME=VALUE" of the settings that a preset changes.
+std::vector<std::string> changed_by(const Traversal& traversal, const Preset& preset) {
+    const auto settings = settings_of(traversal, preset);
+    std::vector<std::string> changed;
+    for (const auto* p : traversal.parameters())
+        if (const auto value = settings.text(p->name); value != p->text(p->initial))
+            changed.push_back(fmt::format("{}={}", p->name, value));
+    return changed;
+}
+
+/// "device in resident; sphere in published": the values of a setting that presets change, and its own where
+/// none of them has that; empty when none changes it.
+std::string by_preset(const Traversal& traversal, const Parameter& parameter) {
+    std::vector<std::pair<std::string, std::vector<std::string_view>>> values;
+    for (const auto& preset : traversal.presets()) {
+        const auto value = settings_of(traversal, preset).text(parameter.name);
+        const auto found = std::ranges::find(values, value, [](const auto& entry) { return entry.first; });
+        if (found == values.end())
+            values.push_back({value, {preset.name}});
+        else
+            found->second.push_back(preset.name);
+    }
+    const auto own = parameter.text(parameter.initial);
+    if (values.size() == 1 && values.front().first == own) return {};
+    std::vector<std::string> texts;
+    texts.reserve(values.size() + 1);
+    for (const auto& [value, presets] : values)
+        texts.push_back(fmt::format("{} in {}", value, fmt::join(presets, ", ")));
+    if (std::ranges::find(values, own, [](const auto& entry) { return entry.first; }) == values.end())
+        texts.push_back(own + " where no preset sets it");
+    return fmt::to_string(fmt::join(texts, "; "));
+}
+
+/// Numbers have a range, words their choices.
+Json parameters_json(std::span<const Parameter* const> parameters) {
+    Json json = Json::array();
+    for (const auto* p : parameters) {
+        Json row{{"name", p->name}, {"default", p->text(p->initial)}, {"help", p->help}};
+        if (p->choices().empty())
+            row["range"] = {p->least, p->most};
+        else
+            row["choices"] = words_of(*p);
+        row["alternatives"] = alternatives_of(*p);
+        json.push_back(row);
+    }
+    return json;
+}
+
+Json counters_json(std::span<const Counter> counters) {
+    Json json = Json::array();
+    for (const auto& c : counters)
+        json.push_back({{"name", c.name}, {"unit", c.unit}, {"meaning", c.meaning}});
+    return json;
+}
+
+Json algorithm_json(const Traversal& traversal, bool peer) {
+    Json presets = Json::array();
+    for (const auto& p : traversal.presets())
+        presets.push_back({{"name", p.name},
+                           {"help", p.help},
+                           {"values", p.texts()},
+                           {"settings", settings_of(traversal, p).texts()}});
+    return {{"name", traversal.name()},
+            {"peer", peer},
+            {"summary", traversal.summary()},
+            {"parameters", parameters_json(traversal.parameters())},
+            {"counters", counters_json(traversal.counters())},
+            {"presets", presets}};
+}
+
+/// Text in lines that fit a terminal, those after the first below the column `indent`.
+void put_lines(const std::string& text, std::size_t indent) { put("{}", paragraph(text, indent)); }
+
+void print_heading(const Traversal& traversal, bool peer) {
+    put_lines(fmt::format("{}{}: {}", traversal.name(),
+                          peer ? ", a peer, which runs where it is named only" : "", traversal.summary()),
+              2);
+}
+
+void print_counters(const Traversal& traversal) {
+    put("  counters\n");
+    for (const auto& c : traversal.counters())
+        put_lines(fmt::format("    {:<22} {} [{}]", c.name, c.meaning, c.unit), 27);
+}
+
+/// In short: a setting has the value that it has where no preset is named.
+void print_algorithm(const Traversal& traversal, bool peer) {
+    print_heading(traversal, peer);
+    put("  presets\n");
+    for (const auto& p : traversal.presets()) put_lines(fmt::format("    {:<18} {}", p.name, p.help), 23);
+    const auto& first = traversal.presets().front();
+    const auto settings = settings_of(traversal, first);
+    put("  settings, as in preset {}\n", first.name);
+    for (const auto* p : traversal.parameters()) {
+        const auto value = settings.text(p->name), own = p->text(p->initial);
+        auto values = values_of(*p);
+        if (!p->alternatives().empty())
+            values += fmt::format("; auto tries {}", fmt::join(alternatives_of(*p), ", "));
+        if (value != own) values += fmt::format("; {} where no preset sets it", own);
+        put_lines(fmt::format("    {:<18} {:<10} {} [{}]", p->name, value, p->help, values), 34);
+    }
+    print_counters(traversal);
+}
+
+/// Everything that is known of a setting, a line each.
+void explain_setting(const Traversal& traversal, const Parameter& parameter, const std::string& value) {
+    constexpr std::size_t indent = 8;
+    const auto line = [&](std::string_view label, const std::string& text) {
+        put_lines(fmt::format("{:{}}{}: {}", "", indent, label, text), indent + 2);
+    };
+    put("    {} = {}\n", parameter.name, value);
+    put_lines(fmt::format("{:{}}{}", "", indent, parameter.help), indent);
+    line(parameter.choices().empty() ? "range" : "choices", values_of(parameter));
+    if (const auto values = by_preset(traversal, parameter); !values.empty()) line("presets", values);
+    if (parameter.alternatives().empty()) return;
+    const auto tried = fmt::format("{}", fmt::join(alternatives_of(parameter), ", "));
+    line("auto tries",
+         parameter.said_by.empty() ? tried : fmt::format("{}, unless {} is given", tried, parameter.said_by));
+}
+
+/// At length.
+void explain_algorithm(const Traversal& traversal, bool peer) {
+    print_heading(traversal, peer);
+    put("  presets; the first is taken where none is named\n");
+    for (const auto& p : traversal.presets()) {
+        const auto changed = changed_by(traversal, p);
+        put_lines(fmt::format("    {}: {}", p.name, p.help), 8);
+        put_lines(fmt::format("        {}{}", changed.empty() ? "changes no setting" : "sets ",
+                              fmt::join(changed, ", ")),
+                  10);
+    }
+    const auto& first = traversal.presets().front();
+    const auto settings = settings_of(traversal, first);
+    put("  settings, with their values in preset {}\n", first.name);
+    for (const auto* p : traversal.parameters()) explain_setting(traversal, *p, settings.text(p->name));
+    print_counters(traversal);
+}
+
+bool is_peer(const Traversal& traversal) { return std::ranges::find(peers(), &traversal) != peers().end(); }
+
+} // namespace
+
+int algorithms_command(const AlgorithmsOptions& options) {
+    std::vector<const Traversal*> chosen;
+    for (const auto& name : options.names) chosen.push_back(&algorithm(name));
+    if (chosen.empty())
+        for (const auto& list : {algorithms(), peers()})
+            chosen.insert(chosen.end(), list.begin(), list.end());
+    Json all = Json::array();
+    for (const auto* traversal : chosen) {
+        const bool peer = is_peer(*traversal);
+        if (options.json)
+            all.push_back(algorithm_json(*traversal, peer));
+        else
+            (options.names.empty() ? print_algorithm : explain_algorithm)(*traversal, peer);
+    }
+    if (options.json) put("{}\n", all.dump(2));
+    return 0;
+}
+
+} // namespace tandem

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// tandem check: do all algorithms on all devices agree with the reference, and what do they miss of the
+// truth?
+#include "harness/plans/inputs.h"
+#include "harness/plans/job.h"
+#include "harness/commands/standard_streams.h"
+#include "base/error.h"
+#include "scenes/hard/hard.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace tandem {
+
+namespace {
+
+/// Checks every cell until a record cannot be written; `print` is given each that finished. Returns the exit
+/// code.
+int check_cells(const Job& job, const RunOptions& options, RecordFile& file, const Progress& progress,
+                const std::function<void(const Cell&, const Measurement&)>& print) {
+    References references(job.scene, job.range);
+    Truths truths(job.scene, job.range, options.truth, options.truth_contacts);
+    Measuring measuring;
+    measuring.check.truths = options.truth == TruthAmount::none ? nullptr : &truths;
+    measuring.enough.repeat = 0;
+    int code = 0;
+    measure_cells(job, job.cells, references, measuring, file, progress, [&](const CellResult& result) {
+        const auto& m = result.measurement;
+        code = std::max({code, result.code, misses_against_its_promise(m) ? 1 : 0});
+        if (result.measured) print(*result.cell, m);
+    });
+    return code;
+}
+
+/// One line a cell: its answer against the reference, then against the truth.
+void print_matrix_header() {
+    put("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n", "device", "algorithm",
+        "preset", "pairs", "missing", "extra", "retry", "contacts", "contacts equal", "missed", "false");
+}
+
+void print_matrix_row(const Cell& cell, const Measurement& m) {
+    put("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n", name_of(cell.devices),
+        cell.algorithm->name(), cell.preset, m.agreement.digest.count, m.agreement.missing, m.agreement.extra,
+        m.retries, std::accumulate(m.contacts.begin(), m.contacts.end(), std::uint64_t{0}),
+        m.agreement.contact_frames_wrong == 0 ? "yes" : "NO",
+        m.errors ? fmt::to_string(m.errors->missed()) : "-",
+        m.errors ? fmt::to_string(m.errors->pairs.disjoint) : "-");
+}
+
+void print_family_header() {
+    put("{:<26} {:>6} {:>9} {:>11} {:>7} {:>9} {:>6} {:>10}\n", "family", "frames", "touching", "overlapping",
+        "missed", "by others", "cells", "that differ");
+}
+
+/// One family of hard:all, on one line.
+int check_family(const Job& job, const RunOptions& options, RecordFile& file, const Progress& progress) {
+    std::uint64_t wrong = 0;
+    std::uint64_t safe = 0;
+    std::uint64_t others = 0;
+    PairErrors meeting;
+    const int code = check_cells(job, options, file, progress, [&](const Cell&, const Measurement& m) {
+        wrong += m.agreement.ok() ? 0 : 1;
+        if (!m.errors) return;
+        meeting = m.errors->pairs;
+        (m.settings[parameters::rounding] == Rounding::safe ? safe : others) += m.errors->missed();
+    });
+    const auto& flaws = job.range.flaws();
+    put("{:<26} {:>6} {:>9} {:>11} {:>7} {:>9} {:>6} {:>10}{}\n", job.scene.name, job.range.size(),
+        meeting.touching + meeting.missed_touching, meeting.overlapping + meeting.missed_overlapping, safe,
+        others, job.cells.size(), wrong,
+        flaws.any() && flaws.handling == Degenerate::skip
+            ? fmt::format("  skipped: {}", flaws.degenerate + flaws.non_finite)
+            : "");
+    return code;
+}
+
+/// Whether the family with numbers that are not finite is refused, as it has to be unless they are skipped.
+int check_refusal(RunOptions options, const std::vector<Cell>& cells) {
+    options.degenerate = Degenerate::flat;
+    std::string refusal;
+    try {
+        open_job(options, cells);
+    } catch (const InputError& error) {
+        refusal = error.what();
+        if (refusal.find("not finite") == std::string::npos) throw; // refused for another reason
+    }
+    put("{:<26} {}\n", "hard:not-finite", refusal.empty() ? "NOT refused" : "refused: " + refusal);
+    return refusal.empty() ? 1 : 0;
+}
+
+/// `tandem check hard:all`. The family with numbers that are not finite has to be refused, and to be right
+/// when they are skipped.
+int check_hard(const RunOptions& options, const std::vector<Cell>& cells,
+               const std::vector<std::string>& scenes) {
+    RecordFile file(options.out);
+    const Progress progress(options.quiet);
+    print_family_header();
+    int code = 0;
+    for (const auto& scene : scenes) {
+        auto one = options;
+        one.scene = scene;
+        if (scene.starts_with("hard:not-finite")) {
+            code = std::max(code, check_refusal(one, cells));
+            one.degenerate = Degenerate::skip;
+        }
+        code = std::max(code, check_family(open_job(one, cells), one, file, progress));
+        if (file.failed()) return code;
+    }
+    put("{}\n", code == 0 ? "all agree with the reference; with rounding=safe nothing that meets is missed"
+                          : "NOT all agree with the reference and the truth");
+    return code;
+}
+
+} // namespace
+
+int check_command(const RunOptions& options) {
+    auto request = options.request;
+    if (request.devices.empty()) request.devices.emplace_back("all");
+    const auto backends = open_backends(request.devices, options.require);
+    check_required(backends, options.require);
+    const auto devices = open_devices(options, backends, request.devices);
+    const auto scenes = expand_hard(options.scene);
+    if (scenes.size() > 1) return check_hard(options, plan(request, devices), scenes);
+    if (request.presets.empty()) request.presets.emplace_back("all");
+    const auto job = open_job(options, plan(request, devices));
+    RecordFile file(options.out);
+    print_scene(job.scene, job.range);
+    const Progress progress(options.quiet);
+    std::size_t broken = 0;
+    print_matrix_header();
+    const int code = check_cells(job, options, file, progress, [&](const Cell& cell, const Measurement& m) {
+        print_matrix_row(cell, m);
+        broken += misses_against_its_promise(m) ? 1 : 0;
+    });
+    if (file.failed()) return code;
+    put("{}\n", code == 0 ? "all agree with the reference" : "NOT all agree with the reference");
+    if (broken > 0) put("{} cells with safe rounding MISS pairs that meet\n", broken);
+    return code;
+}
+
+} // namespace tandem

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/hierarchy/levels.h"
+#include "algorithms/hierarchy/order.h"
+#include "algorithms/parameters/table.h"
+#include "harness/commands/chunk_numbers.h"
+#include "harness/commands/dumps.h"
+#include "harness/commands/external.h"
+#include "harness/simulate/frame_contacts.h"
+#include "harness/plans/inputs.h"
+#include "harness/commands/memory_reserve.h"
+#include "harness/commands/standard_streams.h"
+#include "base/error.h"
+#include "scenes/export/geometry.h"
+#include "scenes/export/glb.h"
+#include "scenes/export/vtk.h"
+
+#include <filesystem>
+#include <fmt/format.h>
+#include <optional>
+
+namespace tandem {
+
+namespace {
+
+/// By the same rules as of `tandem run`.
+Scene open_scene(const ExportOptions& options) {
+    RunOptions run;
+    run.scene = options.scene;
+    run.meshes = options.meshes;
+    run.poses = options.poses;
+    return open_scene(run);
+}
+
+/// Of the chunk over each tetrahedron, body after body.
+CellNumbers chunks_of(const Scene& scene) {
+    std::vector<std::vector<std::uint32_t>> by_mesh;
+    for (const auto& mesh : scene.meshes) by_mesh.push_back(chunk_numbers(mesh));
+    CellNumbers numbers{"chunk", {}};
+    for (const auto& body : scene.bodies)
+        numbers.values.insert(numbers.values.end(), by_mesh[body.mesh].begin(), by_mesh[body.mesh].end());
+    return numbers;
+}
+
+void make_folder(const std::string& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (!std::filesystem::is_directory(folder))
+        throw InputError(fmt::format("{}: cannot be made a folder ({}); choose another", folder,
+                                     error ? error.message() : "a file has this name"));
+}
+
+std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
+                       std::span<const std::size_t> frames) {
+    std::optional<FrameContacts> finder;
+    if (options.contacts) finder.emplace(options.device, scene);
+    make_folder(options.vtu);
+    const auto chunks = chunks_of(scene);
+    std::vector<TimedFile> bodies, contacts;
+    std::size_t found = 0;
+    for (const auto i : frames) {
+        MemoryReserve::refill();
+        const auto frame = scene.frame(i);
+        const double time = scene.time ? scene.time(i) : static_cast<double>(i);
+        bodies.push_back({time, fmt::format("bodies_{:06}.vtu", i)});
+        write_vtu(options.vtu + "/" + bodies.back().file, scene, frame, {&chunks, 1});
+        if (!finder) continue;
+        const auto points = finder->of(frame);
+        found += points.size();
+        contacts.push_back({time, fmt::format("contacts_{:06}.vtp", i)});
+        write_contacts_vtp(options.vtu + "/" + contacts.back().file, points);
+    }
+    write_pvd(options.vtu + "/bodies.pvd", bodies);
+    if (finder) write_pvd(options.vtu + "/contacts.pvd", contacts);
+    return found;
+}
+
+void export_geometry(const ExportOptions& options, const Scene& scene, std::span<const std::size_t> frames) {
+    std::optional<FrameContacts> finder;
+    GeometryParts parts{.chunks = chunk_numbers};
+    if (options.contacts) {
+        finder.emplace(options.device, scene);
+        parts.contacts = [&](const Frame& frame) { return finder->of(frame); };
+    }
+    write_geometry(options.geometry, scene, frames, parts);
+}
+
+/// Meshes do not move: frames have no part in it.
+void export_chunks(const ExportOptions& options, const Scene& scene) {
+    const auto builder = static_cast<Builder>(parameters::builder.parse(options.builder));
+    const auto k = static_cast<int>(parameters::k.parse(options.k));
+    const auto leaves = leaves_of_chunk_bytes(options.chunk_bytes, k);
+    DumpFile file(options.chunks, chunks_header);
+    std::size_t tetrahedra = 0, chunks = 0;
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+        const auto order = ordered(scene.meshes[i], builder).ids;
+        file.chunks(i, scene.meshes[i], order, leaves);
+        tetrahedra += order.size();
+        chunks += chunk_levels(static_cast<std::uint32_t>(order.size()), leaves).front().chunks;
+    }
+    put("{}: {} mesh{}, {} tetrahedra in {} chunks of up to {}, builder={}, of {}\n", options.chunks,
+        scene.meshes.size(), scene.meshes.size() == 1 ? "" : "es", tetrahedra, chunks, leaves,
+        options.builder, scene.key);
+}
+
+int export_csv(const ExportOptions& options) {
+    if (!options.vtu.empty() || !options.glb.empty() || !options.geometry.empty() || !options.meshes.empty()
+        || !options.poses.empty() || !options.frames.empty())
+        throw InputError(
+            "--csv makes a table of a file of records; --vtu, --glb, --geometry, --mesh, --pose and --frames "
+            "are of scenes, so leave them out");
+    if (options.scene.empty()) throw InputError("--csv: no file of records; name it before --csv");
+    std::vector<std::string> words{"--records=" + options.scene};
+    if (!options.csv.empty()) words.push_back("--output=" + options.csv);
+    return run_external("export-csv", words);
+}
+
+/// Refuses combinations that name nothing to write, or one file twice.
+void check_outputs(const ExportOptions& options) {
+    const bool moves = !options.vtu.empty() || !options.glb.empty() || !options.geometry.empty();
+    if (!moves && options.chunks.empty())
+        throw InputError(
+            "nothing to export to; give --vtu FOLDER, --glb FILE, --geometry FILE, --chunks FILE or several, "
+            "or --csv for a file of records");
+    if (!moves && (!options.frames.empty() || options.every != 1))
+        throw InputError("--frames and --every go with --vtu FOLDER, --glb FILE or --geometry FILE; chunks "
+                         "are the same in every frame");
+    if (options.contacts && options.vtu.empty() && options.geometry.empty())
+        throw InputError("--contacts goes with --vtu FOLDER or --geometry FILE; a .glb has surfaces only");
+    const std::pair<const char*, std::string> files[] = {
+        {"--chunks", options.chunks}, {"--glb", options.glb}, {"--geometry", options.geometry}};
+    for (const auto& one : files)
+        for (const auto& other : files)
+            if (&one < &other && !one.second.empty() && one.second == other.second)
+                throw InputError(
+                    fmt::format("{} and {} name one file, {}; name two", one.first, other.first, one.second));
+}
+
+} // namespace
+
+int export_command(const ExportOptions& options) {
+    if (options.to_csv) return export_csv(options);
+    check_outputs(options);
+    const auto scene = open_scene(options);
+    const auto [first, last] = named_frames(options.frames, scene);
+    std::vector<std::size_t> frames;
+    for (auto i = first; i <= last; i += options.every) frames.push_back(i);
+    if (!options.chunks.empty()) export_chunks(options, scene);
+    const auto summary = fmt::format("{} of frames {}:{} of {}", frames.size(), first, last, scene.key);
+    if (!options.glb.empty()) {
+        write_glb(options.glb, scene, frames);
+        put("{}: {}\n", options.glb, summary);
+    }
+    if (!options.geometry.empty()) {
+        export_geometry(options, scene, frames);
+        put("{}: {}\n", options.geometry, summary);
+    }
+    if (options.vtu.empty()) return 0;
+    const auto found = export_vtu(options, scene, frames);
+    put("{}/bodies.pvd: {}\n", options.vtu, summary);
+    if (options.contacts) put("{}/contacts.pvd: {} contacts\n", options.vtu, found);
+    return 0;
+}
+
+} // namespace tandem

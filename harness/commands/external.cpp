@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "harness/commands/external.h"
+
+#include "harness/sampling/interrupt.h"
+#include "harness/commands/programs.h"
+#include "harness/commands/standard_streams.h"
+#include "base/error.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int not_found = 127;
+
+fs::path own_path() { return fs::read_symlink("/proc/self/exe"); }
+
+} // namespace
+
+std::string external_program(const std::string& name) {
+    const auto folder = own_path().parent_path();
+    for (const auto& place : {folder, folder.parent_path()})
+        if (const auto path = place / "libexec/tandem" / name; fs::is_regular_file(path))
+            return path.string();
+    throw InputError(
+        fmt::format("tandem {} is not part of this installation: no {}; install it by cmake --install", name,
+                    (folder.parent_path() / "libexec/tandem" / name).string()));
+}
+
+int run_external(const std::string& name, const std::vector<std::string>& words) {
+    const auto path = external_program(name);
+    setenv("TANDEM_PROGRAM", own_path().c_str(), 1);
+    // What has been printed comes before what it prints. It works as well where that cannot be read.
+    const ProgramPlace place{"", flush_output() ? "" : "/dev/null", ""};
+    const Interrupt interrupt;
+    // The system's first, which has the system's packages.
+    for (const char* python : {"/usr/bin/python3", "python3"}) {
+        std::vector<std::string> line{python, path};
+        line.insert(line.end(), words.begin(), words.end());
+        if (const int code = run_program(line, place); code != not_found) return code;
+    }
+    throw InputError(fmt::format("tandem {} needs python3; install it", name));
+}
+
+} // namespace tandem

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#include "harness/profile/ceilings.h"
+#include "harness/commands/commands.h"
+#include "harness/sampling/conditions.h"
+#include "harness/plans/inputs.h"
+#include "harness/record/journal.h"
+#include "harness/commands/standard_streams.h"
+#include "scenes/dynamics_settings.h"
+#include "scenes/hard/hard.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tandem {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The device before `info` that is the same piece of hardware; empty when there is none.
+std::string same_as(const std::vector<BackendReport>& backends, const DeviceInfo& info) {
+    for (const auto& backend : backends) {
+        for (const auto& device : backend.devices) {
+            if (device->info().id == info.id) return {};
+            if (!info.hardware.empty() && device->info().hardware == info.hardware) return device->info().id;
+        }
+    }
+    return {};
+}
+
+/// Certain once clocks have been on.
+std::string clock_of(Device& device) {
+    try {
+        device.set_clocks(Clocks::on);
+        device.set_clocks(Clocks::off);
+    } catch (const DeviceError&) {
+        // The device is listed all the same; measuring says what it lacks.
+    }
+    return device.clock();
+}
+
+Json device_json(const DeviceInfo& info, const std::string& clock, const std::string& same,
+                 const GpuCondition& now) {
+    return {{"id", info.id},
+            {"name", info.name},
+            {"driver", info.driver},
+            {"compiler", info.compiler},
+            {"compute_units", info.compute_units},
+            {"memory_bytes", info.global_bytes},
+            {"local_bytes", info.local_bytes},
+            {"double", info.has_double},
+            {"clock", clock},
+            {"hardware", info.hardware.empty() ? Json(nullptr) : Json(info.hardware)},
+            {"same_as", same.empty() ? Json(nullptr) : Json(same)},
+            {"now", gpu_condition_json(now)}};
+}
+
+void print_device(const DeviceInfo& info, const std::string& clock, const std::string& same,
+                  const GpuCondition& now) {
+    put("{:<10} {} ({}), {} compute units, {:.1f} GB, {}; times by {}{}\n", info.id, info.name, info.driver,
+        info.compute_units, static_cast<double>(info.global_bytes) * 1e-9, info.compiler, clock,
+        same.empty() ? "" : fmt::format("; the same GPU as {}", same));
+    if (const auto text = gpu_condition_text(now); !text.empty()) put("           now: {}\n", text);
+}
+
+/// `tandem devices --measure`: the ceilings of the chosen devices.
+int measure_devices(const DevicesOptions& options) {
+    const auto names = options.devices.empty() ? std::vector<std::string>{"all"} : options.devices;
+    const auto backends = open_backends(names, options.require);
+    check_required(backends, options.require);
+    const auto chosen = choose_devices(backends, names);
+    RecordFile file(options.out);
+    Json records = Json::array();
+    for (const auto& group : chosen)
+        for (auto* device : group) {
+            const auto ceilings = measure_ceilings(*device);
+            records.push_back(ceilings_record(*device, ceilings));
+            if (!file.failed()) file.append_or_tell(records.back());
+            if (!options.json) put("{}", ceilings_table(device->info(), ceilings));
+        }
+    if (options.json) put("{}\n", records.dump(2));
+    return file.failed() ? 3 : 0;
+}
+
+void print_scene(const SceneKind& kind, const Scene& scene) {
+    put("{}: {}\n", kind.name, kind.models);
+    put("  {}\n", scene.dynamics ? fmt::format("{} steps of {} s by simulation; its frame is the start",
+                                               scene.dynamics->steps, scene.dynamics->stepping.step)
+                                 : fmt::format("{} frames by script", scene.frame_count));
+    for (const auto& p : kind.parameters) put("    {:<12} {:<12} {}\n", p.name, p.value, p.help);
+}
+
+/// The first columns of the paper's Table 1, for the defaults.
+void print_scene_table(const Json& scenes) {
+    put("\n{:<10} {:>7} {:>10} {:>11}\n", "scene", "bodies", "vertices", "tetrahedra");
+    for (const auto& row : scenes)
+        put("{:<10} {:>7} {:>10} {:>11}\n", row["name"].get<std::string>(), row["bodies"].get<std::size_t>(),
+            row["vertices"].get<std::size_t>(), row["tetrahedra"].get<std::size_t>());
+}
+
+/// The settings of a scene's motion with its own values; null when its motion is scripted.
+Json dynamics_json(const Scene& scene) {
+    if (!scene.dynamics) return nullptr;
+    Json json = Json::object();
+    for (const auto& setting : dynamics_settings())
+        json[std::string(setting.name)] = {{"default", setting.value(*scene.dynamics)},
+                                           {"help", setting.help}};
+    return json;
+}
+
+Json scene_json(const SceneKind& kind, const Scene& scene) {
+    Json parameters = Json::object();
+    for (const auto& p : kind.parameters) parameters[p.name] = {{"default", p.value}, {"help", p.help}};
+    return {{"name", kind.name},
+            {"models", kind.models},
+            {"parameters", parameters},
+            {"bodies", scene.bodies.size()},
+            {"vertices", vertex_count(scene)},
+            {"tetrahedra", tetrahedron_count(scene)},
+            {"frames", scene.frame_count},
+            {"steps", scene.dynamics ? Json(scene.dynamics->steps) : Json(nullptr)},
+            {"dynamics", dynamics_json(scene)}};
+}
+
+/// What else there is to know of a family of hard cases.
+Json hard_json(const HardFamily& family) {
+    return {{"row", family.row},
+            {"group", std::string(1, family.group)},
+            {"summary", family.summary},
+            {"difficulty", family.knob.meaning},
+            {"range", {family.knob.least, family.knob.most}},
+            {"truth", name_of(family.truth)},
+            {"metric", family.metric},
+            {"fails", family.fails}};
+}
+
+void print_hard() {
+    put("\nhard cases, hard:NAME:difficulty=X,seed=N,pairs=N,together=N; 'tandem check hard:all' "
+        "takes all\n");
+    for (const auto& family : hard_families())
+        put("    {} {:<20} {}\n      {:<20} difficulty {}: {}, {}..{}\n", family.group, family.name,
+            family.summary, "", family.knob.initial, family.knob.meaning, family.knob.least,
+            family.knob.most);
+}
+
+void print_dynamics() {
+    put("\nmotion by simulation, --dynamics NAME=VALUE; a scene may have other defaults (--json)\n");
+    for (const auto& setting : dynamics_settings())
+        put("    {:<20} {:<13} {}\n", setting.name, setting.value(Dynamics{}), setting.help);
+}
+
+} // namespace
+
+/// Backends without devices are listed with their reason; --require is looked at last, so that the list is
+/// there to see.
+int devices_command(const DevicesOptions& options) {
+    if (options.measure) return measure_devices(options);
+    const auto backends = discover();
+    const bool json = options.json;
+    Json all = Json::array();
+    for (const auto& backend : backends) {
+        Json entry{{"backend", backend.name},
+                   {"reason", backend.reason.empty() ? Json(nullptr) : Json(backend.reason)}};
+        entry["devices"] = Json::array();
+        for (const auto& device : backend.devices) {
+            const auto& info = device->info();
+            const auto same = same_as(backends, info);
+            const auto now = GpuGauge(info).read();
+            const auto clock = clock_of(*device);
+            entry["devices"].push_back(device_json(info, clock, same, now));
+            if (!json) print_device(info, clock, same, now);
+        }
+        if (!json && !backend.reason.empty()) put("{}\n", backend.reason);
+        all.push_back(entry);
+    }
+    if (json) put("{}\n", all.dump(2));
+    check_required(backends, options.require);
+    return 0;
+}
+
+int scenes_command(bool json) {
+    Json all = Json::array();
+    for (const auto& kind : scene_kinds()) {
+        const auto scene = make_scene(kind.name);
+        all.push_back(scene_json(kind, scene));
+        if (!json) print_scene(kind, scene);
+    }
+    if (json) {
+        for (const auto& kind : hard_kinds()) {
+            all.push_back(scene_json(kind, make_scene(kind.name)));
+            all.back()["hard"] = hard_json(hard_family(kind.name.substr(5)));
+        }
+        put("{}\n", all.dump(2));
+        return 0;
+    }
+    print_scene_table(all);
+    print_hard();
+    print_dynamics();
+    return 0;
+}
+
+} // namespace tandem

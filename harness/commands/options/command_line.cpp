@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "harness/commands/options/command_line.h"
+
+#include "harness/commands/options/completion.h"
+#include "harness/commands/options/contradictions.h"
+#include "harness/commands/options/unknown_words.h"
+#include "harness/record/environment.h"
+#include "harness/sampling/ranks/launched_run.h"
+#include "harness/commands/standard_streams.h"
+#include "base/error.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+/// A subcommand: its name and summary in the help, and what adds its options.
+struct Subcommand {
+    const char* name;
+    const char* summary;
+    Action (*add)(CLI::App& app);
+};
+
+constexpr Subcommand subcommands[] = {
+    {"run", "measure; print a table, append records", add_run},
+    {"check", "device x algorithm agreement matrix; exit 1 on any difference", add_check},
+    {"accuracy", "error beside speed over settings, for several scenes", add_accuracy},
+    {"profile", "per kernel: time, registers, occupancy, bytes, operations, share of the ceilings",
+     add_profile},
+    {"compare", "which cells changed, by how much, how sure; exit 1 beyond --threshold", add_compare},
+    {"simulate", "move a scene with dynamics; record its frames", add_simulate},
+    {"export", "frames as files for ParaView and other viewers, records as a table", add_export},
+    {"paper", "every table and figure of the paper beside ours, with verdicts", add_paper},
+    {"report", "records, and a scene, as one page for a browser: words, tables, charts", add_report},
+    {"view", "a scene in three dimensions as a page for a browser", add_view},
+    {"devices", "what there is, or why there is not", add_devices},
+    {"scenes", "scenes the program makes, with their parameters", add_scenes},
+    {"algorithms", "algorithms with their presets and settings; one at length", add_algorithms},
+    {"completion", "completion of lines by a shell", add_completion},
+    {"isolated", "what a process of --isolate does", add_isolated}};
+
+using Actions = std::vector<std::pair<CLI::App*, Action>>;
+
+Actions add_commands(CLI::App& app) {
+    const auto add_version = [](CLI::App& to) {
+        return to.set_version_flag("--version", version_line,
+                                   "print name, version, commit, compiler and optional parts");
+    };
+    app.require_subcommand(1);
+    add_version(app);
+    Actions actions;
+    for (const auto& command : subcommands) {
+        auto* subcommand = app.add_subcommand(command.name, command.summary);
+        actions.emplace_back(subcommand, command.add(*subcommand));
+        add_version(*subcommand)->group(""); // in the program's own help only
+    }
+    return actions;
+}
+
+} // namespace
+
+Action read_command_line(int argc, const char* const* argv) {
+    // Actions look at the options, which are the app's.
+    const auto app = std::make_shared<CLI::App>(
+        "tandem: ways of walking bounding-volume hierarchies in tandem, measured and checked");
+    const auto actions = add_commands(*app);
+    const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    if (asks_for_completion(words)) return [app, words] { return complete(*app, words); };
+    const auto print = [](const std::string& text) {
+        return [text]() -> int {
+            put("{}", text);
+            return 0;
+        };
+    };
+    try {
+        app->parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        return print(app->help());
+    } catch (const CLI::CallForVersion& version) {
+        return print(fmt::format("{}\n", version.what()));
+    } catch (const CLI::ParseError& error) {
+        const auto unknown = unknown_word(*app, words);
+        throw InputError(unknown.empty() ? fmt::format("{}; see 'tandem --help'", error.what()) : unknown);
+    }
+    const auto given =
+        std::ranges::find_if(actions, [](const auto& action) { return action.first->parsed(); });
+    refuse_contradictions(*given->first);
+    return [app, act = given->second] {
+        const auto& name = app->get_subcommands().front()->get_name();
+        if (name != "run") tell_others_wait(name);
+        return act();
+    };
+}
+
+} // namespace tandem

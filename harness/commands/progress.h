@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/commands/standard_streams.h"
+
+#include <string_view>
+#include <unistd.h>
+
+namespace tandem {
+
+/// One line on a terminal's standard error that is written over; silent elsewhere.
+class Progress {
+public:
+    explicit Progress(bool quiet) : on_(!quiet && isatty(STDERR_FILENO) != 0) {}
+    ~Progress() { clear(); }
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    void show(std::string_view text) const {
+        if (on_) tell("\r\033[K{}", text);
+    }
+    void clear() const { show(""); }
+
+private:
+    bool on_;
+};
+
+} // namespace tandem

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: MIT
+#include "harness/commands/commands.h"
+
+#include "harness/plans/choosing/choose.h"
+#include "harness/commands/dumps.h"
+#include "harness/record/environment.h"
+#include "harness/record/finished_cells.h"
+#include "harness/plans/inputs.h"
+#include "harness/sampling/interrupt.h"
+#include "harness/plans/job.h"
+#include "harness/plans/key.h"
+#include "harness/plans/cell_groups.h"
+#include "harness/commands/progress.h"
+#include "harness/sampling/ranks/launched.h"
+#include "harness/sampling/ranks/launched_run.h"
+#include "harness/sampling/ranks/rank_team.h"
+#include "harness/commands/run_parts.h"
+#include "harness/sampling/replays.h"
+#include "harness/commands/standard_streams.h"
+#include "harness/profile/timeline/trace_frame.h"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+#include <map>
+
+namespace tandem {
+
+namespace {
+
+/// Writes what was asked for in a replay of its own: files take longer than frames.
+void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts) {
+    if (job.options.dump_pairs.empty() && job.options.dump_contacts.empty()) return;
+    const auto session = prepare_session(cell, job.scene);
+    for (std::size_t i = 0; i < job.range.size(); ++i) {
+        const auto result = session->run(*job.range.frame(i));
+        // Ranks download together, and the first one writes.
+        if (!job.options.dump_pairs.empty())
+            if (const auto found = result.download(); pairs) pairs.pairs(job.range.first() + i, found);
+        if (!job.options.dump_contacts.empty())
+            if (const auto found = result.download_contacts(); contacts)
+                contacts.contacts(job.range.first() + i, found);
+    }
+}
+
+/// Replays the frames and does nothing else, so that a profiler sees only the algorithm: it is told to begin
+/// once kernels are compiled and buffers have grown.
+int profile(const Job& job, std::size_t times) {
+    for (const auto& cell : job.cells) {
+        Replays replays(cell, job.scene, job.range);
+        const auto replay = [&] { replays.timed([](std::size_t, const FrameResult&) {}); };
+        replay();
+        for (auto* device : cell.devices) device->profile(true);
+        for (std::size_t i = 0; i < times; ++i) replay();
+        for (auto* device : cell.devices) device->profile(false);
+        put("{}: replayed frames {}:{} {} times; nothing measured or recorded\n", describe(cell),
+            job.range.first(), job.range.last(), times);
+    }
+    return 0;
+}
+
+/// Decides the cells of auto.
+void choose_cells(Job& job, const RunOptions& options, const Progress& progress) {
+    ChoosingOptions choosing;
+    choosing.seconds = options.choose_seconds;
+    choosing.afresh = options.choose_afresh;
+    for (std::size_t i = 0; i < job.cells.size(); ++i) {
+        choosing.progress = [&](std::string_view text) {
+            progress.show(text.empty() ? "" : fmt::format("[{}/{}] {}", i + 1, job.cells.size(), text));
+        };
+        choose(job.cells[i], job.scene, job.range, choosing);
+    }
+}
+
+/// What the cells of a job measure, in their order.
+std::string keys_of(const Job& job) {
+    std::string keys;
+    for (const auto& cell : job.cells) keys += key_of(cell, cell.settings, job.scene, job.range) + "\n";
+    return keys;
+}
+
+void refuse_what_ranks_cannot(const RunOptions& options) {
+    if (options.isolate)
+        throw InputError("--isolate makes a process of each cell, and ranks share one; leave it out");
+    if (!options.trace.empty()) throw InputError("--trace shows one process; run it without the launcher");
+    for (const auto& product : plan_of(options).products)
+        for (const auto& name : product.request.algorithms)
+            if (name == automatic)
+                throw InputError("--algorithm auto chooses on one process; name what it chose there");
+}
+
+/// A run of the command: its groups of cells, one after the other.
+class Run {
+public:
+    Run(const RunOptions& options, RankTeam* team);
+    int go();
+
+private:
+    void check_one_group() const;
+    std::unique_ptr<Job> open(const CellGroup& group, const Unfit& unfit) const;
+    void open_files();
+    int measure(Job& job);
+    void print(const Job& job, const std::map<const Cell*, CellResult>& results) const;
+    int end(int code);
+    void leave_out_finished(Job& job);
+    int list_all();
+    void list(const Job& job);
+
+    void open_team();
+    bool is_over() const;
+
+    const RunOptions& options_;
+    RankTeam* const team_; ///< null: one process
+    std::vector<BackendReport> backends_;
+    CellGroups all_;
+    std::optional<RecordFile> file_;
+    std::optional<DumpFile> pairs_, contacts_;
+    std::optional<TimelineFile> trace_;
+    FinishedCells finished_;
+    Unfinished unfinished_;
+    Progress progress_;
+    std::size_t listed_ = 0, unknown_ = 0, measured_ = 0, left_out_ = 0;
+    double seconds_ = 0;
+    bool interrupted_ = false;
+};
+
+Run::Run(const RunOptions& options, RankTeam* team)
+    : options_(options), team_(team), progress_(options.quiet) {
+    together(team_, [&] {
+        const auto plan = plan_of(options_);
+        const auto names = devices_of(plan);
+        backends_ = open_backends(names, options_.require);
+        check_required(backends_, options_.require);
+        limit_memory(options_, backends_);
+        const auto choose = [&](const auto& asked) {
+            if (team_ == nullptr || !asks_for_each(asked[0])) return choose_devices(backends_, asked);
+            return choose_devices(backends_, std::array{team_->own_of_each(asked[0], backends_)});
+        };
+        all_ = make_groups(plan, choose, options_.shard);
+        tell_left_out(all_);
+        if (options_.shard.of > 1)
+            put("shard {}/{}: {} of {} groups\n", options_.shard.index, options_.shard.of, all_.groups.size(),
+                all_.numbered);
+        check_one_group();
+    });
+    if (team_ != nullptr && !all_.groups.empty()) open_team();
+}
+
+/// All cells have one device on each rank.
+void Run::open_team() {
+    for (auto& group : all_.groups)
+        for (auto& cell : group.cells) cell.team = team_;
+    team_->open(*all_.groups.front().cells.front().devices.front());
+}
+
+/// Of what is written of the first finished cell.
+void Run::check_one_group() const {
+    if (all_.groups.size() <= 1) return;
+    if (!options_.dump_pairs.empty() || !options_.dump_contacts.empty())
+        throw InputError("dumps are of one scene and one range of its frames; name one of each");
+    if (!options_.trace.empty())
+        throw InputError("--trace is of one scene and one range of its frames; name one of each");
+}
+
+/// Once nothing is wrong with what was asked for: a mistake leaves no empty files behind.
+void Run::open_files() {
+    if (file_) return;
+    together(team_, [&] {
+        const bool writes = is_first(team_);
+        const auto path = [&](const std::string& given) { return writes ? given : std::string(); };
+        file_.emplace(path(options_.dry_run && !options_.resume ? std::string() : options_.out));
+        if (options_.resume && writes) finished_ = FinishedCells(*file_, options_.out);
+        if (options_.dry_run) return;
+        if (writes) unfinished_ = Unfinished(options_.out, options_.resume);
+        pairs_.emplace(path(options_.dump_pairs), pairs_header);
+        contacts_.emplace(path(options_.dump_contacts), contacts_header);
+        trace_.emplace(path(options_.trace));
+    });
+}
+
+/// An interrupt, or a file that cannot be written.
+bool Run::is_over() const { return decided(team_, interrupted_ || file_->failed()); }
+
+void Run::leave_out_finished(Job& job) {
+    left_out_ += std::erase_if(job.cells, [&](const Cell& cell) {
+        if (!cell.candidates.empty()) return false;
+        if (!decided(team_, finished_.has(cell, job.scene, job.range))) return false;
+        unfinished_.forget(key_of(cell, cell.settings, job.scene, job.range));
+        return true;
+    });
+}
+
+/// Of cells that were measured before the time that they took then; of others that of --seconds.
+void Run::list(const Job& job) {
+    for (const auto& cell : job.cells) {
+        const auto known = finished_.seconds(cell, job.scene, job.range);
+        if (!known && options_.repeat) ++unknown_;
+        seconds_ += known ? *known : (options_.repeat ? 0 : options_.seconds);
+        put("{:>5}  {}\n       {}\n", ++listed_, describe(cell),
+            key_of(cell, cell.settings, job.scene, job.range));
+    }
+}
+
+int Run::measure(Job& job) {
+    Truths truths(job.scene, job.range, options_.truth, options_.truth_contacts, checks_folder(options_));
+    auto measuring = measuring_of(options_);
+    if (options_.truth != TruthAmount::none) measuring.check.truths = &truths;
+    measuring.unfinished = &unfinished_;
+    measuring.stop = Interrupt::asked;
+    measuring.seed = decided(team_, measuring.seed);
+    References references(job.scene, job.range, checks_folder(options_));
+    std::map<const Cell*, CellResult> results;
+    int code = 0;
+    interrupted_ = measure_cells(job, job.cells, references, measuring, *file_, progress_,
+                                 [&](const CellResult& result) {
+                                     code = std::max(code, result.code);
+                                     results.emplace(result.cell, result);
+                                 });
+    measured_ += results.size();
+    print(job, results);
+    // Last, for a file that cannot be written ends the run.
+    for (const auto& cell : job.cells)
+        if (const auto found = results.find(&cell); found != results.end() && found->second.measured) {
+            const bool goes_on = !decided(team_, file_->failed());
+            if (goes_on) dump(cell, job, *pairs_, *contacts_);
+            if (goes_on && !options_.trace.empty()) trace_->write(trace_frame(cell, job));
+            break;
+        }
+    return code;
+}
+
+void Run::print(const Job& job, const std::map<const Cell*, CellResult>& results) const {
+    std::vector<const CellResult*> in_order;
+    for (const auto& cell : job.cells)
+        if (const auto found = results.find(&cell); found != results.end())
+            in_order.push_back(&found->second);
+    print_results(in_order);
+}
+
+/// What is said last.
+int Run::end(int code) {
+    if (left_out_ > 0) put("{} cells are in {} already\n", left_out_, options_.out);
+    if (!options_.out.empty()) put("{} records appended to {}\n", file_->appended(), options_.out);
+    if (!interrupted_ && !file_->failed()) unfinished_.remove();
+    if (!interrupted_ || file_->failed()) return code;
+    const bool can_go_on = !options_.out.empty();
+    tell("tandem: interrupted; {} cells are measured{}\n", measured_,
+         can_go_on ? fmt::format("; to go on: {}{}", command_line(), options_.resume ? "" : " --resume")
+                   : "");
+    return 3;
+}
+
+std::unique_ptr<Job> Run::open(const CellGroup& group, const Unfit& unfit) const {
+    auto own = options_;
+    own.scene = group.scene;
+    own.frames = group.frames;
+    const bool skips = options_.plan && options_.plan->skips_impossible;
+    std::unique_ptr<Job> job;
+    together(team_, [&] {
+        job = std::make_unique<Job>(open_scene(own), own, group.cells, skips ? unfit : Unfit(refuse));
+    });
+    if (team_ != nullptr) team_->check_same(keys_of(*job));
+    return job;
+}
+
+int Run::go() {
+    if (options_.dry_run) return list_all();
+    if (all_.groups.empty()) return 0;
+    // A mistake in the last scene had better be known before the first is measured.
+    if (all_.groups.size() > 1)
+        for (const auto& group : all_.groups) open(group, leave_out);
+    const Interrupt interrupt;
+    int code = 0;
+    for (const auto& group : all_.groups) {
+        const auto job = open(group, tell_skipped);
+        open_files();
+        leave_out_finished(*job);
+        if (job->cells.empty()) continue;
+        print_scene(job->scene, job->range);
+        choose_cells(*job, options_, progress_);
+        code = std::max(code, options_.profile > 0 ? profile(*job, options_.profile) : measure(*job));
+        if (is_over()) break;
+    }
+    return decided(team_, options_.profile > 0 ? code : end(code));
+}
+
+/// --dry-run: what cannot be opened yet, such as a recording that is to be made, leaves the rest to be seen.
+int Run::list_all() {
+    std::size_t unopened = 0;
+    for (const auto& group : all_.groups) try {
+            const auto job = open(group, tell_skipped);
+            open_files();
+            leave_out_finished(*job);
+            print_scene(job->scene, job->range);
+            list(*job);
+        } catch (const InputError& error) {
+            if (all_.groups.size() == 1) throw;
+            tell("tandem: {} cells cannot be listed: {}\n", group.cells.size(), error.what());
+            ++unopened;
+        }
+    put("{} cells, about {:.0f} s of rounds{}{}; checks against the reference and the truth come on top\n",
+        listed_, seconds_,
+        unknown_ > 0 ? fmt::format(" and {} cells of which nothing is known", unknown_) : "",
+        left_out_ > 0 ? fmt::format("; {} more are in {} already", left_out_, options_.out) : "");
+    return unopened > 0 ? 2 : 0;
+}
+
+} // namespace
+
+/// Ranks of a job measure the cells one after another, each on all of them.
+int run_command(const RunOptions& options) {
+    auto* ranks = launched_ranks();
+    if (ranks == nullptr) {
+        if (options.shard.of == 1) tell_tasks_are_no_ranks();
+        return Run(options, nullptr).go();
+    }
+    RankTeam team(*ranks);
+    auto own = options;
+    team.together([&] {
+        refuse_what_ranks_cannot(options);
+        own.request.devices = {team.own_device(options)};
+    });
+    return Run(own, &team).go();
+}
+
+} // namespace tandem

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "harness/commands/run_parts.h"
+
+#include "harness/commands/standard_streams.h"
+#include "harness/record/table/table.h"
+#include "harness/record/verdict.h"
+
+#include <fmt/format.h>
+#include <random>
+
+namespace tandem {
+
+/// The plan of the options, or one of a single product.
+PlanFile plan_of(const RunOptions& options) {
+    Product given{options.scenes, {}, options.request};
+    if (!options.frames.empty()) given.frames = {options.frames};
+    if (given.scenes.empty()) given.scenes.emplace_back(); // of --mesh, or the message that there is none
+    PlanFile plan;
+    if (options.plan) {
+        plan = *options.plan;
+        replace(plan, given);
+    } else {
+        plan.products = {given};
+    }
+    return plan;
+}
+
+/// What is not measured, and why.
+void tell_left_out(const CellGroups& all) {
+    if (all.repeated > 0)
+        tell("tandem: {} cells are named more than once; each is measured once\n", all.repeated);
+    for (const auto& [why, count] : all.impossible)
+        tell("tandem: skipped {} impossible combination{}: {}\n", count, count == 1 ? "" : "s", why);
+}
+
+void tell_skipped(const InputError& error) { tell("tandem: skipped a cell: {}\n", error.what()); }
+
+Measuring measuring_of(const RunOptions& options) {
+    Measuring measuring;
+    measuring.check = {options.check, options.count, nullptr};
+    measuring.enough = {options.repeat, options.noise, options.seconds};
+    measuring.seed = options.seed ? *options.seed : std::random_device{}();
+    return measuring;
+}
+
+void print_results(std::span<const CellResult* const> results) {
+    std::vector<Row> rows;
+    std::vector<const CellResult*> measured;
+    for (const auto* result : results) {
+        if (!result->measured) continue;
+        measured.push_back(result);
+        rows.push_back({result->cell, &result->measurement});
+    }
+    if (rows.empty()) return;
+    put("\n{}\n", result_tables(rows, prints_colour()));
+    for (const auto* result : measured) {
+        const auto doubt = doubts(*result);
+        put("{}: {}{}\n", describe(*result->cell), verdict(result->measurement),
+            doubt.empty() ? "" : "\n  " + doubt);
+    }
+}
+
+} // namespace tandem

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "harness/commands/standard_streams.h"
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace tandem {
+
+namespace {
+
+/// Of the first write to standard output that failed; 0: none.
+int output_error = 0;
+bool is_silent = false;
+
+void do_nothing(int) {}
+
+/// A handler, for programs that this one starts begin without it; an ignored signal is inherited.
+void make_an_error_of(int signal) {
+    struct sigaction action {};
+    action.sa_handler = do_nothing;
+    action.sa_flags = SA_RESTART;
+    sigaction(signal, &action, nullptr);
+}
+
+} // namespace
+
+void prepare_standard_streams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (fcntl(stream, F_GETFD) >= 0) continue;
+        // The lowest free number is this one. Standard output cannot be written to then, as if it were closed
+        // still; messages that nobody wants go nowhere.
+        (void)open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+    }
+    for (const int signal : {SIGPIPE, SIGXFSZ}) make_an_error_of(signal);
+}
+
+bool prints_colour() {
+    const char* no = std::getenv("NO_COLOR");
+    return isatty(STDOUT_FILENO) != 0 && (no == nullptr || *no == '\0');
+}
+
+void put_text(std::string_view text) {
+    if (output_error != 0 || is_silent) return;
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) output_error = errno;
+}
+
+void tell_text(std::string_view text) {
+    if (!is_silent) tell_text_from_every_rank(text);
+}
+
+void silence_streams() { is_silent = true; }
+
+void tell_text_from_every_rank(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
+
+bool flush_output() {
+    if (std::fflush(stdout) != 0 && output_error == 0) output_error = errno;
+    return output_error == 0;
+}
+
+int finish_output(int code) {
+    if (flush_output()) return code;
+    tell("tandem: standard output could not be written ({})\n", std::strerror(output_error));
+    return 3;
+}
+
+} // namespace tandem

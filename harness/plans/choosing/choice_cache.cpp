@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "harness/plans/choosing/choice_cache.h"
+
+#include "algorithms/sources.h"
+#include "base/own_folder.h"
+#include "harness/record/environment.h"
+#include "base/digest.h"
+#include "base/error.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+namespace tandem {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
+
+/// n as 4 to the power of the result, rounded down.
+Json power_of_4(std::uint64_t n) { return n == 0 ? Json() : Json((std::bit_width(n) - 1) / 2); }
+
+Json device_json(const Device& device) {
+    const auto& info = device.info();
+    const auto limit = device.memory_limit();
+    return {{"backend", info.id.substr(0, info.id.find(':'))},
+            {"name", info.name},
+            {"driver", info.driver},
+            {"compiler", info.compiler},
+            {"compute_units", info.compute_units},
+            {"memory_limit", limit == Device::no_memory_limit ? Json() : Json(limit)}};
+}
+
+/// An absolute path of an environment variable; empty without one.
+fs::path path_in(const char* variable) {
+    const auto* text = std::getenv(variable);
+    return text == nullptr || *text != '/' ? fs::path() : fs::path(text);
+}
+
+/// All of `text` in `file` or what was there before; whoever reads sees no part of it.
+bool replace(const fs::path& file, const std::string& text) {
+    auto beside = file;
+    beside += fmt::format(".{}", ::getpid());
+    std::ofstream out(beside);
+    out << text;
+    out.close();
+    std::error_code code;
+    if (out) fs::rename(beside, file, code);
+    if (out && !code) return true;
+    fs::remove(beside, code);
+    return false;
+}
+
+} // namespace
+
+Json question_of(const Cell& cell, const Scene& scene, std::uint64_t pairs) {
+    Json devices = Json::array();
+    for (const auto* device : cell.devices) devices.push_back(device_json(*device));
+    std::string all;
+    for (const auto& candidate : cell.candidates)
+        all += fmt::format("{} {} {}\n", candidate.algorithm->name(), candidate.preset,
+                           candidate.settings.texts());
+    const bool deformable = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                        [](const auto& body) { return body.deformable; });
+    return {{"devices", devices},
+            {"bodies", power_of_4(scene.bodies.size())},
+            {"tetrahedra", power_of_4(tetrahedron_count(scene))},
+            {"candidate_pairs", power_of_4(pairs)},
+            {"deformable", deformable},
+            {"candidates", hex(digest_of(all))}};
+}
+
+fs::path ChoiceCache::default_folder() {
+    if (const auto* given = std::getenv("TANDEM_KERNEL_CACHE"); given != nullptr && *given != 0) {
+        if (const auto why = why_not_own(given); !why.empty())
+            throw InputError(fmt::format("TANDEM_KERNEL_CACHE: {}", why));
+        return given;
+    }
+    // Nobody has asked for these: where they are not this user's own, nothing is kept.
+    fs::path folder;
+    if (const auto cache = path_in("XDG_CACHE_HOME"); !cache.empty())
+        folder = cache / "tandem";
+    else if (const auto home = path_in("HOME"); !home.empty())
+        folder = home / ".cache" / "tandem";
+    return folder.empty() || !why_not_own(folder).empty() ? fs::path() : folder;
+}
+
+fs::path ChoiceCache::file_of(const Json& question) const {
+    return folder_ / fmt::format("choice-{}.json", hex(digest_of(question.dump())));
+}
+
+std::optional<Choice> ChoiceCache::find(const Json& question, std::string& warning) const {
+    warning.clear();
+    if (folder_.empty()) return std::nullopt;
+    std::ifstream file(file_of(question));
+    if (!file) return std::nullopt;
+    try {
+        const auto json = Json::parse(file);
+        if (json.at("program").get<std::string>() != program_ || json.at("question") != question)
+            return std::nullopt;
+        return choice_of(json.at("choice"));
+    } catch (const Json::exception&) {
+        warning =
+            fmt::format("{}: no choice can be read from it; it is made again", file_of(question).string());
+    }
+    return std::nullopt;
+}
+
+std::string ChoiceCache::keep(const Json& question, const Choice& choice) const {
+    if (folder_.empty()) return {};
+    const auto code = make_own(folder_);
+    const Json json{{"program", program_}, {"question", question}, {"choice", choice_json(choice)}};
+    // File names in keys of scenes need not be UTF-8; JSON must be.
+    if (!code && replace(file_of(question), json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"))
+        return {};
+    return fmt::format("{}: cannot be written; the next run chooses again", file_of(question).string());
+}
+
+std::string program_version() {
+    const auto built = environment();
+    return fmt::format("{}{} kernels {}", built.commit, built.dirty ? " changed" : "",
+                       hex(kernel_sources_digest()));
+}
+
+} // namespace tandem

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "harness/plans/choosing/choose.h"
+
+#include "harness/plans/choosing/trials.h"
+#include "harness/commands/standard_streams.h"
+#include "harness/sampling/statistics.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tandem {
+
+namespace {
+
+/// Compiling a candidate takes a GPU's compiler a second or two, a frame a millisecond.
+constexpr double preparing_per_measuring = 6;
+
+Choice::Candidate timed(const Cell& cell, const std::vector<std::int64_t>& replays, std::string failure) {
+    auto candidate = named(cell);
+    if (!replays.empty()) candidate.median_ns = median(replays);
+    candidate.replays = replays.size();
+    candidate.failure = std::move(failure);
+    return candidate;
+}
+
+/// Candidates in the order of a Choice.
+std::vector<Choice::Candidate> ordered(const Cell& cell, const SearchResult& found, const Trials& trials) {
+    auto order = found.ranking;
+    for (const bool failed : {true, false})
+        for (std::size_t i = 0; i < cell.candidates.size(); ++i)
+            if (trials.failure(i).empty() != failed
+                && std::find(found.ranking.begin(), found.ranking.end(), i) == found.ranking.end())
+                order.push_back(i);
+    std::vector<Choice::Candidate> all;
+    all.reserve(order.size());
+    for (const auto i : order) all.push_back(timed(cell.candidates[i], found.replays[i], trials.failure(i)));
+    return all;
+}
+
+/// Nothing when every candidate failed.
+std::optional<Choice> compare(const Cell& cell, Trials& trials, const ChoosingOptions& options) {
+    SearchSteps steps;
+    steps.replay = [&](std::size_t i) {
+        options.progress(fmt::format("auto: candidate {} of {}: {}", i + 1, cell.candidates.size(),
+                                     describe(cell.candidates[i])));
+        return trials.replay(i);
+    };
+    steps.measured = [&] { return trials.measured_seconds(); };
+    steps.preparing = [&] { return trials.preparing_seconds(); };
+    steps.drop = [&](std::size_t i) { trials.drop(i); };
+    const auto found =
+        search(cell.candidates.size(), steps, {options.seconds, preparing_per_measuring * options.seconds});
+    if (found.ranking.empty()) return std::nullopt;
+    Choice choice;
+    choice.candidates = ordered(cell, found, trials);
+    choice.seconds = trials.measured_seconds();
+    choice.preparing = trials.preparing_seconds();
+    return choice;
+}
+
+/// Puts the chosen candidate in the cell's place. False when there is none of that name any more.
+bool settle(Cell& cell, const Choice& choice) {
+    const auto chosen =
+        std::find_if(cell.candidates.begin(), cell.candidates.end(),
+                     [&](const auto& candidate) { return names(choice.candidates.front(), candidate); });
+    if (chosen == cell.candidates.end()) return false;
+    auto decided = *chosen;
+    decided.chosen = std::make_shared<const Choice>(choice);
+    cell = std::move(decided);
+    return true;
+}
+
+std::string describe(const Choice::Candidate& candidate) {
+    std::string text = candidate.algorithm + " " + candidate.preset;
+    char before = ' ';
+    for (const auto& [name, value] : candidate.settings) {
+        text += fmt::format("{}{}={}", before, name, value);
+        before = ',';
+    }
+    return text;
+}
+
+/// "best of 14 candidates, 12 % before NEXT".
+std::string lead(const Choice& choice) {
+    const auto margin = choice.margin();
+    const auto tried = std::count_if(choice.candidates.begin(), choice.candidates.end(),
+                                     [](const auto& candidate) { return candidate.median_ns.has_value(); });
+    auto text = fmt::format("best of {} candidates", choice.candidates.size());
+    if (static_cast<std::size_t>(tried) < choice.candidates.size()) text += fmt::format(" ({} timed)", tried);
+    return margin ? fmt::format("{}, {:.1f} % before {}", text, *margin * 100, describe(*choice.runner_up()))
+                  : text;
+}
+
+void say(const Cell& cell, double limit, const std::filesystem::path& file) {
+    const auto& choice = *cell.chosen;
+    if (choice.from_cache)
+        tell("auto: {}, as {} says: {} on {}; --choose-afresh measures again\n", describe(cell),
+             file.string(), lead(choice), choice.scene);
+    else
+        tell("auto: {}: {} on frames {}:{}, in {:.1f} s of replays (at most {:g}) and {:.1f} s of "
+             "preparing\n",
+             describe(cell), lead(choice), choice.first, choice.last, choice.seconds, limit,
+             choice.preparing);
+}
+
+void warn(const std::string& line) {
+    if (!line.empty()) tell("tandem: {}\n", line);
+}
+
+/// Candidate pairs a frame, of the first candidate that works: the same for all of them.
+std::uint64_t pairs_of_a_frame(const Cell& cell, Trials& trials, std::size_t frames) {
+    for (std::size_t i = 0; i < cell.candidates.size(); ++i)
+        if (trials.prepare(i)) break;
+    return trials.pairs() / frames;
+}
+
+} // namespace
+
+void choose(Cell& cell, const Scene& scene, const FrameRange& range, const ChoosingOptions& options) {
+    if (cell.candidates.empty()) return;
+    const auto frames = std::min(range.size(), most_choosing_frames);
+    const ChoiceCache cache(options.folder, program_version());
+    const auto undecided = cell; // sessions refer to its candidates
+    options.progress(fmt::format("auto: {} candidates", undecided.candidates.size()));
+    Trials trials(undecided.candidates, scene, range, frames);
+    const auto question = question_of(undecided, scene, pairs_of_a_frame(undecided, trials, frames));
+    std::string warning;
+    auto choice = options.afresh ? std::nullopt : cache.find(question, warning);
+    if (choice && settle(cell, *choice)) {
+        auto kept = *choice;
+        kept.from_cache = true;
+        cell.chosen = std::make_shared<const Choice>(kept);
+    } else if ((choice = compare(undecided, trials, options))) {
+        choice->scene = scene.key;
+        choice->first = range.first();
+        choice->last = range.first() + frames - 1;
+        settle(cell, *choice);
+    }
+    options.progress("");
+    warn(warning);
+    if (!cell.chosen) return;
+    if (!cell.chosen->from_cache) warn(cache.keep(question, *cell.chosen));
+    say(cell, options.seconds, cache.file_of(question));
+}
+
+} // namespace tandem

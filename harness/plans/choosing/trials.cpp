@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "harness/plans/choosing/trials.h"
+
+#include "harness/sampling/measurement.h"
+#include "base/error.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return static_cast<double>(since(begin)) * 1e-9; }
+
+bool is_crowded(const Device& device) {
+    const auto room = std::min<std::uint64_t>(device.info().global_bytes, device.memory_limit());
+    return device.bytes_allocated() > room / 4;
+}
+
+} // namespace
+
+Trials::Trials(std::span<const Cell> candidates, const Scene& scene, const FrameRange& range,
+               std::size_t frames)
+    : candidates_(candidates),
+      scene_(scene),
+      range_(range),
+      frames_(frames),
+      sessions_(candidates.size()),
+      failures_(candidates.size()) {
+    for (auto* device : candidates.front().devices) device->set_clocks(Clocks::off);
+}
+
+void Trials::free_sessions() {
+    for (auto& session : sessions_) session.reset();
+}
+
+void Trials::make_session(std::size_t candidate) {
+    const auto& cell = candidates_[candidate];
+    sessions_[candidate] = cell.algorithm->prepare(cell.devices, scene_, cell.settings);
+    run(candidate);
+}
+
+/// Alone on its devices when memory does not suffice for it and what is there.
+void Trials::make_room_and_session(std::size_t candidate) {
+    const auto& devices = candidates_.front().devices;
+    if (std::any_of(devices.begin(), devices.end(), [](const auto* device) { return is_crowded(*device); }))
+        free_sessions();
+    try {
+        make_session(candidate);
+    } catch (const OutOfMemory&) {
+        free_sessions();
+        make_session(candidate);
+    }
+}
+
+std::int64_t Trials::run(std::size_t candidate) {
+    auto& session = *sessions_[candidate];
+    session.reset();
+    std::int64_t sum = 0;
+    std::uint64_t pairs = 0;
+    for (std::size_t i = 0; i < frames_; ++i) {
+        const auto frame = range_.frame(i);
+        for (auto* device : candidates_[candidate].devices) device->finish();
+        const auto begin = Clock::now();
+        const auto result = session.run(*frame);
+        sum += since(begin);
+        pairs += result.count;
+    }
+    if (pairs_.value_or(pairs) != pairs)
+        throw DeviceError(fmt::format("found {} candidate pairs, the first candidate {}", pairs, *pairs_));
+    pairs_ = pairs;
+    return sum;
+}
+
+bool Trials::prepare(std::size_t candidate) {
+    if (!failures_[candidate].empty()) return false;
+    if (sessions_[candidate]) return true;
+    const auto begin = Clock::now();
+    try {
+        make_room_and_session(candidate);
+    } catch (const DeviceError& error) {
+        failures_[candidate] = error.what();
+    } catch (const InputError& error) {
+        failures_[candidate] = error.what();
+    }
+    if (!failures_[candidate].empty()) drop(candidate);
+    preparing_ += seconds_since(begin);
+    return sessions_[candidate] != nullptr;
+}
+
+std::optional<std::int64_t> Trials::replay(std::size_t candidate) {
+    if (!prepare(candidate)) return std::nullopt;
+    try {
+        const auto time = run(candidate);
+        measured_ += static_cast<double>(time) * 1e-9;
+        return time;
+    } catch (const DeviceError& error) {
+        failures_[candidate] = error.what();
+    }
+    drop(candidate);
+    return std::nullopt;
+}
+
+} // namespace tandem

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "harness/plans/frames.h"
+
+#include "algorithms/bodies/origin.h"
+#include "base/error.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+/// Of any frame of the scene, without lists of skipped tetrahedra.
+std::uint64_t bytes_of_frame(const Scene& scene) {
+    constexpr std::uint64_t lists =
+        sizeof(decltype(Frame::deformed)::value_type) + sizeof(decltype(Frame::skipped)::value_type);
+    auto bytes = sizeof(Frame) + scene.bodies.size() * (sizeof(Pose) + lists);
+    for (const auto& body : scene.bodies)
+        if (body.deformable) bytes += scene.meshes[body.mesh].vertices.size() * sizeof(Eigen::Vector3d);
+    return bytes;
+}
+
+} // namespace
+
+void check_frames(const Scene& scene, std::size_t first, std::size_t last) {
+    if (first <= last && last < scene.frame_count) return;
+    const auto wanted = fmt::format("frames {}:{} are impossible", first, last);
+    if (first <= last && scene.dynamics)
+        throw InputError(
+            fmt::format("{}; scene {} moves by simulation and has its start only, frame 0: record it "
+                        "with 'tandem simulate {} -o FILE.frames' and name FILE.frames",
+                        wanted, scene.name, scene.name));
+    if (first <= last && !scene.end.empty()) throw InputError(fmt::format("{}; {}", wanted, scene.end));
+    throw InputError(fmt::format("{}; scene {} has frames 0:{}", wanted, scene.name, scene.frame_count - 1));
+}
+
+FrameRange::FrameRange(const Scene& scene, std::size_t first, std::size_t last, Degenerate handling,
+                       std::uint64_t budget)
+    : scene_(scene), first_(first), last_(last) {
+    check_frames(scene, first, last);
+    const auto bytes = bytes_of_frame(scene);
+    FlawSearch search(scene, first);
+    auto frames = look_through(search, std::clamp<std::uint64_t>(budget / bytes, 1, size()));
+    flaws_ = search.flaws(handling);
+    auto all_bytes = bytes * size();
+    if (handling == Degenerate::skip && flaws_.any()) {
+        all_bytes += (flaws_.degenerate + flaws_.non_finite) * sizeof(Frame::skipped[0][0]);
+        left_out_.emplace(std::move(search));
+    }
+    if (all_bytes > budget) return;
+    held_ = std::move(frames);
+    if (left_out_)
+        for (auto& frame : held_) left_out_->leave_out(*frame);
+}
+
+/// Every frame, `most` at a time, which are searched on all cores together; returns the last of them.
+FrameRange::Frames FrameRange::look_through(FlawSearch& search, std::size_t most) const {
+    Frames frames;
+    for (std::size_t begin = 0; begin < size(); begin += most) {
+        frames.clear(); // before the next take memory
+        for (auto i = begin; i < std::min(size(), begin + most); ++i)
+            frames.push_back(std::make_shared<Frame>(scene_.frame(first_ + i)));
+        search.add(frames);
+    }
+    return frames;
+}
+
+std::shared_ptr<Frame> FrameRange::made(std::size_t index) const {
+    auto frame = std::make_shared<Frame>(scene_.frame(first_ + index));
+    if (left_out_) left_out_->leave_out(*frame);
+    return frame;
+}
+
+std::shared_ptr<const Frame> FrameRange::frame(std::size_t index) const {
+    if (!held_.empty()) return held_.at(index);
+    const std::lock_guard lock(mutex_);
+    if (recent_ && recent_index_ == index) return recent_;
+    recent_.reset(); // before the next takes memory
+    recent_ = made(index);
+    recent_index_ = index;
+    return recent_;
+}
+
+std::shared_ptr<const Frame> FrameRange::frame(std::size_t index, Origin origin) const {
+    if (origin == Origin::world) return frame(index);
+    return std::make_shared<const Frame>(counted_from(origin_of(scene_, origin), *frame(index)));
+}
+
+} // namespace tandem

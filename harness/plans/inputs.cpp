@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include "harness/plans/inputs.h"
+
+#include "algorithms/bodies/range.h"
+#include "base/error.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <set>
+#include <sstream>
+
+namespace tandem {
+
+namespace {
+
+/// "tx ty tz qw qx qy qz". The bounds on the squared norm keep normalising clear of overflow and of 0 / 0.
+Pose parse_pose(const std::string& text) {
+    std::istringstream in(text);
+    std::array<double, 7> v{};
+    for (auto& value : v) in >> value;
+    std::string rest;
+    const double norm = v[3] * v[3] + v[4] * v[4] + v[5] * v[5] + v[6] * v[6];
+    if (!in || in >> rest || !(norm > 1e-300 && norm < 1e300))
+        throw InputError(fmt::format(
+            "--pose '{}': give seven numbers \"tx ty tz qw qx qy qz\" with a quaternion that is not 0",
+            text));
+    return {Eigen::Quaterniond(v[3], v[4], v[5], v[6]).normalized(), Eigen::Vector3d(v[0], v[1], v[2])};
+}
+
+/// One number of `whole`, which the message repeats as it was given.
+std::size_t parse_number(std::string_view text, const std::string& whole) {
+    std::size_t value = 0;
+    const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (result.ec != std::errc{} || result.ptr != text.data() + text.size())
+        throw InputError(fmt::format("--frames {}: give FIRST:LAST, both inclusive, or one number", whole));
+    return value;
+}
+
+} // namespace
+
+Scene open_scene(const RunOptions& options) {
+    if (options.meshes.empty()) {
+        if (options.scene.empty())
+            throw InputError("no scene; name one (see 'tandem scenes') or give --mesh FILE");
+        if (!options.poses.empty()) throw InputError("--pose goes with --mesh; a scene brings its own poses");
+        return make_scene(options.scene);
+    }
+    if (!options.scene.empty() || options.scenes.size() > 1)
+        throw InputError("a scene and --mesh exclude each other; leave one out");
+    if (options.poses.size() > options.meshes.size())
+        throw InputError("more --pose than --mesh; give one pose a mesh at most");
+    std::vector<Pose> poses;
+    for (const auto& text : options.poses) poses.push_back(parse_pose(text));
+    return scene_from_meshes(options.meshes, poses);
+}
+
+FrameRange open_frames(const RunOptions& options, const Scene& scene) {
+    const auto [first, last] = named_frames(options.frames, scene);
+    return {scene, first, last, options.degenerate};
+}
+
+std::pair<std::size_t, std::size_t> named_frames(const std::string& frames, const Scene& scene) {
+    if (frames.empty()) return {0, scene.frame_count - 1};
+    const auto colon = frames.find(':');
+    const auto text = std::string_view(frames);
+    const auto first = parse_number(text.substr(0, colon), frames);
+    const auto last = colon == std::string::npos ? first : parse_number(text.substr(colon + 1), frames);
+    check_frames(scene, first, last);
+    return {first, last};
+}
+
+std::vector<DeviceGroup> open_devices(const RunOptions& options, const std::vector<BackendReport>& backends,
+                                      std::span<const std::string> names) {
+    limit_memory(options, backends);
+    return choose_devices(backends, names);
+}
+
+void limit_memory(const RunOptions& options, const std::vector<BackendReport>& backends) {
+    if (options.memory == 0) return;
+    for (const auto& backend : backends)
+        for (const auto& device : backend.devices) device->set_memory_limit(options.memory);
+}
+
+void check_required(const std::vector<BackendReport>& backends, const std::vector<std::string>& require) {
+    std::vector<std::string> there;
+    for (const auto& backend : backends)
+        for (const auto& device : backend.devices) there.push_back(device->info().id);
+    for (const auto& wanted : require) {
+        if (is_there(wanted, backends)) continue;
+        const auto backend = std::find_if(backends.begin(), backends.end(),
+                                          [&](const auto& report) { return report.name == wanted; });
+        const auto reason = backend != backends.end() ? backend->reason : "no such backend or device";
+        throw InputError(
+            fmt::format("--require {}: {} (there are: {})", wanted, reason, fmt::join(there, ", ")));
+    }
+}
+
+void check_coordinates(const Cell& cell, const Scene& scene, const Frame& frame) {
+    check_range(scene, frame, geometry_of(cell.settings).precision);
+}
+
+void check_coordinates(const Cell& cell, const Scene& scene, const FrameRange& range) {
+    for (std::size_t i = 0; i < range.size(); ++i) check_coordinates(cell, scene, *range.frame(i));
+}
+
+void check_outputs(const RunOptions& options, std::span<const Cell> cells) {
+    std::set<std::filesystem::path> paths;
+    for (const auto* path : {&options.out, &options.dump_pairs, &options.dump_contacts, &options.trace})
+        if (!path->empty() && !paths.insert(std::filesystem::path(*path).lexically_normal()).second)
+            throw InputError(fmt::format("{}: named for two outputs; choose another file", *path));
+    const bool dumps = !options.dump_pairs.empty() || !options.dump_contacts.empty();
+    if (options.profile > 0 && (dumps || !options.out.empty() || !options.trace.empty()))
+        throw InputError("--profile only replays frames; leave out --out, --trace and dumps");
+    for (const auto& cell : cells) {
+        if (dumps && cell.settings[parameters::output] != Output::pairs)
+            throw InputError("dumps need pairs; leave output out or set output=pairs");
+        if (!options.dump_contacts.empty() && cell.settings[parameters::contact_rule] == ContactRule::none)
+            throw InputError("--dump-contacts needs contacts; leave contact_rule out");
+    }
+}
+
+} // namespace tandem

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "harness/plans/key.h"
+
+#include "harness/plans/device_models.h"
+#include "harness/sampling/ranks/rank_team.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+std::string models_of(const Cell& cell) {
+    std::string models;
+    for (const auto& info : infos_of(cell)) models += (models.empty() ? "" : "+") + model_of(info);
+    return models;
+}
+
+/// "name=value,..." in the order of names.
+std::string settings_key(const SettingTexts& settings) {
+    std::string key;
+    for (const auto& [name, value] : settings)
+        key += fmt::format("{}{}={}", key.empty() ? "" : ",", name, value);
+    return key;
+}
+
+/// What was done with flawed tetrahedra, where that changes the answer.
+std::string handling_key(const Flaws& flaws) {
+    return flaws.handling == Degenerate::skip && flaws.any() ? ",degenerate=skip" : "";
+}
+
+} // namespace
+
+std::string with_settings(const std::string& before_settings, const SettingTexts& settings) {
+    return before_settings + "|" + settings_key(settings);
+}
+
+std::string key_of(const Cell& cell, const Settings& settings, const Scene& scene, const FrameRange& range) {
+    return with_settings(fmt::format("{}|{}|{}@{:016x}|{}:{}{}", cell.algorithm->name(), models_of(cell),
+                                     scene.key, scene.digest, range.first(), range.last(),
+                                     handling_key(range.flaws())),
+                         settings.texts());
+}
+
+} // namespace tandem

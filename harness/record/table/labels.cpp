@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "harness/record/table/labels.h"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+#include <map>
+#include <set>
+
+namespace tandem {
+
+namespace {
+
+/// What a row may be told apart by, in the order of a label.
+struct Part {
+    std::string name, text;
+    bool is_setting = false;
+    bool is_said = true; ///< what all share is said of this one: no preset says it
+};
+using Parts = std::vector<Part>;
+
+Parts parts_of(const Row& row) {
+    const auto& cell = *row.cell;
+    Parts parts{{"algorithm", std::string(cell.algorithm->name())}, {"preset", cell.preset}};
+    const auto changed = changes(cell);
+    for (const auto& [name, value] : cell.settings.texts())
+        parts.push_back({name, fmt::format("{}={}", name, value), true, changed.contains(name)});
+    parts.push_back({"device", "on " + name_of(cell.devices)});
+    if (!row.scene.empty()) parts.push_back({"scene", row.scene});
+    return parts;
+}
+
+std::string text_of(const Parts& parts, const std::string& name) {
+    const auto found = std::ranges::find_if(parts, [&](const Part& part) { return part.name == name; });
+    return found == parts.end() ? std::string() : found->text;
+}
+
+/// What decides which pairs are candidates, whatever the algorithm: cells that differ in it are not compared.
+constexpr std::array geometry_names{"k", "axes", "precision", "rounding", "placement", "origin"};
+
+bool is_geometry(const Part& part) {
+    return std::ranges::find(geometry_names, part.name) != geometry_names.end();
+}
+
+/// Among which rows a part tells one apart: settings those of one algorithm and preset, which says what its
+/// own are.
+std::string scope_of(const Part& part, const Parts& parts) {
+    return part.is_setting && !is_geometry(part) ? parts[0].text + " " + parts[1].text : "";
+}
+
+/// The texts that rows have for a part of a name within a scope; empty for a row without it.
+class Texts {
+public:
+    explicit Texts(const std::vector<Parts>& rows) {
+        for (const auto& parts : rows) {
+            for (const auto& part : parts) texts_[{scope_of(part, parts), part.name}].insert(part.text);
+            for (const auto* name : geometry_names) texts_[{"", name}].insert(text_of(parts, name));
+        }
+    }
+    bool vary(const Part& part, const Parts& parts) const {
+        return texts_.at({scope_of(part, parts), part.name}).size() > 1;
+    }
+
+private:
+    std::map<std::pair<std::string, std::string>, std::set<std::string>> texts_;
+};
+
+std::set<std::string> varying_names(const Parts& parts, const Texts& texts) {
+    std::set<std::string> varying;
+    for (const auto& part : parts)
+        if (texts.vary(part, parts)) varying.insert(part.name);
+    return varying;
+}
+
+/// Of one setting that was swept every value is said; of several those that the preset does not have, or
+/// labels would be longer than lines.
+bool is_in_label(const Part& part, const Parts& parts, const std::set<std::string>& varying) {
+    if (part.name == "algorithm") return true;
+    if (!varying.contains(part.name)) return false;
+    if (!part.is_setting || is_geometry(part) || part.is_said) return true;
+    return std::ranges::count_if(parts,
+                                 [&](const Part& other) {
+                                     return other.is_setting && !is_geometry(other)
+                                            && varying.contains(other.name);
+                                 })
+           == 1;
+}
+
+void append_word(std::string& text, const std::string& word) {
+    if (!word.empty()) text += (text.empty() ? "" : " ") + word;
+}
+
+} // namespace
+
+RowLabels row_labels(std::span<const Row> rows) {
+    std::vector<Parts> all;
+    for (const auto& row : rows) all.push_back(parts_of(row));
+    std::set<std::string> said{"algorithm"}, varying_anywhere;
+    std::vector<std::set<std::string>> varying;
+    const Texts texts(all);
+    for (const auto& parts : all) {
+        varying.push_back(varying_names(parts, texts));
+        varying_anywhere.insert(varying.back().begin(), varying.back().end());
+    }
+    RowLabels labels;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        auto& label = labels.of.emplace_back();
+        for (const auto& part : all[i]) {
+            if (is_in_label(part, all[i], varying[i]))
+                append_word(label, part.text);
+            else if (!varying_anywhere.contains(part.name) && part.is_said && said.insert(part.name).second)
+                labels.common += (labels.common.empty() ? "" : ", ")
+                                 + (part.name == "preset" ? "preset " + part.text : part.text);
+        }
+    }
+    return labels;
+}
+
+} // namespace tandem

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "harness/sampling/interrupt.h"
+
+#include <array>
+#include <csignal>
+#include <ctime>
+
+namespace tandem {
+
+namespace {
+
+volatile std::sig_atomic_t signalled = 0;
+constexpr std::array signals{SIGINT, SIGTERM, SIGHUP};
+constexpr std::size_t at_sigterm = 1; ///< of them
+std::array<struct sigaction, signals.size()> actions_before{};
+timespec first_sigterm{};
+
+void ask_to_end(int) { signalled = 1; }
+
+/// Slurm tells of a time limit by two within milliseconds, which are one.
+void ask_by_sigterm(int) {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    if (first_sigterm.tv_sec != 0 && now.tv_sec > first_sigterm.tv_sec + 1) {
+        sigaction(SIGTERM, &actions_before[at_sigterm], nullptr);
+        raise(SIGTERM);
+    }
+    if (first_sigterm.tv_sec == 0) first_sigterm = now;
+    signalled = 1;
+}
+
+} // namespace
+
+Interrupt::Interrupt() {
+    signalled = 0;
+    first_sigterm = {};
+    struct sigaction action {};
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+        // Once: the second signal does what it would have done. Reads and writes go on.
+        const bool is_term = i == at_sigterm;
+        action.sa_handler = is_term ? ask_by_sigterm : ask_to_end;
+        action.sa_flags = SA_RESTART | (is_term ? 0 : static_cast<int>(SA_RESETHAND));
+        sigaction(signals[i], nullptr, &actions_before[i]);
+        // What the caller ignores, as nohup does, stays ignored.
+        if (actions_before[i].sa_handler != SIG_IGN) sigaction(signals[i], &action, nullptr);
+    }
+}
+
+Interrupt::~Interrupt() {
+    for (std::size_t i = 0; i < signals.size(); ++i) sigaction(signals[i], &actions_before[i], nullptr);
+}
+
+bool Interrupt::asked() { return signalled != 0; }
+
+} // namespace tandem

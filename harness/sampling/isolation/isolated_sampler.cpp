@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// The side of the process that asks.
+#include "harness/sampling/isolation/isolated_sampler.h"
+
+#include "harness/sampling/isolation/child_process.h"
+#include "harness/sampling/isolation/request.h"
+#include "base/error.h"
+
+#include <array>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tandem {
+
+namespace {
+
+/// The answer, which is the last line: libraries have been seen to print before it. Throws DeviceError when
+/// there is none.
+nlohmann::json answer_of(const ChildResult& result) {
+    auto text = result.output;
+    while (text.ends_with('\n')) text.pop_back();
+    auto json = nlohmann::json::parse(text.substr(text.rfind('\n') + 1), nullptr, false);
+    if (json.is_object()) return json;
+    throw DeviceError(
+        fmt::format("its process {}", result.failure.empty() ? "ended without an answer" : result.failure));
+}
+
+/// Asks a process of its own. Throws DeviceError where that ended without an answer, and InputError where the
+/// request was wrong.
+nlohmann::json ask_a_process(const nlohmann::json& request, double timeout) {
+    ChildProcess child(std::array<std::string, 1>{"isolated"});
+    auto answer = answer_of(child.ask(request.dump(), timeout));
+    if (answer.contains("input_error")) throw InputError(answer["input_error"].get<std::string>());
+    return answer;
+}
+
+} // namespace
+
+void leave_out_this_process(std::span<RoundConditions> rounds, std::uint32_t first) {
+    for (auto& round : rounds)
+        if (round.round >= first)
+            for (auto* reading : {&round.before, &round.after})
+                for (auto& gpu : reading->gpus)
+                    if (gpu.processes && *gpu.processes > 0) --*gpu.processes;
+}
+
+void IsolatedSampler::ask(const char* work, const CheckOptions& options, std::size_t samples) {
+    const auto request = request_json(options_, *this, {work, samples, options});
+    const auto answer = ask_a_process(request, options_.timeout);
+    if (answer.contains("checked") && !answer["checked"].is_null()) {
+        take_checked(state_, answer["checked"], cell_);
+        const auto first = state_.rounds;
+        take_rounds(state_, answer["rounds"]);
+        leave_out_this_process(state_.measurement.conditions, first);
+    }
+    if (answer.contains("failure")) throw DeviceError(answer["failure"].get<std::string>());
+}
+
+/// Counting as well, in the same process.
+void IsolatedSampler::do_check(const CheckOptions& options) {
+    options.progress(fmt::format("{}: checking in another process", describe(cell_)));
+    ask("check", options, 0);
+}
+
+void IsolatedSampler::do_round(std::size_t samples) { ask("round", {}, samples); }
+
+void IsolatedSampler::do_count_work() { ask("count", {}, 0); }
+
+} // namespace tandem

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// The side of the process that answers.
+#include "harness/plans/inputs.h"
+#include "harness/sampling/isolation/child_process.h"
+#include "harness/sampling/isolation/isolated_sampler.h"
+#include "harness/sampling/isolation/request.h"
+#include "harness/plans/job.h"
+#include "harness/sampling/local_sampler.h"
+#include "harness/commands/standard_streams.h"
+#include "base/error.h"
+
+#include <array>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+namespace tandem {
+
+namespace {
+
+using nlohmann::json;
+
+/// Does what was asked for; a failure of the device leaves what was measured before.
+void work(LocalSampler& sampler, const IsolatedWork& asked, json& answer) {
+    try {
+        if (asked.work == "check") sampler.check(asked.check);
+        if (asked.work == "round") sampler.round(asked.samples);
+        if (asked.work == "count" || (asked.work == "check" && asked.check.count_work)) sampler.count_work();
+    } catch (const DeviceError& error) {
+        answer["failure"] = error.what();
+    } catch (const std::bad_alloc&) {
+        answer["failure"] = "out of host memory; use fewer bodies or frames";
+    }
+}
+
+json answer_to(const json& asked) {
+    auto request = request_of(asked);
+    const auto backends = open_backends(std::array{request.devices}, {});
+    const auto group = open_devices(request.options, backends, std::array{request.devices}).front();
+    const auto& traversal = algorithm(request.algorithm);
+    const auto job = open_job(
+        request.options, {make_cell(traversal, preset(traversal, request.preset), request.settings, group)});
+    const auto kept = checks_folder(request.options);
+    References references(job.scene, job.range, kept);
+    Truths truths(job.scene, job.range, request.options.truth, request.options.truth_contacts, kept);
+    if (request.options.truth != TruthAmount::none) request.work.check.truths = &truths;
+    CellState state;
+    if (!asked.at("checked").is_null()) take_checked(state, asked["checked"], job.cells.front());
+    take_rounds(state, asked.at("rounds"));
+    const auto first = state.rounds;
+    LocalSampler sampler(job.cells.front(), job.scene, job.range, references, std::move(state));
+    json answer = json::object();
+    work(sampler, request.work, answer);
+    answer["checked"] = sampler.state().is_checked() ? checked_json(sampler.state()) : json();
+    answer["rounds"] = rounds_json(sampler.state(), first);
+    return answer;
+}
+
+} // namespace
+
+int isolated_command() {
+    end_with_parent();
+    for (std::string line; std::getline(std::cin, line);) {
+        json answer;
+        try {
+            answer = answer_to(json::parse(line));
+        } catch (const InputError& error) {
+            answer = {{"input_error", error.what()}};
+        } catch (const std::exception& error) {
+            answer = {{"failure", error.what()}};
+        }
+        put("\n{}\n{}", answer.dump(), end_of_answer);
+        flush_output();
+    }
+    return 0;
+}
+
+} // namespace tandem

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "harness/sampling/ranks/rank_team.h"
+
+#include "algorithms/parameters/table.h"
+#include "algorithms/distributed/job_session.h"
+#include "harness/plans/device_models.h"
+#include "harness/plans/cells.h"
+#include "harness/commands/run_parts.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <thread>
+#include <unistd.h>
+
+namespace tandem {
+
+namespace {
+
+/// A processor that ranks share is divided among them, unless the launcher has bound each to a part.
+std::int64_t threads_of_a_rank(const PlaceOnMachine& place) {
+    const auto usable = static_cast<std::int64_t>(std::thread::hardware_concurrency());
+    const bool is_bound = usable < sysconf(_SC_NPROCESSORS_ONLN);
+    return std::max<std::int64_t>(1, is_bound ? usable : usable / static_cast<std::int64_t>(place.count));
+}
+
+} // namespace
+
+std::string RankTeam::own_device(const RunOptions& options) const {
+    const auto names = devices_of(plan_of(options));
+    if (names.size() > 1)
+        throw InputError(fmt::format(
+            "{} are devices of several cells, and all ranks share each cell; name one by --device, "
+            "or one for each rank of a machine joined by +",
+            fmt::join(names, ", ")));
+    if (names.front() == "all")
+        throw InputError("--device all makes several cells; ranks share one, name their devices");
+    return device_of_rank(names.front(), place_);
+}
+
+std::string RankTeam::own_of_each(const std::string& name, const std::vector<BackendReport>& backends) const {
+    std::vector<std::string> ids;
+    for (const auto& backend : backends)
+        for (const auto& device : backend.devices)
+            if (is_among(device->info(), name)) ids.push_back(device->info().id);
+    if (ids.empty()) throw InputError(fmt::format("--device {}: there is no device of that back end", name));
+    return ids[place_.before % ids.size()];
+}
+
+void RankTeam::open(const Device& own) {
+    if (const auto text = shared_gpu(ranks_, own.info()); !text.empty()) throw SharedError<InputError>(text);
+    devices_ = devices_of_ranks(ranks_, own.info());
+}
+
+void RankTeam::check_same(const std::string& own) {
+    const auto first = decided(own);
+    together([&] {
+        if (own != first)
+            throw InputError("its scene or its cells are not those of rank 0; give all ranks the same files");
+    });
+}
+
+std::unique_ptr<Session> RankTeam::prepare(const Cell& cell, const Scene& scene) {
+    auto settings = cell.settings;
+    if (settings[parameters::threads] == 0 && cell.devices.front()->info().id == "host")
+        settings.set(parameters::threads(threads_of_a_rank(place_)));
+    together([&] { cell.algorithm->check(cell.devices, settings); });
+    try {
+        return std::make_unique<JobSession>(
+            ranks_, cell.algorithm->prepare(*cell.devices.front(), scene, settings, ranks_));
+    } catch (const InputError& error) { // of settings, which are the same on all ranks
+        throw SharedError<InputError>(error.what());
+    }
+}
+
+std::unique_ptr<Session> prepare_session(const Cell& cell, const Scene& scene) {
+    return cell.team != nullptr ? cell.team->prepare(cell, scene)
+                                : cell.algorithm->prepare(cell.devices, scene, cell.settings);
+}
+
+std::vector<DeviceInfo> infos_of(const Cell& cell) {
+    if (cell.team != nullptr) return cell.team->devices();
+    std::vector<DeviceInfo> infos;
+    for (const auto* device : cell.devices) infos.push_back(device->info());
+    return infos;
+}
+
+} // namespace tandem

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#include "harness/simulate/simulate.h"
+
+#include "harness/commands/commands.h"
+#include "harness/plans/inputs.h"
+#include "harness/record/journal.h"
+#include "harness/commands/memory_reserve.h"
+#include "harness/simulate/pictures.h"
+#include "harness/commands/progress.h"
+#include "harness/simulate/session.h"
+#include "harness/commands/standard_streams.h"
+#include "scenes/dynamics_settings.h"
+#include "base/error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+namespace tandem {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The first compiles what a device compiles at a first launch, sends what does not move and makes buffers
+/// grow; the second is the sequence of every later frame, and the third makes a graph of it where there are
+/// such.
+constexpr int warming_replays = 3;
+
+/// A scene with dynamics, with the settings of --dynamics over its own.
+Scene open_scene(const SimulateOptions& options) {
+    if (options.scene.empty()) throw InputError("no scene; name one, see 'tandem scenes'");
+    auto scene = make_scene(options.scene);
+    if (!scene.dynamics)
+        throw InputError(fmt::format("scene {} has no dynamics, its motion is scripted; measure it with "
+                                     "'tandem run'",
+                                     scene.key));
+    auto dynamics = *scene.dynamics;
+    for (const auto& assignment : options.dynamics) set_dynamics(dynamics, assignment);
+    scene.dynamics = std::make_shared<const Dynamics>(std::move(dynamics));
+    return scene;
+}
+
+/// A body moves by its contacts: unless asked for others, the least translation for pairs that surely meet.
+/// What cells are measured with is the paper's rule, which pushes bodies that only touch metres sideways.
+void prefer_certain_contacts(Request& request, std::span<const DeviceGroup> devices) {
+    const auto prefer = [&](const char* name, const char* value) {
+        const auto given = std::any_of(request.sets.begin(), request.sets.end(),
+                                       [&](const auto& set) { return set.first == name; });
+        if (!given) request.sets.push_back({name, {value}});
+    };
+    prefer("contact_rule", "sat");
+    const auto have_double = [](const DeviceGroup& group) {
+        return std::all_of(group.begin(), group.end(),
+                           [](const auto* device) { return device->info().has_double; });
+    };
+    if (std::all_of(devices.begin(), devices.end(), have_double)) prefer("decision", "recheck");
+}
+
+Request contacts_request(const SimulateOptions& options) {
+    auto request = options.request;
+    if (request.algorithms.empty()) request.algorithms = {std::string(algorithms().front()->name())};
+    if (request.devices.empty()) request.devices = {"opencl:0"};
+    return request;
+}
+
+/// The one cell that finds contacts. Throws InputError when more are asked for, or one that makes no
+/// contacts.
+Cell only_cell(Request request, const std::vector<BackendReport>& backends) {
+    const auto devices = choose_devices(backends, request.devices);
+    prefer_certain_contacts(request, devices);
+    const auto cells = plan(request, devices);
+    if (cells.size() != 1)
+        throw InputError(fmt::format("a simulation takes one algorithm, preset, device and value of each "
+                                     "setting; this asks for {} cells",
+                                     cells.size()));
+    if (cells.front().settings[parameters::output] != Output::pairs
+        || cells.front().settings[parameters::contact_rule] == ContactRule::none)
+        throw InputError("a simulation needs contacts; leave out output and contact_rule");
+    return cells.front();
+}
+
+/// Books the simulation's own work on the host under its stage.
+void book(Search& search, Stage stage, std::int64_t host_ns) {
+    search.stages[static_cast<std::size_t>(stage)].host_ns += host_ns;
+}
+
+/// Steps until `last` are done; totals and records get each as it ends, but no step after the checkpoint is
+/// recorded again.
+void run_steps(const SimulateOptions& options, std::size_t last, Simulation& simulation,
+               ContactFinder& finder, SimulationSession& session, RecordFile& file, RunTotals& totals) {
+    const Progress progress(options.quiet);
+    const auto recorded = options.resume ? steps_recorded(file, totals.session) : std::set<std::size_t>{};
+    const auto detect = [&](const Frame& frame, std::vector<ContactPoint>& contacts) {
+        finder.find(frame, contacts);
+    };
+    while (simulation.steps_done() < last) {
+        MemoryReserve::refill();
+        const auto begin = Clock::now();
+        const auto report = simulation.step(detect);
+        const auto wall = since(begin);
+        auto search = finder.take();
+        // The device does not see what the host does between searches.
+        book(search, Stage::reduce, report.reduce_ns);
+        book(search, Stage::solve, report.solve_ns);
+        totals.add(report, search, wall);
+        if (!report.converged && totals.not_converged == 1) {
+            progress.clear();
+            tell_not_converged(report);
+        }
+        session.append(report, simulation.midway());
+        if (!recorded.contains(report.step)) file.append(step_record(report, search, wall, totals.session));
+        const auto done = simulation.steps_done();
+        if (done % options.every == 0 || done == last) session.save(simulation);
+        progress.show(fmt::format("step {} of {}: {} contacts, {} kept, {:.1f} ms", done, last, report.found,
+                                  report.kept, static_cast<double>(wall) * 1e-6));
+    }
+}
+
+} // namespace
+
+ContactFinder::ContactFinder(const Cell& cell, const Scene& scene, const Frame& start, bool timed)
+    : host_broad_(cell.settings[parameters::broad] != Broad::device) {
+    const auto begin = Clock::now();
+    session_ = cell.algorithm->prepare(cell.devices, scene, cell.settings);
+    for (auto* device : session_->devices()) device->set_clocks(timed ? Clocks::on : Clocks::off);
+    std::vector<ContactPoint> contacts;
+    for (int replay = 0; replay < warming_replays; ++replay) find(start, contacts);
+    session_->reset();
+    take();
+    warm_up_ns_ = since(begin);
+}
+
+void ContactFinder::find(const Frame& frame, std::vector<ContactPoint>& contacts) {
+    const auto begin = Clock::now();
+    const auto result = session_->run(frame);
+    contacts = result.download_contacts();
+    search_.narrow_ns += since(begin);
+    search_.body_pairs += result.body_pairs;
+    search_.candidate_pairs += result.count;
+    for (auto* device : session_->devices()) {
+        const auto stages = by_stage(device->finish());
+        for (std::size_t i = 0; i < stages.size(); ++i) search_.stages[i] += stages[i];
+        // The host finds body pairs inside run(): its share is taken out of the narrow phase, as the paper
+        // splits them.
+        if (!host_broad_) continue;
+        const auto broad = stages[static_cast<std::size_t>(Stage::broad)].host_ns;
+        search_.broad_ns += broad;
+        search_.narrow_ns -= broad;
+    }
+}
+
+Search ContactFinder::take() { return std::exchange(search_, {}); }
+
+int simulate_command(const SimulateOptions& options) {
+    const auto scene = open_scene(options);
+    // What they need is looked for before hours are spent.
+    std::optional<Pictures> pictures;
+    if (!options.pictures.empty()) pictures.emplace(options.pictures);
+    const auto request = contacts_request(options);
+    const auto backends = open_backends(request.devices, options.require);
+    check_required(backends, options.require);
+    const auto cell = only_cell(request, backends);
+    check_coordinates(cell, scene, scene.frame(0));
+    Simulation simulation(scene);
+    // Before a recording is made, which a second try would find there.
+    RecordFile file(options.record);
+    SimulationSession session(options, scene, cell);
+    session.restore(simulation);
+    const auto last = options.steps > 0 ? options.steps : scene.dynamics->steps;
+    put("scene {}: {} bodies, {} vertices, {} tetrahedra; {}\n", scene.key, scene.bodies.size(),
+        vertex_count(scene), tetrahedron_count(scene), describe(cell));
+    if (simulation.steps_done() > 0) put("goes on after step {}\n", simulation.steps_done());
+    RunTotals totals;
+    totals.session = session.number();
+    // A run that breaks off leaves a line that says how far it came and why it ended.
+    try {
+        ContactFinder finder(cell, scene, simulation.frame(), !options.record.empty());
+        totals.warm_up_ns = finder.warm_up_ns();
+        run_steps(options, last, simulation, finder, session, file, totals);
+    } catch (const std::exception& error) {
+        if (file.failed())
+            put("{}", run_table(totals, true));
+        else
+            file.append_or_tell(run_record(cell, scene, totals, error.what()));
+        throw;
+    }
+    put("{}", run_table(totals, !options.record.empty()));
+    tell_not_converged(totals);
+    if (!options.recording.empty())
+        put("{}: {} frames; measure them with 'tandem run {}'\n", options.recording, session.frames(),
+            options.recording);
+    file.append(run_record(cell, scene, totals, {}));
+    if (pictures) pictures->draw(options.recording);
+    return 0;
+}
+
+} // namespace tandem

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Errors as they are kept and sent from process to process; no part of a record.
+#pragma once
+
+#include "harness/verify/accuracy/answer_errors.h"
+#include "harness/record/fields_json.h"
+
+namespace tandem {
+
+TANDEM_FIELDS(PairErrors, candidates, disjoint, touching, overlapping, invalid, missed_touching,
+              missed_overlapping)
+TANDEM_FIELDS(DecisionCounts, relations, tiers)
+TANDEM_FIELDS(Drift, vertices, median, p99, max, of_bound)
+TANDEM_FIELDS(ContactErrors, overlapping, unanswered, not_finite, depth_relative, depth_ulps, normal_degrees,
+              point, hausdorff, volume_relative, no_volume)
+TANDEM_FIELDS(AnswerErrors, frames, pairs, decided, invalid_tetrahedra, decisions, contacts, drift,
+              every_contact)
+
+} // namespace tandem

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+// tandem accuracy: error beside speed, over the settings that either depends on.
+#include "harness/verify/accuracy/figures.h"
+#include "harness/verify/adversarial.h"
+#include "harness/plans/inputs.h"
+#include "harness/plans/job.h"
+#include "harness/commands/standard_streams.h"
+#include "harness/sampling/statistics.h"
+#include "base/error.h"
+#include "scenes/hard/hard.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <numeric>
+#include <optional>
+#include <set>
+
+namespace tandem {
+
+namespace {
+
+using Axis = std::pair<std::string, std::vector<std::string>>;
+
+constexpr std::size_t default_frames = 10;
+
+/// The words a setting may be, without `left_out`; nothing when the algorithm does not have it.
+std::vector<std::string> choices(const Traversal& traversal, const std::string& name,
+                                 const std::string& left_out = "") {
+    std::vector<std::string> result;
+    for (const auto* parameter : traversal.parameters())
+        if (parameter->name == name)
+            for (const auto& word : parameter->choices()) result.emplace_back(word.text);
+    std::erase(result, left_out);
+    return result;
+}
+
+/// What bounds depend on: directions, precision, rounding.
+std::vector<Axis> axes_of_bounds(const Traversal& traversal) {
+    return {{"k", {"6", "8", "14", "18", "26"}},
+            {"precision", choices(traversal, "precision")},
+            {"rounding", choices(traversal, "rounding")}};
+}
+
+/// What contacts depend on: precision, who decides, rule.
+std::vector<Axis> axes_of_contacts(const Traversal& traversal) {
+    return {{"precision", choices(traversal, "precision")},
+            {"decision", choices(traversal, "decision")},
+            {"contact_rule", choices(traversal, "contact_rule", "none")}};
+}
+
+/// Both sweeps hold the defaults: such a cell is measured once.
+bool same(const Cell& a, const Cell& b) {
+    return a.algorithm == b.algorithm && a.preset == b.preset && a.settings == b.settings
+           && a.devices == b.devices;
+}
+
+/// The cells of a request that names no settings: for each algorithm and device first the bounds, then the
+/// contacts. Combinations that a device or another setting excludes are left out.
+std::vector<Cell> sweep(const Request& request, std::span<const DeviceGroup> devices) {
+    std::vector<Cell> cells;
+    for (const auto& base : plan(request, devices)) {
+        auto own = request;
+        own.algorithms = {std::string(base.algorithm->name())};
+        own.presets = {base.preset};
+        for (const auto& axes : {axes_of_bounds(*base.algorithm), axes_of_contacts(*base.algorithm)}) {
+            own.sets = axes;
+            for (const auto& cell : plan(own, std::array{base.devices}, leave_out))
+                if (std::none_of(cells.begin(), cells.end(), [&](const auto& c) { return same(c, cell); }))
+                    cells.push_back(cell);
+        }
+    }
+    return cells;
+}
+
+/// "FIRST:LAST" of ten frames in the middle; empty for a scene with no more.
+std::string middle_frames(const Scene& scene) {
+    if (scene.frame_count <= default_frames) return "";
+    const auto first = (scene.frame_count - default_frames) / 2;
+    return fmt::format("{}:{}", first, first + default_frames - 1);
+}
+
+/// Those of the family, by size; the initial one alone of whole scenes, which grow with it.
+std::vector<double> difficulties(const HardFamily& family) {
+    if (family.scene != nullptr) return {family.knob.initial};
+    const auto all = difficulties_of(family);
+    const std::set<double> sorted(all.begin(), all.end());
+    return {sorted.begin(), sorted.end()};
+}
+
+/// hard:all as all families at several difficulties, less the one that is refused unless what is not finite
+/// is skipped; other scenes as they are.
+std::vector<std::string> expand(const std::string& scene, Degenerate handling) {
+    const auto families = expand_hard(scene);
+    if (families.size() < 2) return {scene};
+    std::vector<std::string> scenes;
+    for (const auto& one : families) {
+        const auto name = one.substr(5, one.find(':', 5) - 5); // hard:NAME or hard:NAME:...
+        if (name == "not-finite" && handling != Degenerate::skip) continue;
+        for (const double difficulty : difficulties(hard_family(name)))
+            scenes.push_back(fmt::format("{}{}difficulty={}", one,
+                                         one.find(':', 5) == std::string::npos ? ":" : ",", difficulty));
+    }
+    return scenes;
+}
+
+/// Median over the samples of a frame's time, in ms.
+double frame_ms(const Measurement& m) {
+    return median_ns(m) * 1e-6 / static_cast<double>(m.candidate_pairs.size());
+}
+
+std::string number(const std::optional<double>& value) { return value ? fmt::format("{:.3g}", *value) : "-"; }
+
+std::string p99(const std::vector<double>& samples) {
+    const auto s = spread(samples);
+    return s ? fmt::format("{:.3g}", s->p99) : "-";
+}
+
+void print_header() {
+    put("{:>9} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  cell\n", "ms/frame", "missed", "false",
+        "ratio", "no answer", "depth/uL", "degrees", "point/L", "volume");
+}
+
+/// Errors of contacts are 99th percentiles.
+void print_row(const Cell& cell, const Measurement& m) {
+    const auto& e = *m.errors;
+    const auto contacts = e.contacts.value_or(ContactErrors{});
+    put("{:>9.3g} {:>9} {:>10} {:>10} {:>9} {:>10} {:>9} {:>9} {:>9}  {}{}\n", frame_ms(m), e.missed(),
+        e.pairs.disjoint, number(e.candidate_ratio()), contacts.unanswered, p99(contacts.depth_ulps),
+        p99(contacts.normal_degrees), p99(contacts.point), p99(contacts.volume_relative), describe(cell),
+        e.missed() > 0 ? "  MISSES" : "");
+}
+
+/// All cells on one scene, until a record cannot be written; the exit code.
+int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, RecordFile& file) {
+    auto own = options;
+    auto scene = open_scene(own);
+    if (own.frames.empty()) own.frames = middle_frames(scene);
+    const Job job(std::move(scene), own, cells);
+    print_scene(job.scene, job.range);
+    const auto kept = checks_folder(options);
+    References references(job.scene, job.range, kept);
+    Truths truths(job.scene, job.range, TruthAmount::contacts, options.truth_contacts, kept);
+    const Progress progress(options.quiet);
+    Measuring measuring;
+    measuring.check = {options.check, false, &truths};
+    measuring.enough.repeat = options.repeat.value_or(3);
+    int code = 0;
+    print_header();
+    // Cell after cell: rows come as they are found, and time stands beside error only.
+    for (const auto& cell : job.cells)
+        measure_cells(job, {&cell, 1}, references, measuring, file, progress, [&](const CellResult& result) {
+            const auto& m = result.measurement;
+            code = std::max({code, result.code, misses_against_its_promise(m) ? 1 : 0});
+            if (result.measured && !m.agreement.ok())
+                put("WRONG against the reference: {}\n", describe(cell));
+            if (result.measured && m.errors) print_row(cell, m);
+        });
+    put("\n");
+    return code;
+}
+
+} // namespace
+
+int accuracy_command(const AccuracyOptions& options) {
+    auto request = options.run.request;
+    if (request.devices.empty()) request.devices.emplace_back("opencl:0");
+    if (request.algorithms.empty()) request.algorithms.emplace_back(algorithms().front()->name());
+    const auto backends = open_backends(request.devices, options.run.require);
+    check_required(backends, options.run.require);
+    const auto devices = open_devices(options.run, backends, request.devices);
+    const auto cells = request.sets.empty() ? sweep(request, devices) : plan(request, devices);
+    auto scenes = options.scenes;
+    if (scenes.empty()) scenes.emplace_back(); // of --mesh, or the message that there is none
+    std::optional<Figures> figures;
+    if (!options.figures.empty()) figures.emplace(options.figures);
+    const auto records =
+        figures && options.run.out.empty() ? options.figures + "/accuracy.jsonl" : options.run.out;
+    RecordFile file(records);
+    int code = 0;
+    for (const auto& given : scenes)
+        for (const auto& scene : expand(given, options.run.degenerate)) {
+            auto own = options.run;
+            own.scene = scene;
+            code = std::max(code, measure_scene(own, cells, file));
+            if (file.failed()) return code;
+        }
+    put("ms of the whole frame; ratio: candidates per pair that meets; errors of contacts are 99th "
+        "percentiles, u half a unit in the\n"
+        "last place of 1, L the longest edge; volume: of the points' hull against the exact "
+        "intersection's, / exact; MISSES: pairs\n"
+        "that meet are not among the candidates\n");
+    if (figures) figures->draw(records);
+    return code;
+}
+
+} // namespace tandem

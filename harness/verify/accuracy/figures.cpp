@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#include "harness/verify/accuracy/figures.h"
+
+#include "harness/commands/external.h"
+#include "harness/commands/programs.h"
+#include "base/error.h"
+
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace tandem {
+
+namespace {
+
+constexpr auto figures_program = "figures"; // of libexec/tandem
+
+} // namespace
+
+Figures::Figures(std::string folder) : folder_(std::move(folder)) {
+    external_program(figures_program);
+    python_with("matplotlib", "python3-matplotlib", "--figures");
+    std::error_code code;
+    std::filesystem::create_directories(folder_, code);
+    if (code) throw InputError(fmt::format("--figures: cannot make {}: {}", folder_, code.message()));
+}
+
+void Figures::draw(const std::string& records) const {
+    if (run_external(figures_program, {"--", records, folder_}) != 0)
+        throw InputError(fmt::format("--figures: nothing drawn; the records are in {}", records));
+}
+
+} // namespace tandem

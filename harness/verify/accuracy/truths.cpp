@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "harness/verify/accuracy/truths.h"
+
+#include "algorithms/bodies/origin.h"
+#include "harness/verify/accuracy/answer_errors_json.h"
+#include "scenes/digest.h"
+#include "base/error.h"
+#include "base/memory.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tandem {
+
+namespace {
+
+/// Refuses early what there will be no room for if the frames to come are like the first.
+void check_room(const FrameTruth& first, std::size_t frames) {
+    const auto bytes = (first.touching.size() + first.overlapping.size()) * sizeof(Pair) * (frames - 1);
+    const auto memory = free_memory();
+    constexpr double gib = 1 << 30;
+    if (bytes > memory)
+        throw InputError(
+            fmt::format("the exact truth of {} frames like the first takes {:.2f} GiB more, and {:.2f} GiB "
+                        "are free; choose --truth none or fewer frames",
+                        frames, static_cast<double>(bytes) / gib, static_cast<double>(memory) / gib));
+}
+
+} // namespace
+
+Truths::Truths(const Scene& scene, const FrameRange& range, TruthAmount amount, std::size_t most_contacts,
+               const std::filesystem::path& folder)
+    : scene_(scene),
+      range_(range),
+      amount_(amount),
+      most_contacts_(most_contacts),
+      kept_(folder, fmt::format("truths of {} {:016x}", scene.key, scene.digest)) {}
+
+/// Found once and kept, for all cells of the same positions.
+const FrameTruth& Truths::truth_of(const Place& place, const Report& report) {
+    if (const auto found = truths_.find(place); found != truths_.end()) return found->second;
+    const auto& [positions, index] = place;
+    const auto frame = range_.frame(index, positions.origin);
+    auto truth = frame_truth(scene_, *frame, positions, report, free_memory());
+    if (index == 0) check_room(truth, range_.size());
+    return truths_.emplace(place, std::move(truth)).first->second;
+}
+
+const ContactTruths& Truths::contact_truths_of(const Place& place, const Report& report) {
+    if (const auto found = contact_truths_.find(place); found != contact_truths_.end()) return found->second;
+    const auto& [positions, index] = place;
+    const auto frame = range_.frame(index, positions.origin);
+    auto truths = contact_truths(scene_, *frame, positions.precision, truth_of(place, report), most_contacts_,
+                                 origin_of(scene_, positions.origin));
+    return contact_truths_.emplace(place, std::move(truths)).first->second;
+}
+
+const AnswerErrors& Truths::errors(const Geometry& geometry, std::size_t index, const FrameAnswer& answer,
+                                   const Report& report) {
+    const Place place{{geometry.precision, geometry.placement, geometry.origin}, index};
+    const std::tuple key{geometry.precision, geometry.origin, place,
+                         Numbers{answer.pairs.count, answer.pairs.a, answer.pairs.b, answer.contacts.count,
+                                 answer.contacts.a, answer.contacts.b}};
+    if (const auto found = errors_.find(key); found != errors_.end()) return found->second;
+    const auto asked = question(geometry, place, answer);
+    AnswerErrors known;
+    if (kept_.take(asked, [&](const nlohmann::json& value) { value.get_to(known); }))
+        return errors_.emplace(key, std::move(known)).first->second;
+    const auto& errors = errors_.emplace(key, errors_of(geometry, place, answer, report)).first->second;
+    kept_.keep(asked, errors);
+    return errors;
+}
+
+/// The frame by what is in it; the first of a range has its drift besides.
+std::string Truths::question(const Geometry& geometry, const Place& place, const FrameAnswer& answer) const {
+    const auto& [positions, index] = place;
+    const auto& p = answer.pairs;
+    const auto& c = answer.contacts;
+    return fmt::format("frame {:016x}{}, precision {}, origin {}, positions {} {}, amount {} {}, "
+                       "pairs {} {:x} {:x}, contacts {} {} {:x} {:x}",
+                       digest_of(*range_.frame(index)), index == 0 ? " first" : "",
+                       static_cast<int>(geometry.precision), static_cast<int>(geometry.origin),
+                       static_cast<int>(positions.precision), static_cast<int>(positions.placement),
+                       static_cast<int>(amount_), most_contacts_, p.count, p.a, p.b, answer.makes_contacts,
+                       c.count, c.a, c.b);
+}
+
+const Drift& Truths::drift_of(const Geometry& geometry) {
+    const std::pair key{geometry.precision, geometry.origin};
+    if (const auto found = drifts_.find(key); found != drifts_.end()) return found->second;
+    const auto first = range_.frame(0, geometry.origin);
+    return drifts_.emplace(key, vertex_drift(scene_, *first, geometry.precision)).first->second;
+}
+
+/// Kept by the caller only when nothing has thrown: a download may fail, and the next cell asks again.
+AnswerErrors Truths::errors_of(const Geometry& geometry, const Place& place, const FrameAnswer& answer,
+                               const Report& report) {
+    const auto& truth = truth_of(place, report);
+    AnswerErrors errors;
+    const auto pairs = answer.download();
+    errors.frames = 1;
+    errors.pairs = pair_errors(truth, pairs);
+    errors.decided = truth.decisions;
+    errors.invalid_tetrahedra = truth.invalid.size();
+    if (amount_ == TruthAmount::contacts && place.second == 0) errors.drift = drift_of(geometry);
+    if (!answer.makes_contacts) return errors;
+    const auto contacts = answer.download_contacts();
+    errors.decisions = decision_matrix(truth, pairs, contacts);
+    if (amount_ != TruthAmount::contacts) return errors;
+    const auto& exact = contact_truths_of(place, report);
+    errors.every_contact = exact.every;
+    errors.contacts =
+        contact_errors(exact, contacts, geometry.precision == Precision::fp64 ? 0x1p-53 : 0x1p-24);
+    return errors;
+}
+
+} // namespace tandem

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#include "harness/verify/flaw_search.h"
+
+#include "geometry/volume.h"
+#include "base/error.h"
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace tandem {
+
+namespace {
+
+using Vertices = std::vector<Eigen::Vector3d>;
+
+/// A stretch of tetrahedra, what a core takes at a time.
+struct Stretch {
+    const Vertices* vertices;
+    const std::vector<Tetrahedron>* tetrahedra;
+    std::size_t first;
+    FlawedTetrahedra* target; ///< of all of them
+    FlawedTetrahedra found;
+};
+
+constexpr std::size_t stretch_length = 4096;
+
+void add_stretches(std::vector<Stretch>& stretches, const Vertices& vertices, const Mesh& mesh,
+                   FlawedTetrahedra& target) {
+    for (std::size_t first = 0; first < mesh.tetrahedra.size(); first += stretch_length)
+        stretches.push_back({&vertices, &mesh.tetrahedra, first, &target, {}});
+}
+
+/// A tetrahedron is of one kind: with a coordinate that is not finite it has no volume to speak of.
+void look_through(Stretch& stretch) {
+    const auto end = std::min(stretch.tetrahedra->size(), stretch.first + stretch_length);
+    for (auto t = stretch.first; t < end; ++t) {
+        TetraCorners corners;
+        bool finite = true;
+        for (unsigned i = 0; i < 4; ++i) {
+            const auto& v = (*stretch.vertices)[(*stretch.tetrahedra)[t][i]];
+            finite = finite && v.allFinite();
+            corners[i] = {v.x(), v.y(), v.z()};
+        }
+        if (!finite)
+            stretch.found.non_finite.push_back(static_cast<std::uint32_t>(t));
+        else if (!has_volume(corners))
+            stretch.found.degenerate.push_back(static_cast<std::uint32_t>(t));
+    }
+}
+
+void append(std::vector<std::uint32_t>& to, const std::vector<std::uint32_t>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+bool finite(const Pose& pose) { return pose.rotation.coeffs().allFinite() && pose.translation.allFinite(); }
+
+/// Adds what a body has in one frame; the first frame with any gives the examples.
+void count(Flaws& flaws, std::size_t body, const FlawedTetrahedra& found, std::size_t frame) {
+    if (!found.any()) return;
+    auto& own = flaws.bodies[body];
+    if (own.degenerate + own.non_finite == 0) {
+        own.frame = frame;
+        own.first = found.all();
+        if (own.first.size() > most_named_flaws) own.first.resize(most_named_flaws);
+    }
+    own.degenerate += found.degenerate.size();
+    own.non_finite += found.non_finite.size();
+    flaws.degenerate += found.degenerate.size();
+    flaws.non_finite += found.non_finite.size();
+}
+
+/// Without bodies that have none.
+Flaws only_flawed(Flaws flaws) {
+    std::erase_if(flaws.bodies, [](const auto& body) { return body.first.empty(); });
+    return flaws;
+}
+
+/// Puts a finite vertex of the same body in the place of each that is not.
+void make_finite(Vertices& vertices) {
+    const auto good =
+        std::find_if(vertices.begin(), vertices.end(), [](const auto& v) { return v.allFinite(); });
+    const Eigen::Vector3d instead = good == vertices.end() ? Eigen::Vector3d::Zero() : *good;
+    for (auto& v : vertices)
+        if (!v.allFinite()) v = instead;
+}
+
+void search(std::vector<Stretch>& stretches) {
+    parallel_for(stretches.size(), [&](std::size_t i) { look_through(stretches[i]); });
+    for (const auto& stretch : stretches) {
+        append(stretch.target->degenerate, stretch.found.degenerate);
+        append(stretch.target->non_finite, stretch.found.non_finite);
+    }
+}
+
+} // namespace
+
+std::vector<std::uint32_t> FlawedTetrahedra::all() const {
+    std::vector<std::uint32_t> both;
+    std::merge(degenerate.begin(), degenerate.end(), non_finite.begin(), non_finite.end(),
+               std::back_inserter(both));
+    return both;
+}
+
+FlawSearch::FlawSearch(const Scene& scene, std::size_t first)
+    : scene_(scene), next_(first), rigid_(scene.meshes.size()) {
+    std::vector<Stretch> stretches;
+    for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
+        add_stretches(stretches, scene.meshes[mesh].vertices, scene.meshes[mesh], rigid_[mesh]);
+    search(stretches);
+    all_.bodies.resize(scene.bodies.size());
+    for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) all_.bodies[body].body = body;
+    non_finite_ = all_;
+}
+
+const Mesh& FlawSearch::mesh_of(std::size_t body) const { return scene_.meshes[scene_.bodies[body].mesh]; }
+
+/// Of deformable bodies; nothing of rigid ones.
+FlawSearch::Found FlawSearch::deformed(std::span<const Frame* const> frames) const {
+    const auto bodies = scene_.bodies.size();
+    Found found(frames.size() * bodies);
+    std::vector<Stretch> stretches;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        if (scene_.bodies[i % bodies].deformable)
+            add_stretches(stretches, frames[i / bodies]->deformed[i % bodies], mesh_of(i % bodies), found[i]);
+    search(stretches);
+    return found;
+}
+
+/// A rigid body has the flaws of its mesh, whatever its pose; one whose pose is not finite has no tetrahedron
+/// that is.
+FlawedTetrahedra FlawSearch::flaws_of(const Frame& frame, std::size_t body,
+                                      const FlawedTetrahedra& deformed) const {
+    if (scene_.bodies[body].deformable) return deformed;
+    if (finite(frame.poses[body])) return rigid_[scene_.bodies[body].mesh];
+    FlawedTetrahedra all;
+    all.non_finite.resize(mesh_of(body).tetrahedra.size());
+    std::iota(all.non_finite.begin(), all.non_finite.end(), 0u);
+    return all;
+}
+
+void FlawSearch::add(std::span<const std::shared_ptr<Frame>> frames) {
+    std::vector<const Frame*> looked_at;
+    for (const auto& frame : frames) looked_at.push_back(frame.get());
+    const auto bent = deformed(looked_at);
+    for (std::size_t i = 0; i < bent.size(); ++i) {
+        const auto frame = i / scene_.bodies.size(), body = i % scene_.bodies.size();
+        auto found = flaws_of(*frames[frame], body, bent[i]);
+        count(all_, body, found, next_ + frame);
+        found.degenerate.clear();
+        count(non_finite_, body, found, next_ + frame);
+    }
+    next_ += frames.size();
+}
+
+Flaws FlawSearch::flaws(Degenerate handling) const {
+    auto flaws = only_flawed(all_);
+    flaws.handling = handling;
+    if (handling == Degenerate::flat && flaws.non_finite > 0)
+        throw InputError(
+            fmt::format("tetrahedra {}; repair the frames, or leave them out with --degenerate skip",
+                        describe(only_flawed(non_finite_), scene_)));
+    if (handling == Degenerate::reject && flaws.any())
+        throw InputError(
+            fmt::format("--degenerate reject: tetrahedra {}; repair them, or choose flat or skip",
+                        describe(flaws, scene_)));
+    return flaws;
+}
+
+void FlawSearch::leave_out(Frame& frame) const {
+    const Frame* const looked_at = &frame;
+    const auto bent = deformed({&looked_at, 1});
+    for (std::size_t body = 0; body < bent.size(); ++body) {
+        if (const auto found = flaws_of(frame, body, bent[body]); found.any()) {
+            frame.skipped.resize(scene_.bodies.size());
+            frame.skipped[body] = found.all();
+        }
+        make_finite(frame.deformed[body]);
+        if (!finite(frame.poses[body])) frame.poses[body] = {};
+    }
+}
+
+} // namespace tandem

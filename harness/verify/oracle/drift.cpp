@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include "harness/verify/oracle/drift.h"
+
+#include "algorithms/bodies/drift.h"
+#include "harness/verify/oracle/posed.h"
+#include "geometry/rounding.h"
+#include "harness/sampling/statistics.h"
+#include "harness/verify/world_vertices.h"
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tandem {
+
+namespace {
+
+using namespace oracle;
+
+struct BodyDrift {
+    std::vector<double> ulps; ///< by vertex
+    double of_bound = 0;
+};
+
+/// Where the frame puts it, without rounding.
+Vector<mpq_class> exact_vertex(const Scene& scene, const Frame& frame, std::size_t body, std::size_t vertex) {
+    if (scene.bodies[body].deformable) {
+        const auto& v = frame.deformed[body][vertex];
+        return {mpq_class(v.x()), mpq_class(v.y()), mpq_class(v.z())};
+    }
+    const auto& v = scene.meshes[scene.bodies[body].mesh].vertices[vertex];
+    return posed_point(frame.poses[body], {v.x(), v.y(), v.z()});
+}
+
+/// The distance of the Real next above the one at or below |x|.
+template<class Real>
+double spacing(double x) {
+    const int least = std::numeric_limits<Real>::min_exponent - std::numeric_limits<Real>::digits;
+    return std::ldexp(1.0, x == 0 ? least
+                                  : std::max(std::ilogb(x) - std::numeric_limits<Real>::digits + 1, least));
+}
+
+/// Of one body, by vertex: the difference is taken in rationals and rounded once, as its size is.
+template<class Real>
+BodyDrift drift_in(const Scene& scene, const Frame& frame, std::size_t body) {
+    constexpr auto precision = sizeof(Real) == 8 ? Precision::fp64 : Precision::fp32;
+    const auto world = world_vertices<Real>(scene, frame, body);
+    const auto& mesh = scene.meshes[scene.bodies[body].mesh];
+    const auto bound = scene.bodies[body].deformable
+                           ? drift_bound(frame.deformed[body], precision)
+                           : drift_bound(frame.poses[body], reach_of(mesh.vertices), precision);
+    BodyDrift result;
+    for (std::size_t vertex = 0; vertex < world.size(); ++vertex) {
+        const auto exact = exact_vertex(scene, frame, body, vertex);
+        double off = 0;
+        double largest = 0;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const auto at = static_cast<double>(world[vertex][axis]);
+            const double along = std::fabs(nearest(mpq_class(at) - exact[axis]));
+            off = std::max(off, along);
+            largest = std::max({largest, std::fabs(at), std::fabs(nearest(exact[axis]))});
+            if (along > 0) result.of_bound = std::max(result.of_bound, along / bound[axis]);
+        }
+        result.ulps.push_back(off / spacing<Real>(largest));
+    }
+    return result;
+}
+
+} // namespace
+
+Drift vertex_drift(const Scene& scene, const Frame& frame, Precision precision) {
+    std::vector<BodyDrift> bodies(scene.bodies.size());
+    parallel_for(bodies.size(), [&](std::size_t body) {
+        bodies[body] = precision == Precision::fp64 ? drift_in<double>(scene, frame, body)
+                                                    : drift_in<float>(scene, frame, body);
+    });
+    Drift drift;
+    std::vector<double> ulps;
+    for (const auto& body : bodies) {
+        ulps.insert(ulps.end(), body.ulps.begin(), body.ulps.end());
+        drift.of_bound = std::max(drift.of_bound, body.of_bound);
+    }
+    drift.vertices = ulps.size();
+    if (const auto of_all = spread(std::move(ulps))) {
+        drift.median = of_all->median;
+        drift.p99 = of_all->p99;
+        drift.max = of_all->maximum;
+    }
+    return drift;
+}
+
+} // namespace tandem

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "harness/verify/oracle/superset.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tandem::oracle {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Box empty_box{infinity, infinity, infinity, -infinity, -infinity, -infinity};
+
+void add(Box& box, const std::array<double, 3>& point) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        box[axis] = std::min(box[axis], point[axis]);
+        box[3 + axis] = std::max(box[3 + axis], point[axis]);
+    }
+}
+
+/// By `off` and, where that is rounded, a little more.
+void widen(Box& box, double off) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        box[axis] = std::nextafter(box[axis] - off, -infinity);
+        box[3 + axis] = std::nextafter(box[3 + axis] + off, infinity);
+    }
+}
+
+} // namespace
+
+Boxes::Boxes(std::span<const TetraCorners> corners, std::span<const std::uint32_t> skipped, double off)
+    : tetrahedra(corners.size(), empty_box), whole(empty_box) {
+    for (std::uint32_t i = 0; i < corners.size(); ++i) {
+        if (std::binary_search(skipped.begin(), skipped.end(), i)) continue;
+        bool finite = true;
+        for (const auto& corner : corners[i])
+            for (const double x : corner) finite &= std::isfinite(x);
+        if (!finite) {
+            invalid.push_back(i);
+            continue;
+        }
+        auto& box = tetrahedra[i];
+        for (const auto& corner : corners[i]) add(box, corner);
+        if (off > 0) widen(box, off);
+        add(whole, {box[0], box[1], box[2]});
+        add(whole, {box[3], box[4], box[5]});
+    }
+}
+
+/// Empty boxes meet nothing, so that invalid and skipped tetrahedra need no case of their own.
+std::vector<std::uint32_t> near(const Boxes& body, const Box& other) {
+    std::vector<std::uint32_t> result;
+    for (std::uint32_t i = 0; i < body.tetrahedra.size(); ++i)
+        if (boxes_meet(body.tetrahedra[i], other)) result.push_back(i);
+    std::sort(result.begin(), result.end(),
+              [&](auto i, auto j) { return body.tetrahedra[i][0] < body.tetrahedra[j][0]; });
+    return result;
+}
+
+} // namespace tandem::oracle

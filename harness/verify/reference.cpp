@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: MIT
+#include "harness/verify/reference.h"
+
+#include "algorithms/narrow_phase/reference.h"
+#include "algorithms/bodies/drift.h"
+#include "harness/verify/world_vertices.h"
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <cfenv>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+namespace tandem {
+
+namespace {
+
+/// Slabs of a body's tetrahedra, `stride` reals each: lower bounds, then upper bounds.
+template<class Real>
+struct Bounds {
+    std::size_t axes = 0;
+    bool published = false; ///< rounding
+    std::vector<std::array<Real, 3>> vertices;
+    std::vector<Real> slabs;
+    std::vector<Real> whole; ///< of the body
+
+    const Real* tetrahedron(std::size_t i) const { return &slabs[i * 2 * axes]; }
+};
+
+/// Whether a slab starts after another's end; the paper's test asks for more than its tolerance.
+template<class Real>
+bool apart(Real lower, Real upper, bool published) {
+    constexpr Real tolerance = 10 * std::numeric_limits<float>::epsilon();
+    return published ? lower - upper > tolerance : lower > upper;
+}
+
+/// Closed: touching overlaps.
+template<class Real>
+bool overlapping(const Real* a, const Real* b, std::size_t axes, bool published) {
+    for (std::size_t axis = 0; axis < axes; ++axis)
+        if (apart(a[axis], b[axes + axis], published) || apart(b[axis], a[axes + axis], published))
+            return false;
+    return true;
+}
+
+/// Sum of the terms from the first on, to nearest. `partial` adds up the magnitudes of the sums on the way; a
+/// lone term counts as one.
+template<class Real>
+Real nearest_sum(std::span<const Real> terms, Real& partial) {
+    Real sum = terms[0];
+    partial = terms.size() == 1 ? std::fabs(sum) : 0;
+    for (const auto term : terms.subspan(1)) {
+        sum += term;
+        partial += std::fabs(sum);
+    }
+    return sum;
+}
+
+/// The same with every addition rounded in a mode of fesetround.
+/// volatile keeps the compiler from moving additions over fesetround, which it takes for a call like any
+/// other.
+template<class Real>
+Real directed_sum(std::span<const Real> terms, int mode) {
+    volatile Real sum = terms[0];
+    std::fesetround(mode);
+    for (const auto term : terms.subspan(1)) {
+        const volatile Real next = term;
+        sum = sum + next;
+    }
+    std::fesetround(FE_TONEAREST);
+    return sum;
+}
+
+/// Projection of a point with what its rounding asks for (algorithms/bounds/README.md); `drift`: of the
+/// point, by axis, null unless the truth is the pose's.
+template<class Real>
+std::pair<Real, Real> project(const std::array<Real, 3>& point, const std::array<int, 3>& direction,
+                              Rounding rounding, const std::array<Real, 3>* drift) {
+    std::array<Real, 3> terms{};
+    std::size_t count = 0;
+    Real off = 0;
+    for (int i = 0; i < 3; ++i) {
+        if (direction[i] == 0) continue;
+        terms[count++] = direction[i] > 0 ? point[i] : -point[i];
+        if (drift != nullptr) off += (*drift)[i];
+    }
+    // The release divides by the length of the direction: sqrt(2) or sqrt(3), as constants.
+    if (rounding == Rounding::published && count > 1)
+        for (auto& term : terms)
+            term *=
+                count == 2 ? static_cast<Real>(0.7071067811865476) : static_cast<Real>(0.5773502691896258);
+    const auto used = std::span<const Real>(terms).first(count);
+    if (rounding == Rounding::directed) {
+        const std::array<Real, 2> low{directed_sum(used, FE_DOWNWARD), -off};
+        const std::array<Real, 2> high{directed_sum(used, FE_UPWARD), off};
+        return {directed_sum(std::span<const Real>(low), FE_DOWNWARD),
+                directed_sum(std::span<const Real>(high), FE_UPWARD)};
+    }
+    Real partial = 0;
+    const Real sum = nearest_sum(used, partial);
+    Real bound = 0;
+    if (drift != nullptr || (rounding == Rounding::safe && count == 3))
+        bound = partial * (2 * std::numeric_limits<Real>::epsilon()) + off;
+    return {sum - bound, sum + bound};
+}
+
+/// The bound on a body's drift is an input, as its pose is; a test of its own holds it against the exact
+/// truth.
+template<class Real>
+std::array<Real, 3> drift_in(const Scene& scene, const Frame& frame, const Geometry& geometry,
+                             std::size_t body) {
+    const auto& mesh = scene.meshes[scene.bodies[body].mesh];
+    const auto bound = scene.bodies[body].deformable
+                           ? drift_bound(frame.deformed[body], geometry.precision)
+                           : drift_bound(frame.poses[body], reach_of(mesh.vertices), geometry.precision);
+    return {static_cast<Real>(bound[0]), static_cast<Real>(bound[1]), static_cast<Real>(bound[2])};
+}
+
+/// Slabs of all tetrahedra of one body, vertex by vertex and direction by direction: no tree, no sharing
+/// between tetrahedra.
+template<class Real>
+Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& geometry, std::size_t body) {
+    const auto axes = directions(geometry);
+    Bounds<Real> bounds;
+    bounds.axes = axes.size();
+    bounds.published = geometry.rounding == Rounding::published;
+    const bool drifts = geometry.placement == Placement::exact;
+    const auto drift = drifts ? drift_in<Real>(scene, frame, geometry, body) : std::array<Real, 3>{};
+    bounds.vertices = world_vertices<Real>(scene, frame, body);
+    const auto& tetrahedra = scene.meshes[scene.bodies[body].mesh].tetrahedra;
+    bounds.slabs.resize(tetrahedra.size() * 2 * axes.size());
+    bounds.whole.assign(axes.size(), std::numeric_limits<Real>::infinity());
+    bounds.whole.insert(bounds.whole.end(), axes.size(), -std::numeric_limits<Real>::infinity());
+    std::vector<bool> skipped(tetrahedra.size());
+    if (!frame.skipped.empty())
+        for (const auto t : frame.skipped[body]) skipped[t] = true;
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+        for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
+            Real lower = std::numeric_limits<Real>::infinity();
+            Real upper = -lower;
+            for (const auto vertex : tetrahedra[t]) {
+                if (skipped[t]) break; // an empty slab, apart from all
+                const auto [low, high] = project(bounds.vertices[vertex], axes[axis], geometry.rounding,
+                                                 drifts ? &drift : nullptr);
+                lower = std::min(lower, low);
+                upper = std::max(upper, high);
+            }
+            bounds.slabs[t * 2 * axes.size() + axis] = lower;
+            bounds.slabs[t * 2 * axes.size() + axes.size() + axis] = upper;
+            bounds.whole[axis] = std::min(bounds.whole[axis], lower);
+            bounds.whole[axes.size() + axis] = std::max(bounds.whole[axes.size() + axis], upper);
+        }
+    }
+    return bounds;
+}
+
+/// Tetrahedra of one body that overlap the whole of another, sorted by their lower bound on the first axis.
+template<class Real>
+std::vector<std::uint32_t> near(const Bounds<Real>& body, const Bounds<Real>& other) {
+    std::vector<std::uint32_t> result;
+    for (std::uint32_t t = 0; t < body.slabs.size() / (2 * body.axes); ++t)
+        if (overlapping(body.tetrahedron(t), other.whole.data(), body.axes, body.published))
+            result.push_back(t);
+    std::sort(result.begin(), result.end(),
+              [&](auto x, auto y) { return body.tetrahedron(x)[0] < body.tetrahedron(y)[0]; });
+    return result;
+}
+
+/// Calls hit(ta, tb) for each overlapping pair whose interval on the first axis starts in one of the two
+/// lists.
+template<class Real, class Hit>
+void sweep(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
+    const auto list_a = near(a, b);
+    const auto list_b = near(b, a);
+    const auto scan = [&](const Bounds<Real>& x, const Bounds<Real>& y, auto from, auto end, auto tx,
+                          auto each) {
+        for (auto it = from;
+             it != end && !apart(y.tetrahedron(*it)[0], x.tetrahedron(tx)[x.axes], x.published); ++it)
+            if (overlapping(x.tetrahedron(tx), y.tetrahedron(*it), x.axes, x.published)) each(*it);
+    };
+    auto at_a = list_a.begin();
+    auto at_b = list_b.begin();
+    while (at_a != list_a.end() && at_b != list_b.end()) {
+        if (a.tetrahedron(*at_a)[0] <= b.tetrahedron(*at_b)[0]) {
+            scan(a, b, at_b, list_b.end(), *at_a, [&](auto tb) { hit(*at_a, tb); });
+            ++at_a;
+        } else {
+            scan(b, a, at_a, list_a.end(), *at_b, [&](auto ta) { hit(ta, *at_b); });
+            ++at_b;
+        }
+    }
+}
+
+/// Brute force: every pair of tetrahedra by the test alone.
+template<class Real, class Hit>
+void test_all(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
+    for (std::uint32_t ta = 0; ta < a.slabs.size() / (2 * a.axes); ++ta)
+        for (std::uint32_t tb = 0; tb < b.slabs.size() / (2 * b.axes); ++tb)
+            if (overlapping(a.tetrahedron(ta), b.tetrahedron(tb), a.axes, a.published)) hit(ta, tb);
+}
+
+/// Contacts of some of the pairs. Sums of a digest do not depend on the order, so that parts may be added as
+/// they end.
+template<class Real>
+void add_contacts(const Scene& scene, const std::vector<Bounds<Real>>& bounds, std::span<const Pair> pairs,
+                  const ContactSettings& settings, ReferenceAnswer& answer, std::mutex& mutex) {
+    ContactCounts counts;
+    Digest digest;
+    const auto corners = [&](std::uint32_t body, std::uint32_t tetrahedron) {
+        std::array<std::array<Real, 3>, 4> result;
+        for (int i = 0; i < 4; ++i)
+            result[i] =
+                bounds[body].vertices[scene.meshes[scene.bodies[body].mesh].tetrahedra[tetrahedron][i]];
+        return result;
+    };
+    for (const auto& p : pairs) {
+        const auto flags_a = scene.meshes[scene.bodies[p.body_a].mesh].boundary[p.tet_a];
+        const auto flags_b = scene.meshes[scene.bodies[p.body_b].mesh].boundary[p.tet_b];
+        for (const auto& contact :
+             reference_contacts<Real>(corners(p.body_a, p.tet_a), corners(p.body_b, p.tet_b), flags_a,
+                                      flags_b, counts, settings)) {
+            const auto [a, b] = contact_terms<Real>(p.body_a, p.tet_a, p.body_b, p.tet_b, contact);
+            ++digest.count;
+            digest.a += a;
+            digest.b += b;
+        }
+    }
+    const std::scoped_lock lock(mutex);
+    answer.contacts += digest.count;
+    answer.contact_digest.count += digest.count;
+    answer.contact_digest.a += digest.a;
+    answer.contact_digest.b += digest.b;
+    answer.degenerate += counts.degenerate;
+    answer.rejected += counts.rejected;
+    answer.undecided_by_filter += counts.undecided_by_filter;
+    answer.undecided_by_double += counts.undecided_by_double;
+}
+
+template<class Real>
+ReferenceAnswer answer_in(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
+                          Method method, const ContactSettings& settings) {
+    std::vector<Bounds<Real>> bounds(scene.bodies.size());
+    parallel_for(bounds.size(),
+                 [&](std::size_t body) { bounds[body] = bounds_of<Real>(scene, frame, geometry, body); });
+    std::vector<std::vector<Pair>> found(bounds.size());
+    parallel_for(bounds.size(), [&](std::size_t index) {
+        const auto a = static_cast<std::uint32_t>(index);
+        for (std::uint32_t b = a + 1; b < bounds.size(); ++b) {
+            if (scene.bodies[a].fixed && scene.bodies[b].fixed) continue;
+            const auto hit = [&](std::uint32_t ta, std::uint32_t tb) { found[a].push_back({a, ta, b, tb}); };
+            if (method == Method::brute_force)
+                test_all(bounds[a], bounds[b], hit);
+            else if (overlapping(bounds[a].whole.data(), bounds[b].whole.data(), bounds[a].axes,
+                                 bounds[a].published))
+                sweep(bounds[a], bounds[b], hit);
+        }
+        std::sort(found[a].begin(), found[a].end());
+    });
+    ReferenceAnswer answer;
+    for (const auto& part : found) answer.pairs.insert(answer.pairs.end(), part.begin(), part.end());
+    answer.digest = digest_of(answer.pairs);
+    if (!contacts) return answer;
+    std::mutex mutex;
+    constexpr std::size_t part = 4096;
+    parallel_for((answer.pairs.size() + part - 1) / part, [&](std::size_t i) {
+        const auto all = std::span<const Pair>(answer.pairs);
+        add_contacts(scene, bounds, all.subspan(i * part, std::min(part, all.size() - i * part)), settings,
+                     answer, mutex);
+    });
+    return answer;
+}
+
+} // namespace
+
+ReferenceAnswer reference(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
+                          Method method, const ContactSettings& settings) {
+    return geometry.precision == Precision::fp64
+               ? answer_in<double>(scene, frame, geometry, contacts, method, settings)
+               : answer_in<float>(scene, frame, geometry, contacts, method, settings);
+}
+
+Method reference_method(const Scene& scene) {
+    constexpr double most_tests = 4e6;
+    const auto tetrahedra = static_cast<double>(tetrahedron_count(scene));
+    return tetrahedra * tetrahedra / 2 <= most_tests ? Method::brute_force : Method::sweep;
+}
+
+Difference difference(std::span<const Pair> expected, std::span<const Pair> found) {
+    Difference result;
+    auto e = expected.begin();
+    auto f = found.begin();
+    while (e != expected.end() && f != found.end()) {
+        if (*e == *f) {
+            ++e;
+            ++f;
+        } else if (*e < *f) {
+            ++result.missing;
+            ++e;
+        } else {
+            ++result.extra;
+            ++f;
+        }
+    }
+    result.missing += static_cast<std::uint64_t>(expected.end() - e);
+    result.extra += static_cast<std::uint64_t>(found.end() - f);
+    return result;
+}
+
+} // namespace tandem

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/answer/digest.h"
+#include "algorithms/bounds/geometry.h"
+#include "algorithms/narrow_phase/contact_settings.h"
+#include "scenes/scene.h"
+
+namespace tandem {
+
+/// The answer of independent serial code that does the cell's own arithmetic: equality with it is exact.
+struct ReferenceAnswer {
+    std::vector<Pair> pairs; ///< sorted
+    Digest digest;
+    std::uint64_t contacts = 0;
+    std::uint64_t degenerate = 0;
+    std::uint64_t rejected = 0;
+    std::uint64_t undecided_by_filter = 0, undecided_by_double = 0;
+    Digest contact_digest;
+};
+
+enum class Method {
+    brute_force, ///< every tetrahedron of every body against every other: small scenes
+    sweep        ///< bodies, then tetrahedra, sorted along the first direction
+};
+
+/// Finds every pair of tetrahedra of different bodies (not both fixed) whose leaf k-DOPs overlap, on all
+/// cores; shares no code with kernels, hierarchies or broad phase.
+ReferenceAnswer reference(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
+                          Method method, const ContactSettings& settings = {});
+
+/// Brute force for small scenes, sweep otherwise.
+Method reference_method(const Scene& scene);
+
+/// Pairs of `expected` that `found` lacks, and pairs of `found` that `expected` lacks. Both sorted;
+/// duplicates in `found` count as extra.
+struct Difference {
+    std::uint64_t missing = 0;
+    std::uint64_t extra = 0;
+};
+Difference difference(std::span<const Pair> expected, std::span<const Pair> found);
+
+} // namespace tandem
