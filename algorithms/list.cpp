@@ -30,13 +30,13 @@ std::vector<std::span<const KernelSource>>& known_sources() {
 
 std::span<const Traversal* const> algorithms() { return listed(); }
 
-std::span<const Traversal* const> peers() {
+std::span<const Traversal* const> baselines() {
     static const std::array<const Traversal*, 1> all{&embree()};
     return all;
 }
 
 void add_algorithm(const Traversal& traversal) {
-    for (const auto& list : {algorithms(), peers()})
+    for (const auto& list : {algorithms(), baselines()})
         for (const auto* other : list)
             if (other->name() == traversal.name())
                 throw InputError(fmt::format("there is an algorithm {} already", traversal.name()));
@@ -45,7 +45,7 @@ void add_algorithm(const Traversal& traversal) {
 
 const Traversal& algorithm(std::string_view name) {
     std::vector<std::string> names;
-    for (const auto& list : {algorithms(), peers()})
+    for (const auto& list : {algorithms(), baselines()})
         for (const auto* candidate : list) {
             if (candidate->name() == name) return *candidate;
             names.emplace_back(candidate->name());

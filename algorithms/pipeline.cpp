@@ -26,7 +26,7 @@ Status::Writes writes_of(const Settings& settings) {
 /// Bodies and an algorithm's own steps over them.
 struct Foundation {
     std::shared_ptr<Bodies> bodies;
-    Steps steps;
+    AlgorithmStages steps;
 };
 
 Foundation build(const Traversal& traversal, Device& device, const Scene& scene, const Settings& settings,
@@ -103,8 +103,8 @@ Pipeline::Pipeline(const Traversal& traversal, Device& on, const Scene& scene, S
     bodies = std::move(foundation.bodies);
     steps = std::move(foundation.steps);
     settings.set(parameters::pair_layout(bodies->pair_layout()));
-    body_pairs = std::make_unique<BodyPairs>(Ground{on, scene, settings, *bodies, shape}, *steps.hierarchy,
-                                             writes_of(settings));
+    body_pairs = std::make_unique<BodyPairs>(BuildContext{on, scene, settings, *bodies, shape},
+                                             *steps.hierarchy, writes_of(settings));
     const bool contacting =
         output == Output::pairs && settings[parameters::contact_rule] != ContactRule::none;
     const auto launches =
@@ -132,14 +132,14 @@ void Pipeline::compile(bool windowed) {
     built = wanted;
 }
 
-WalkTask Pipeline::task(const AnswerBuffers& answer, Interlude* interlude) {
+WalkTask Pipeline::task(const AnswerBuffers& answer, LaunchHook* launch_hook) {
     return {body_pairs->rows().buffer(),
             body_pairs->rows().capacity(),
             body_pairs->searched(),
             body_pairs->on_host(),
             answer,
             status,
-            interlude};
+            launch_hook};
 }
 
 FrameResult Pipeline::counts() const {

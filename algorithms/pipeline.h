@@ -5,7 +5,7 @@
 #include "algorithms/answer/status.h"
 #include "algorithms/broad_phase/body_pairs.h"
 #include "algorithms/narrow_phase/contact_stage.h"
-#include "algorithms/steps.h"
+#include "algorithms/stages.h"
 
 namespace tandem {
 
@@ -35,7 +35,7 @@ struct Pipeline {
     /// The kernels of a walk of part of the items, or of all.
     void compile(bool windowed);
     /// What the walk of the body pairs at hand works on.
-    WalkTask task(const AnswerBuffers& answer, Interlude* interlude = nullptr);
+    WalkTask task(const AnswerBuffers& answer, LaunchHook* launch_hook = nullptr);
     bool makes_contacts() const { return contacts != nullptr && !counting; }
     /// What the status counts; pairs and contacts are the caller's to add.
     FrameResult counts() const;
@@ -49,7 +49,7 @@ struct Pipeline {
     bool counting = false;
     std::optional<WalkBuild> built; ///< what the walk is compiled for
     std::shared_ptr<Bodies> bodies;
-    Steps steps;
+    AlgorithmStages steps;
     std::unique_ptr<BodyPairs> body_pairs;
     Status status;
     std::unique_ptr<ContactStage> contacts; ///< none when there are to be none

@@ -57,7 +57,7 @@ FrameResult Session::run_among(const DeviceFrame& frame,
                                std::optional<std::span<const BodyPair>> body_pairs) {
     set_threads();
     check_fits(*scene_, frame);
-    return finished(do_run_there(frame, body_pairs));
+    return finished(do_run_device_input(frame, body_pairs));
 }
 
 FrameResult Session::finished(FrameResult result) const {
@@ -66,7 +66,7 @@ FrameResult Session::finished(FrameResult result) const {
     return result;
 }
 
-FrameResult Session::do_run_there(const DeviceFrame&, std::optional<std::span<const BodyPair>>) {
+FrameResult Session::do_run_device_input(const DeviceFrame&, std::optional<std::span<const BodyPair>>) {
     const auto* const why = devices().size() > 1
                                 ? "several devices share a frame, which the host deals out; name one device"
                                 : "residency=published converts every frame on the host; leave it out";
@@ -87,7 +87,7 @@ FrameResult Session::run(const Frame& frame, std::span<const BodyPair> body_pair
 
 void Traversal::do_fit(Settings&, const DeviceInfo&, const Scene*) const {}
 
-Steps Traversal::build(const Ground& ground) const { return do_build(ground); }
+AlgorithmStages Traversal::build(const BuildContext& ground) const { return do_build(ground); }
 
 Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info, const Scene* scene) const {
     check_arithmetic(settings, info);

@@ -9,7 +9,7 @@
 
 namespace tandem {
 
-void ResidentSession::take(const Share& share) {
+void ResidentSession::take(const Subdomain& share) {
     stale_ = true; // bodies new to the share have no poses here
     steps_.bodies->take(share);
     steps_.steps.hierarchy->take(share, steps_.bodies->count());
@@ -22,7 +22,7 @@ void ResidentSession::receive(std::span<const std::uint32_t> bodies) {
     steps_.bodies->leave(bodies);
 }
 
-void ResidentSession::place_vertices(const Frame& frame) {
+void ResidentSession::upload_vertices(const Frame& frame) {
     steps_.bodies->update_deformed(frame, true);
     is_placed_ = true;
 }
@@ -32,8 +32,8 @@ void ResidentSession::do_reset() {
     batches_ = 1;
 }
 
-FrameResult ResidentSession::do_run_there(const DeviceFrame& frame,
-                                          std::optional<std::span<const BodyPair>> body_pairs) {
+FrameResult ResidentSession::do_run_device_input(const DeviceFrame& frame,
+                                                 std::optional<std::span<const BodyPair>> body_pairs) {
     if (!pack_) pack_ = std::make_unique<PackStage>(*steps_.bodies, steps_.shape);
     return run_given({.there = &frame, .body_pairs = body_pairs});
 }
@@ -56,14 +56,14 @@ void ResidentSession::find_body_pairs(const Given& given) {
     if (given.here != nullptr)
         steps_.body_pairs->begin(*given.here, given.body_pairs);
     else
-        steps_.body_pairs->begin_there(given.body_pairs);
+        steps_.body_pairs->begin_on_device(given.body_pairs);
 }
 
 /// Whether the device would be idle while the host works or waits before the end of the frame's commands.
-bool ResidentSession::waits_on_way(const Given& given) const {
+bool ResidentSession::waits_within_frame(const Given& given) const {
     const bool has_pairs = given.body_pairs.has_value();
     return given.here != nullptr ? steps_.body_pairs->works_on_host(has_pairs)
-                                 : steps_.body_pairs->sorts_there(has_pairs);
+                                 : steps_.body_pairs->sorts_on_device(has_pairs);
 }
 
 /// Throws InputError when packing counted rows out of range, which stand in bounds as something else.
@@ -121,7 +121,7 @@ void ResidentSession::begin(const Given& given, const AnswerBuffers& answer) {
             launch(answer);
         steps_.status.read();
     };
-    if (steps_.settings[parameters::submission] == Submission::one && !waits_on_way(given))
+    if (steps_.settings[parameters::submission] == Submission::one && !waits_within_frame(given))
         steps_.device.as_one(all);
     else
         all();

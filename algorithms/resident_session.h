@@ -3,7 +3,7 @@
 
 #include "algorithms/bodies/pack_stage.h"
 #include "algorithms/pipeline.h"
-#include "algorithms/distributed/share.h"
+#include "algorithms/distributed/subdomain.h"
 
 #include <array>
 
@@ -30,16 +30,16 @@ public:
 
     // Where vertices come by another way than from the host's memory:
 
-    /// From now on somebody else writes the vertices of these deformable bodies, between place_vertices() and
-    /// run(), which throws OutOfMemory where it needs them in the host's: a frame in batches.
+    /// From now on somebody else writes the vertices of these deformable bodies, between upload_vertices()
+    /// and run(), which throws OutOfMemory where it needs them in the host's: a frame in batches.
     void receive(std::span<const std::uint32_t> bodies);
     /// Puts the other deformable bodies' vertices of the next frame that is run to the device, and waits.
-    void place_vertices(const Frame& frame);
+    void upload_vertices(const Frame& frame);
     const Bodies& bodies() const { return *steps_.bodies; }
 
     /// From now on finds the pairs of a share of each frame, and looks at nothing else of it. Body pairs that
     /// run() is given are of bodies that have a part in the share.
-    void take(const Share& share);
+    void take(const Subdomain& share);
 
 private:
     /// A frame in the host's memory or in the device's, and the body pairs that were given with it.
@@ -53,15 +53,15 @@ private:
     FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override {
         return run_given({.here = &frame, .body_pairs = body_pairs});
     }
-    FrameResult do_run_there(const DeviceFrame& frame,
-                             std::optional<std::span<const BodyPair>> body_pairs) override;
+    FrameResult do_run_device_input(const DeviceFrame& frame,
+                                    std::optional<std::span<const BodyPair>> body_pairs) override;
     void do_count_work(bool on) override { steps_.count(on); }
     std::span<Device* const> do_devices() const override { return devices_; }
     const Settings& do_settings() const override { return steps_.settings; }
 
     void refresh(const Given& given);
     void find_body_pairs(const Given& given);
-    bool waits_on_way(const Given& given) const;
+    bool waits_within_frame(const Given& given) const;
     void refuse_flaws(const Given& given);
     void launch(const AnswerBuffers& answer);
     void walk(const AnswerBuffers& answer);

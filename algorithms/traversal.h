@@ -14,10 +14,10 @@
 
 namespace tandem {
 
-class Ranks;       // backends/ranks.h
-struct Ground;     // steps.h
-struct KernelCost; // cost.h
-struct Steps;
+class Ranks;         // backends/ranks.h
+struct BuildContext; // steps.h
+struct KernelCost;   // cost.h
+struct AlgorithmStages;
 
 /// Two bodies whose volumes may overlap; a < b.
 struct BodyPair {
@@ -53,7 +53,7 @@ public:
     void count_work(bool on) { do_count_work(on); }
     std::span<Device* const> devices() const { return do_devices(); }
     /// The bodies that frames have to have from this process, in no order: of a session on ranks of a job its
-    /// own ones, until FrameResult::deals says that they are others; nothing: all of them.
+    /// own ones, until FrameResult::repartitions says that they are others; nothing: all of them.
     std::optional<std::span<const std::uint32_t>> owned() const { return do_owned(); }
     /// The settings as the devices took them.
     const Settings& settings() const { return do_settings(); }
@@ -72,8 +72,8 @@ private:
     virtual void do_reset() = 0;
     virtual FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) = 0;
     /// Of a checked frame; refuses unless a session knows how.
-    virtual FrameResult do_run_there(const DeviceFrame& frame,
-                                     std::optional<std::span<const BodyPair>> body_pairs);
+    virtual FrameResult do_run_device_input(const DeviceFrame& frame,
+                                            std::optional<std::span<const BodyPair>> body_pairs);
     virtual void do_count_work(bool on) = 0;
     virtual std::span<Device* const> do_devices() const = 0;
     virtual const Settings& do_settings() const = 0;
@@ -138,14 +138,14 @@ public:
     std::vector<KernelCost> costs(const Scene& scene, const Settings& settings) const;
 
     /// Its own steps of a frame; for pipelines. Throws OutOfMemory or DeviceError.
-    Steps build(const Ground& ground) const;
+    AlgorithmStages build(const BuildContext& ground) const;
 
 private:
     /// Decides what its own settings leave to the device and the scene, which may be null.
     virtual void do_fit(Settings& settings, const DeviceInfo& info, const Scene* scene) const;
     /// Throws InputError when the algorithm's own settings do not fit.
     virtual void do_check(const Settings& settings, const DeviceInfo& info) const = 0;
-    virtual Steps do_build(const Ground& ground) const = 0;
+    virtual AlgorithmStages do_build(const BuildContext& ground) const = 0;
     /// Those of its own kernels; none where nothing is said of them.
     virtual std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const;
 };
@@ -155,7 +155,7 @@ std::span<const Traversal* const> algorithms();
 
 /// Other projects' walks, for comparison in the same record. They are had by name: each does a part only of
 /// what settings and devices there are, and refuses the rest, so that no list of all algorithms has them.
-std::span<const Traversal* const> peers();
+std::span<const Traversal* const> baselines();
 
 /// Adds one to the list, for programs that bring their own; `traversal` must live as long as the program.
 /// Not thread-safe. Throws InputError when there is one of that name.

@@ -21,9 +21,9 @@ struct WalkBuild {
 };
 
 /// What a data path does between the launches of one walk, if anything.
-class Interlude {
+class LaunchHook {
 public:
-    virtual ~Interlude() = default;
+    virtual ~LaunchHook() = default;
     /// A part of the walk has ended and may have found pairs.
     virtual void part_walked() = 0;
 };
@@ -31,16 +31,16 @@ public:
 /// What a walk works on: body pairs on the device, and where answers go.
 struct WalkTask {
     const Buffer& body_pairs;          ///< rows of two words; the status has their number
-    std::uint32_t pair_room = 0;       ///< rows there is room for: their number is at most that
+    std::uint32_t pair_capacity = 0;   ///< rows there is room for: their number is at most that
     bool searched = false;             ///< the device has found them, and the host does not know their number
     std::span<const BodyPair> on_host; ///< the pairs themselves unless the device has found them
     const AnswerBuffers& answer;
     Status& status;
-    Interlude* interlude = nullptr; ///< of data paths that have one
+    LaunchHook* launch_hook = nullptr; ///< of data paths that have one
 
     /// Their number, or the most it can be.
     std::uint32_t most_pairs() const {
-        return searched ? pair_room : static_cast<std::uint32_t>(on_host.size());
+        return searched ? pair_capacity : static_cast<std::uint32_t>(on_host.size());
     }
 };
 

@@ -98,7 +98,7 @@ void Device::submit(Event event, std::string_view label, const Work& work) {
     record(std::move(event), begin);
 }
 
-void Device::check_room(std::size_t bytes, std::string_view label) const {
+void Device::check_capacity(std::size_t bytes, std::string_view label) const {
     const auto& has = info();
     const auto refuse = [&](std::string_view why, std::uint64_t most) {
         throw OutOfMemory(fmt::format("{} ({}): buffer '{}' needs {} bytes, {} are in use, and {} {}", has.id,
@@ -118,7 +118,7 @@ void Device::check_room(std::size_t bytes, std::string_view label) const {
 Buffer Device::allocate(std::size_t bytes, std::string_view label) {
     // Zero-sized buffers are not allowed by OpenCL; one word keeps callers free of special cases.
     const auto size = std::max<std::size_t>(bytes, 16);
-    check_room(size, label);
+    check_capacity(size, label);
     auto impl = do_allocate(guards_ ? size + BufferGuards::padding : size);
     impl->bytes = size;
     impl->label = label;

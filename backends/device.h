@@ -316,7 +316,7 @@ private:
     /// Begin and duration in device nanoseconds of a finished command; releases the ticket.
     virtual std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) = 0;
 
-    void check_room(std::size_t bytes, std::string_view label) const;
+    void check_capacity(std::size_t bytes, std::string_view label) const;
     void do_check_guards();
     /// Fills in the device times of what was recorded and releases all tickets.
     void read_times();

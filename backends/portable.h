@@ -259,7 +259,7 @@ DEVICE void begin_count(LaneCounter* counter, uint value) {
 }
 
 // A place for a lane that is `wanting` one.
-DEVICE uint take_place(LaneCounter* counter, int wanting) {
+DEVICE uint reserve_slot(LaneCounter* counter, int wanting) {
 #if LANES_ARE_WARP
     const uint all = LANES_THAT(wanting);
     const uint place = counter->value + COUNT_ONES(all & ((1u << LANE_ID) - 1u));
@@ -271,7 +271,7 @@ DEVICE uint take_place(LaneCounter* counter, int wanting) {
 }
 
 // How many places have been taken; after a LANE_BARRIER.
-DEVICE uint places_taken(const LaneCounter* counter) {
+DEVICE uint reserved_slots(const LaneCounter* counter) {
     return LANES_ARE_WARP ? counter->value : *counter->word;
 }
 

@@ -55,10 +55,10 @@ public:
     virtual std::vector<Bytes> exchange(const std::vector<Bytes>& out) = 0;
 
     /// Whether messages can be of this device's memory as it lies there.
-    virtual bool reaches(const DeviceInfo& info) const = 0;
+    virtual bool is_gpu_aware(const DeviceInfo& info) const = 0;
     /// Pieces to and from other ranks, in whatever memory; between two ranks in the same order and of the
     /// same sizes. What devices write there has been waited for.
-    virtual void exchange_there(std::span<const Piece> out, std::span<const Piece> in) = 0;
+    virtual void exchange_device(std::span<const Piece> out, std::span<const Piece> in) = 0;
 
     // Between two of them.
 

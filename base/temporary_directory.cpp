@@ -9,7 +9,7 @@
 
 namespace tandem {
 
-PassingFolder::PassingFolder() {
+TemporaryDirectory::TemporaryDirectory() {
     std::error_code none;
     const auto folder = std::filesystem::temp_directory_path(none);
     if (none) throw InputError("there is no folder for temporary files; set TMPDIR to one");
@@ -18,7 +18,7 @@ PassingFolder::PassingFolder() {
         throw InputError(fmt::format("{}: cannot be made; set TMPDIR", path_));
 }
 
-PassingFolder::~PassingFolder() {
+TemporaryDirectory::~TemporaryDirectory() {
     std::error_code none;
     std::filesystem::remove_all(path_, none);
 }

@@ -6,13 +6,13 @@
 namespace tandem {
 
 /// A folder of this process alone among the temporary files, which goes again with all that is in it.
-class PassingFolder {
+class TemporaryDirectory {
 public:
     /// Throws InputError where none can be made.
-    PassingFolder();
-    ~PassingFolder();
-    PassingFolder(const PassingFolder&) = delete;
-    PassingFolder& operator=(const PassingFolder&) = delete;
+    TemporaryDirectory();
+    ~TemporaryDirectory();
+    TemporaryDirectory(const TemporaryDirectory&) = delete;
+    TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
 
     const std::string& path() const { return path_; }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/options/command_line.h"
 #include "harness/commands/memory_reserve.h"
-#include "harness/sampling/ranks/launched.h"
-#include "harness/sampling/ranks/launched_run.h"
+#include "harness/sampling/ranks/mpi_environment.h"
+#include "harness/sampling/ranks/run_on_ranks.h"
 #include "harness/commands/standard_streams.h"
 #include "harness/commands/text_lines.h"
 #include "base/error.h"
@@ -22,13 +22,13 @@ int guarded(const Work& work) { // memory may be short before it begins: no std:
     try {
         return work();
     } catch (const InputError& error) {
-        tandem::tell("tandem: {}\n", tandem::visible(error.what()));
+        tandem::print_message("tandem: {}\n", tandem::visible(error.what()));
         return 2;
     } catch (const std::bad_alloc&) {
-        tandem::tell("tandem: out of memory; use fewer bodies or frames\n");
+        tandem::print_message("tandem: out of memory; use fewer bodies or frames\n");
         return 3;
     } catch (const std::exception& error) {
-        tandem::tell("tandem: {}\n", tandem::visible(error.what()));
+        tandem::print_message("tandem: {}\n", tandem::visible(error.what()));
         return 3;
     }
 }
@@ -37,10 +37,10 @@ int run(int argc, char** argv) {
     const auto read = [=] { return tandem::read_command_line(argc, argv); };
     return guarded([&] {
         const tandem::MemoryReserve reserve;
-        const tandem::Launched launched;
-        auto* ranks = tandem::launched_ranks();
+        const tandem::MpiEnvironment launched;
+        auto* ranks = tandem::job_ranks();
         if (ranks == nullptr) return guarded([&] { return read()(); });
-        return tandem::run_launched(*ranks, {argv + std::min(argc, 1), argv + argc}, read,
+        return tandem::run_on_ranks(*ranks, {argv + std::min(argc, 1), argv + argc}, read,
                                     [](const std::function<int()>& work) { return guarded(work); });
     });
 }

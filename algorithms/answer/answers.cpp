@@ -233,8 +233,8 @@ void AnswerTools::download(const Buffer& pairs, std::uint64_t count, std::vector
 
 Pair AnswerTools::pair_of(const std::uint32_t* row) const {
     const bool slots = layout() == PairLayout::slots;
-    const auto a = slots ? bodies_->place_of(row[0]) : Bodies::Place{row[0], row[2]};
-    const auto b = slots ? bodies_->place_of(row[1]) : Bodies::Place{row[1], row[3]};
+    const auto a = slots ? bodies_->slot_owner(row[0]) : Bodies::Place{row[0], row[2]};
+    const auto b = slots ? bodies_->slot_owner(row[1]) : Bodies::Place{row[1], row[3]};
     const auto& scene = bodies_->scene();
     return {number_of(scene, a.body), bodies_->mesh(a.body).ids[a.item], number_of(scene, b.body),
             bodies_->mesh(b.body).ids[b.item]};

@@ -54,7 +54,7 @@ public:
 };
 
 /// What one of several devices did of a frame.
-struct SharedWork {
+struct DeviceWork {
     std::uint64_t bodies = 0;     ///< placed and bounded, whoever owns them
     std::uint64_t body_pairs = 0; ///< walked
     std::uint64_t pairs = 0;      ///< candidate pairs found
@@ -83,8 +83,8 @@ struct FrameCounts {
 /// brought to the host to make room. It can be asked as long as its scene and devices live, also after the
 /// next run; a session keeps its buffers apart until then.
 struct FrameResult : FrameCounts {
-    std::vector<SharedWork> shared;                 ///< by device; of a session on one device none
-    std::uint64_t deals = 0;                        ///< 1 where the bodies were dealt to the devices anew
+    std::vector<DeviceWork> shared;                 ///< by device; of a session on one device none
+    std::uint64_t repartitions = 0;                        ///< 1 where the bodies were dealt to the devices anew
     std::map<std::string_view, std::uint64_t> work; ///< by Counter; empty unless Session::count_work(true)
     std::optional<Digest> summed;                   ///< output=digest: of the pairs
     std::array<double, 3> origin{}; ///< what points of contacts in the parts count from (Session::origin)

@@ -34,7 +34,7 @@ Bodies::Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sha
       pair_layout_(sharing == Sharing::by_mesh ? pair_layout : PairLayout::items) {
     for (const auto& mesh : scene.meshes) {
         meshes_.push_back(ordered(mesh, builder));
-        if (geometry.placement == Placement::exact) reaches_.push_back(reach_of(mesh.vertices));
+        if (geometry.placement == Placement::exact) is_gpu_aware_.push_back(reach_of(mesh.vertices));
     }
     lay_out();
     lay_out_slots();
@@ -109,7 +109,7 @@ std::uint32_t Bodies::first_slot(std::size_t body) const {
     return (rows_[body].flags >> block_shift) * block_slots;
 }
 
-Bodies::Place Bodies::place_of(std::uint32_t slot) const {
+Bodies::Place Bodies::slot_owner(std::uint32_t slot) const {
     const auto next = std::upper_bound(first_blocks_.begin(), first_blocks_.end(), slot / block_slots);
     const auto i = static_cast<std::size_t>(next - first_blocks_.begin()) - 1;
     return {slot_order_[i], static_cast<std::uint32_t>(slot - first_blocks_[i] * block_slots)};
@@ -160,7 +160,7 @@ std::size_t Bodies::bytes() const {
 std::array<double, 3> Bodies::drift_of(const Frame& frame, std::size_t body) const {
     if (geometry_.placement == Placement::rounded) return {};
     if (scene_.bodies[body].deformable) return drift_bound(frame.deformed[body], geometry_.precision);
-    return drift_bound(frame.poses[body], reaches_[scene_.bodies[body].mesh], geometry_.precision);
+    return drift_bound(frame.poses[body], is_gpu_aware_[scene_.bodies[body].mesh], geometry_.precision);
 }
 
 std::vector<std::byte> Bodies::packed_poses(const Frame& frame) const {
@@ -192,8 +192,8 @@ void Bodies::update_poses(const Frame& frame, bool all) {
     device_.upload(poses_, bytes);
 }
 
-void Bodies::take(const Share& share) {
-    roles_ = roles_in(share, rows_.size());
+void Bodies::take(const Subdomain& share) {
+    roles_ = roles_of(share, rows_.size());
     plan_runs();
 }
 

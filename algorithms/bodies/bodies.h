@@ -3,7 +3,7 @@
 
 #include "algorithms/bounds/geometry.h"
 #include "algorithms/hierarchy/order.h"
-#include "algorithms/distributed/share.h"
+#include "algorithms/distributed/subdomain.h"
 #include "scenes/scene.h"
 
 namespace tandem {
@@ -45,7 +45,7 @@ public:
     void update_poses(const Frame& frame, bool all);
     void update_deformed(const Frame& frame, bool waits = false);
     /// From now on only what has a part in `share` is looked at in a frame and uploaded.
-    void take(const Share& share);
+    void take(const Subdomain& share);
     /// From now on update() leaves out the vertices of these deformable bodies, which somebody else writes.
     void leave(std::span<const std::uint32_t> bodies);
 
@@ -68,7 +68,7 @@ public:
     /// Of its tetrahedra; 0 for PairLayout::items.
     std::uint32_t first_slot(std::size_t body) const;
     /// Whose a slot is; of PairLayout::slots.
-    Place place_of(std::uint32_t slot) const;
+    Place slot_owner(std::uint32_t slot) const;
     /// Bytes of device memory in all buffers.
     std::size_t bytes() const;
     /// The rows of all bodies, and a frame's poses, as kernels read them.
@@ -100,7 +100,7 @@ private:
     Geometry geometry_;
     Sharing sharing_;
     std::vector<OrderedMesh> meshes_;
-    std::vector<double> reaches_; ///< by mesh: reach_of; placement = exact only
+    std::vector<double> is_gpu_aware_; ///< by mesh: reach_of; placement = exact only
     std::vector<Row> rows_;
     PairLayout pair_layout_;
     std::vector<std::uint32_t> slot_order_;

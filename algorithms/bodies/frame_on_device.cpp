@@ -28,7 +28,7 @@ std::vector<double> numbers_of(Device& device, const DeviceRows& rows, std::size
     return numbers;
 }
 
-void check_room(const DeviceRows& rows, std::size_t numbers, const std::string& whose) {
+void check_capacity(const DeviceRows& rows, std::size_t numbers, const std::string& whose) {
     const auto bytes = numbers * bytes_of_number(rows);
     if (rows.buffer.bytes() < bytes)
         throw InputError(fmt::format("{}: a buffer of {} bytes, and {} numbers of {} bytes are wanted", whose,
@@ -54,14 +54,14 @@ Pose pose_of_row(const double* row, std::size_t body) {
 }
 
 void check_fits(const Scene& scene, const DeviceFrame& frame) {
-    if (frame.poses.buffer) check_room(frame.poses, scene.bodies.size() * pose_numbers, "poses");
+    if (frame.poses.buffer) check_capacity(frame.poses, scene.bodies.size() * pose_numbers, "poses");
     if (frame.deformed.size() != scene.bodies.size())
         throw InputError(fmt::format("the frame has {} entries of vertices for {} bodies; give each body one",
                                      frame.deformed.size(), scene.bodies.size()));
     for (std::size_t body = 0; body < scene.bodies.size(); ++body)
         if (scene.bodies[body].deformable)
-            check_room(frame.deformed[body], 3 * scene.meshes[scene.bodies[body].mesh].vertices.size(),
-                       fmt::format("vertices of body {}", body));
+            check_capacity(frame.deformed[body], 3 * scene.meshes[scene.bodies[body].mesh].vertices.size(),
+                           fmt::format("vertices of body {}", body));
 }
 
 Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame) {

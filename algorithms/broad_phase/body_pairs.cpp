@@ -10,7 +10,7 @@
 
 namespace tandem {
 
-BodyPairs::BodyPairs(const Ground& ground, const Hierarchy& hierarchy, Status::Writes writes)
+BodyPairs::BodyPairs(const BuildContext& ground, const Hierarchy& hierarchy, Status::Writes writes)
     : hierarchy_(hierarchy),
       shape_(ground.shape),
       bodies_(ground.bodies),
@@ -49,7 +49,7 @@ void BodyPairs::upload_given(std::span<const BodyPair> given) {
     upload(given);
 }
 
-void BodyPairs::begin_there(std::optional<std::span<const BodyPair>> given) {
+void BodyPairs::begin_on_device(std::optional<std::span<const BodyPair>> given) {
     if (given) {
         upload_given(*given);
         return;
@@ -80,8 +80,8 @@ void BodyPairs::begin(const Frame& frame, std::optional<std::span<const BodyPair
     }
 }
 
-void BodyPairs::take(const Share& share) {
-    roles_ = roles_in(share, scene_.bodies.size());
+void BodyPairs::take(const Subdomain& share) {
+    roles_ = roles_of(share, scene_.bodies.size());
     if (stage_) stage_->take(share);
     sorted_ = true;
 }

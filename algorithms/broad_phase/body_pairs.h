@@ -5,7 +5,7 @@
 #include "algorithms/answer/status.h"
 #include "algorithms/broad_phase/broad.h"
 #include "algorithms/broad_phase/broad_stage.h"
-#include "algorithms/steps.h"
+#include "algorithms/stages.h"
 
 #include <memory>
 #include <optional>
@@ -16,19 +16,19 @@ namespace tandem {
 class BodyPairs {
 public:
     /// `writes`: whether an upload of pairs is waited for. What is given must outlive this.
-    BodyPairs(const Ground& ground, const Hierarchy& hierarchy, Status::Writes writes);
+    BodyPairs(const BuildContext& ground, const Hierarchy& hierarchy, Status::Writes writes);
 
     /// The next launches are of `frame`: uploads the pairs that are given or that the host finds. Throws
     /// InputError for more than kernels number.
     void begin(const Frame& frame, std::optional<std::span<const BodyPair>> given);
     /// The same of a frame that is in the device's memory, after its refit: the device finds the pairs that
     /// are not given, whatever setting broad says.
-    void begin_there(std::optional<std::span<const BodyPair>> given);
+    void begin_on_device(std::optional<std::span<const BodyPair>> given);
     /// Whether begin() makes the host work for so long that a device had better have something to do
     /// meanwhile.
     bool works_on_host(bool given) const { return !given && (broad_ || !sorted_); }
-    /// Whether begin_there() has the host wait for where the bodies are.
-    bool sorts_there(bool given) const { return !given && !sorted_; }
+    /// Whether begin_on_device() has the host wait for where the bodies are.
+    bool sorts_on_device(bool given) const { return !given && !sorted_; }
     /// The same with a part of the frame's pairs.
     void begin_part(std::span<const BodyPair> part);
     /// Enqueues the device's search, if it is the device that finds the frame's pairs.
@@ -43,7 +43,7 @@ public:
     /// Forgets the order in which bodies stand, unless it is that of a share.
     void reset() { sorted_ = !roles_.empty(); }
     /// From now on finds the pairs of `share`, which has them all where the host does not tell otherwise.
-    void take(const Share& share);
+    void take(const Subdomain& share);
 
     /// Whether it is the device that finds the pairs at hand.
     bool searched() const { return searches_; }

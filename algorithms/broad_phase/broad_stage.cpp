@@ -97,9 +97,9 @@ void BroadStage::sort(const std::vector<Eigen::Vector3d>& centres) {
     upload(order);
 }
 
-void BroadStage::take(const Share& share) {
+void BroadStage::take(const Subdomain& share) {
     auto order = share.own;
-    order.insert(order.end(), share.others.begin(), share.others.end());
+    order.insert(order.end(), share.ghosts.begin(), share.ghosts.end());
     moving_count_ = static_cast<std::uint32_t>(share.own.size());
     upload(order);
 }

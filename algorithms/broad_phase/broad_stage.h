@@ -19,7 +19,7 @@ public:
     /// whenever pairs are sought: that decides how fast they are found, never which.
     void sort(const Frame& frame);
     /// From now on finds the pairs of a share, in whose order bodies stand.
-    void take(const Share& share);
+    void take(const Subdomain& share);
     /// The same of where the last refit has left the bodies' volumes, for frames that the host does not have;
     /// waits for it.
     void sort_by_volumes();

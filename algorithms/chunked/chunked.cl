@@ -16,9 +16,9 @@ DEVICE ulong row_of_level(uint level, uint pair_count) { return (ulong)level * p
 
 // seeds[row_of_level(level) + pair] = number of chunk pairs that body pair starts with at that level.
 KERNEL void count_seeds(GLOBAL const real* volumes, GLOBAL const uint* trees, GLOBAL const uint* levels,
-                        GLOBAL const uint* pairs, uint pair_room, uint level_count, GLOBAL ulong* seeds,
+                        GLOBAL const uint* pairs, uint pair_capacity, uint level_count, GLOBAL ulong* seeds,
                         GLOBAL const uint* status) {
-    const uint pair_count = body_pair_count(pair_room, status);
+    const uint pair_count = body_pair_count(pair_capacity, status);
     const ulong threshold = seed_threshold(pair_count);
     for (ulong pair = GLOBAL_ID; pair < pair_count; pair += GLOBAL_COUNT) { // in 32 bits it might start over
         const uint body_a = body_a_of(pairs, (uint)pair);
@@ -37,9 +37,9 @@ KERNEL void count_seeds(GLOBAL const real* volumes, GLOBAL const uint* trees, GL
 
 // Turns each level's counts into starts, with the total at the end: one work-group a level; each work-item
 // sums a contiguous part, work-item 0 scans the parts.
-KERNEL void scan_seeds(GLOBAL ulong* seeds, uint pair_room, GLOBAL const uint* status) {
+KERNEL void scan_seeds(GLOBAL ulong* seeds, uint pair_capacity, GLOBAL const uint* status) {
     LOCAL_ARRAY(ulong, parts, GROUP_SIZE);
-    const uint pair_count = body_pair_count(pair_room, status);
+    const uint pair_count = body_pair_count(pair_capacity, status);
     GLOBAL ulong* row = seeds + row_of_level(GROUP_ID, pair_count);
     const ulong part = ((ulong)pair_count + GROUP_SIZE - 1) / GROUP_SIZE;
     const ulong first = LOCAL_ID * part < pair_count ? LOCAL_ID * part : pair_count;
@@ -90,14 +90,14 @@ DEVICE ulong seed_total(ulong own, GLOBAL const uint* status, uint level, uint h
 // own ones.
 KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* levels,
                      GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* pairs,
-                     uint pair_room, uint level, GLOBAL const ulong* seeds, GLOBAL const uint* handed,
+                     uint pair_capacity, uint level, GLOBAL const ulong* seeds, GLOBAL const uint* handed,
                      uint handed_capacity, GLOBAL uint* below, uint below_capacity, GLOBAL uint* found,
                      uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, stacks, STACK_DEPTH * GROUP_SIZE);
     LOCAL uint* stack = stacks + LOCAL_ID;
     const Job job = {nodes, trees, bodies,         levels, ids,      pairs,
                      level, below, below_capacity, found,  capacity, status};
-    const uint pair_count = body_pair_count(pair_room, status);
+    const uint pair_count = body_pair_count(pair_capacity, status);
     GLOBAL const ulong* starts = seeds + row_of_level(level, pair_count);
     const ulong own = starts[pair_count];
     const ulong total = seed_total(own, status, level, handed_capacity);
@@ -170,7 +170,7 @@ DEVICE uint batch_size(ulong seeds) {
 // that all of them have work however unlike the walks are.
 KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* levels,
                                GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* pairs,
-                               uint pair_room, uint level, GLOBAL const ulong* seeds,
+                               uint pair_capacity, uint level, GLOBAL const ulong* seeds,
                                GLOBAL const uint* handed, uint handed_capacity, GLOBAL uint* below,
                                uint below_capacity, GLOBAL uint* found, uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, rows, SHARED_ROWS * ROW_WORDS);
@@ -179,7 +179,7 @@ KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* tree
     // still read; the third is made ready for the next
     const Job job = {nodes, trees, bodies,         levels, ids,      pairs,
                      level, below, below_capacity, found,  capacity, status};
-    const uint all_pairs = body_pair_count(pair_room, status);
+    const uint all_pairs = body_pair_count(pair_capacity, status);
     GLOBAL const ulong* starts = seeds + row_of_level(level, all_pairs);
     const ulong own = starts[all_pairs];
     const ulong total = seed_total(own, status, level, handed_capacity);
@@ -200,7 +200,7 @@ KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* tree
         if (LOCAL_ID == 0u) pushed[(turn + 1u) % 3u] = 0u;
         BARRIER;
         if (collecting) {
-            const uint pair_count = body_pair_count(pair_room, status); // again, for want of registers
+            const uint pair_count = body_pair_count(pair_capacity, status); // again, for want of registers
             const uint near = start < own ? pair_between(starts, 0u, pair_count, start) : 0u;
             for (ulong seed = start + LOCAL_ID; seed < start + batch && seed < total; seed += GROUP_SIZE) {
                 const Walk walk = walk_of_seed(&job, pair_count, starts, own, near, handed, seed);

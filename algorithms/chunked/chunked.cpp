@@ -83,7 +83,7 @@ private:
         return costs;
     }
 
-    Steps do_build(const Ground& ground) const override {
+    AlgorithmStages do_build(const BuildContext& ground) const override {
         auto trees =
             std::make_unique<ChunkTrees>(ground.bodies, leaves_of(ground.settings), ground.shape.group_size);
         std::unique_ptr<Walker> walker;

@@ -15,7 +15,7 @@ constexpr std::size_t seed_bytes = 12; ///< SEED_WORDS words
 
 } // namespace
 
-ChunkedWalker::ChunkedWalker(const ChunkTrees& trees, const Ground& ground)
+ChunkedWalker::ChunkedWalker(const ChunkTrees& trees, const BuildContext& ground)
     : trees_(trees),
       shape_(ground.shape),
       threshold_(ground.settings[chunked_parameters::seed_threshold]),
@@ -96,15 +96,15 @@ void ChunkedWalker::make_seeds(const WalkTask& task) {
     reserve_starts(task.most_pairs());
     const auto group = shape_.group_size;
     const std::array<Argument, 8> count{trees_.volumes(), trees_.tree_table(), trees_.level_table(),
-                                        task.body_pairs,  task.pair_room,      top_level_ + 1,
+                                        task.body_pairs,  task.pair_capacity,  top_level_ + 1,
                                         starts_.buffer(), task.status.buffer()};
     const auto needed = (std::uint64_t{task.most_pairs()} + group - 1) / group;
     device().launch(count_kernel_, {std::clamp<std::uint64_t>(needed, 1, shape_.groups), group}, count);
-    const std::array<Argument, 3> scan{starts_.buffer(), task.pair_room, task.status.buffer()};
+    const std::array<Argument, 3> scan{starts_.buffer(), task.pair_capacity, task.status.buffer()};
     device().launch(scan_kernel_, {top_level_ + 1, group}, scan);
 }
 
-void ChunkedWalker::traverse(const WalkTask& task, std::uint32_t level, std::uint32_t pair_room) {
+void ChunkedWalker::traverse(const WalkTask& task, std::uint32_t level, std::uint32_t pair_capacity) {
     const StageScope scope(device(), Stage::traverse);
     const auto& bodies = trees_.bodies();
     const std::array<Argument, 16> arguments{trees_.nodes(),
@@ -113,7 +113,7 @@ void ChunkedWalker::traverse(const WalkTask& task, std::uint32_t level, std::uin
                                              bodies.row_table(),
                                              bodies.ids(),
                                              task.body_pairs,
-                                             pair_room,
+                                             pair_capacity,
                                              level,
                                              starts_.buffer(),
                                              handed(level),
@@ -128,7 +128,7 @@ void ChunkedWalker::traverse(const WalkTask& task, std::uint32_t level, std::uin
 
 void ChunkedWalker::do_launch(const WalkTask& task) {
     make_seeds(task);
-    for (std::uint32_t level = top_level_ + 1; level-- > 0;) traverse(task, level, task.pair_room);
+    for (std::uint32_t level = top_level_ + 1; level-- > 0;) traverse(task, level, task.pair_capacity);
 }
 
 } // namespace tandem

@@ -4,7 +4,7 @@
 #include "algorithms/answer/growable_buffer.h"
 #include "algorithms/chunked/chunked_parameters.h"
 #include "algorithms/hierarchy/chunk_trees.h"
-#include "algorithms/steps.h"
+#include "algorithms/stages.h"
 
 namespace tandem {
 
@@ -13,13 +13,13 @@ namespace tandem {
 class ChunkedWalker : public Walker {
 public:
     /// Both must outlive this.
-    ChunkedWalker(const ChunkTrees& trees, const Ground& ground);
+    ChunkedWalker(const ChunkTrees& trees, const BuildContext& ground);
 
 protected:
     /// The rule of seed_level in seeds.clh, for the host.
     std::uint32_t seed_level(std::uint32_t a, std::uint32_t b, std::uint64_t pair_count) const;
     /// Enqueues the walks of a level: its own seeds, as the starts have them, and those handed down to it.
-    void traverse(const WalkTask& task, std::uint32_t level, std::uint32_t pair_room);
+    void traverse(const WalkTask& task, std::uint32_t level, std::uint32_t pair_capacity);
     /// Makes starts for so many body pairs; what was there is lost.
     void reserve_starts(std::uint64_t pairs);
 

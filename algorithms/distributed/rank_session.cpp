@@ -3,7 +3,7 @@
 
 #include "algorithms/parameters/table.h"
 #include "algorithms/distributed/agreement.h"
-#include "algorithms/distributed/present.h"
+#include "algorithms/distributed/local_scene.h"
 #include "base/error.h"
 
 #include <algorithm>
@@ -37,10 +37,10 @@ std::vector<std::uint64_t> counts_of(const FrameResult& result) {
 
 /// Where frame 0 has them all.
 std::vector<Ball> balls_at_the_start(const Scene& scene) {
-    Places places(scene);
+    DisplacementTracker places(scene);
     std::vector<std::uint32_t> all(scene.bodies.size());
     std::iota(all.begin(), all.end(), 0u);
-    places.keep(scene.frame(0), all);
+    places.set_reference(scene.frame(0), all);
     std::vector<Ball> balls;
     balls.reserve(all.size());
     for (const auto body : all) balls.push_back(places.ball(body));
@@ -56,13 +56,13 @@ RankSession::RankSession(const Traversal& traversal, Device& device, const Scene
       scene_(scene),
       settings_(std::move(fitted)),
       ranks_(ranks),
-      deal_(scene, geometry_of(settings_), static_cast<std::size_t>(ranks.size())),
-      balance_(static_cast<std::size_t>(ranks.size())),
-      halo_(scene, geometry_of(settings_), ranks),
-      passage_(ranks, device.info(), scene, settings_),
+      partitioner_(scene, geometry_of(settings_), static_cast<std::size_t>(ranks.size())),
+      balancer_(static_cast<std::size_t>(ranks.size())),
+      ghosts_(scene, geometry_of(settings_), ranks),
+      device_exchange_(ranks, device.info(), scene, settings_),
       places_(scene),
       balls_(balls_at_the_start(scene)) {
-    deal_.make(balls_, balance_.speeds());
+    partitioner_.partition(balls_, balancer_.speeds());
     // What compiles and allocates does so now, and not in the first frame.
     Report own;
     exchange(scene.frame(0), own);
@@ -78,7 +78,7 @@ void RankSession::do_count_work(bool on) {
     if (session_) session_->count_work(on);
 }
 
-FrameResult RankSession::do_run_there(const DeviceFrame&, std::optional<std::span<const BodyPair>>) {
+FrameResult RankSession::do_run_device_input(const DeviceFrame&, std::optional<std::span<const BodyPair>>) {
     throw InputError(
         fmt::format("{}: ranks of a job tell each other where bodies are, from the host's memory; "
                     "give the frame there",
@@ -87,29 +87,29 @@ FrameResult RankSession::do_run_there(const DeviceFrame&, std::optional<std::spa
 
 void RankSession::drop() {
     session_.reset(); // which refers to the scene
-    present_.reset();
+    local_scene_.reset();
 }
 
 /// A session of those bodies alone, with as much room for answers as the last had.
 void RankSession::build(const std::vector<std::uint32_t>& bodies) {
     const auto answers = session_ ? session_->answers() : nullptr;
     drop(); // before the next takes memory
-    present_ = part_of(scene_, bodies);
-    present_frame_ = {std::vector<Pose>(bodies.size()),
-                      std::vector<std::vector<Eigen::Vector3d>>(bodies.size())};
+    local_scene_ = local_subscene(scene_, bodies);
+    local_frame_ = {std::vector<Pose>(bodies.size()),
+                    std::vector<std::vector<Eigen::Vector3d>>(bodies.size())};
     session_ =
-        std::make_unique<ResidentSession>(traversal_, *devices_.front(), *present_, settings_, answers);
+        std::make_unique<ResidentSession>(traversal_, *devices_.front(), *local_scene_, settings_, answers);
     if (counts_work_) session_->count_work(true);
 }
 
 /// Making a session anew takes as long as several frames: as long as there is room, bodies that were there
 /// stay, since those at the border come and go, and those come along that will be next.
 void RankSession::build_for(const std::vector<std::uint32_t>& needed) {
-    auto next = halo_.next();
+    auto next = ghosts_.next_ghosts();
     std::ranges::sort(next);
     std::vector<std::uint32_t> some, all;
     std::ranges::set_union(needed, next, std::back_inserter(some));
-    std::ranges::set_union(some, session_ ? present_->numbers : next, std::back_inserter(all));
+    std::ranges::set_union(some, session_ ? local_scene_->numbers : next, std::back_inserter(all));
     const bool keeps_answers = session_ != nullptr;
     try {
         build(all);
@@ -119,43 +119,43 @@ void RankSession::build_for(const std::vector<std::uint32_t>& needed) {
     }
 }
 
-void RankSession::take_share() {
-    const auto& share = halo_.share();
-    if (share.own.empty()) return drop();
-    auto needed = share.own;
-    needed.insert(needed.end(), share.others.begin(), share.others.end());
+void RankSession::apply_subdomain() {
+    const auto& subdomain = ghosts_.subdomain();
+    if (subdomain.own.empty()) return drop();
+    auto needed = subdomain.own;
+    needed.insert(needed.end(), subdomain.ghosts.begin(), subdomain.ghosts.end());
     std::ranges::sort(needed);
-    if (!session_ || !std::ranges::includes(present_->numbers, needed)) build_for(needed);
-    there_ = in_part(*present_, share);
-    session_->take(there_);
+    if (!session_ || !std::ranges::includes(local_scene_->numbers, needed)) build_for(needed);
+    local_subdomain_ = to_local(*local_scene_, subdomain);
+    session_->take(local_subdomain_);
     session_->expect(std::exchange(expected_pairs_, 0), contacts_a_pair_);
     std::vector<std::uint32_t> received;
-    if (passage_.is_taken())
-        for (const auto& bodies : halo_.deformed_gotten())
+    if (device_exchange_.is_enabled())
+        for (const auto& bodies : ghosts_.deformed_received())
             for (const auto body : bodies)
-                received.push_back(static_cast<std::uint32_t>(place_in(*present_, body)));
+                received.push_back(static_cast<std::uint32_t>(local_index(*local_scene_, body)));
     session_->receive(received);
 }
 
 /// Of bodies that have a part in this rank's share.
 void RankSession::take_frame(const Frame& frame) {
-    const auto take = [&](const std::vector<std::uint32_t>& bodies, const std::vector<std::uint32_t>& there,
+    const auto take = [&](const std::vector<std::uint32_t>& bodies, const std::vector<std::uint32_t>& local,
                           bool are_own) {
         for (std::size_t i = 0; i < bodies.size(); ++i) {
-            const auto number = bodies[i], body = there[i];
+            const auto number = bodies[i], body = local[i];
             const bool is_here = are_own || scene_.bodies[number].fixed;
-            const auto& from = is_here ? frame : halo_.others();
-            present_frame_.poses[body] = from.poses[number];
-            if (scene_.bodies[number].deformable && (is_here || !passage_.is_taken()))
-                present_frame_.deformed[body] = from.deformed[number];
+            const auto& from = is_here ? frame : ghosts_.ghost_frame();
+            local_frame_.poses[body] = from.poses[number];
+            if (scene_.bodies[number].deformable && (is_here || !device_exchange_.is_enabled()))
+                local_frame_.deformed[body] = from.deformed[number];
             const bool skips = !from.skipped.empty() && !from.skipped[number].empty();
-            if (skips) present_frame_.skipped.resize(present_->bodies.size());
-            if (!present_frame_.skipped.empty())
-                present_frame_.skipped[body] = skips ? from.skipped[number] : std::vector<std::uint32_t>{};
+            if (skips) local_frame_.skipped.resize(local_scene_->bodies.size());
+            if (!local_frame_.skipped.empty())
+                local_frame_.skipped[body] = skips ? from.skipped[number] : std::vector<std::uint32_t>{};
         }
     };
-    take(halo_.share().own, there_.own, true);
-    take(halo_.share().others, there_.others, false);
+    take(ghosts_.subdomain().own, local_subdomain_.own, true);
+    take(ghosts_.subdomain().ghosts, local_subdomain_.ghosts, false);
 }
 
 void RankSession::note(const std::exception& error, Report& own) {
@@ -164,66 +164,66 @@ void RankSession::note(const std::exception& error, Report& own) {
 }
 
 /// From device to device, once this one has its own.
-void RankSession::pass_vertices(const Frame& frame, Halo::Traffic& traffic, Report& own) {
+void RankSession::pass_vertices(const Frame& frame, GhostExchange::Traffic& traffic, Report& own) {
     if (session_ && own.failure.empty()) {
         try {
             take_frame(frame);
-            session_->place_vertices(present_frame_);
+            session_->upload_vertices(local_frame_);
         } catch (const std::exception& error) {
             note(error, own);
         }
     }
     const bool is_there = session_ && own.failure.empty();
-    passage_.pass(halo_, is_there ? &session_->bodies() : nullptr, present_.get(), traffic);
+    device_exchange_.exchange(ghosts_, is_there ? &session_->bodies() : nullptr, local_scene_.get(), traffic);
 }
 
 /// What others have to say of a frame. Every rank passes the same messages, whatever becomes of it.
 void RankSession::exchange(const Frame& frame, Report& own) {
     const HostWork work(*devices_.front(), Stage::exchange, "bodies of other ranks");
     const auto begin = Clock::now();
-    Halo::Traffic traffic;
-    if (halo_.is_over(frame, traffic)) {
-        halo_.meet(own_bodies(), frame, traffic);
+    GhostExchange::Traffic traffic;
+    if (ghosts_.is_expired(frame, traffic)) {
+        ghosts_.rebuild(own_bodies(), frame, traffic);
         try {
-            take_share();
+            apply_subdomain();
         } catch (const std::exception& error) {
             note(error, own);
             drop();
-            halo_.forget();
+            ghosts_.forget();
         }
     }
-    halo_.trade(frame, traffic, !passage_.is_taken());
-    if (passage_.is_taken()) pass_vertices(frame, traffic, own);
+    ghosts_.exchange_states(frame, traffic, !device_exchange_.is_enabled());
+    if (device_exchange_.is_enabled()) pass_vertices(frame, traffic, own);
     own.work.exchange_ns = ns_since(begin);
     own.work.exchange_bytes = traffic.bytes;
     own.work.messages = traffic.messages;
 }
 
 /// A frame that needs batches needs all vertices here, this time and from now on.
-FrameResult RankSession::run_present(Report& own) {
-    if (!passage_.is_taken()) return session_->run(present_frame_);
+FrameResult RankSession::run_local(Report& own) {
+    if (!device_exchange_.is_enabled()) return session_->run(local_frame_);
     try {
-        return session_->run(present_frame_);
+        return session_->run(local_frame_);
     } catch (const OutOfMemory&) {
         own.is_in_batches = true;
     }
-    passage_.bring(halo_, session_->bodies(), *present_, present_frame_);
+    device_exchange_.download_received(ghosts_, session_->bodies(), *local_scene_, local_frame_);
     session_->receive({});
-    return session_->run(present_frame_);
+    return session_->run(local_frame_);
 }
 
 void RankSession::walk(const Frame& frame, FrameResult& result, Report& own) {
     if (!own.failure.empty() || !session_) return;
     const auto begin = Clock::now();
     try {
-        if (!passage_.is_taken()) take_frame(frame); // with what came
-        result = run_present(own);
+        if (!device_exchange_.is_enabled()) take_frame(frame); // with what came
+        result = run_local(own);
     } catch (const std::exception& error) {
         note(error, own);
         return;
     }
-    for (auto& part : result.parts) part = kept_part(std::move(part), present_);
-    own.work.bodies = halo_.share().own.size() + halo_.share().others.size();
+    for (auto& part : result.parts) part = owning_part(std::move(part), local_scene_);
+    own.work.bodies = ghosts_.subdomain().own.size() + ghosts_.subdomain().ghosts.size();
     own.work.body_pairs = result.body_pairs;
     own.work.pairs = result.count;
     own.work.ns = ns_since(begin);
@@ -252,7 +252,7 @@ std::vector<RankSession::Report> RankSession::reports(const Report& own) {
     for (const auto& bytes : ranks_.gather_to_all(message)) {
         MessageReader reader(bytes);
         auto& report = all.emplace_back();
-        report.work = reader.read<SharedWork>();
+        report.work = reader.read<DeviceWork>();
         report.is_memory = reader.read<bool>();
         report.is_usual = reader.read<bool>();
         report.is_in_batches = reader.read<bool>();
@@ -262,8 +262,8 @@ std::vector<RankSession::Report> RankSession::reports(const Report& own) {
 }
 
 /// Where this rank's bodies are, and the candidate pairs of those that it has some of.
-Ranks::Bytes RankSession::seen_of(const Frame& frame, const FrameResult& result) {
-    places_.keep(frame, own_bodies());
+Ranks::Bytes RankSession::calibration_message(const Frame& frame, const FrameResult& result) {
+    places_.set_reference(frame, own_bodies());
     Ranks::Bytes message;
     for (const auto body : own_bodies()) append(message, std::span(&places_.ball(body), 1));
     const auto counts = counts_of(result);
@@ -275,30 +275,30 @@ Ranks::Bytes RankSession::seen_of(const Frame& frame, const FrameResult& result)
 }
 
 /// All ranks see the same numbers and come to the same end.
-void RankSession::deal_anew(const Frame& frame, FrameResult& result) {
+void RankSession::repartition(const Frame& frame, FrameResult& result) {
     std::vector<double> work;
     for (std::size_t i = 0; i < result.shared.size(); ++i)
-        work.push_back(deal_.work_of(i, result.shared[i].pairs));
-    balance_.see(result.shared, work);
-    if (!balance_.wants_a_deal()) return;
+        work.push_back(partitioner_.work_of(i, result.shared[i].pairs));
+    balancer_.add_sample(result.shared, work);
+    if (!balancer_.should_repartition()) return;
     const HostWork timed(*devices_.front(), Stage::exchange, "deal bodies");
     std::vector<std::uint64_t> counts(scene_.bodies.size());
-    const auto all = ranks_.gather_to_all(seen_of(frame, result));
+    const auto all = ranks_.gather_to_all(calibration_message(frame, result));
     for (std::size_t rank = 0; rank < all.size(); ++rank) {
         MessageReader message(all[rank]);
-        for (const auto body : deal_.shares()[rank].own) message.read(std::span(&balls_[body], 1));
+        for (const auto body : partitioner_.subdomains()[rank].own) message.read(std::span(&balls_[body], 1));
         while (!message.is_at_end()) {
             const auto [body, count] = message.read<std::array<std::uint64_t, 2>>();
             counts[body] += count;
         }
     }
-    if (settings_[parameters::output] == Output::pairs) deal_.learn(counts);
-    deal_.make(balls_, balance_.speeds());
-    balance_.dealt();
-    expected_pairs_ = deal_.expected_pairs(static_cast<std::size_t>(ranks_.rank()));
+    if (settings_[parameters::output] == Output::pairs) partitioner_.calibrate(counts);
+    partitioner_.partition(balls_, balancer_.speeds());
+    balancer_.repartitioned();
+    expected_pairs_ = partitioner_.expected_pairs(static_cast<std::size_t>(ranks_.rank()));
     contacts_a_pair_ = result.contacts_a_pair();
-    halo_.forget();
-    result.deals = 1;
+    ghosts_.forget();
+    result.repartitions = 1;
 }
 
 FrameResult RankSession::do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
@@ -309,8 +309,8 @@ FrameResult RankSession::do_run(const Frame& frame, std::optional<std::span<cons
     walk(frame, result, own);
     const auto all = reports(own);
     if (std::ranges::any_of(all, &Report::is_in_batches)) {
-        passage_.give_up();
-        halo_.forget(); // sessions are told at the next meeting
+        device_exchange_.disable();
+        ghosts_.forget(); // sessions are told at the next meeting
     }
     fail(all);
     result.shared.clear();
@@ -319,7 +319,7 @@ FrameResult RankSession::do_run(const Frame& frame, std::optional<std::span<cons
         result.shared.push_back(report.work);
         is_usual = is_usual && report.is_usual;
     }
-    if (is_usual) deal_anew(frame, result);
+    if (is_usual) repartition(frame, result);
     return result;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/distributed/halo.h"
-#include "algorithms/distributed/vertex_passage.h"
+#include "algorithms/distributed/ghost_exchange.h"
+#include "algorithms/distributed/device_vertex_exchange.h"
 #include "algorithms/resident_session.h"
-#include "algorithms/distributed/balance.h"
+#include "algorithms/distributed/load_balancer.h"
 
 namespace tandem {
 
@@ -23,7 +23,7 @@ public:
 private:
     /// What a rank tells all others at the end of a frame.
     struct Report {
-        SharedWork work;
+        DeviceWork work;
         std::string failure;
         bool is_memory = false;     ///< that there is too little
         bool is_usual = true;       ///< the frame took what frames take: no buffer had to grow
@@ -32,45 +32,45 @@ private:
 
     void do_reset() override;
     FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override;
-    FrameResult do_run_there(const DeviceFrame& frame,
-                             std::optional<std::span<const BodyPair>> body_pairs) override;
+    FrameResult do_run_device_input(const DeviceFrame& frame,
+                                    std::optional<std::span<const BodyPair>> body_pairs) override;
     void do_count_work(bool on) override;
     std::span<Device* const> do_devices() const override { return devices_; }
     std::optional<std::span<const std::uint32_t>> do_owned() const override { return own_bodies(); }
     const Settings& do_settings() const override { return session_ ? session_->settings() : settings_; }
 
     const std::vector<std::uint32_t>& own_bodies() const {
-        return deal_.shares()[static_cast<std::size_t>(ranks_.rank())].own;
+        return partitioner_.subdomains()[static_cast<std::size_t>(ranks_.rank())].own;
     }
-    void take_share();
+    void apply_subdomain();
     void build_for(const std::vector<std::uint32_t>& needed);
     void build(const std::vector<std::uint32_t>& bodies);
     void drop();
     void exchange(const Frame& frame, Report& own);
     static void note(const std::exception& error, Report& own);
     void take_frame(const Frame& frame);
-    void pass_vertices(const Frame& frame, Halo::Traffic& traffic, Report& own);
-    FrameResult run_present(Report& own);
+    void pass_vertices(const Frame& frame, GhostExchange::Traffic& traffic, Report& own);
+    FrameResult run_local(Report& own);
     void walk(const Frame& frame, FrameResult& result, Report& own);
     std::vector<Report> reports(const Report& own);
     void fail(const std::vector<Report>& all) const;
-    Ranks::Bytes seen_of(const Frame& frame, const FrameResult& result);
-    void deal_anew(const Frame& frame, FrameResult& result);
+    Ranks::Bytes calibration_message(const Frame& frame, const FrameResult& result);
+    void repartition(const Frame& frame, FrameResult& result);
 
     const Traversal& traversal_;
     std::array<Device*, 1> devices_;
     const Scene& scene_;
     Settings settings_;
     Ranks& ranks_;
-    Deal deal_;
-    Balance balance_;
-    Halo halo_;
-    VertexPassage passage_;
-    Places places_;
+    Partitioner partitioner_;
+    LoadBalancer balancer_;
+    GhostExchange ghosts_;
+    DeviceVertexExchange device_exchange_;
+    DisplacementTracker places_;
     std::vector<Ball> balls_;                  ///< by body, when they were dealt
-    std::shared_ptr<const Scene> present_;     ///< what is on the device; null without a session
-    Frame present_frame_;                      ///< of present_
-    Share there_;                              ///< the halo's share, by places in present_
+    std::shared_ptr<const Scene> local_scene_; ///< what is on the device; null without a session
+    Frame local_frame_;                        ///< of local_scene_
+    Subdomain local_subdomain_;                ///< the halo's share, by places in local_scene_
     std::unique_ptr<ResidentSession> session_; ///< none where the share has no bodies
     std::uint64_t expected_pairs_ = 0;         ///< of this rank's share after a new deal; 0: nobody knows
     double contacts_a_pair_ = 1;               ///< when it was dealt

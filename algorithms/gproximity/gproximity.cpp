@@ -58,7 +58,7 @@ private:
         return costs;
     }
 
-    Steps do_build(const Ground& ground) const override {
+    AlgorithmStages do_build(const BuildContext& ground) const override {
         auto trees =
             std::make_unique<ChunkTrees>(ground.bodies, whole_mesh(ground.scene), ground.shape.group_size);
         std::unique_ptr<Walker> walker;

@@ -31,7 +31,7 @@ constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds, balance
 
 std::span<const Counter> queue_counters() { return all_counters; }
 
-QueueWalker::QueueWalker(const ChunkTrees& trees, const Ground& ground)
+QueueWalker::QueueWalker(const ChunkTrees& trees, const BuildContext& ground)
     : trees_(trees), shape_(ground.shape), sizes_(queue_sizes(ground.settings, ground.device.info())) {
     counts_ = device().allocate(sizes_.groups * 4, "queue counts");
     starts_ = device().allocate((sizes_.groups + 1) * 4, "queue starts");
@@ -60,12 +60,12 @@ std::uint64_t QueueWalker::queue_bytes() const {
     return std::uint64_t{sizes_.groups} * queue_capacity() * item_words * 4;
 }
 
-std::uint64_t QueueWalker::queue_room() const {
+std::uint64_t QueueWalker::total_capacity() const {
     return queue_capacity() == 0 ? 0 : std::uint64_t{sizes_.groups} * (queue_capacity() - 1);
 }
 
 bool QueueWalker::do_grow(const Status& status) {
-    if (status.counter(STATUS_BODY_PAIRS) > queue_room()) short_of_queue_ = true;
+    if (status.counter(STATUS_BODY_PAIRS) > total_capacity()) short_of_queue_ = true;
     if (!short_of_queue_) return false;
     short_of_queue_ = false;
     if (queue_capacity() > MOST_QUEUE_ITEMS / 2) throw DeviceError(too_many_items);
@@ -166,7 +166,7 @@ std::array<std::uint32_t, 2> QueueWalker::balance() {
 
 /// Walks one batch to its end; false when the queues are too small for it.
 bool QueueWalker::walk_batch(const WalkTask& task, std::uint32_t first, std::uint32_t count) {
-    if (count > queue_room()) return false;
+    if (count > total_capacity()) return false;
     if (sizes_.upload == QueueUpload::queues)
         upload_whole_queues(first, count);
     else
@@ -181,7 +181,7 @@ bool QueueWalker::walk_batch(const WalkTask& task, std::uint32_t first, std::uin
             side_ = 1 - side_;
             ++balances_;
         }
-        if (left > queue_room()) return false;
+        if (left > total_capacity()) return false;
     }
 }
 
@@ -189,7 +189,7 @@ void QueueWalker::do_launch(const WalkTask& task) {
     balances_ = 0;
     short_of_queue_ = false;
     // Pairs found on the device are as many as there is room for; do_grow looks whether these were all.
-    const auto most = task.searched ? queue_room() : std::uint64_t{task.most_pairs()};
+    const auto most = task.searched ? total_capacity() : std::uint64_t{task.most_pairs()};
     const auto total = static_cast<std::uint32_t>(std::min<std::uint64_t>(task.most_pairs(), most));
     const auto batch = sizes_.batch == 0 ? total : sizes_.batch;
     for (std::uint64_t first = 0; first < total; first += batch) {
@@ -198,7 +198,7 @@ void QueueWalker::do_launch(const WalkTask& task) {
             short_of_queue_ = true;
             return;
         }
-        if (task.interlude != nullptr) task.interlude->part_walked();
+        if (task.launch_hook != nullptr) task.launch_hook->part_walked();
     }
 }
 

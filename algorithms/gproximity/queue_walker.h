@@ -4,7 +4,7 @@
 #include "algorithms/answer/growable_buffer.h"
 #include "algorithms/gproximity/gproximity_settings.h"
 #include "algorithms/hierarchy/chunk_trees.h"
-#include "algorithms/steps.h"
+#include "algorithms/stages.h"
 
 namespace tandem {
 
@@ -12,7 +12,7 @@ namespace tandem {
 class QueueWalker : public Walker {
 public:
     /// `trees` of one chunk a body. Both must outlive this.
-    QueueWalker(const ChunkTrees& trees, const Ground& ground);
+    QueueWalker(const ChunkTrees& trees, const BuildContext& ground);
 
 protected:
     Device& device() const { return trees_.bodies().device(); }
@@ -35,7 +35,7 @@ private:
     /// Items that each queue holds.
     std::uint32_t queue_capacity() const { return queues_.capacity(); }
     /// Items that may wait in all queues together.
-    std::uint64_t queue_room() const;
+    std::uint64_t total_capacity() const;
     /// The queues that are walked, and those that balancing moves their items to.
     const Buffer& items() const { return queues_.buffer(side_); }
     const Buffer& other_items() const { return queues_.buffer(1 - side_); }

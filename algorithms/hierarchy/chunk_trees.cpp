@@ -185,7 +185,7 @@ void ChunkTrees::launch_tops(bool all) {
     if (bodies > 0) device_.launch(tops_kernel_, {bodies, shape_.group_size}, arguments);
 }
 
-void ChunkTrees::upload_emptied() {
+void ChunkTrees::upload_masked() {
     const auto put = [&](Buffer& buffer, const std::vector<std::uint32_t>& words, std::string_view label) {
         if (!buffer || buffer.bytes() < words.size() * 4) {
             buffer = {};
@@ -194,8 +194,8 @@ void ChunkTrees::upload_emptied() {
         device_.upload(buffer, bytes_of(words));
     };
     const StageScope scope(device_, Stage::write);
-    put(emptied_rows_, emptied_.rows, "emptied nodes");
-    put(emptied_starts_, emptied_.starts, "rounds of emptied nodes");
+    put(masked_rows_, masked_.rows, "emptied nodes");
+    put(masked_starts_, masked_.starts, "rounds of emptied nodes");
 }
 
 /// Plans the nodes that tetrahedra skipped by the frame change, when it skips others than the one before.
@@ -203,7 +203,7 @@ void ChunkTrees::leave_out(const Frame& frame) {
     if (frame.skipped == skipped_) return;
     {
         const HostWork work(device_, Stage::preprocess, "skipped tetrahedra");
-        EmptiedPlan plan(leaves_, first_top_level_);
+        MaskedElementsPlan plan(leaves_, first_top_level_);
         positions_.resize(mesh_levels_.size());
         for (std::size_t body = 0; body < frame.skipped.size(); ++body) {
             if (frame.skipped[body].empty()) continue;
@@ -211,13 +211,13 @@ void ChunkTrees::leave_out(const Frame& frame) {
             if (positions_[mesh].empty()) positions_[mesh] = inverse(bodies_.mesh(body).ids);
             plan.add(trees_[body].nodes, mesh_levels_[mesh], frame.skipped[body], positions_[mesh]);
         }
-        emptied_ = plan.take();
+        masked_ = plan.take();
         skipped_ = frame.skipped;
         fresh_ = true;
     }
-    if (emptied_.bodies == 0) return;
-    if (!emptied_rows_) empty_kernel_ = compile("empty_nodes");
-    upload_emptied();
+    if (masked_.bodies == 0) return;
+    if (!masked_rows_) empty_kernel_ = compile("empty_nodes");
+    upload_masked();
 }
 
 void ChunkTrees::do_refit(const Frame& frame, bool all) {
@@ -225,9 +225,9 @@ void ChunkTrees::do_refit(const Frame& frame, bool all) {
     all |= fresh_;
     const StageScope scope(device_, Stage::refit);
     launch_strips(all);
-    if (emptied_.bodies > 0) {
-        const std::array<Argument, 4> arguments{nodes_, emptied_rows_, emptied_starts_, emptied_.rounds};
-        device_.launch(empty_kernel_, {emptied_.bodies, shape_.group_size}, arguments);
+    if (masked_.bodies > 0) {
+        const std::array<Argument, 4> arguments{nodes_, masked_rows_, masked_starts_, masked_.rounds};
+        device_.launch(empty_kernel_, {masked_.bodies, shape_.group_size}, arguments);
     }
     launch_tops(all);
     fresh_ = false;

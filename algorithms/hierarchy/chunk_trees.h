@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/bodies/bodies.h"
-#include "algorithms/hierarchy/emptied.h"
+#include "algorithms/hierarchy/masked_elements.h"
 #include "algorithms/hierarchy/hierarchy.h"
 #include "algorithms/hierarchy/levels.h"
 #include "algorithms/hierarchy/strips.h"
@@ -58,7 +58,7 @@ private:
     void upload_static();
     void upload_jobs();
     void leave_out(const Frame& frame);
-    void upload_emptied();
+    void upload_masked();
     void launch_strips(bool all);
     void launch_tops(bool all);
 
@@ -79,10 +79,10 @@ private:
     bool fresh_ = true; ///< fixed bodies need a refit: there was no frame yet, or it skipped others of theirs
     std::vector<std::vector<std::uint32_t>> skipped_; ///< by the last frame
     std::vector<std::vector<std::uint32_t>>
-        positions_;   ///< by mesh: the inverse of its ids, once it is needed
-    Emptied emptied_; ///< for skipped_
+        positions_;         ///< by mesh: the inverse of its ids, once it is needed
+    MaskedElements masked_; ///< for skipped_
     Buffer nodes_, volumes_, tree_table_, level_table_, job_table_, body_order_;
-    Buffer emptied_rows_, emptied_starts_;
+    Buffer masked_rows_, masked_starts_;
     Kernel strips_kernel_, tops_kernel_, empty_kernel_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/distributed/share.h"
+#include "algorithms/distributed/subdomain.h"
 #include "backends/device.h"
 #include "scenes/scene.h"
 
@@ -22,8 +22,8 @@ public:
     void refit(const Frame& frame, bool all = false) { do_refit(frame, all); }
     /// From the next refit on, which is of all of them, bodies that have no part in `share` are left out:
     /// their bounds are of no frame. Throws DeviceError.
-    void take(const Share& share, std::size_t bodies) {
-        roles_ = roles_in(share, bodies);
+    void take(const Subdomain& share, std::size_t bodies) {
+        roles_ = roles_of(share, bodies);
         do_take();
     }
 

@@ -313,10 +313,10 @@ KERNEL void refit_tops(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const ui
 
 // Rows of three slots: a node and the two it is over; HOLDS_NOTHING twice for a tetrahedron that takes no
 // part.
-#define EMPTIED_WORDS 3
+#define MASKED_WORDS 3
 #define HOLDS_NOTHING 0xffffffffu
 
-DEVICE real emptied_word(GLOBAL const real* nodes, uint a, uint b, uint word) {
+DEVICE real masked_word(GLOBAL const real* nodes, uint a, uint b, uint word) {
     if (a == HOLDS_NOTHING) return word < DIRECTIONS ? REAL_INFINITY : -REAL_INFINITY;
     return MERGED(word, node_at(nodes, a)[word], node_at(nodes, b)[word]);
 }
@@ -332,9 +332,9 @@ KERNEL void empty_nodes(GLOBAL real* nodes, GLOBAL const uint* rows, GLOBAL cons
         const ulong first = (ulong)own[round] * K;
         const ulong end = (ulong)own[round + 1u] * K;
         for (ulong i = first + LOCAL_ID; i < end; i += GROUP_SIZE) {
-            GLOBAL const uint* row = rows + i / K * EMPTIED_WORDS;
+            GLOBAL const uint* row = rows + i / K * MASKED_WORDS;
             const uint word = (uint)(i % K);
-            nodes[(ulong)row[0] * K + word] = emptied_word(nodes, row[1], row[2], word);
+            nodes[(ulong)row[0] * K + word] = masked_word(nodes, row[1], row[2], word);
         }
         BARRIER_GLOBAL;
         ++round;

@@ -21,32 +21,32 @@ DEVICE int try_pair(const Candidates* all, uint index) {
 
 // The words of a group's local memory here: how many contacts are on the tray and beside it, which are 0
 // between steps; how many rows there are to write from the tray, and from which row of the answer on.
-#define ON_TRAY 0
+#define IN_STORAGE 0
 #define BESIDE 1
 #define ROWS 2
 #define FIRST_ROW 3
 
 // Gives the contacts of a group their places, in one piece, and writes them; the whole group comes here.
-DEVICE void write_together(const Draft* draft, uint index, const Tray* tray, LOCAL uint* group,
-                           const Sink* sink) {
-    const uint staged = draft->count != 0u ? staged_of(draft) : 0u;
-    const uint others = draft->count - staged;
-    const uint before = staged != 0u ? LOCAL_ATOMIC_ADD(group + ON_TRAY, staged) : 0u;
+DEVICE void write_together(const ContactBatch* batch, uint index, const BatchStorage* storage,
+                           LOCAL uint* group, const Sink* sink) {
+    const uint staged = batch->count != 0u ? staged_of(batch) : 0u;
+    const uint others = batch->count - staged;
+    const uint before = staged != 0u ? LOCAL_ATOMIC_ADD(group + IN_STORAGE, staged) : 0u;
     const uint before_others = others != 0u ? LOCAL_ATOMIC_ADD(group + BESIDE, others) : 0u;
     for (uint i = 0; i < staged; ++i)
-        tray->in_order[before + i] = (unsigned short)(i * GROUP_SIZE + LOCAL_ID);
+        storage->in_order[before + i] = (unsigned short)(i * GROUP_SIZE + LOCAL_ID);
     BARRIER;
     if (LOCAL_ID == 0u) {
-        const uint count = group[ON_TRAY] + group[BESIDE];
-        group[ROWS] = group[ON_TRAY];
+        const uint count = group[IN_STORAGE] + group[BESIDE];
+        group[ROWS] = group[IN_STORAGE];
         group[FIRST_ROW] = count != 0u ? counter_add(sink->status + STATUS_CONTACTS, count) : 0u;
-        group[ON_TRAY] = group[BESIDE] = 0u;
+        group[IN_STORAGE] = group[BESIDE] = 0u;
     }
     BARRIER;
     const uint rows = group[ROWS];
     const ulong slot = group[FIRST_ROW];
-    write_staged(tray, rows, slot, sink);
-    if (others != 0u) write_others(draft, staged, index, slot + rows + before_others, sink);
+    write_staged(storage, rows, slot, sink);
+    if (others != 0u) write_others(batch, staged, index, slot + rows + before_others, sink);
     BARRIER;
 }
 
@@ -64,7 +64,7 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
     LOCAL_ARRAY(uint, pairs, GROUP_SIZE);
     LOCAL_ARRAY(unsigned short, in_order, STAGED* GROUP_SIZE);
     LOCAL_ARRAY(uchar, features, STAGED * GROUP_SIZE);
-    const Tray tray = {touches, features, origins, normals, pairs, in_order};
+    const BatchStorage storage = {touches, features, origins, normals, pairs, in_order};
     const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
     const Sink sink = {contact_ids, contact_values, status, contact_capacity};
     const ulong count =
@@ -84,10 +84,10 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
                 if (state == MEETING && has_no_normal(&all, index)) state = STEPPED;
             }
         }
-        Draft draft;
-        draft.count = 0u;
-        if (state == MEETING) draft_contacts(&all, index, &draft, &tray);
-        write_together(&draft, index, &tray, group, &sink);
+        ContactBatch batch;
+        batch.count = 0u;
+        if (state == MEETING) batch_contacts(&all, index, &batch, &storage);
+        write_together(&batch, index, &storage, group, &sink);
         start += GLOBAL_COUNT;
     } while (start < count);
     if (AT_ONCE) end_group(group, status);

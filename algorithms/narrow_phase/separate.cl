@@ -33,7 +33,7 @@ KERNEL void separate_pairs(GLOBAL const uint* found, uint first, GLOBAL const ui
         }
         count_state(state, group);
         const int meets = state == MEETING && has_normal;
-        const uint place = place_in(meets ? LIST_MEETING : NO_LIST, group, status);
+        const uint place = local_index(meets ? LIST_MEETING : NO_LIST, group, status);
         if (meets) meeting[place] = index;
         start += GLOBAL_COUNT;
     } while (start < count);

@@ -31,11 +31,11 @@ struct Parameter {
     std::size_t word_count = 0; ///< 0: any integer from least to most
     std::array<std::int64_t, 4> alternative_values{};
     std::size_t alternative_count = 0;
-    std::string_view said_by; ///< the setting that says the same in another way; empty: none
+    std::string_view alternative_setting; ///< the setting that says the same in another way; empty: none
 
     constexpr std::span<const Word> choices() const { return std::span(words).first(word_count); }
-    /// Values worth trying for speed, where neither this nor said_by is given; none of them changes an
-    /// answer. Empty: it is the user's alone.
+    /// Values worth trying for speed, where neither this nor alternative_setting is given; none of them
+    /// changes an answer. Empty: it is the user's alone.
     constexpr std::span<const std::int64_t> alternatives() const {
         return std::span(alternative_values).first(alternative_count);
     }
@@ -88,7 +88,7 @@ struct Setting : Parameter {
     consteval Setting with_alternatives(std::initializer_list<T> values,
                                         std::string_view other_way = {}) const {
         auto row = *this;
-        row.said_by = other_way;
+        row.alternative_setting = other_way;
         for (const auto value : values) {
             const auto number = static_cast<std::int64_t>(value);
             bool allowed = word_count == 0 && number >= least && number <= most;

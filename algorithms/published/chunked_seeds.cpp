@@ -49,7 +49,7 @@ void PublishedChunkedWalker::do_launch(const WalkTask& task) {
         }
         task.status.set(STATUS_LEVELS + 2 * level, total);
         traverse(task, level, 0);
-        if (task.interlude != nullptr) task.interlude->part_walked();
+        if (task.launch_hook != nullptr) task.launch_hook->part_walked();
         if (level == 0) return;
         task.status.read();
         from_above = task.status.counter(STATUS_LEVELS + 2 * (level - 1));

@@ -43,7 +43,7 @@ void Converter::each(std::size_t count, const std::function<void(std::size_t)>& 
         const host::ForkJoin::Part own(edges);
         for (auto i = parts.begin(); i != parts.end(); ++i) part(i);
     };
-    arena_->execute([&] { tbb::parallel_for(Parts(0, count), host::HandedWork(work)); });
+    arena_->execute([&] { tbb::parallel_for(Parts(0, count), host::SynchronizedWork(work)); });
 }
 
 /// A body's place in every array is its row's.

@@ -12,7 +12,7 @@ namespace tandem {
 namespace {
 
 /// Makes contacts after every part of a walk and brings them to the host at once.
-class ContactsBetween final : public Interlude {
+class ContactsBetween final : public LaunchHook {
 public:
     ContactsBetween(Pipeline& steps, const AnswerBuffers& answer) : steps_(steps), answer_(answer) {}
 

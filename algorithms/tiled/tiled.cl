@@ -75,12 +75,13 @@ DEVICE void count_tests(Tally* tally, uint rows, int is_seed) {
 // many tiles a body begins here, or 0.
 KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL const real* roots,
                              GLOBAL const uint* tiles, GLOBAL const uint* tops, GLOBAL const uint* pairs,
-                             uint pair_room, uint begins, uint level, GLOBAL const uint* list, uint capacity,
-                             GLOBAL uint* below, uint below_capacity, GLOBAL uint* status) {
+                             uint pair_capacity, uint begins, uint level, GLOBAL const uint* list,
+                             uint capacity, GLOBAL uint* below, uint below_capacity, GLOBAL uint* status) {
     TEAM_ARRAYS(LANES * ROW_UNITS(DIRECTIONS))
     GLOBAL uint* counter = status + STATUS_TILE_PAIRS + 2u * (level - 1u);
     Tally tally = empty_tally();
-    Turns turns = first_turn(own_pairs(begins, pair_room, status), tile_pair_count(status, level, capacity));
+    Turns turns =
+        first_turn(own_pairs(begins, pair_capacity, status), tile_pair_count(status, level, capacity));
     LANE_BARRIER;
     do { // once at least, as loops with barriers have to
         const TilePair pair = tile_pair_at(&turns, pairs, tops, begins, roots, list);
@@ -99,7 +100,7 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
             if (WINDOWED) lanes_in_window(status, &a, level, keeps);
         }
         LANE_BARRIER;
-        const uint rows = places_taken(&team.boxes);
+        const uint rows = reserved_slots(&team.boxes);
         if (tested) count_tests(&tally, rows, turns.next < turns.own);
         // Boxes are those of the tiles below, or the tile itself is its only one.
         const uint first_a = a.level == level ? a.boxes : pair.a;
@@ -110,7 +111,7 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
         do {
             FIND_PAIRS(&team, rows, r, box, DIRECTIONS, keeps, first_a, step_a, first_b, step_b)
             LANE_BARRIER;
-            const uint waiting = places_taken(&team.found);
+            const uint waiting = reserved_slots(&team.found);
             const int now = waiting >= PAIRS_FLUSHED;
             reserve(&team, waiting, now, counter);
             begin_count(&team.boxes, 0u);
@@ -121,7 +122,7 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
         } while (r < rows);
         take_turn(&turns);
     } while (turns.next < turn_count(&turns));
-    const uint waiting = places_taken(&team.found);
+    const uint waiting = reserved_slots(&team.found);
     reserve(&team, waiting, 1, counter);
     LANE_BARRIER;
     write_tile_pairs(&team, waiting, below, below_capacity);
@@ -178,11 +179,12 @@ DEVICE void load_leaves(GLOBAL const real* leaves, uint tile, LANE_BOX(box, LEAF
 
 // Tiles of level 0: what overlaps in all of k's directions is a candidate pair.
 KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots, GLOBAL const uint* tiles,
-                            GLOBAL const uint* tops, GLOBAL const uint* pairs, uint pair_room, uint begins,
-                            GLOBAL const uint* list, uint list_capacity, GLOBAL const uint* starts,
-                            GLOBAL const uint* vertex_numbers, GLOBAL const uint* corners,
-                            GLOBAL const uint* bodies, GLOBAL const real* poses, GLOBAL const real* vertices,
-                            GLOBAL const uint* ids, GLOBAL uint* found, uint capacity, GLOBAL uint* status) {
+                            GLOBAL const uint* tops, GLOBAL const uint* pairs, uint pair_capacity,
+                            uint begins, GLOBAL const uint* list, uint list_capacity,
+                            GLOBAL const uint* starts, GLOBAL const uint* vertex_numbers,
+                            GLOBAL const uint* corners, GLOBAL const uint* bodies, GLOBAL const real* poses,
+                            GLOBAL const real* vertices, GLOBAL const uint* ids, GLOBAL uint* found,
+                            uint capacity, GLOBAL uint* status) {
     TEAM_ARRAYS(LANES * ROW_UNITS(LEAF_DIRECTIONS))
 #if REST_DIRECTIONS > 0
     LOCAL_ARRAY(real, all_rest, LANE_TEAMS * (REST_A_REALS + REST_B_REALS));
@@ -193,7 +195,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
 #endif
     Tally tally = empty_tally();
     Turns turns =
-        first_turn(own_pairs(begins, pair_room, status), tile_pair_count(status, 0u, list_capacity));
+        first_turn(own_pairs(begins, pair_capacity, status), tile_pair_count(status, 0u, list_capacity));
     LANE_BOX(box, LEAF_DIRECTIONS);
     uint box_of = 0xffffffffu; // the tile whose boxes these are
     LANE_BARRIER;
@@ -214,17 +216,17 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
             if (WINDOWED) lanes_in_window(status, &a, 0u, keeps);
         }
         LANE_BARRIER;
-        const uint rows = places_taken(&team.boxes);
+        const uint rows = reserved_slots(&team.boxes);
         if (tested) count_tests(&tally, rows, turns.next < turns.own);
         uint r = 0;
         do {
             FIND_PAIRS(&team, rows, r, box, LEAF_DIRECTIONS, keeps, pair.a * LANES, 1u, pair.b * LANES, 1u)
             LANE_BARRIER;
-            const uint candidates = places_taken(&team.found);
+            const uint candidates = reserved_slots(&team.found);
             begin_count(&team.boxes, 0u);
             uint kept = candidates;
             if (!IS_DECIDED) {
-                uint next = places_taken(&team.kept);
+                uint next = reserved_slots(&team.kept);
 #if REST_DIRECTIONS > 0
                 const int decides = candidates > next;
                 const int decides_a = decides && rest_of != pair.a;
@@ -261,7 +263,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
                             && rest_overlaps(rest_a + lane_a * REST_STRIDE, rest_b + lane_b * REST_STRIDE);
 #endif
                         if (OUTPUT == OUTPUT_PAIRS) {
-                            const uint place = take_place(&team.kept, is_pair);
+                            const uint place = reserve_slot(&team.kept, is_pair);
                             if (is_pair) put_pair(&team, place, slot_a[part], slot_b[part]);
                         } else if (is_pair) {
                             tally.count += 1;
@@ -273,7 +275,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
                     next += LANES;
                     LANE_BARRIER;
                 } while (next < candidates);
-                kept = places_taken(&team.kept);
+                kept = reserved_slots(&team.kept);
             }
             const int now = kept >= PAIRS_FLUSHED;
             reserve(&team, kept, now, status + STATUS_PAIRS);
@@ -285,7 +287,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
         } while (r < rows);
         take_turn(&turns);
     } while (turns.next < turn_count(&turns));
-    const uint kept = places_taken(&team.found);
+    const uint kept = reserved_slots(&team.found);
     reserve(&team, kept, 1, status + STATUS_PAIRS);
     LANE_BARRIER;
     if (OUTPUT == OUTPUT_PAIRS) write_candidates(&team, kept, tiles, found, capacity);

@@ -32,7 +32,7 @@ std::uint64_t local_bytes(const Settings& settings, std::uint64_t teams, bool is
     const auto leaf_words = settings[parameters::slabs] == Slabs::three ? std::min<std::uint64_t>(k, 6) : k;
     const auto rows = [&](std::uint64_t reals) { return lanes * ((reals + 3) / 4 * 4 * real + words); };
     const auto rest = k > leaf_words ? lanes * ((k - leaf_words) | 1) : 0;
-    const auto pairs = (2u * PAIR_ROOM(is_warp) + 4) * words;
+    const auto pairs = (2u * PAIR_CAPACITY(is_warp) + 4) * words;
     const auto leaves = rows(leaf_words) + pairs + (rest > 0 ? rest + std::max(rest, points) : 0) * real;
     const auto uppers = rows(k) + pairs;
     const auto refit = (points + (lanes + 1) * k) * real;
@@ -129,7 +129,7 @@ private:
         return costs;
     }
 
-    Steps do_build(const Ground& ground) const override {
+    AlgorithmStages do_build(const BuildContext& ground) const override {
         const auto shape = fitting_shape(ground.settings, ground.device.info(), ground.shape);
         auto trees = std::make_unique<TileTrees>(
             ground.bodies, ground.settings[tandem::parameters::slabs], shape.group_size,

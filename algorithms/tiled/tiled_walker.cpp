@@ -13,7 +13,7 @@ constexpr std::size_t row_bytes = 4 * TILE_PAIR_WORDS;
 
 } // namespace
 
-TiledWalker::TiledWalker(const TileTrees& trees, const Ground& ground, LaunchShape shape)
+TiledWalker::TiledWalker(const TileTrees& trees, const BuildContext& ground, LaunchShape shape)
     : trees_(trees), shape_(shape) {
     const auto rows =
         first_rows(ground.device, ground.settings[tiled_parameters::tile_pair_capacity], row_bytes, 1.0 / 16);
@@ -79,7 +79,7 @@ void TiledWalker::launch_upper(const WalkTask& task, std::uint32_t level) {
                                              trees_.tile_table(),
                                              trees_.tops(),
                                              task.body_pairs,
-                                             task.pair_room,
+                                             task.pair_capacity,
                                              trees_.begins(level),
                                              level,
                                              list(level).buffer(),
@@ -98,7 +98,7 @@ void TiledWalker::launch_leaves(const WalkTask& task) {
                                              trees_.tile_table(),
                                              trees_.tops(),
                                              task.body_pairs,
-                                             task.pair_room,
+                                             task.pair_capacity,
                                              trees_.begins(0),
                                              list(0).buffer(),
                                              trees_.walked_levels() > 1 ? list(0).capacity() : 0,

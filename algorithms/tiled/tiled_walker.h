@@ -4,7 +4,7 @@
 #include "algorithms/answer/growable_buffer.h"
 #include "algorithms/expected_groups.h"
 #include "algorithms/hierarchy/tile_trees.h"
-#include "algorithms/steps.h"
+#include "algorithms/stages.h"
 
 #include <optional>
 
@@ -33,7 +33,7 @@ inline constexpr Counter leaf_tile_pairs{"leaf_tile_pairs", "pairs of tiles",
 class TiledWalker final : public Walker {
 public:
     /// Launches groups of `shape`. Both others must outlive this.
-    TiledWalker(const TileTrees& trees, const Ground& ground, LaunchShape shape);
+    TiledWalker(const TileTrees& trees, const BuildContext& ground, LaunchShape shape);
 
 private:
     void do_compile(const WalkBuild& build) override;

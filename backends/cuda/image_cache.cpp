@@ -2,7 +2,7 @@
 #include "backends/cuda/image_cache.h"
 
 #include "backends/device.h"
-#include "base/own_folder.h"
+#include "base/private_folder.h"
 
 #include <algorithm>
 #include <array>

@@ -41,18 +41,20 @@ private:
     char fork_ = 0, join_ = 0;
 
     template<class Work>
-    friend class HandedWork;
+    friend class SynchronizedWork;
 };
 
 /// What a parallel loop does, as oneTBB's tasks carry it from thread to thread: a copy is made by one, read
 /// by another, and its memory taken for the next by a third, in order, which ThreadSanitizer has to be told
 /// as well. `work` must outlive the loop.
 template<class Work>
-class HandedWork {
+class SynchronizedWork {
 public:
-    explicit HandedWork(const Work& work) : work_(&work) { ForkJoin::release(place_.edge()); }
-    HandedWork(const HandedWork& other) : work_(other.received()) { ForkJoin::release(place_.edge()); }
-    HandedWork& operator=(const HandedWork&) = delete;
+    explicit SynchronizedWork(const Work& work) : work_(&work) { ForkJoin::release(place_.edge()); }
+    SynchronizedWork(const SynchronizedWork& other) : work_(other.received()) {
+        ForkJoin::release(place_.edge());
+    }
+    SynchronizedWork& operator=(const SynchronizedWork&) = delete;
 
     template<class Range>
     void operator()(const Range& range) const {

@@ -127,7 +127,7 @@ private:
                 const ForkJoin::Part part(edges);
                 run_groups(impl, grid.groups, groups, arguments, true);
             };
-            arena_.execute([&] { tbb::parallel_for(Groups(begun, grid.groups), HandedWork(work)); });
+            arena_.execute([&] { tbb::parallel_for(Groups(begun, grid.groups), SynchronizedWork(work)); });
         });
     }
 

@@ -51,8 +51,8 @@ public:
     void broadcast(Bytes& bytes, int from) override;
     std::vector<Bytes> gather_to_all(std::span<const std::byte> own) override;
     std::vector<Bytes> exchange(const std::vector<Bytes>& out) override;
-    bool reaches(const DeviceInfo& info) const override;
-    void exchange_there(std::span<const Piece> out, std::span<const Piece> in) override;
+    bool is_gpu_aware(const DeviceInfo& info) const override;
+    void exchange_device(std::span<const Piece> out, std::span<const Piece> in) override;
     void send(int to, std::span<const std::byte> bytes) override;
     Received receive() override;
     bool is_there() override;
@@ -152,11 +152,11 @@ std::vector<Ranks::Bytes> MpiRanks::exchange(const std::vector<Bytes>& out) {
     return in;
 }
 
-bool MpiRanks::reaches(const DeviceInfo& info) const {
+bool MpiRanks::is_gpu_aware(const DeviceInfo& info) const {
     return info.id.starts_with("host") || (info.id.starts_with("cuda") && is_cuda_aware());
 }
 
-void MpiRanks::exchange_there(std::span<const Piece> out, std::span<const Piece> in) {
+void MpiRanks::exchange_device(std::span<const Piece> out, std::span<const Piece> in) {
     std::vector<MPI_Request> requests;
     const auto begin = [&](std::span<const Piece> pieces, auto call, std::string_view name) {
         for (const auto& piece : pieces)

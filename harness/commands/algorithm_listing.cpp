@@ -95,7 +95,7 @@ Json counters_json(std::span<const Counter> counters) {
     return json;
 }
 
-Json algorithm_json(const Traversal& traversal, bool peer) {
+Json algorithm_json(const Traversal& traversal, bool baseline) {
     Json presets = Json::array();
     for (const auto& p : traversal.presets())
         presets.push_back({{"name", p.name},
@@ -103,7 +103,7 @@ Json algorithm_json(const Traversal& traversal, bool peer) {
                            {"values", p.texts()},
                            {"settings", settings_of(traversal, p).texts()}});
     return {{"name", traversal.name()},
-            {"peer", peer},
+            {"peer", baseline},
             {"summary", traversal.summary()},
             {"parameters", parameters_json(traversal.parameters())},
             {"counters", counters_json(traversal.counters())},
@@ -113,9 +113,9 @@ Json algorithm_json(const Traversal& traversal, bool peer) {
 /// Text in lines that fit a terminal, those after the first below the column `indent`.
 void put_lines(const std::string& text, std::size_t indent) { put("{}", paragraph(text, indent)); }
 
-void print_heading(const Traversal& traversal, bool peer) {
+void print_heading(const Traversal& traversal, bool baseline) {
     put_lines(fmt::format("{}{}: {}", traversal.name(),
-                          peer ? ", a peer, which runs where it is named only" : "", traversal.summary()),
+                          baseline ? ", a peer, which runs where it is named only" : "", traversal.summary()),
               2);
 }
 
@@ -126,8 +126,8 @@ void print_counters(const Traversal& traversal) {
 }
 
 /// In short: a setting has the value that it has where no preset is named.
-void print_algorithm(const Traversal& traversal, bool peer) {
-    print_heading(traversal, peer);
+void print_algorithm(const Traversal& traversal, bool baseline) {
+    print_heading(traversal, baseline);
     put("  presets\n");
     for (const auto& p : traversal.presets()) put_lines(fmt::format("    {:<18} {}", p.name, p.help), 23);
     const auto& first = traversal.presets().front();
@@ -156,13 +156,14 @@ void explain_setting(const Traversal& traversal, const Parameter& parameter, con
     if (const auto values = by_preset(traversal, parameter); !values.empty()) line("presets", values);
     if (parameter.alternatives().empty()) return;
     const auto tried = fmt::format("{}", fmt::join(alternatives_of(parameter), ", "));
-    line("auto tries",
-         parameter.said_by.empty() ? tried : fmt::format("{}, unless {} is given", tried, parameter.said_by));
+    line("auto tries", parameter.alternative_setting.empty()
+                           ? tried
+                           : fmt::format("{}, unless {} is given", tried, parameter.alternative_setting));
 }
 
 /// At length.
-void explain_algorithm(const Traversal& traversal, bool peer) {
-    print_heading(traversal, peer);
+void explain_algorithm(const Traversal& traversal, bool baseline) {
+    print_heading(traversal, baseline);
     put("  presets; the first is taken where none is named\n");
     for (const auto& p : traversal.presets()) {
         const auto changed = changed_by(traversal, p);
@@ -178,7 +179,9 @@ void explain_algorithm(const Traversal& traversal, bool peer) {
     print_counters(traversal);
 }
 
-bool is_peer(const Traversal& traversal) { return std::ranges::find(peers(), &traversal) != peers().end(); }
+bool is_baseline(const Traversal& traversal) {
+    return std::ranges::find(baselines(), &traversal) != baselines().end();
+}
 
 } // namespace
 
@@ -186,15 +189,15 @@ int algorithms_command(const AlgorithmsOptions& options) {
     std::vector<const Traversal*> chosen;
     for (const auto& name : options.names) chosen.push_back(&algorithm(name));
     if (chosen.empty())
-        for (const auto& list : {algorithms(), peers()})
+        for (const auto& list : {algorithms(), baselines()})
             chosen.insert(chosen.end(), list.begin(), list.end());
     Json all = Json::array();
     for (const auto* traversal : chosen) {
-        const bool peer = is_peer(*traversal);
+        const bool baseline = is_baseline(*traversal);
         if (options.json)
-            all.push_back(algorithm_json(*traversal, peer));
+            all.push_back(algorithm_json(*traversal, baseline));
         else
-            (options.names.empty() ? print_algorithm : explain_algorithm)(*traversal, peer);
+            (options.names.empty() ? print_algorithm : explain_algorithm)(*traversal, baseline);
     }
     if (options.json) put("{}\n", all.dump(2));
     return 0;

@@ -36,7 +36,7 @@ int run_external(const std::string& name, const std::vector<std::string>& words)
     const auto path = external_program(name);
     setenv("TANDEM_PROGRAM", own_path().c_str(), 1);
     // What has been printed comes before what it prints. It works as well where that cannot be read.
-    const ProgramPlace place{"", flush_output() ? "" : "/dev/null", ""};
+    const ProgramStreams place{"", flush_output() ? "" : "/dev/null", ""};
     const Interrupt interrupt;
     // The system's first, which has the system's packages.
     for (const char* python : {"/usr/bin/python3", "python3"}) {

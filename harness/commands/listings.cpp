@@ -75,7 +75,7 @@ int measure_devices(const DevicesOptions& options) {
         for (auto* device : group) {
             const auto ceilings = measure_ceilings(*device);
             records.push_back(ceilings_record(*device, ceilings));
-            if (!file.failed()) file.append_or_tell(records.back());
+            if (!file.failed()) file.append_or_report(records.back());
             if (!options.json) put("{}", ceilings_table(device->info(), ceilings));
         }
     if (options.json) put("{}\n", records.dump(2));

@@ -23,7 +23,7 @@ namespace {
 /// What posix_spawn does between fork and exec.
 class Actions {
 public:
-    explicit Actions(const ProgramPlace& place) {
+    explicit Actions(const ProgramStreams& place) {
         posix_spawn_file_actions_init(&actions_);
         open(STDOUT_FILENO, place.output);
         open(STDERR_FILENO, place.errors);
@@ -48,7 +48,7 @@ int code_of(int status) { return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : 
 
 } // namespace
 
-int run_program(const std::vector<std::string>& words, const ProgramPlace& place) {
+int run_program(const std::vector<std::string>& words, const ProgramStreams& place) {
     std::vector<char*> arguments;
     arguments.reserve(words.size() + 1);
     for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));

@@ -17,7 +17,7 @@ public:
     Progress& operator=(const Progress&) = delete;
 
     void show(std::string_view text) const {
-        if (on_) tell("\r\033[K{}", text);
+        if (on_) print_message("\r\033[K{}", text);
     }
     void clear() const { show(""); }
 

@@ -11,8 +11,8 @@
 #include "harness/plans/key.h"
 #include "harness/plans/cell_groups.h"
 #include "harness/commands/progress.h"
-#include "harness/sampling/ranks/launched.h"
-#include "harness/sampling/ranks/launched_run.h"
+#include "harness/sampling/ranks/mpi_environment.h"
+#include "harness/sampling/ranks/run_on_ranks.h"
 #include "harness/sampling/ranks/rank_team.h"
 #include "harness/commands/run_parts.h"
 #include "harness/sampling/replays.h"
@@ -244,9 +244,9 @@ int Run::end(int code) {
     if (!interrupted_ && !file_->failed()) unfinished_.remove();
     if (!interrupted_ || file_->failed()) return code;
     const bool can_go_on = !options_.out.empty();
-    tell("tandem: interrupted; {} cells are measured{}\n", measured_,
-         can_go_on ? fmt::format("; to go on: {}{}", command_line(), options_.resume ? "" : " --resume")
-                   : "");
+    print_message(
+        "tandem: interrupted; {} cells are measured{}\n", measured_,
+        can_go_on ? fmt::format("; to go on: {}{}", command_line(), options_.resume ? "" : " --resume") : "");
     return 3;
 }
 
@@ -295,7 +295,7 @@ int Run::list_all() {
             list(*job);
         } catch (const InputError& error) {
             if (all_.groups.size() == 1) throw;
-            tell("tandem: {} cells cannot be listed: {}\n", group.cells.size(), error.what());
+            print_message("tandem: {} cells cannot be listed: {}\n", group.cells.size(), error.what());
             ++unopened;
         }
     put("{} cells, about {:.0f} s of rounds{}{}; checks against the reference and the truth come on top\n",
@@ -309,9 +309,9 @@ int Run::list_all() {
 
 /// Ranks of a job measure the cells one after another, each on all of them.
 int run_command(const RunOptions& options) {
-    auto* ranks = launched_ranks();
+    auto* ranks = job_ranks();
     if (ranks == nullptr) {
-        if (options.shard.of == 1) tell_tasks_are_no_ranks();
+        if (options.shard.of == 1) warn_tasks_are_no_ranks();
         return Run(options, nullptr).go();
     }
     RankTeam team(*ranks);

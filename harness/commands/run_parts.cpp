@@ -28,12 +28,12 @@ PlanFile plan_of(const RunOptions& options) {
 /// What is not measured, and why.
 void tell_left_out(const CellGroups& all) {
     if (all.repeated > 0)
-        tell("tandem: {} cells are named more than once; each is measured once\n", all.repeated);
+        print_message("tandem: {} cells are named more than once; each is measured once\n", all.repeated);
     for (const auto& [why, count] : all.impossible)
-        tell("tandem: skipped {} impossible combination{}: {}\n", count, count == 1 ? "" : "s", why);
+        print_message("tandem: skipped {} impossible combination{}: {}\n", count, count == 1 ? "" : "s", why);
 }
 
-void tell_skipped(const InputError& error) { tell("tandem: skipped a cell: {}\n", error.what()); }
+void tell_skipped(const InputError& error) { print_message("tandem: skipped a cell: {}\n", error.what()); }
 
 Measuring measuring_of(const RunOptions& options) {
     Measuring measuring;

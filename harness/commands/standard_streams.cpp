@@ -49,13 +49,15 @@ void put_text(std::string_view text) {
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) output_error = errno;
 }
 
-void tell_text(std::string_view text) {
-    if (!is_silent) tell_text_from_every_rank(text);
+void print_message_text(std::string_view text) {
+    if (!is_silent) print_message_text_from_every_rank(text);
 }
 
 void silence_streams() { is_silent = true; }
 
-void tell_text_from_every_rank(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
+void print_message_text_from_every_rank(std::string_view text) {
+    std::fwrite(text.data(), 1, text.size(), stderr);
+}
 
 bool flush_output() {
     if (std::fflush(stdout) != 0 && output_error == 0) output_error = errno;
@@ -64,7 +66,7 @@ bool flush_output() {
 
 int finish_output(int code) {
     if (flush_output()) return code;
-    tell("tandem: standard output could not be written ({})\n", std::strerror(output_error));
+    print_message("tandem: standard output could not be written ({})\n", std::strerror(output_error));
     return 3;
 }
 

@@ -26,22 +26,22 @@ void put(fmt::format_string<Values...> format, Values&&... values) {
 bool prints_colour();
 
 /// Prints to standard error; never fails.
-void tell_text(std::string_view text);
+void print_message_text(std::string_view text);
 
 template<class... Values>
-void tell(fmt::format_string<Values...> format, Values&&... values) {
-    tell_text(fmt::format(format, std::forward<Values>(values)...));
+void print_message(fmt::format_string<Values...> format, Values&&... values) {
+    print_message_text(fmt::format(format, std::forward<Values>(values)...));
 }
 
 /// From now on this process prints nothing by the functions above: another one prints the same.
 void silence_streams();
 
 /// Prints to standard error, also where streams are silenced; never fails.
-void tell_text_from_every_rank(std::string_view text);
+void print_message_text_from_every_rank(std::string_view text);
 
 template<class... Values>
-void tell_from_every_rank(fmt::format_string<Values...> format, Values&&... values) {
-    tell_text_from_every_rank(fmt::format(format, std::forward<Values>(values)...));
+void print_message_from_every_rank(fmt::format_string<Values...> format, Values&&... values) {
+    print_message_text_from_every_rank(fmt::format(format, std::forward<Values>(values)...));
 }
 
 /// Hands over what put() still holds. False when something that was put could not be written.

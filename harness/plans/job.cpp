@@ -67,8 +67,8 @@ public:
     }
     /// Appends a record and reports why its cell failed, if it did. False when it could not be written.
     bool end(const CellResult& result, const nlohmann::ordered_json& record, const std::string& failure) {
-        const bool recorded = file_.append_or_tell(record);
-        if (!failure.empty()) tell("tandem: {}: {}\n", describe(*result.cell), failure);
+        const bool recorded = file_.append_or_report(record);
+        if (!failure.empty()) print_message("tandem: {}: {}\n", describe(*result.cell), failure);
         return recorded;
     }
     bool failed() const { return file_.failed(); }

@@ -118,7 +118,7 @@ void Profiling::end(const Outcome& outcome, const Sampling& sampling) {
     const auto& cell = outcome.sampler->cell();
     const auto& m = outcome.sampler->measurement();
     const bool measured = outcome.failure.empty();
-    if (!measured) tell("tandem: {}: {}\n", describe(cell), outcome.failure);
+    if (!measured) print_message("tandem: {}: {}\n", describe(cell), outcome.failure);
     profile::Profile profile;
     const auto& ceilings = ceilings_.at(cell.devices.front());
     const auto& settings = m.settings.empty() ? cell.settings : m.settings;
@@ -134,7 +134,7 @@ void Profiling::end(const Outcome& outcome, const Sampling& sampling) {
         if (traced_ == nullptr) traced_ = &cell;
     }
     const auto record = make_record(cell, job_->scene, job_->range, m, outcome, sampling);
-    const bool recorded = file_->append_or_tell(profile_record(record, profile));
+    const bool recorded = file_->append_or_report(profile_record(record, profile));
     code_ = std::max(code_, !measured || !recorded ? 3 : (m.agreement.ok() ? 0 : 1));
 }
 

@@ -143,11 +143,11 @@ void RecordFile::append(const nlohmann::ordered_json& record) {
     ++appended_;
 }
 
-bool RecordFile::append_or_tell(const nlohmann::ordered_json& record) {
+bool RecordFile::append_or_report(const nlohmann::ordered_json& record) {
     try {
         append(record);
     } catch (const OutputError& error) {
-        tell("tandem: {}\n", error.what());
+        print_message("tandem: {}\n", error.what());
         return false;
     }
     return true;

@@ -31,7 +31,7 @@ public:
     void append(const nlohmann::ordered_json& record);
     /// append(), but an OutputError is told on standard error; false then, and nothing more should be
     /// measured.
-    bool append_or_tell(const nlohmann::ordered_json& record);
+    bool append_or_report(const nlohmann::ordered_json& record);
 
     /// Records that this object has appended.
     std::size_t appended() const { return appended_; }

@@ -8,7 +8,7 @@ namespace tandem::record_parts {
 namespace {
 
 /// One number of a device in every frame of the last sample.
-Json by_frame(const Measurement& m, std::size_t device, std::uint64_t SharedWork::*member) {
+Json by_frame(const Measurement& m, std::size_t device, std::uint64_t DeviceWork::*member) {
     Json json = Json::array();
     for (const auto& frame : m.shared) json.push_back(frame[device].*member);
     return json;
@@ -45,7 +45,7 @@ Json stages_json(const Measurement& m, std::size_t device) {
 
 /// Bytes and messages of the frames of the last sample; null where none were sent.
 Json exchange_json(const Measurement& m, std::size_t device) {
-    SharedWork sum;
+    DeviceWork sum;
     for (const auto& frame : m.shared) {
         sum.exchange_ns += frame[device].exchange_ns;
         sum.exchange_bytes += frame[device].exchange_bytes;
@@ -67,13 +67,13 @@ Json shares_json(const Measurement& m, const Cell& cell) {
     for (std::size_t i = 0; i < m.shared.front().size(); ++i)
         devices.push_back({{"device", infos[i].id},
                            {"ns", times_json(m, i)},
-                           {"bodies", by_frame(m, i, &SharedWork::bodies)},
-                           {"body_pairs", by_frame(m, i, &SharedWork::body_pairs)},
-                           {"candidate_pairs", by_frame(m, i, &SharedWork::pairs)},
+                           {"bodies", by_frame(m, i, &DeviceWork::bodies)},
+                           {"body_pairs", by_frame(m, i, &DeviceWork::body_pairs)},
+                           {"candidate_pairs", by_frame(m, i, &DeviceWork::pairs)},
                            {"exchange", exchange_json(m, i)},
                            {"stages", stages_json(m, i)}});
     return {{"imbalance", imbalances[imbalances.size() / 2]},
-            {"deals", m.samples.back().deals},
+            {"deals", m.samples.back().repartitions},
             {"devices", devices}};
 }
 

@@ -148,7 +148,8 @@ void mend_last_line(int file, const std::string& path) {
     set_aside(beside, line);
     if (ftruncate(file, static_cast<off_t>(begin)) != 0)
         fail_torn(path, "its torn last line cannot be taken off");
-    tell("tandem: {}: the last line was torn; its {} bytes are set aside in {}\n", path, line.size(), beside);
+    print_message("tandem: {}: the last line was torn; its {} bytes are set aside in {}\n", path, line.size(),
+                  beside);
 }
 
 } // namespace tandem

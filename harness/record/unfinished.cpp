@@ -59,7 +59,7 @@ void Unfinished::append(nlohmann::ordered_json line) {
         if (!file_) file_ = std::make_unique<RecordFile>(path_, Links::refused);
         file_->append(line);
     } catch (const std::runtime_error& error) {
-        tell("tandem: {}; rounds are no longer kept, records are\n", error.what());
+        print_message("tandem: {}; rounds are no longer kept, records are\n", error.what());
         path_.clear();
     }
 }
@@ -89,7 +89,7 @@ void Unfinished::remove() {
             std::filesystem::remove(path_);
         }
     } catch (const std::exception& error) {
-        tell("tandem: {}; {} has rounds of cells that are measured\n", error.what(), path_);
+        print_message("tandem: {}; {} has rounds of cells that are measured\n", error.what(), path_);
     }
 }
 

@@ -49,7 +49,7 @@ void TimedReplay::add_shared(const FrameResult& result) {
         longest = std::max(longest, result.shared[i].ns);
     }
     longest_ns += longest;
-    deals += result.deals;
+    repartitions += result.repartitions;
 }
 
 std::optional<double> TimedReplay::imbalance() const {

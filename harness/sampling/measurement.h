@@ -54,7 +54,7 @@ struct TimedReplay {
     // Of a session on several devices.
     std::vector<std::int64_t> shared_ns = {}; ///< by device: what it was at work, over the frames
     std::int64_t longest_ns = 0;              ///< of the devices, frame by frame, over the frames
-    std::uint64_t deals = 0;                  ///< frames for which bodies were dealt anew
+    std::uint64_t repartitions = 0;           ///< frames for which bodies were dealt anew
 
     std::int64_t total_ns() const;
     void add_shared(const FrameResult& result);
@@ -108,7 +108,7 @@ struct Measurement {
     std::vector<std::uint64_t> body_pairs, candidate_pairs, contacts; ///< [frame]
     std::uint64_t degenerate = 0, rejected = 0, undecided_by_filter = 0, undecided_by_double = 0;
     std::uint64_t retries = 0, batches = 0;      ///< of the checking replay
-    std::vector<std::vector<SharedWork>> shared; ///< [frame][device], in the last sample; of several devices
+    std::vector<std::vector<DeviceWork>> shared; ///< [frame][device], in the last sample; of several devices
     std::uint64_t submissions = 0;               ///< calls that handed devices work, in the last sample
     std::map<std::string_view, std::uint64_t> work; ///< by counter, over the frames; empty when not counted
     Agreement agreement;

@@ -16,7 +16,7 @@ namespace {
 /// A group at work.
 class Group {
 public:
-    Group(std::span<CellSampler* const> cells, const CheckOptions& check, const Enough& enough,
+    Group(std::span<CellSampler* const> cells, const CheckOptions& check, const StoppingCriterion& enough,
           std::uint64_t seed, const RoundsListener& listener)
         : check_(check), listener_(listener), random_(seed) {
         sampling_.enough = enough;
@@ -62,7 +62,7 @@ bool Group::is_enough(Outcome& outcome) const {
     const auto& enough = sampling_.enough;
     if (enough.repeat) return outcome.converged = m.samples.size() >= *enough.repeat;
     const std::size_t rounds = m.round_count();
-    if (rounds < Enough::least) return false;
+    if (rounds < StoppingCriterion::least) return false;
     const bool is_late = static_cast<double>(cell.state().spent_ns) * 1e-9 >= enough.seconds;
     if (!is_late && rounds < outcome.next_look) return false;
     outcome.next_look = rounds + rounds / 10;
@@ -145,14 +145,14 @@ bool Group::run() {
 
 } // namespace
 
-double noise_of(const DeviceGroup& devices, const Enough& enough) {
+double noise_of(const DeviceGroup& devices, const StoppingCriterion& enough) {
     if (enough.noise) return *enough.noise;
     const bool gpus = std::ranges::all_of(devices, [](const auto* device) { return device->info().is_gpu; });
     return gpus ? 0.01 : 0.03;
 }
 
-bool sample_group(std::span<CellSampler* const> cells, const CheckOptions& check, const Enough& enough,
-                  std::uint64_t seed, const RoundsListener& listener) {
+bool sample_group(std::span<CellSampler* const> cells, const CheckOptions& check,
+                  const StoppingCriterion& enough, std::uint64_t seed, const RoundsListener& listener) {
     return Group(cells, check, enough, seed, listener).run();
 }
 

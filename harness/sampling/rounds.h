@@ -6,7 +6,7 @@
 namespace tandem {
 
 /// When a cell has been sampled enough.
-struct Enough {
+struct StoppingCriterion {
     std::optional<std::size_t> repeat{}; ///< so many samples; none: as the rest says
     std::optional<double> noise{}; ///< width of the median's 95 % interval, relative; none: by its devices
     double seconds = 10;           ///< of rounds; then `least` rounds suffice
@@ -14,11 +14,11 @@ struct Enough {
 };
 
 /// 1 % where all devices are GPUs, 3 % where one is a processor.
-double noise_of(const DeviceGroup& devices, const Enough& enough);
+double noise_of(const DeviceGroup& devices, const StoppingCriterion& enough);
 
 /// How a group of cells was sampled, as a record says it.
 struct Sampling {
-    Enough enough;
+    StoppingCriterion enough;
     std::uint64_t seed = 0;   ///< of the order of cells in a round
     std::size_t cells = 1;    ///< of the group, in turn in every round
     bool interrupted = false; ///< before all were sampled enough
@@ -47,7 +47,7 @@ struct RoundsListener {
 /// that have not been sampled enough, in an order drawn for every round, so that drift of the machine is
 /// shared by all cells and does not look like an effect. One session lives at a time. Returns whether it was
 /// interrupted.
-bool sample_group(std::span<CellSampler* const> cells, const CheckOptions& check, const Enough& enough,
-                  std::uint64_t seed, const RoundsListener& listener);
+bool sample_group(std::span<CellSampler* const> cells, const CheckOptions& check,
+                  const StoppingCriterion& enough, std::uint64_t seed, const RoundsListener& listener);
 
 } // namespace tandem

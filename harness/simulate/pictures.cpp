@@ -31,13 +31,13 @@ Pictures::Pictures(std::string out)
 
 void Pictures::draw(const std::string& recording) const {
     const auto scene = load_recording(recording);
-    const PassingFolder folder;
+    const TemporaryDirectory folder;
     const auto glb = folder.path() + "/frames.glb";
     const auto last = scene.frame_count - 1;
     std::vector<std::size_t> frames{0, last / 2, last};
     frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
     write_glb(glb, scene, frames);
-    const ProgramPlace place{"", flush_output() ? "" : "/dev/null", ""};
+    const ProgramStreams place{"", flush_output() ? "" : "/dev/null", ""};
     if (run_program({python_, script_, glb, out_}, place) != 0)
         throw InputError(
             fmt::format("--pictures: nothing drawn; draw them of {} with 'tandem export'", recording));

@@ -185,7 +185,7 @@ int simulate_command(const SimulateOptions& options) {
         if (file.failed())
             put("{}", run_table(totals, true));
         else
-            file.append_or_tell(run_record(cell, scene, totals, error.what()));
+            file.append_or_report(run_record(cell, scene, totals, error.what()));
         throw;
     }
     put("{}", run_table(totals, !options.record.empty()));

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "harness/plans/frames.h"
-#include "harness/verify/kept_values.h"
+#include "harness/verify/verification_cache.h"
 #include "harness/verify/reference.h"
 
 #include <optional>
@@ -34,7 +34,7 @@ private:
 
     const Scene& scene_;
     const FrameRange& range_;
-    KeptValues kept_;
+    VerificationCache kept_;
     std::vector<std::pair<Key, ReferenceDigests>> known_;
     std::optional<std::pair<Key, ReferenceAnswer>> last_;
 };

@@ -82,7 +82,7 @@ void bind_collider(nb::module_& module) {
     };
     const auto run_there = [](const std::shared_ptr<Collider>& self, nb::handle poses,
                               const nb::list& vertices) {
-        return run(self, input_there(*self, poses, vertices));
+        return run(self, device_input(*self, poses, vertices));
     };
     nb::class_<Collider>(module, "Collider", "What tandem.Collider, which checks its input, hands it to.")
         .def(nb::new_(&make), nb::arg("meshes"), nb::arg("bodies"), nb::arg("deformable"),

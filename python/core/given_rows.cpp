@@ -280,7 +280,7 @@ GivenRows given_rows(nb::handle array, const WantedRows& wanted) {
     return on_host(array, wanted);
 }
 
-GivenRows given_rows_there(nb::handle array, const WantedRows& wanted) {
+GivenRows device_rows(nb::handle array, const WantedRows& wanted) {
     return of_array(nb::cast<Array>(array), wanted);
 }
 

@@ -43,6 +43,6 @@ std::optional<std::pair<int, int>> dlpack_device(const Device& device);
 GivenRows given_rows(nanobind::handle array, const WantedRows& wanted);
 
 /// The same without a copy, and of the host's memory as memory of device host.
-GivenRows given_rows_there(nanobind::handle array, const WantedRows& wanted);
+GivenRows device_rows(nanobind::handle array, const WantedRows& wanted);
 
 } // namespace tandem::python

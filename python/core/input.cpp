@@ -68,10 +68,10 @@ std::optional<Input> input_of(const Collider& collider, nb::handle poses, nb::ha
     return entries ? std::optional(taken(collider, poses, *entries, given_rows)) : std::nullopt;
 }
 
-Input input_there(const Collider& collider, nb::handle poses, const nb::list& vertices) {
+Input device_input(const Collider& collider, nb::handle poses, const nb::list& vertices) {
     Entries entries;
     for (const auto rows : vertices) entries.push_back(nb::borrow(rows));
-    auto input = taken(collider, poses, entries, given_rows_there);
+    auto input = taken(collider, poses, entries, device_rows);
     input.there = true;
     return input;
 }

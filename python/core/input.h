@@ -10,7 +10,7 @@ namespace tandem::python {
 /// Throws as given_rows does.
 std::optional<Input> input_of(const Collider& collider, nanobind::handle poses, nanobind::handle vertices);
 
-/// The same of lists with an entry for each body, by given_rows_there.
-Input input_there(const Collider& collider, nanobind::handle poses, const nanobind::list& vertices);
+/// The same of lists with an entry for each body, by device_rows.
+Input device_input(const Collider& collider, nanobind::handle poses, const nanobind::list& vertices);
 
 } // namespace tandem::python

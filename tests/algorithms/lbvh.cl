@@ -140,10 +140,10 @@ DEVICE uint query_leaf(const Job* job, uint a, uint b, uint item, Tally* tally) 
 // enough for any body: how many queries there are needs no scan.
 KERNEL void query_leaves(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* children,
                          GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* pairs,
-                         uint pair_room, uint blocks, GLOBAL uint* found, uint capacity,
+                         uint pair_capacity, uint blocks, GLOBAL uint* found, uint capacity,
                          GLOBAL uint* status) {
     const Job job = {nodes, trees, children, bodies, ids, found, capacity, status};
-    const ulong work = (ulong)body_pair_count(pair_room, status) * blocks;
+    const ulong work = (ulong)body_pair_count(pair_capacity, status) * blocks;
     Tally tally = empty_tally();
     ulong hits = 0;
     for (ulong i = GROUP_ID; i < work; i += GROUP_COUNT) {

@@ -226,7 +226,7 @@ void LeafQueries::do_launch(const WalkTask& task) {
                                              bodies.row_table(),
                                              bodies.ids(),
                                              task.body_pairs,
-                                             task.pair_room,
+                                             task.pair_capacity,
                                              blocks,
                                              task.answer.pairs.buffer(),
                                              task.answer.pairs.capacity(),
@@ -257,7 +257,7 @@ public:
 private:
     void do_check(const Settings&, const DeviceInfo&) const override {}
 
-    Steps do_build(const Ground& ground) const override {
+    AlgorithmStages do_build(const BuildContext& ground) const override {
         auto trees = std::make_unique<StoredTrees>(ground.bodies, ground.shape.group_size);
         auto queries = std::make_unique<LeafQueries>(*trees, ground.shape);
         return {std::move(trees), std::move(queries)};

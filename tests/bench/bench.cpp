@@ -5,7 +5,7 @@
 #include "algorithms/broad_phase/broad_stage.h"
 #include "algorithms/narrow_phase/reference.h"
 #include "tests/support/prepared_trees.h"
-#include "algorithms/distributed/places.h"
+#include "algorithms/distributed/displacement_tracker.h"
 #include "algorithms/sources.h"
 #include "algorithms/answer/status.clh"
 #include "algorithms/traversal.h"
@@ -129,8 +129,8 @@ void still_near(benchmark::State& state) {
     const auto frame = scene.frame(0);
     std::vector<std::uint32_t> all(scene.bodies.size());
     std::iota(all.begin(), all.end(), 0u);
-    Places places(scene);
-    places.keep(frame, all);
+    DisplacementTracker places(scene);
+    places.set_reference(frame, all);
     for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(places.all_within(frame, all, 0.25));
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * state.range(0));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Microbenchmarks of many ranks in one process: the partitioner, which each rank runs by itself for all
 // bodies, and the ghost lists, which ranks find together. Bodies are jacks of a pile, density 0.2.
-#include "algorithms/distributed/halo.h"
+#include "algorithms/distributed/ghost_exchange.h"
 #include "tests/support/thread_ranks.h"
 
 #include <benchmark/benchmark.h>
@@ -19,8 +19,8 @@ struct BoundedPile {
         : scene(make_scene(fmt::format("pile:bodies={},frames=1", bodies))), frame(scene.frame(0)) {
         std::vector<std::uint32_t> all(scene.bodies.size());
         std::iota(all.begin(), all.end(), 0u);
-        Places places(scene);
-        places.keep(frame, all);
+        DisplacementTracker places(scene);
+        places.set_reference(frame, all);
         for (const auto body : all) balls.push_back(places.ball(body));
     }
 
@@ -48,12 +48,12 @@ void partition(benchmark::State& state) {
     const auto parts = static_cast<std::size_t>(state.range(0));
     const BoundedPile pile(state.range(0) * state.range(1));
     const std::vector<double> speeds(parts, 1.0);
-    Deal deal(pile.scene, {.k = 18}, parts);
-    for ([[maybe_unused]] auto _ : state) deal.make(pile.balls, speeds);
+    Partitioner deal(pile.scene, {.k = 18}, parts);
+    for ([[maybe_unused]] auto _ : state) deal.partition(pile.balls, speeds);
     Spread own, ghosts;
-    for (const auto& share : deal.shares()) {
+    for (const auto& share : deal.subdomains()) {
         own.add(static_cast<double>(share.own.size()));
-        ghosts.add(static_cast<double>(share.others.size()));
+        ghosts.add(static_cast<double>(share.ghosts.size()));
     }
     state.counters["own_most"] = own.most;
     state.counters["ghosts_mean"] = ghosts.mean();
@@ -66,13 +66,13 @@ struct GhostCounts {
     Spread ghosts, neighbours, setup_bytes, frame_bytes;
 };
 
-void add_rank(const Share& share, const Deal& deal, std::uint64_t setup, std::uint64_t frame,
+void add_rank(const Subdomain& share, const Partitioner& deal, std::uint64_t setup, std::uint64_t frame,
               GhostCounts& counts) {
     std::vector<std::size_t> owners;
-    for (const auto body : share.others) owners.push_back(deal.owner_of(body));
+    for (const auto body : share.ghosts) owners.push_back(deal.owner_of(body));
     std::ranges::sort(owners);
     const auto repeated = std::ranges::unique(owners);
-    counts.ghosts.add(static_cast<double>(share.others.size()));
+    counts.ghosts.add(static_cast<double>(share.ghosts.size()));
     counts.neighbours.add(static_cast<double>(owners.size() - repeated.size()));
     counts.setup_bytes.add(static_cast<double>(setup));
     counts.frame_bytes.add(static_cast<double>(frame));
@@ -84,20 +84,20 @@ void add_rank(const Share& share, const Deal& deal, std::uint64_t setup, std::ui
 void ghosts(benchmark::State& state) {
     const auto ranks = static_cast<std::size_t>(state.range(0));
     const BoundedPile pile(state.range(0) * state.range(1));
-    Deal deal(pile.scene, {.k = 18}, ranks);
-    deal.make(pile.balls, std::vector<double>(ranks, 1.0));
+    Partitioner deal(pile.scene, {.k = 18}, ranks);
+    deal.partition(pile.balls, std::vector<double>(ranks, 1.0));
     GhostCounts counts;
     std::mutex counting;
     for ([[maybe_unused]] auto _ : state) {
         counts = {};
         testing_support::ThreadJob(ranks).run([&](Ranks& own) {
-            Halo halo(pile.scene, {.k = 18}, own);
-            Halo::Traffic setup, frame;
-            const auto& share = deal.shares()[static_cast<std::size_t>(own.rank())];
-            halo.meet(share.own, pile.frame, setup);
-            halo.trade(pile.frame, frame);
+            GhostExchange halo(pile.scene, {.k = 18}, own);
+            GhostExchange::Traffic setup, frame;
+            const auto& share = deal.subdomains()[static_cast<std::size_t>(own.rank())];
+            halo.rebuild(share.own, pile.frame, setup);
+            halo.exchange_states(pile.frame, frame);
             const std::scoped_lock lock(counting);
-            add_rank(halo.share(), deal, setup.bytes, frame.bytes, counts);
+            add_rank(halo.subdomain(), deal, setup.bytes, frame.bytes, counts);
         });
     }
     for (const auto& [name, spread] :

@@ -52,8 +52,8 @@ TEST_P(Slots, NumberEveryTetrahedronOnce) {
         for (std::uint32_t item = 0; item < own.tetrahedron_count; ++item) {
             const auto slot = bodies.first_slot(body) + item;
             EXPECT_TRUE(seen.insert(slot).second);
-            EXPECT_EQ(bodies.place_of(slot).body, body);
-            EXPECT_EQ(bodies.place_of(slot).item, item);
+            EXPECT_EQ(bodies.slot_owner(slot).body, body);
+            EXPECT_EQ(bodies.slot_owner(slot).item, item);
             const auto& block = rows.at(slot / Bodies::block_slots);
             EXPECT_EQ(block.tetrahedron_count, body); // in its place (rows.clh)
             EXPECT_EQ(block.tetrahedra + slot % Bodies::block_slots, own.tetrahedra + item);

@@ -28,7 +28,7 @@ long number(const char* name, long otherwise) {
 
 std::atomic<long> calls{0};
 
-void tell(const char* file, const char* text) {
+void print_message(const char* file, const char* text) {
     const char* path = std::getenv(file);
     std::FILE* out = path == nullptr ? nullptr : std::fopen(path, "w");
     if (out == nullptr) return;
@@ -41,12 +41,12 @@ bool fails(const char* name) {
     static const long at = number("SHIM_CALL", 0);
     static const bool stays = std::getenv("SHIM_STAYS") != nullptr;
     const long call = ++calls;
-    if (at != 0 && call == at) tell("SHIM_FAILED", name);
+    if (at != 0 && call == at) print_message("SHIM_FAILED", name);
     return at != 0 && (stays ? call >= at : call == at);
 }
 
 struct Tell {
-    ~Tell() { tell("SHIM_COUNT", std::to_string(calls.load()).c_str()); }
+    ~Tell() { print_message("SHIM_COUNT", std::to_string(calls.load()).c_str()); }
 } tell_at_the_end;
 
 enum Entry : std::size_t {

@@ -86,44 +86,45 @@ std::string content(const std::string& path) {
     return hexadecimal(text.data(), text.size());
 }
 
-void tell(const std::string& what, const std::string& path, const std::string& more = "") {
+void print_message(const std::string& what, const std::string& path, const std::string& more = "") {
     if (path.empty() || log_file() < 0) return;
     const auto line = what + "\t" + path + (more.empty() ? "" : "\t" + more) + "\n";
     syscall(SYS_write, log_file(), line.data(), line.size());
 }
 
 /// Where a descriptor's next write goes.
-off_t place_of(int file) {
+off_t slot_owner(int file) {
     const int flags = fcntl(file, F_GETFL);
     return lseek(file, 0, flags >= 0 && (flags & O_APPEND) != 0 ? SEEK_END : SEEK_CUR);
 }
 
 void tell_write(int file, off_t at, const char* data, ssize_t bytes) {
     if (bytes > 0)
-        tell("write", path_of(file),
-             std::to_string(at) + "\t" + hexadecimal(data, static_cast<std::size_t>(bytes)));
+        print_message("write", path_of(file),
+                      std::to_string(at) + "\t" + hexadecimal(data, static_cast<std::size_t>(bytes)));
 }
 
-void tell_opened(int file, bool made, bool emptied) {
+void tell_opened(int file, bool made, bool masked) {
     if (file < 0) return;
-    if (made) tell("make", path_of(file));
-    if (emptied && !made) tell("size", path_of(file), "0");
+    if (made) print_message("make", path_of(file));
+    if (masked && !made) print_message("size", path_of(file), "0");
 }
 
 void tell_synced(int file) {
     struct stat facts {};
     if (fstat(file, &facts) != 0) return;
-    if (S_ISDIR(facts.st_mode)) tell("sync-folder", path_of(file));
+    if (S_ISDIR(facts.st_mode)) print_message("sync-folder", path_of(file));
     // A descriptor may be for writing only.
-    if (S_ISREG(facts.st_mode)) tell("sync", path_of(file), content("/proc/self/fd/" + std::to_string(file)));
+    if (S_ISREG(facts.st_mode))
+        print_message("sync", path_of(file), content("/proc/self/fd/" + std::to_string(file)));
 }
 
 void tell_all() {
-    tell("sync-folder", ".");
+    print_message("sync-folder", ".");
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder())) {
         const auto path = entry.path().string();
-        if (entry.is_directory()) tell("sync-folder", inside(path));
-        if (entry.is_regular_file()) tell("sync", inside(path), content(path));
+        if (entry.is_directory()) print_message("sync-folder", inside(path));
+        if (entry.is_regular_file()) print_message("sync", inside(path), content(path));
     }
 }
 
@@ -166,7 +167,7 @@ TANDEM_FOPEN(fopen64)
 ssize_t write(int file, const void* data, std::size_t bytes) {
     static auto* const real = next<ssize_t(int, const void*, std::size_t)>("write");
     const std::lock_guard lock(one_at_a_time);
-    const auto at = place_of(file);
+    const auto at = slot_owner(file);
     const auto done = real(file, data, bytes);
     tell_write(file, at, static_cast<const char*>(data), done);
     return done;
@@ -187,7 +188,7 @@ TANDEM_PWRITE(pwrite64)
 ssize_t writev(int file, const struct iovec* parts, int count) {
     static auto* const real = next<ssize_t(int, const struct iovec*, int)>("writev");
     const std::lock_guard lock(one_at_a_time);
-    const auto at = place_of(file);
+    const auto at = slot_owner(file);
     const auto done = real(file, parts, count);
     std::string all;
     for (int i = 0; i < count; ++i) all.append(static_cast<const char*>(parts[i].iov_base), parts[i].iov_len);
@@ -200,7 +201,7 @@ ssize_t writev(int file, const struct iovec* parts, int count) {
         static auto* const real = next<int(int, off_t)>(#name);                                              \
         const std::lock_guard lock(one_at_a_time);                                                           \
         const int done = real(file, bytes);                                                                  \
-        if (done == 0) tell("size", path_of(file), std::to_string(bytes));                                   \
+        if (done == 0) print_message("size", path_of(file), std::to_string(bytes));                          \
         return done;                                                                                         \
     }
 TANDEM_TRUNCATE(ftruncate)
@@ -232,7 +233,7 @@ int rename(const char* from, const char* to) noexcept {
     const std::lock_guard lock(one_at_a_time);
     const auto before = inside(from);
     const int done = real(from, to);
-    if (done == 0) tell("rename", before, inside(to));
+    if (done == 0) print_message("rename", before, inside(to));
     return done;
 }
 
@@ -241,7 +242,7 @@ int rename(const char* from, const char* to) noexcept {
         static auto* const real = next<int(const char*)>(#name);                                             \
         const std::lock_guard lock(one_at_a_time);                                                           \
         const int done = real(path);                                                                         \
-        if (done == 0) tell("remove", inside(path));                                                         \
+        if (done == 0) print_message("remove", inside(path));                                                \
         return done;                                                                                         \
     }
 TANDEM_REMOVE(remove)
@@ -252,7 +253,7 @@ int mkdir(const char* path, mode_t mode) noexcept {
     static auto* const real = next<int(const char*, mode_t)>("mkdir");
     const std::lock_guard lock(one_at_a_time);
     const int done = real(path, mode);
-    if (done == 0) tell("make-folder", inside(path));
+    if (done == 0) print_message("make-folder", inside(path));
     return done;
 }
 

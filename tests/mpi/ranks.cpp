@@ -88,7 +88,7 @@ TEST(Ranks, PiecesLieWhereTheyAreWanted) {
             auto& gotten = memory.emplace_back(size_of(other, rank, i));
             in.push_back({other, gotten.data(), gotten.size()});
         }
-    ranks->exchange_there(out, in);
+    ranks->exchange_device(out, in);
     for (int other = 0; other < ranks->size(); ++other)
         for (int i = 0; i < 3; ++i)
             EXPECT_EQ(memory[static_cast<std::size_t>(other * 6 + i * 2 + 1)],
@@ -97,17 +97,17 @@ TEST(Ranks, PiecesLieWhereTheyAreWanted) {
 
 /// What a library says of itself, unless the environment knows better.
 TEST(Ranks, ReachTheHostAndWhatTheEnvironmentSays) {
-    const auto reaches = [](const char* id) {
+    const auto is_gpu_aware = [](const char* id) {
         DeviceInfo info;
         info.id = id;
-        return ranks->reaches(info);
+        return ranks->is_gpu_aware(info);
     };
-    EXPECT_TRUE(reaches("host"));
-    EXPECT_FALSE(reaches("opencl:0"));
+    EXPECT_TRUE(is_gpu_aware("host"));
+    EXPECT_FALSE(is_gpu_aware("opencl:0"));
     setenv("TANDEM_MPI_CUDA", "1", 1);
-    EXPECT_TRUE(reaches("cuda:0"));
+    EXPECT_TRUE(is_gpu_aware("cuda:0"));
     setenv("TANDEM_MPI_CUDA", "0", 1);
-    EXPECT_FALSE(reaches("cuda:0"));
+    EXPECT_FALSE(is_gpu_aware("cuda:0"));
     unsetenv("TANDEM_MPI_CUDA");
 }
 

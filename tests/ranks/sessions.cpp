@@ -213,7 +213,7 @@ TEST_F(RankSessions, WhoComesNextHasRoom) {
     auto before = bodies(0);
     for (int held = 0, i = 0; held < 10 && i < 500; ++i) {
         before = bodies(0);
-        held = last_.deals == 0 ? held + 1 : 0;
+        held = last_.repartitions == 0 ? held + 1 : 0;
     }
     const auto bytes = on.bytes_allocated();
     EXPECT_EQ(bodies(1) > before, job->rank() + 1 < job->size());
@@ -255,7 +255,7 @@ TEST_F(RankSessions, VerticesGoFromDeviceToDevice) {
             bytes[placement] = summed(last_.shared[static_cast<std::size_t>(job->rank())].exchange_bytes);
         }
         if (job->size() == 1) continue;
-        EXPECT_EQ(4 * bytes["rounded"] <= 3 * bytes["exact"], job->reaches(own_device().info()))
+        EXPECT_EQ(4 * bytes["rounded"] <= 3 * bytes["exact"], job->is_gpu_aware(own_device().info()))
             << bytes["rounded"] << " and " << bytes["exact"];
     }
 }

@@ -57,8 +57,8 @@ private:
             wait();
             return in;
         }
-        bool reaches(const DeviceInfo&) const override { return false; }
-        void exchange_there(std::span<const Piece>, std::span<const Piece>) override { refuse(); }
+        bool is_gpu_aware(const DeviceInfo&) const override { return false; }
+        void exchange_device(std::span<const Piece>, std::span<const Piece>) override { refuse(); }
         void send(int, std::span<const std::byte>) override { refuse(); }
         Received receive() override { refuse(); }
         bool is_there() override { return false; }

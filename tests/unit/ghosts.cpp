@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Ghost bodies of many ranks, which are threads of this process.
-#include "algorithms/distributed/halo.h"
+#include "algorithms/distributed/ghost_exchange.h"
 #include "tests/support/thread_ranks.h"
 
 #include <gtest/gtest.h>
@@ -12,22 +12,22 @@ namespace {
 constexpr std::size_t rank_count = 64;
 
 /// Shares of 64 ranks of a pile, by rank, as they have found them together.
-std::vector<Share> shares_of(const Scene& scene, const Frame& frame) {
+std::vector<Subdomain> shares_of(const Scene& scene, const Frame& frame) {
     std::vector<std::uint32_t> all(scene.bodies.size());
     std::iota(all.begin(), all.end(), 0u);
-    Places places(scene);
-    places.keep(frame, all);
+    DisplacementTracker places(scene);
+    places.set_reference(frame, all);
     std::vector<Ball> balls;
     for (const auto body : all) balls.push_back(places.ball(body));
-    Deal deal(scene, {.k = 18}, rank_count);
-    deal.make(balls, std::vector<double>(rank_count, 1));
-    std::vector<Share> shares(rank_count);
+    Partitioner deal(scene, {.k = 18}, rank_count);
+    deal.partition(balls, std::vector<double>(rank_count, 1));
+    std::vector<Subdomain> shares(rank_count);
     testing_support::ThreadJob(rank_count).run([&](Ranks& ranks) {
         const auto rank = static_cast<std::size_t>(ranks.rank());
-        Halo halo(scene, {.k = 18}, ranks);
-        Halo::Traffic traffic;
-        halo.meet(deal.shares()[rank].own, frame, traffic);
-        shares[rank] = halo.share();
+        GhostExchange halo(scene, {.k = 18}, ranks);
+        GhostExchange::Traffic traffic;
+        halo.rebuild(deal.subdomains()[rank].own, frame, traffic);
+        shares[rank] = halo.subdomain();
     });
     return shares;
 }
@@ -38,9 +38,9 @@ TEST(Ghosts, OfManyRanksHaveEachPairOnce) {
     std::vector<std::vector<Role>> roles;
     std::size_t ghosts = 0, ranks_with_ghosts = 0;
     for (const auto& share : shares_of(scene, frame)) {
-        roles.push_back(roles_in(share, scene.bodies.size()));
-        ghosts += share.others.size();
-        ranks_with_ghosts += share.others.empty() ? 0 : 1;
+        roles.push_back(roles_of(share, scene.bodies.size()));
+        ghosts += share.ghosts.size();
+        ranks_with_ghosts += share.ghosts.empty() ? 0 : 1;
     }
     const auto pairs = BroadSweep(scene, {.k = 18}, Broad::tight).pairs(frame);
     ASSERT_GT(pairs.size(), 600u);

@@ -153,7 +153,7 @@ TEST_F(JournalFile, FullDevice) {
     EXPECT_THROW(full.append({{"a", 1}}), OutputError);
     EXPECT_TRUE(full.failed());
     testing::internal::CaptureStderr();
-    EXPECT_FALSE(full.append_or_tell({{"a", 1}}));
+    EXPECT_FALSE(full.append_or_report({{"a", 1}}));
     EXPECT_EQ(testing::internal::GetCapturedStderr(),
               "tandem: /dev/full: writing failed (No space left on device); the records before are whole\n");
     EXPECT_EQ(full.appended(), 0u);

@@ -37,7 +37,7 @@ protected:
         cells_.push_back(make_cell(tiled, tiled.presets().front(), given, {&on}));
     }
 
-    bool sample(const Enough& enough, std::uint64_t seed = 1) {
+    bool sample(const StoppingCriterion& enough, std::uint64_t seed = 1) {
         std::vector<CellSampler*> group;
         for (const auto& cell : cells_)
             group.push_back(&samplers_.emplace_back(cell, scene_, range_, references_));
@@ -125,14 +125,14 @@ TEST_F(SamplingRounds, TakeTurnsInADrawnOrder) {
 TEST_F(SamplingRounds, AreTenAtLeastAndAsManyAsTheIntervalNeeds) {
     sample({.noise = 1.0, .seconds = 1e6});
     for (const auto& outcome : outcomes_) {
-        EXPECT_GE(outcome.sampler->measurement().round_count(), Enough::least);
+        EXPECT_GE(outcome.sampler->measurement().round_count(), StoppingCriterion::least);
         EXPECT_TRUE(outcome.converged);
     }
     samplers_.clear();
     outcomes_.clear();
     sample({.noise = 1e-9, .seconds = 1e-3});
     for (const auto& outcome : outcomes_) {
-        EXPECT_EQ(outcome.sampler->measurement().round_count(), Enough::least);
+        EXPECT_EQ(outcome.sampler->measurement().round_count(), StoppingCriterion::least);
         EXPECT_FALSE(outcome.converged);
     }
 }

@@ -18,7 +18,7 @@ using testing_support::shaken_box;
 using testing_support::tetrahedra_at;
 
 using Order = std::vector<std::uint32_t>;
-using Places = std::vector<Eigen::Vector3d>;
+using DisplacementTracker = std::vector<Eigen::Vector3d>;
 
 constexpr Builder builders[] = {Builder::morton, Builder::sah, Builder::breadth, Builder::hilbert,
                                 Builder::median};
@@ -30,8 +30,8 @@ Order counted(std::size_t count) {
 }
 
 /// The cells of a cube, x fastest.
-Places grid(int side) {
-    Places places;
+DisplacementTracker grid(int side) {
+    DisplacementTracker places;
     for (int i = 0; i < side * side * side; ++i)
         places.emplace_back(10.0 * (i % side), 10.0 * (i / side % side), 10.0 * (i / side / side));
     return places;
@@ -82,7 +82,7 @@ std::vector<Mesh> hard_meshes() {
             fan,
             point,
             tetrahedra_at({{0, 0, 0}}),
-            tetrahedra_at(Places(100, {1, 1, 1})), // all in one place
+            tetrahedra_at(DisplacementTracker(100, {1, 1, 1})), // all in one place
             tetrahedra_at({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, 0),
             tetrahedra_at({{0, 0, 0}, {1e-310, 0, 0}}, 1e-310),
             tetrahedra_at({{0, 0, 0}, {1e300, 0, 0}, {0, -1e300, 0}})};
@@ -124,14 +124,14 @@ TEST(Orders, DifferFromEachOther) {
 }
 
 TEST(Orders, TiesKeepInputOrder) {
-    const auto mesh = tetrahedra_at(Places(3000, {5, 5, 5}));
+    const auto mesh = tetrahedra_at(DisplacementTracker(3000, {5, 5, 5}));
     for (const auto builder : builders)
         EXPECT_EQ(ordered(mesh, builder).ids, counted(3000)) << static_cast<int>(builder);
 }
 
 TEST(Orders, HaveAPlaceForWhatIsNoNumber) {
     const double none = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(morton_order(Places{{5, 0, 0}, {none, 0, 0}, {0, 0, 0}}), (Order{1, 2, 0}));
+    EXPECT_EQ(morton_order(DisplacementTracker{{5, 0, 0}, {none, 0, 0}, {0, 0, 0}}), (Order{1, 2, 0}));
     const AxisOrders axes({{none, 1, 0}, {1, none, 0}, {-1, 2, 0}}); // here for zero
     EXPECT_EQ(axes.along(0), (Order{2, 0, 1}));
     EXPECT_EQ(axes.along(1), (Order{1, 0, 2}));
@@ -230,7 +230,7 @@ TEST(Breadth, PartsFollowOneAnother) {
 }
 
 TEST(Median, HalvesAlongTheLongestAxis) {
-    Places places; // 64 along y, twice as close along x
+    DisplacementTracker places; // 64 along y, twice as close along x
     for (int i = 0; i < 64; ++i) places.emplace_back(10.0 * (i % 4), 20.0 * (i / 4), 0);
     const auto mesh = shuffled(tetrahedra_at(places), 13);
     const auto at = centroids(mesh);
@@ -250,7 +250,7 @@ TEST(Median, HalvesAlongTheLongestAxis) {
 
 TEST(Median, LeavesRunsWhole) {
     const auto axis_of = [](std::size_t count) {
-        Places places;
+        DisplacementTracker places;
         for (std::size_t i = 0; i < count; ++i) places.emplace_back(2.0 * static_cast<double>(i), 0, 0);
         return tetrahedra_at(places);
     };
@@ -258,7 +258,7 @@ TEST(Median, LeavesRunsWhole) {
         EXPECT_EQ(median_order(axis_of(count)), counted(count)) << count; // any cut of a line leaves the line
     }
     // Three rows of 32, mixed: no cut parts one. At 48 a cut would, and the next one lie across two of them.
-    Places rows;
+    DisplacementTracker rows;
     for (int i = 0; i < 96; ++i) rows.emplace_back(i % 3 == 0 ? 0 : 1500 + 100 * (i % 3), 50 * (i / 3), 0);
     const auto order = median_order(tetrahedra_at(rows));
     for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i] % 3, i / 32) << i;
@@ -273,7 +273,7 @@ TEST(Median, CutsAtMultiplesOfRuns) {
     EXPECT_EQ(run_of(1025), 1024u);
     EXPECT_EQ(run_of(32769), 32768u);
     // Two heaps, the left of 40 of 100: the cut nearest to the middle is at 64, and takes 24 of the right.
-    Places heaps;
+    DisplacementTracker heaps;
     for (int i = 0; i < 100; ++i) heaps.emplace_back(i < 40 ? 0 : 1000, i % 10, i / 10);
     const auto order = median_order(tetrahedra_at(heaps));
     EXPECT_TRUE(std::all_of(order.begin(), order.begin() + 32, [](auto t) { return t < 40; }));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Instead of embree_steps.cpp and what it needs, where CMake has found no Embree.
-#include "algorithms/baselines/embree/embree_steps.h"
+// Instead of embree_stages.cpp and what it needs, where CMake has found no Embree.
+#include "algorithms/baselines/embree/embree_stages.h"
 
 #include <stdexcept>
 
@@ -12,6 +12,8 @@ std::string_view embree_absence() {
            "configure and build again";
 }
 
-Steps embree_steps(const Ground&) { throw std::logic_error("embree_steps() of a program without Embree"); }
+AlgorithmStages embree_stages(const BuildContext&) {
+    throw std::logic_error("embree_steps() of a program without Embree");
+}
 
 } // namespace tandem

@@ -2,7 +2,7 @@
 #include "algorithms/baselines/embree/embree.h"
 
 #include "algorithms/cost.h"
-#include "algorithms/baselines/embree/embree_steps.h"
+#include "algorithms/baselines/embree/embree_stages.h"
 #include "algorithms/pipeline.h"
 #include "base/error.h"
 
@@ -61,7 +61,7 @@ private:
         return costs;
     }
 
-    Steps do_build(const Ground& ground) const override { return embree_steps(ground); }
+    AlgorithmStages do_build(const BuildContext& ground) const override { return embree_stages(ground); }
 };
 
 } // namespace

@@ -45,7 +45,7 @@ std::uint32_t concurrency_of(const Settings& settings) {
 } // namespace
 
 // Leaves of tiles have all of k = 6 with either choice of slabs; this one has the host's fastest kernels.
-EmbreeTrees::EmbreeTrees(const Ground& ground)
+EmbreeTrees::EmbreeTrees(const BuildContext& ground)
     : device_(ground.device),
       tiles_(ground.bodies, Slabs::three, ground.shape.group_size, 1),
       embree_(rtcNewDevice(nullptr)),

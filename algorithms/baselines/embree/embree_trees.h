@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/hierarchy/tile_trees.h"
-#include "algorithms/steps.h"
+#include "algorithms/stages.h"
 
 #include <embree3/rtcore.h>
 #include <limits>
@@ -28,7 +28,7 @@ public:
     };
 
     /// Throws DeviceError when Embree does not start.
-    explicit EmbreeTrees(const Ground& ground);
+    explicit EmbreeTrees(const BuildContext& ground);
 
     const Bodies& bodies() const { return tiles_.bodies(); }
     /// The body's tree; null when no tetrahedron of it takes part.

@@ -2,7 +2,7 @@
 #include "algorithms/baselines/embree/embree_walker.h"
 
 #include "algorithms/answer/digest.h"
-#include "algorithms/baselines/embree/embree_steps.h"
+#include "algorithms/baselines/embree/embree_stages.h"
 #include "algorithms/baselines/embree/native_kernel.h"
 
 #include <algorithm>
@@ -112,18 +112,18 @@ void EmbreeWalker::hand_over(void* meeting, RTCCollision* collisions, unsigned c
     if (self.walker.build_.counting) add(self.status, status_leaf_tests, count);
 }
 
-EmbreeWalker::EmbreeWalker(EmbreeTrees& trees, const Ground& ground)
+EmbreeWalker::EmbreeWalker(EmbreeTrees& trees, const BuildContext& ground)
     : trees_(trees),
       leaf_test_(ground.settings[parameters::rounding] == Rounding::published ? hand_over<true>
                                                                               : hand_over<false>),
       kernel_(compile_native(ground.device, collide_entry)),
       self_(ground.device.adopt(this, sizeof(*this), "Embree's walk")) {}
 
-void EmbreeWalker::run(const std::uint32_t* body_pairs, std::uint32_t pair_room, std::uint32_t* found,
+void EmbreeWalker::run(const std::uint32_t* body_pairs, std::uint32_t pair_capacity, std::uint32_t* found,
                        std::uint32_t capacity, std::uint32_t* status, const EmbreeWalker* walker) {
     const auto& self = *walker;
     auto& trees = self.trees_;
-    const auto count = std::min<std::uint64_t>(counter(status, STATUS_BODY_PAIRS), pair_room);
+    const auto count = std::min<std::uint64_t>(counter(status, STATUS_BODY_PAIRS), pair_capacity);
     const auto first = self.build_.windowed ? status[STATUS_WINDOW_FIRST] : 0;
     const auto end =
         self.build_.windowed ? status[STATUS_WINDOW_END] : std::numeric_limits<std::uint32_t>::max();
@@ -145,9 +145,12 @@ void EmbreeWalker::run(const std::uint32_t* body_pairs, std::uint32_t pair_room,
 void EmbreeWalker::do_launch(const WalkTask& task) {
     auto& device = trees_.bodies().device();
     const StageScope scope(device, Stage::traverse);
-    const std::array<Argument, 6> arguments{
-        task.body_pairs,      task.pair_room, task.answer.pairs.buffer(), task.answer.pairs.capacity(),
-        task.status.buffer(), self_};
+    const std::array<Argument, 6> arguments{task.body_pairs,
+                                            task.pair_capacity,
+                                            task.answer.pairs.buffer(),
+                                            task.answer.pairs.capacity(),
+                                            task.status.buffer(),
+                                            self_};
     device.launch(kernel_, {1, 1}, arguments);
 }
 

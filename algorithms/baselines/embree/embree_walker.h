@@ -9,10 +9,10 @@ namespace tandem {
 class EmbreeWalker final : public Walker {
 public:
     /// `trees` must outlive this.
-    EmbreeWalker(EmbreeTrees& trees, const Ground& ground);
+    EmbreeWalker(EmbreeTrees& trees, const BuildContext& ground);
 
-    /// Kernel collide_embree, of the body pairs in a buffer with `pair_room` rows.
-    static void run(const std::uint32_t* body_pairs, std::uint32_t pair_room, std::uint32_t* found,
+    /// Kernel collide_embree, of the body pairs in a buffer with `pair_capacity` rows.
+    static void run(const std::uint32_t* body_pairs, std::uint32_t pair_capacity, std::uint32_t* found,
                     std::uint32_t capacity, std::uint32_t* status, const EmbreeWalker* walker);
 
 private:

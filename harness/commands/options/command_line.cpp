@@ -5,7 +5,7 @@
 #include "harness/commands/options/contradictions.h"
 #include "harness/commands/options/unknown_words.h"
 #include "harness/record/environment.h"
-#include "harness/sampling/ranks/launched_run.h"
+#include "harness/sampling/ranks/run_on_ranks.h"
 #include "harness/commands/standard_streams.h"
 #include "base/error.h"
 
@@ -90,7 +90,7 @@ Action read_command_line(int argc, const char* const* argv) {
     refuse_contradictions(*given->first);
     return [app, act = given->second] {
         const auto& name = app->get_subcommands().front()->get_name();
-        if (name != "run") tell_others_wait(name);
+        if (name != "run") report_idle_ranks(name);
         return act();
     };
 }

@@ -19,7 +19,7 @@ using Words = std::vector<std::string>;
 
 std::vector<const Traversal*> every_algorithm() {
     std::vector<const Traversal*> all(algorithms().begin(), algorithms().end());
-    all.insert(all.end(), peers().begin(), peers().end());
+    all.insert(all.end(), baselines().begin(), baselines().end());
     return all;
 }
 

@@ -31,7 +31,7 @@ SettingTexts declared(const Traversal& traversal, const SettingTexts& given) {
 
 bool is_free(const Parameter& parameter, const SettingTexts& given) {
     return !parameter.alternatives().empty() && !given.contains(std::string(parameter.name))
-           && !given.contains(std::string(parameter.said_by));
+           && !given.contains(std::string(parameter.alternative_setting));
 }
 
 /// Every combination of the alternatives of the settings that nobody gave; the preset's own values too.

@@ -2,7 +2,7 @@
 #include "harness/plans/choosing/choice_cache.h"
 
 #include "algorithms/sources.h"
-#include "base/own_folder.h"
+#include "base/private_folder.h"
 #include "harness/record/environment.h"
 #include "base/digest.h"
 #include "base/error.h"

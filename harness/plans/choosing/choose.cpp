@@ -95,17 +95,17 @@ std::string lead(const Choice& choice) {
 void say(const Cell& cell, double limit, const std::filesystem::path& file) {
     const auto& choice = *cell.chosen;
     if (choice.from_cache)
-        tell("auto: {}, as {} says: {} on {}; --choose-afresh measures again\n", describe(cell),
-             file.string(), lead(choice), choice.scene);
+        print_message("auto: {}, as {} says: {} on {}; --choose-afresh measures again\n", describe(cell),
+                      file.string(), lead(choice), choice.scene);
     else
-        tell("auto: {}: {} on frames {}:{}, in {:.1f} s of replays (at most {:g}) and {:.1f} s of "
-             "preparing\n",
-             describe(cell), lead(choice), choice.first, choice.last, choice.seconds, limit,
-             choice.preparing);
+        print_message("auto: {}: {} on frames {}:{}, in {:.1f} s of replays (at most {:g}) and {:.1f} s of "
+                      "preparing\n",
+                      describe(cell), lead(choice), choice.first, choice.last, choice.seconds, limit,
+                      choice.preparing);
 }
 
 void warn(const std::string& line) {
-    if (!line.empty()) tell("tandem: {}\n", line);
+    if (!line.empty()) print_message("tandem: {}\n", line);
 }
 
 /// Candidate pairs a frame, of the first candidate that works: the same for all of them.

@@ -179,7 +179,7 @@ double share_stage_ms(const Measurement& m, std::size_t device, Stage stage) {
     });
 }
 
-std::uint64_t mean_over_frames(const Measurement& m, std::size_t device, std::uint64_t SharedWork::*member) {
+std::uint64_t mean_over_frames(const Measurement& m, std::size_t device, std::uint64_t DeviceWork::*member) {
     std::uint64_t sum = 0;
     for (const auto& frame : m.shared) sum += frame[device].*member;
     return sum / std::max<std::size_t>(1, m.shared.size());
@@ -203,9 +203,9 @@ std::string shares_table(const Row& row, const std::string& label) {
     for (std::size_t i = 0; i < m.shared.front().size(); ++i) {
         devices.push_back(row.cell->team != nullptr ? fmt::format("rank {}, {}", i, infos[i].id)
                                                     : infos[i].id);
-        columns[0].texts.push_back(short_count(mean_over_frames(m, i, &SharedWork::bodies)));
-        columns[1].texts.push_back(short_count(mean_over_frames(m, i, &SharedWork::body_pairs)));
-        columns[2].texts.push_back(short_count(mean_over_frames(m, i, &SharedWork::pairs)));
+        columns[0].texts.push_back(short_count(mean_over_frames(m, i, &DeviceWork::bodies)));
+        columns[1].texts.push_back(short_count(mean_over_frames(m, i, &DeviceWork::body_pairs)));
+        columns[2].texts.push_back(short_count(mean_over_frames(m, i, &DeviceWork::pairs)));
         columns[3].texts.push_back(milliseconds(share_ms(m, i)));
         for (std::size_t stage = 0; stage < stage_names.size(); ++stage)
             columns[4 + stage].texts.push_back(milliseconds(share_stage_ms(m, i, static_cast<Stage>(stage))));

@@ -11,11 +11,11 @@
 
 namespace tandem {
 
-PlaceOnMachine place_on_machine(Ranks& ranks) {
+LocalRank local_rank(Ranks& ranks) {
     const auto name = this_machine();
     const auto all = ranks.gather_to_all(std::as_bytes(std::span(name)));
     const auto& own = all[static_cast<std::size_t>(ranks.rank())];
-    PlaceOnMachine place;
+    LocalRank place;
     for (std::size_t rank = 0; rank < all.size(); ++rank) {
         if (all[rank] != own) continue;
         ++place.count;
@@ -24,7 +24,7 @@ PlaceOnMachine place_on_machine(Ranks& ranks) {
     return place;
 }
 
-std::string device_of_rank(const std::string& names, const PlaceOnMachine& place) {
+std::string device_of_rank(const std::string& names, const LocalRank& place) {
     const auto count = place.count;
     const auto parts = parts_of(names);
     if (parts.size() > count)

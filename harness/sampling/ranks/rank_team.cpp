@@ -17,7 +17,7 @@ namespace tandem {
 namespace {
 
 /// A processor that ranks share is divided among them, unless the launcher has bound each to a part.
-std::int64_t threads_of_a_rank(const PlaceOnMachine& place) {
+std::int64_t threads_of_a_rank(const LocalRank& place) {
     const auto usable = static_cast<std::int64_t>(std::thread::hardware_concurrency());
     const bool is_bound = usable < sysconf(_SC_NPROCESSORS_ONLN);
     return std::max<std::int64_t>(1, is_bound ? usable : usable / static_cast<std::int64_t>(place.count));

@@ -19,7 +19,7 @@ class Session;
 class RankTeam {
 public:
     /// `ranks` must outlive this.
-    explicit RankTeam(Ranks& ranks) : ranks_(ranks), place_(place_on_machine(ranks)) {}
+    explicit RankTeam(Ranks& ranks) : ranks_(ranks), place_(local_rank(ranks)) {}
     RankTeam(const RankTeam&) = delete;
     RankTeam& operator=(const RankTeam&) = delete;
 
@@ -50,7 +50,7 @@ public:
 
 private:
     Ranks& ranks_;
-    PlaceOnMachine place_;
+    LocalRank place_;
     std::vector<DeviceInfo> devices_;
 };
 

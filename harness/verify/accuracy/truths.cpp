@@ -15,7 +15,7 @@ namespace tandem {
 namespace {
 
 /// Refuses early what there will be no room for if the frames to come are like the first.
-void check_room(const FrameTruth& first, std::size_t frames) {
+void check_capacity(const FrameTruth& first, std::size_t frames) {
     const auto bytes = (first.touching.size() + first.overlapping.size()) * sizeof(Pair) * (frames - 1);
     const auto memory = free_memory();
     constexpr double gib = 1 << 30;
@@ -42,7 +42,7 @@ const FrameTruth& Truths::truth_of(const Place& place, const Report& report) {
     const auto& [positions, index] = place;
     const auto frame = range_.frame(index, positions.origin);
     auto truth = frame_truth(scene_, *frame, positions, report, free_memory());
-    if (index == 0) check_room(truth, range_.size());
+    if (index == 0) check_capacity(truth, range_.size());
     return truths_.emplace(place, std::move(truth)).first->second;
 }
 

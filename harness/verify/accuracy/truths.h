@@ -4,7 +4,7 @@
 #include "algorithms/traversal.h"
 #include "harness/verify/accuracy/answer_errors.h"
 #include "harness/plans/frames.h"
-#include "harness/verify/kept_values.h"
+#include "harness/verify/verification_cache.h"
 
 #include <map>
 #include <tuple>
@@ -61,7 +61,7 @@ private:
     const FrameRange& range_;
     TruthAmount amount_;
     std::size_t most_contacts_;
-    KeptValues kept_;
+    VerificationCache kept_;
     std::map<Place, FrameTruth> truths_;
     std::map<Place, ContactTruths> contact_truths_;
     std::map<std::pair<Precision, Origin>, Drift> drifts_; ///< of the first frame

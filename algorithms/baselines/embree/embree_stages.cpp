@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/baselines/embree/embree_stages.h"
+
+#include "algorithms/baselines/embree/embree_walker.h"
+
+namespace tandem {
+
+std::string_view embree_absence() { return {}; }
+
+AlgorithmStages embree_stages(const BuildContext& ground) {
+    auto trees = std::make_unique<EmbreeTrees>(ground);
+    auto walker = std::make_unique<EmbreeWalker>(*trees, ground);
+    return {std::move(trees), std::move(walker)};
+}
+
+} // namespace tandem

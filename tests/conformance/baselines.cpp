@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+// Peers: found by name and in no list of all algorithms, with the answer of the project's own or a refusal.
+#include "backends/host/host_device.h"
+#include "scenes/builtin.h"
+#include "base/error.h"
+#include "scenes/hard/hard.h"
+#include "tests/support/cells.h"
+#include "tests/support/flawed.h"
+#include "tests/support/sanitized.h"
+#include "tests/support/scenes.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+using namespace testing_support;
+using ::testing::HasSubstr;
+
+const Traversal& embree() { return algorithm("embree"); }
+
+Settings of_first_preset(const Traversal& traversal, const SettingTexts& given) {
+    return resolve(traversal.parameters(), traversal.presets().front().values, given, traversal.name());
+}
+
+/// Why a device does not take these settings; "no error" when it does.
+std::string refusal(const DeviceInfo& info, const SettingTexts& given) {
+    try {
+        embree().fitted(of_first_preset(embree(), given), info);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+/// Whether the program was built without the library.
+bool is_absent() {
+    return refusal(device("host").info(), {}).find("built without Embree") != std::string::npos;
+}
+
+TEST(Peers, AreFoundByNameAndInNoList) {
+    ASSERT_FALSE(baselines().empty());
+    for (const auto* baseline : baselines()) {
+        EXPECT_EQ(&algorithm(baseline->name()), baseline);
+        for (const auto* traversal : algorithms()) EXPECT_NE(traversal, baseline);
+        EXPECT_THROW(add_algorithm(*baseline), InputError);
+    }
+}
+
+TEST(Peers, RefuseWhatTheyDoNotDo) {
+    const auto& host = device("host").info();
+    if (is_absent()) {
+        EXPECT_THAT(refusal(host, {}), HasSubstr("install Debian's libembree-dev"));
+        EXPECT_THAT(std::string(embree().summary()), HasSubstr("install Debian's libembree-dev"));
+        return;
+    }
+    auto other = host;
+    other.id = "cuda:9";
+    EXPECT_EQ(refusal(host, {}), "no error");
+    EXPECT_THAT(refusal(other, {}), HasSubstr("device host only, not on cuda:9"));
+    EXPECT_THAT(refusal(host, {{"k", "18"}}), HasSubstr("choose k=6"));
+    EXPECT_THAT(refusal(host, {{"precision", "double"}}), HasSubstr("choose float"));
+    const std::array both{&device("host"), &device("opencl:0")};
+    EXPECT_THROW(embree().check(both, of_first_preset(embree(), {})), InputError);
+}
+
+class Embree : public testing::Test {
+protected:
+    void SetUp() override {
+        if (is_absent()) GTEST_SKIP() << "built without Embree";
+        if (sanitized()) GTEST_SKIP() << "no kernels of k = 6 here";
+    }
+
+    std::unique_ptr<Session> session(const Traversal& traversal, const Scene& scene, SettingTexts given) {
+        given["k"] = "6";
+        for (const std::string capacity : {"pair_capacity", "contact_capacity"})
+            given.emplace(capacity, "65536"); // clearing more would take most of the time
+        const std::array devices{on_.get()};
+        return traversal.prepare(devices, scene, of_first_preset(traversal, given));
+    }
+
+    /// Pairs, digest and contacts of every frame, between the same body pairs; returns how many pairs.
+    std::uint64_t expect_same(const Scene& scene, std::span<const Frame> frames, const SettingTexts& given) {
+        const auto own = session(algorithm("chunked"), scene, given);
+        const auto baseline = session(embree(), scene, given);
+        std::uint64_t pairs = 0;
+        for (const auto& frame : frames) {
+            const auto expected = own->run(frame);
+            const auto result = baseline->run(frame);
+            EXPECT_EQ(result.count, expected.count);
+            EXPECT_EQ(result.body_pairs, expected.body_pairs);
+            EXPECT_EQ(result.digest(), expected.digest());
+            EXPECT_EQ(result.contact_digest(), expected.contact_digest());
+            if (result.digest() != expected.digest()) {
+                EXPECT_EQ(result.download(), expected.download());
+            }
+            pairs += result.count;
+        }
+        return pairs;
+    }
+
+    std::uint64_t expect_same(const Scene& scene, const SettingTexts& given) {
+        std::vector<Frame> frames;
+        for (std::size_t i = 0; i < std::min<std::size_t>(scene.frame_count, 3); ++i)
+            frames.push_back(scene.frame(i));
+        return expect_same(scene, frames, given);
+    }
+
+    std::unique_ptr<Device> on_ = host::make_device();
+};
+
+TEST_F(Embree, FindsTheSamePairsWithEverySetting) {
+    const auto of = [](const std::string& name, const std::vector<std::string>& values) {
+        Axis axis;
+        for (const auto& value : values) axis.push_back({{name, value}});
+        return axis;
+    };
+    auto rounding = of("rounding", {"safe", "nearest", "published"});
+    rounding.push_back({{"rounding", "safe"}, {"placement", "exact"}});
+    for (const auto& given :
+         pairwise({rounding, of("broad", {"sphere", "tight", "device"}), of("threads", {"1", "2", "5"}),
+                   of("builder", {"morton", "sah", "breadth", "hilbert", "median"})})) {
+        SCOPED_TRACE(text(given));
+        EXPECT_GT(expect_same(crowd(17, 12, 0.9), given), 1000u);
+    }
+}
+
+TEST_F(Embree, FindsTheSamePairsInScenes) {
+    for (const std::string name : {"pile:bodies=12,frames=2,mesh=jack,density=0.2", "pile:bodies=9,frames=2"})
+        EXPECT_GT(expect_same(make_scene(name), {{"contact_rule", "none"}}), 1000u) << name;
+    const auto plates = make_scene("plates");
+    const std::array frames{plates.frame(60), plates.frame(0), plates.frame(61)};
+    EXPECT_GT(expect_same(plates, frames, {{"contact_rule", "none"}}), 100000u);
+}
+
+TEST_F(Embree, FindsTheSamePairsInHardCases) {
+    std::uint64_t pairs = 0;
+    for (const auto& family : hard_families()) {
+        if (family.name == "not-finite") continue;
+        SCOPED_TRACE(family.name);
+        for (const std::string rounding : {"safe", "published"})
+            pairs += expect_same(make_scene(fmt::format("hard:{}", family.name)),
+                                 {{"contact_rule", "none"}, {"rounding", rounding}});
+    }
+    EXPECT_GT(pairs, 1000u);
+}
+
+/// Where Embree's own arithmetic ends: numbers that it takes for zero, and boxes that it leaves out.
+TEST_F(Embree, FindsTheSamePairsOfExtremeSizes) {
+    for (const double size : {1e-44, 1e-41, 1e-38, 1e-20, 1e17, 1e18, 2e18, 1e19, 1e30, 1e35}) {
+        std::vector<Eigen::Vector3d> places;
+        for (int x = -4; x < 4; ++x)
+            for (int y = -4; y < 4; ++y) places.emplace_back(x * size, y * size, size);
+        Scene scene;
+        scene.name = scene.key = "sizes";
+        scene.meshes = {tetrahedra_at(places, size), tetrahedra_at({places.front()}, size)};
+        scene.bodies = {{.mesh = 0}, {.mesh = 0}, {.mesh = 1}};
+        Frame frame;
+        frame.poses.resize(3);
+        frame.deformed.resize(3);
+        for (const double shift : {-1.0, 0.0, 1.0, 2.0, 8.0}) {
+            frame.poses[1].translation = {shift * size, 0, size};
+            frame.poses[2].translation = {shift * size, size, size};
+            for (const std::string threads : {"1", "3"})
+                EXPECT_GT(
+                    expect_same(scene, std::array{frame}, {{"contact_rule", "none"}, {"threads", threads}}),
+                    0u)
+                    << size << " " << shift;
+        }
+    }
+}
+
+/// Others in the next frame, all of a body, and none again; trees are built anew, and then refitted.
+TEST_F(Embree, LeavesOutWhatFramesSkip) {
+    const auto scene = boxes_scene(4, 4);
+    const auto every = [&](std::uint32_t n, std::uint32_t first) {
+        std::vector<std::uint32_t> list;
+        for (auto t = first; t < scene.meshes[0].tetrahedra.size(); t += n) list.push_back(t);
+        return list;
+    };
+    const std::vector<std::vector<std::vector<std::uint32_t>>> skipped{
+        {},
+        {every(7, 0), every(3, 0), every(2, 0)},
+        {every(7, 0), every(3, 0), every(2, 0)},
+        {{}, every(5, 3), every(1, 0)},
+        {{}, every(1, 0), {}},
+        {}};
+    std::vector<Frame> frames;
+    for (std::size_t i = 0; i < skipped.size(); ++i) {
+        frames.push_back(scene.frame(i % scene.frame_count));
+        frames.back().skipped = skipped[i];
+    }
+    for (const std::string broad : {"tight", "device"})
+        EXPECT_GT(expect_same(scene, frames, {{"contact_rule", "none"}, {"broad", broad}}), 1000u);
+}
+
+TEST_F(Embree, GrowsAndSplitsAndSums) {
+    const auto scene = crowd(31, 12, 0.9);
+    const auto frame = scene.frame(0);
+    const auto expected = session(algorithm("chunked"), scene, {})->run(frame).digest();
+    const auto grown = session(
+        embree(), scene, {{"pair_capacity", "1"}, {"contact_capacity", "1"}, {"body_pair_capacity", "1"}});
+    const auto result = grown->run(frame);
+    EXPECT_GT(result.retries, 0u);
+    EXPECT_EQ(result.digest(), expected);
+    EXPECT_EQ(session(embree(), scene, {{"output", "count"}})->run(frame).count, expected.count);
+    EXPECT_EQ(session(embree(), scene, {{"output", "digest"}})->run(frame).digest(), expected);
+    grown->count_work(true);
+    EXPECT_GE(grown->run(frame).work.at("leaf_tests"), expected.count);
+}
+
+/// One body pair whose pairs do not fit is walked by windows of items.
+TEST_F(Embree, SplitsABodyPairByItems) {
+    auto scene = boxes_scene(6, 2);
+    const auto frame = scene.frame(0);
+    const BodyPair only{0, 1};
+    const auto expected = session(algorithm("chunked"), scene, {})->run(frame, {&only, 1}).digest();
+    const SettingTexts small{{"contact_rule", "none"}, {"pair_capacity", "1"}, {"body_pair_capacity", "1"}};
+    std::size_t least = 0;
+    {
+        const auto alone = session(embree(), scene, small);
+        least = on_->bytes_allocated();
+    }
+    on_->set_memory_limit(least + 4 * expected.count); // half of what pairs take
+    const auto result = session(embree(), scene, small)->run(frame, {&only, 1});
+    EXPECT_GT(result.batches, 1u);
+    EXPECT_EQ(result.digest(), expected);
+}
+
+/// What Embree does is in the trace: as launches, under the stages that the project's own would have.
+TEST_F(Embree, IsBookedAsRefitAndWalk) {
+    const auto scene = crowd(41, 12, 0.9);
+    const auto baseline = session(embree(), scene, {{"contact_rule", "none"}});
+    on_->set_clocks(Clocks::on);
+    baseline->run(scene.frame(0));
+    std::map<std::string, Stage> stages;
+    for (const auto& event : on_->finish().events)
+        if (event.command == Command::launch && event.device_ns > 0) stages[event.label] = event.stage;
+    on_->set_clocks(Clocks::off);
+    EXPECT_EQ(stages.at("refit_embree"), Stage::refit);
+    EXPECT_EQ(stages.at("collide_embree"), Stage::traverse);
+}
+
+} // namespace
+} // namespace tandem

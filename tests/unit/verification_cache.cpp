@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "harness/verify/verification_cache.h"
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+
+namespace tandem {
+namespace {
+
+class Kept : public testing::Test {
+protected:
+    ~Kept() override { std::filesystem::remove_all(folder_); }
+
+    /// What another object, as in another process, finds; -1 for nothing.
+    int found(const std::string& subject, const std::string& question) const {
+        int value = -1;
+        const VerificationCache values(folder_, subject);
+        const bool taken =
+            values.take(question, [&](const nlohmann::json& json) { value = json.get<int>(); });
+        return taken ? value : -1;
+    }
+
+    std::filesystem::path folder_ = testing::TempDir() + "kept-" + std::to_string(getpid());
+};
+
+TEST_F(Kept, ValuesAreFoundByQuestionAndSubject) {
+    VerificationCache values(folder_, "a");
+    values.keep("one", 1);
+    values.keep("two", 2);
+    values.keep("one", 3); // the last
+    EXPECT_EQ(found("a", "one"), 3);
+    EXPECT_EQ(found("a", "two"), 2);
+    EXPECT_EQ(found("b", "one"), -1);
+    EXPECT_EQ(found("a", "three"), -1);
+}
+
+TEST_F(Kept, WhatIsNoValueIsNotThere) {
+    VerificationCache(folder_, "a").keep("one", "text");
+    EXPECT_EQ(found("a", "one"), -1);
+    std::filesystem::path file;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) file = entry.path();
+    std::ofstream(file, std::ios::app) << R"({"question":"torn","val)";
+    VerificationCache(folder_, "a").keep("two", 2);
+    EXPECT_EQ(found("a", "torn"), -1);
+    EXPECT_EQ(found("a", "two"), 2);
+}
+
+TEST_F(Kept, NothingFailsWhereNothingCanBeKept) {
+    VerificationCache nowhere;
+    nowhere.keep("one", 1);
+    VerificationCache("/dev/null/kept", "a").keep("one", 1);
+    EXPECT_FALSE(nowhere.take("two", [](const nlohmann::json&) {}));
+    EXPECT_EQ(found("a", "one"), -1);
+}
+
+} // namespace
+} // namespace tandem
