@@ -15,7 +15,7 @@ namespace {
 constexpr double growing_share = 0.2;
 
 /// Some of a frame's body pairs, or one of them and some items of its body a.
-struct Part {
+struct Batch {
     std::size_t first = 0, count = 0;
     std::uint32_t item_first = 0, item_end = 0; ///< of a windowed part; 0, 0: all items
 
@@ -24,7 +24,7 @@ struct Part {
 
 class BatchRun {
 public:
-    BatchRun(Pipeline& steps, const Frame* frame, std::optional<std::span<const BodyPair>> given);
+    BatchRun(Pipeline& pipeline, const Frame* frame, std::optional<std::span<const BodyPair>> given);
 
     FrameResult run(std::uint64_t batches);
     /// After it: whether all of its pairs and contacts would fit at once by now.
@@ -32,27 +32,27 @@ public:
 
 private:
     void search(const Frame* frame);
-    void split(const Part& part, std::uint64_t ways);
-    void split_items(const Part& part, std::uint64_t ways);
-    void run_part(const Part& part);
-    void walk(const Part& part);
+    void split(const Batch& batch, std::uint64_t ways);
+    void split_items(const Batch& batch, std::uint64_t ways);
+    void run_batch(const Batch& batch);
+    void walk(const Batch& batch);
     void finish_part();
     void make_contacts(HostPart& host, std::uint64_t pairs);
     void add_counts();
-    std::uint32_t items_of(const Part& part) const;
+    std::uint32_t items_of(const Batch& batch) const;
 
-    Pipeline& steps_;
+    Pipeline& pipeline_;
     std::vector<BodyPair> pairs_;
-    std::deque<Part> todo_;
+    std::deque<Batch> todo_;
     std::shared_ptr<AnswerBuffers> answer_;
     FrameResult result_;
     bool fits_ = false;
 };
 
-BatchRun::BatchRun(Pipeline& steps, const Frame* frame, std::optional<std::span<const BodyPair>> given)
-    : steps_(steps) {
+BatchRun::BatchRun(Pipeline& pipeline, const Frame* frame, std::optional<std::span<const BodyPair>> given)
+    : pipeline_(pipeline) {
     const auto least = [&](const auto& setting) {
-        return static_cast<std::uint64_t>(steps.settings[setting]);
+        return static_cast<std::uint64_t>(pipeline.settings[setting]);
     };
     result_.batches = 0;
     if (given)
@@ -60,83 +60,83 @@ BatchRun::BatchRun(Pipeline& steps, const Frame* frame, std::optional<std::span<
     else
         search(frame);
     // What the frame wants, as far as the walk that did not fit has told.
-    const auto pairs = std::max(steps.status.counter(STATUS_PAIRS), least(parameters::pair_capacity));
+    const auto pairs = std::max(pipeline.status.counter(STATUS_PAIRS), least(parameters::pair_capacity));
     const auto contacts =
-        std::max(steps.status.counter(STATUS_CONTACTS), least(parameters::contact_capacity));
-    answer_ = steps_.answers->take_what_fits(pairs, std::max(pairs, contacts));
+        std::max(pipeline.status.counter(STATUS_CONTACTS), least(parameters::contact_capacity));
+    answer_ = pipeline_.answers->take_what_fits(pairs, std::max(pairs, contacts));
 }
 
 /// All body pairs of the frame, wherever they are found.
 void BatchRun::search(const Frame* frame) {
-    if (steps_.body_pairs->searched()) {
-        steps_.status.begin(0);
-        steps_.body_pairs->launch(steps_.status);
-        steps_.status.read();
+    if (pipeline_.body_pairs->searched()) {
+        pipeline_.status.begin(0);
+        pipeline_.body_pairs->launch(pipeline_.status);
+        pipeline_.status.read();
     }
-    pairs_ = steps_.body_pairs->list(frame, steps_.status);
+    pairs_ = pipeline_.body_pairs->list(frame, pipeline_.status);
 }
 
-std::uint32_t BatchRun::items_of(const Part& part) const {
-    return steps_.bodies->row(pairs_[part.first].a).tetrahedron_count;
+std::uint32_t BatchRun::items_of(const Batch& batch) const {
+    return pipeline_.bodies->row(pairs_[batch.first].a).tetrahedron_count;
 }
 
 /// Puts `ways` parts in the place of one that did not fit; throws OutOfMemory when it cannot be split.
-void BatchRun::split(const Part& part, std::uint64_t ways) {
-    if (part.count <= 1) {
-        split_items(part, ways);
+void BatchRun::split(const Batch& batch, std::uint64_t ways) {
+    if (batch.count <= 1) {
+        split_items(batch, ways);
         return;
     }
-    ways = std::min<std::uint64_t>(ways, part.count);
+    ways = std::min<std::uint64_t>(ways, batch.count);
     for (auto i = ways; i-- > 0;) {
-        const auto first = part.count * i / ways;
-        const auto end = part.count * (i + 1) / ways;
-        todo_.push_front({part.first + first, end - first});
+        const auto first = batch.count * i / ways;
+        const auto end = batch.count * (i + 1) / ways;
+        todo_.push_front({batch.first + first, end - first});
     }
 }
 
-void BatchRun::split_items(const Part& part, std::uint64_t ways) {
-    const std::uint64_t first = part.windowed() ? part.item_first : 0;
-    const std::uint64_t count = (part.windowed() ? part.item_end : items_of(part)) - first;
+void BatchRun::split_items(const Batch& batch, std::uint64_t ways) {
+    const std::uint64_t first = batch.windowed() ? batch.item_first : 0;
+    const std::uint64_t count = (batch.windowed() ? batch.item_end : items_of(batch)) - first;
     if (count <= 1)
         throw OutOfMemory(fmt::format("{}: there is no memory left for the candidate pairs of a single "
                                       "tetrahedron; raise --memory, or take fewer bodies",
-                                      steps_.device.info().id));
+                                      pipeline_.device.info().id));
     ways = std::min(ways, count);
     for (auto i = ways; i-- > 0;)
-        todo_.push_front({part.first, 1, static_cast<std::uint32_t>(first + count * i / ways),
+        todo_.push_front({batch.first, 1, static_cast<std::uint32_t>(first + count * i / ways),
                           static_cast<std::uint32_t>(first + count * (i + 1) / ways)});
 }
 
-void BatchRun::walk(const Part& part) {
-    steps_.compile(part.windowed());
+void BatchRun::walk(const Batch& batch) {
+    pipeline_.compile(batch.windowed());
     for (bool again = true; again; result_.retries += again ? 1 : 0) {
-        steps_.body_pairs->begin_part(std::span(pairs_).subspan(part.first, part.count));
-        steps_.status.begin(part.count);
-        if (part.windowed()) steps_.status.set_window(part.item_first, part.item_end);
-        steps_.steps.walker->launch(steps_.task(*answer_));
-        steps_.status.read();
-        again = steps_.steps.walker->grow(steps_.status);
+        pipeline_.body_pairs->begin_part(std::span(pairs_).subspan(batch.first, batch.count));
+        pipeline_.status.begin(batch.count);
+        if (batch.windowed()) pipeline_.status.set_window(batch.item_first, batch.item_end);
+        pipeline_.stages.walker->launch(pipeline_.task(*answer_));
+        pipeline_.status.read();
+        again = pipeline_.stages.walker->grow(pipeline_.status);
     }
 }
 
 /// Adds what the status counts of a batch; contacts are added by those who bring them to the host, and body
 /// pairs are the frame's.
 void BatchRun::add_counts() {
-    auto one = steps_.counts();
+    auto one = pipeline_.counts();
     one.contacts = one.body_pairs = 0;
     result_.add(one, one.summed);
-    if (steps_.counting) steps_.steps.walker->report(steps_.status, result_.work);
+    if (pipeline_.counting) pipeline_.stages.walker->report(pipeline_.status, result_.work);
 }
 
 /// Ranges of pairs whose contacts fit into their buffer, one after the other.
 void BatchRun::make_contacts(HostPart& host, std::uint64_t pairs) {
-    auto& status = steps_.status;
+    auto& status = pipeline_.status;
     auto words = status.words();
     std::uint64_t step = pairs;
     for (std::uint64_t first = 0; first < pairs;) {
         const auto end = std::min(pairs, first + step);
         status.write(words);
-        steps_.contacts->launch(*answer_, first, end, status);
+        pipeline_.contacts->launch(*answer_, first, end, status);
         status.read();
         const auto made = status.counter(STATUS_CONTACTS);
         const auto room = answer_->contacts.capacity();
@@ -158,15 +158,15 @@ void BatchRun::make_contacts(HostPart& host, std::uint64_t pairs) {
 
 /// Moves a walked part's pairs and contacts to the host.
 void BatchRun::finish_part() {
-    if (steps_.output != Output::pairs) {
+    if (pipeline_.output != Output::pairs) {
         add_counts();
         return;
     }
-    const auto pairs = steps_.status.counter(STATUS_PAIRS);
-    auto host = std::make_shared<HostPart>(steps_.tools, *answer_, pairs);
+    const auto pairs = pipeline_.status.counter(STATUS_PAIRS);
+    auto host = std::make_shared<HostPart>(pipeline_.tools, *answer_, pairs);
     const auto contacts = result_.contacts;
     try {
-        if (steps_.makes_contacts()) make_contacts(*host, pairs);
+        if (pipeline_.makes_contacts()) make_contacts(*host, pairs);
     } catch (const OutOfMemory&) {
         result_.contacts = contacts;
         throw;
@@ -176,50 +176,50 @@ void BatchRun::finish_part() {
 }
 
 /// Walks a part and finishes it, or puts smaller parts, or the same with more room, in its place.
-void BatchRun::run_part(const Part& part) {
+void BatchRun::run_batch(const Batch& batch) {
     std::uint64_t ways = 2;
     try {
-        walk(part);
-        const auto pairs = steps_.status.counter(STATUS_PAIRS);
+        walk(batch);
+        const auto pairs = pipeline_.status.counter(STATUS_PAIRS);
         const std::uint64_t room = answer_->pairs.capacity();
-        if (steps_.output != Output::pairs || pairs <= room) {
+        if (pipeline_.output != Output::pairs || pairs <= room) {
             finish_part();
             return;
         }
         ++result_.retries;
-        if (pairs <= rows_within(steps_.device, answer_->pairs.row_bytes(), growing_share)) {
+        if (pairs <= rows_within(pipeline_.device, answer_->pairs.row_bytes(), growing_share)) {
             answer_->pairs.grow(pairs);
-            todo_.push_front(part);
+            todo_.push_front(batch);
             return;
         }
         ways = std::max<std::uint64_t>(2, (pairs + pairs / 4) / room + 1);
     } catch (const OutOfMemory&) {
         ++result_.retries;
     }
-    split(part, ways);
+    split(batch, ways);
 }
 
 FrameResult BatchRun::run(std::uint64_t batches) {
     result_.body_pairs = pairs_.size();
-    if (steps_.output == Output::digest) result_.summed.emplace();
+    if (pipeline_.output == Output::digest) result_.summed.emplace();
     if (!pairs_.empty()) split({0, pairs_.size()}, batches);
     while (!todo_.empty()) {
-        const auto part = todo_.front();
+        const auto batch = todo_.front();
         todo_.pop_front();
-        run_part(part);
+        run_batch(batch);
     }
-    steps_.compile(false);
+    pipeline_.compile(false);
     fits_ = result_.count <= answer_->pairs.capacity()
-            && (!steps_.makes_contacts() || result_.contacts <= answer_->contacts.capacity());
+            && (!pipeline_.makes_contacts() || result_.contacts <= answer_->contacts.capacity());
     result_.batches = std::max<std::uint64_t>(result_.batches, 1);
     return std::move(result_);
 }
 
 } // namespace
 
-FrameResult run_in_batches(Pipeline& steps, const Frame* frame,
+FrameResult run_in_batches(Pipeline& pipeline, const Frame* frame,
                            std::optional<std::span<const BodyPair>> given, std::uint64_t& batches) {
-    BatchRun run(steps, frame, given);
+    BatchRun run(pipeline, frame, given);
     auto result = run.run(batches);
     batches = run.fits() ? 1 : result.batches;
     return result;

@@ -11,7 +11,7 @@ namespace tandem {
 /// Pairs and contacts of a part that has ended move to the host's memory. Bodies and hierarchy are those of
 /// `frame` already; null: the frame is in the device's memory. Throws OutOfMemory when not even one item's
 /// pairs fit.
-FrameResult run_in_batches(Pipeline& steps, const Frame* frame,
+FrameResult run_in_batches(Pipeline& pipeline, const Frame* frame,
                            std::optional<std::span<const BodyPair>> given, std::uint64_t& batches);
 
 } // namespace tandem

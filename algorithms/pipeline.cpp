@@ -26,7 +26,7 @@ Status::Writes writes_of(const Settings& settings) {
 /// Bodies and an algorithm's own steps over them.
 struct Foundation {
     std::shared_ptr<Bodies> bodies;
-    AlgorithmStages steps;
+    AlgorithmStages stages;
 };
 
 Foundation build(const Traversal& traversal, Device& device, const Scene& scene, const Settings& settings,
@@ -36,7 +36,7 @@ Foundation build(const Traversal& traversal, Device& device, const Scene& scene,
                                               settings[parameters::builder],
                                               settings[parameters::pair_layout]),
                      {}};
-    built.steps = traversal.build({device, scene, settings, *built.bodies, shape});
+    built.stages = traversal.build({device, scene, settings, *built.bodies, shape});
     return built;
 }
 
@@ -52,7 +52,7 @@ Foundation build_within(const Traversal& traversal, Device& device, const Scene&
         std::size_t bytes = 0;
         try {
             const auto built = build(traversal, device, scene, settings, shape);
-            bytes = built.bodies->bytes() + built.steps.hierarchy->bytes();
+            bytes = built.bodies->bytes() + built.stages.hierarchy->bytes();
         } catch (const OutOfMemory&) {
             device.set_memory_limit(limit);
             throw;
@@ -101,10 +101,10 @@ Pipeline::Pipeline(const Traversal& traversal, Device& on, const Scene& scene, S
       answers(std::move(used)) {
     auto foundation = build_within(traversal, on, scene, settings, shape);
     bodies = std::move(foundation.bodies);
-    steps = std::move(foundation.steps);
+    stages = std::move(foundation.stages);
     settings.set(parameters::pair_layout(bodies->pair_layout()));
     body_pairs = std::make_unique<BodyPairs>(BuildContext{on, scene, settings, *bodies, shape},
-                                             *steps.hierarchy, writes_of(settings));
+                                             *stages.hierarchy, writes_of(settings));
     const bool contacting =
         output == Output::pairs && settings[parameters::contact_rule] != ContactRule::none;
     const auto launches =
@@ -128,7 +128,7 @@ void Pipeline::count(bool on) {
 void Pipeline::compile(bool windowed) {
     const WalkBuild wanted{output, bodies->pair_layout(), counting, windowed};
     if (built == wanted) return;
-    steps.walker->compile(wanted);
+    stages.walker->compile(wanted);
     built = wanted;
 }
 

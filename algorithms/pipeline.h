@@ -49,7 +49,7 @@ struct Pipeline {
     bool counting = false;
     std::optional<WalkBuild> built; ///< what the walk is compiled for
     std::shared_ptr<Bodies> bodies;
-    AlgorithmStages steps;
+    AlgorithmStages stages;
     std::unique_ptr<BodyPairs> body_pairs;
     Status status;
     std::unique_ptr<ContactStage> contacts; ///< none when there are to be none

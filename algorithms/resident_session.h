@@ -20,12 +20,12 @@ public:
     ResidentSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted,
                     std::shared_ptr<AnswerPool> answers = nullptr)
         : scene_(scene),
-          steps_(traversal, device, scene, std::move(fitted), std::move(answers)),
+          pipeline_(traversal, device, scene, std::move(fitted), std::move(answers)),
           devices_{&device} {}
-    const std::shared_ptr<AnswerPool>& answers() const { return steps_.answers; }
+    const std::shared_ptr<AnswerPool>& answers() const { return pipeline_.answers; }
     /// What the next frame is going to find, as far as anybody knows: with room for it it need not run twice.
     void expect(std::uint64_t pairs, double contacts_a_pair) {
-        steps_.answers->expect(pairs, contacts_a_pair);
+        pipeline_.answers->expect(pairs, contacts_a_pair);
     }
 
     // Where vertices come by another way than from the host's memory:
@@ -35,7 +35,7 @@ public:
     void receive(std::span<const std::uint32_t> bodies);
     /// Puts the other deformable bodies' vertices of the next frame that is run to the device, and waits.
     void upload_vertices(const Frame& frame);
-    const Bodies& bodies() const { return *steps_.bodies; }
+    const Bodies& bodies() const { return *pipeline_.bodies; }
 
     /// From now on finds the pairs of a share of each frame, and looks at nothing else of it. Body pairs that
     /// run() is given are of bodies that have a part in the share.
@@ -55,9 +55,9 @@ private:
     }
     FrameResult do_run_device_input(const DeviceFrame& frame,
                                     std::optional<std::span<const BodyPair>> body_pairs) override;
-    void do_count_work(bool on) override { steps_.count(on); }
+    void do_count_work(bool on) override { pipeline_.count(on); }
     std::span<Device* const> do_devices() const override { return devices_; }
-    const Settings& do_settings() const override { return steps_.settings; }
+    const Settings& do_settings() const override { return pipeline_.settings; }
 
     void refresh(const Given& given);
     void find_body_pairs(const Given& given);
@@ -72,7 +72,7 @@ private:
     FrameResult run_given(const Given& given);
 
     const Scene& scene_;
-    Pipeline steps_;
+    Pipeline pipeline_;
     std::array<Device*, 1> devices_;
     std::unique_ptr<PackStage> pack_; ///< from the first frame in the device's memory on
     std::uint64_t batches_ = 1;       ///< to begin a frame with

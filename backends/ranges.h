@@ -14,12 +14,12 @@ void push(const char* name);
 void pop();
 
 /// A range as long as it lives.
-class Range {
+class ProfilerRange {
 public:
-    explicit Range(const char* name) { push(name); }
-    ~Range() { pop(); }
-    Range(const Range&) = delete;
-    Range& operator=(const Range&) = delete;
+    explicit ProfilerRange(const char* name) { push(name); }
+    ~ProfilerRange() { pop(); }
+    ProfilerRange(const ProfilerRange&) = delete;
+    ProfilerRange& operator=(const ProfilerRange&) = delete;
 };
 
 } // namespace tandem::ranges

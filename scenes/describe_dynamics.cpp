@@ -13,20 +13,20 @@ namespace tandem::description {
 
 namespace {
 
-Materials read_materials(const Json& json, const Place& place) {
+Materials read_materials(const Json& json, const JsonLocation& location) {
     Materials materials;
     auto& [names, densities, surfaces] = materials;
     if (!json.contains("materials") || !json["materials"].is_object() || json["materials"].empty())
-        place.fail("has no materials");
+        location.fail("has no materials");
     for (const auto& [name, density] : json["materials"].items()) {
         names.push_back(name);
-        densities.push_back(positive(density, place / "materials" / name));
+        densities.push_back(positive(density, location / "materials" / name));
     }
     if (!json.contains("surfaces")) return materials;
-    if (!json["surfaces"].is_array()) (place / "surfaces").fail("must be an array");
+    if (!json["surfaces"].is_array()) (location / "surfaces").fail("must be an array");
     for (std::size_t i = 0; i < json["surfaces"].size(); ++i) {
         const auto& entry = json["surfaces"][i];
-        const auto at = place / "surfaces" / i;
+        const auto at = location / "surfaces" / i;
         check_names(entry, at, {"a", "b", "friction", "restitution"});
         for (const auto* name : {"a", "b", "friction", "restitution"})
             if (!entry.contains(name)) at.fail(fmt::format("has no {}", name));
@@ -40,23 +40,23 @@ Materials read_materials(const Json& json, const Place& place) {
     return materials;
 }
 
-Elastic read_elastic(const Json& json, const Place& place, const Mesh& mesh) {
-    check_names(json, place, {"law", "young", "poisson", "damping", "pinned"});
+Elastic read_elastic(const Json& json, const JsonLocation& location, const Mesh& mesh) {
+    check_names(json, location, {"law", "young", "poisson", "damping", "pinned"});
     for (const auto* name : {"young", "poisson"})
-        if (!json.contains(name)) place.fail(fmt::format("has no {}", name));
+        if (!json.contains(name)) location.fail(fmt::format("has no {}", name));
     Elastic elastic;
     if (json.contains("law"))
         elastic.law = static_cast<Elastic::Law>(
-            choice(json["law"], place / "law", "law", {"corotational", "saint_venant_kirchhoff"}));
-    elastic.young = positive(json["young"], place / "young");
-    elastic.poisson = number(json["poisson"], place / "poisson", 0, 0.499);
-    if (json.contains("damping")) elastic.damping = number(json["damping"], place / "damping", 0, largest);
+            choice(json["law"], location / "law", "law", {"corotational", "saint_venant_kirchhoff"}));
+    elastic.young = positive(json["young"], location / "young");
+    elastic.poisson = number(json["poisson"], location / "poisson", 0, 0.499);
+    if (json.contains("damping")) elastic.damping = number(json["damping"], location / "damping", 0, largest);
     if (!json.contains("pinned")) return elastic;
-    if (!json["pinned"].is_array()) (place / "pinned").fail("must be an array of vertices");
+    if (!json["pinned"].is_array()) (location / "pinned").fail("must be an array of vertices");
     const auto last = static_cast<double>(mesh.vertices.size() - 1);
     for (std::size_t i = 0; i < json["pinned"].size(); ++i)
         elastic.pinned.push_back(
-            static_cast<std::uint32_t>(whole(json["pinned"][i], place / "pinned" / i, 0, last)));
+            static_cast<std::uint32_t>(whole(json["pinned"][i], location / "pinned" / i, 0, last)));
     return elastic;
 }
 
@@ -67,17 +67,18 @@ void deform(const Mesh& mesh, Pose& pose, std::vector<Eigen::Vector3d>& vertices
 }
 
 /// A scene with one material need not name it.
-BodyDynamics read_body(const Json& json, const Place& place, const Materials& materials) {
+BodyDynamics read_body(const Json& json, const JsonLocation& location, const Materials& materials) {
     BodyDynamics body;
-    if (json.contains("poses")) (place / "poses").fail("has no use in a scene with dynamics; leave it out");
+    if (json.contains("poses"))
+        (location / "poses").fail("has no use in a scene with dynamics; leave it out");
     if (json.contains("material"))
         body.material = static_cast<std::uint32_t>(
-            choice(json["material"], place / "material", "material", materials.names));
+            choice(json["material"], location / "material", "material", materials.names));
     else if (materials.names.size() > 1)
-        place.fail("has no material");
-    if (json.contains("velocity")) body.velocity = vector(json["velocity"], place / "velocity");
+        location.fail("has no material");
+    if (json.contains("velocity")) body.velocity = vector(json["velocity"], location / "velocity");
     if (!json.contains("spin")) return body;
-    const auto spin = numbers<4>(json["spin"], place / "spin");
+    const auto spin = numbers<4>(json["spin"], location / "spin");
     const Eigen::Vector3d axis(spin[0], spin[1], spin[2]);
     body.spin = axis * (spin[3] / std::sqrt((spin[0] * spin[0] + spin[1] * spin[1]) + spin[2] * spin[2]));
     return body;
@@ -85,24 +86,26 @@ BodyDynamics read_body(const Json& json, const Place& place, const Materials& ma
 
 /// Every two materials that can meet need a surface.
 void check_surfaces(const Materials& materials, const Scene& scene, const std::vector<BodyDynamics>& bodies,
-                    const Place& place) {
+                    const JsonLocation& location) {
     if (const auto missing = missing_surface(materials, scene.bodies, bodies))
-        (place / "surfaces")
+        (location / "surfaces")
             .fail(fmt::format("has no entry for {} and {}", materials.names[missing->first],
                               materials.names[missing->second]));
 }
 
 /// Materials and elasticity of all bodies.
-void read_bodies(const Json& json, const Place& place, Scene& scene, Frame& start, Dynamics& dynamics) {
+void read_bodies(const Json& json, const JsonLocation& location, Scene& scene, Frame& start,
+                 Dynamics& dynamics) {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         const auto& entry = json[i];
-        dynamics.bodies.push_back(read_body(entry, place / i, dynamics.materials));
+        dynamics.bodies.push_back(read_body(entry, location / i, dynamics.materials));
         if (!entry.contains("elastic")) continue;
-        if (scene.bodies[i].fixed) (place / i / "elastic").fail("has no use for a fixed body; leave one out");
-        if (entry.contains("spin")) (place / i / "spin").fail("cannot be given to an elastic body");
+        if (scene.bodies[i].fixed)
+            (location / i / "elastic").fail("has no use for a fixed body; leave one out");
+        if (entry.contains("spin")) (location / i / "spin").fail("cannot be given to an elastic body");
         const auto& mesh = scene.meshes[scene.bodies[i].mesh];
         dynamics.bodies.back().elastic = static_cast<std::int32_t>(dynamics.elastics.size());
-        dynamics.elastics.push_back(read_elastic(entry["elastic"], place / i / "elastic", mesh));
+        dynamics.elastics.push_back(read_elastic(entry["elastic"], location / i / "elastic", mesh));
         scene.bodies[i].deformable = true;
         deform(mesh, start.poses[i], start.deformed[i]);
     }
@@ -110,26 +113,26 @@ void read_bodies(const Json& json, const Place& place, Scene& scene, Frame& star
 
 } // namespace
 
-std::shared_ptr<const Dynamics> read_dynamics(const Json& json, const Place& root, Scene& scene,
+std::shared_ptr<const Dynamics> read_dynamics(const Json& json, const JsonLocation& root, Scene& scene,
                                               Frame& start) {
     const auto& entry = json["dynamics"];
-    const auto place = root / "dynamics";
-    check_names(entry, place,
+    const auto location = root / "dynamics";
+    check_names(entry, location,
                 {"gravity", "step", "steps", "materials", "surfaces", "solver", "stepping", "reduction"});
     if (scene.frame_count != 1)
         (root / "frames").fail("must be 1 or left out in a scene with dynamics; steps stand in /dynamics");
     auto dynamics = std::make_shared<Dynamics>();
-    dynamics->materials = read_materials(entry, place);
-    read_settings(entry, place, *dynamics);
+    dynamics->materials = read_materials(entry, location);
+    read_settings(entry, location, *dynamics);
     read_bodies(json["bodies"], root / "bodies", scene, start, *dynamics);
-    check_surfaces(dynamics->materials, scene, dynamics->bodies, place);
+    check_surfaces(dynamics->materials, scene, dynamics->bodies, location);
     if (const auto found = first_overlap(scene, start, true))
         (root / "bodies" / (*found)[1])
             .fail(fmt::format("overlaps body {}, and both are fixed; move one", (*found)[0]));
     return dynamics;
 }
 
-void refuse_dynamics(const Json& json, const Place& root) {
+void refuse_dynamics(const Json& json, const JsonLocation& root) {
     for (std::size_t i = 0; i < json["bodies"].size(); ++i)
         for (const auto* name : {"material", "elastic"})
             if (json["bodies"][i].contains(name))

@@ -46,43 +46,44 @@ const DynamicsSetting& setting_named(std::string_view name) {
 }
 
 /// What --dynamics would be given for the member of that name.
-std::string text_of(const Json& json, const char* name, const Place& place, const DynamicsSetting& setting) {
+std::string text_of(const Json& json, const char* name, const JsonLocation& location,
+                    const DynamicsSetting& setting) {
     switch (setting.kind) {
     case DynamicsSetting::Kind::real:
-        return fmt::format("{}", number(json[name], place / name, setting.least, setting.most));
+        return fmt::format("{}", number(json[name], location / name, setting.least, setting.most));
     case DynamicsSetting::Kind::whole:
-        return fmt::format("{:.0f}", whole(json[name], place / name, setting.least, setting.most));
+        return fmt::format("{:.0f}", whole(json[name], location / name, setting.least, setting.most));
     case DynamicsSetting::Kind::toggle:
-        return flag(json, name, place) ? "1" : "0";
+        return flag(json, name, location) ? "1" : "0";
     case DynamicsSetting::Kind::word:
         break;
     }
-    return setting.words[choice(json[name], place / name, name, setting.words)];
+    return setting.words[choice(json[name], location / name, name, setting.words)];
 }
 
 /// By way of the setting's text, so that a description and --dynamics pass the same checks.
-void read(const Json& json, const char* name, const Place& place, std::string_view setting_name,
+void read(const Json& json, const char* name, const JsonLocation& location, std::string_view setting_name,
           Dynamics& dynamics) {
     if (!json.contains(name)) return;
     const auto& setting = setting_named(setting_name);
-    setting.set(dynamics, text_of(json, name, place, setting));
+    setting.set(dynamics, text_of(json, name, location, setting));
 }
 
 } // namespace
 
-void read_settings(const Json& json, const Place& place, Dynamics& dynamics) {
-    if (json.contains("gravity")) dynamics.gravity = vector(json["gravity"], place / "gravity");
-    read(json, "step", place, "step", dynamics);
+void read_settings(const Json& json, const JsonLocation& location, Dynamics& dynamics) {
+    if (json.contains("gravity")) dynamics.gravity = vector(json["gravity"], location / "gravity");
+    read(json, "step", location, "step", dynamics);
     if (json.contains("steps"))
-        dynamics.steps = static_cast<std::size_t>(whole(json["steps"], place / "steps", 1, largest));
+        dynamics.steps = static_cast<std::size_t>(whole(json["steps"], location / "steps", 1, largest));
     for (const auto& group : groups()) {
         if (!json.contains(group.name)) continue;
         const auto& members = json[group.name];
         std::vector<std::string> names;
         for (const auto& [name, setting] : group.members) names.emplace_back(name);
-        check_names(members, place / group.name, names);
+        check_names(members, location / group.name, names);
         for (const auto& [name, setting] : group.members)
-            read(members, name, place / group.name, setting, dynamics);
+            read(members, name, location / group.name, setting, dynamics);
     }
 }
 

@@ -23,8 +23,8 @@ namespace {
 using namespace description;
 
 /// Brought to unit length: descriptions are written by hand.
-Eigen::Quaterniond quaternion(double w, double x, double y, double z, const Place& place) {
-    if (!(w * w + x * x + y * y + z * z > 0)) place.fail("must not be the zero quaternion");
+Eigen::Quaterniond quaternion(double w, double x, double y, double z, const JsonLocation& location) {
+    if (!(w * w + x * x + y * y + z * z > 0)) location.fail("must not be the zero quaternion");
     return unit(Eigen::Quaterniond(w, x, y, z));
 }
 
@@ -44,77 +44,79 @@ struct Motion {
 };
 
 /// A file is looked for beside the description, not where the program runs.
-Mesh read_source(const Json& json, const Place& place, const std::filesystem::path& folder) {
-    if (json.contains("file")) return read_mesh((folder / text(json["file"], place / "file")).string());
+Mesh read_source(const Json& json, const JsonLocation& location, const std::filesystem::path& folder) {
+    if (json.contains("file")) return read_mesh((folder / text(json["file"], location / "file")).string());
     if (json.contains("box")) {
-        const auto size = vector(json["box"], place / "box");
-        if (!(size.minCoeff() > 0)) (place / "box").fail("must have sides above 0");
+        const auto size = vector(json["box"], location / "box");
+        if (!(size.minCoeff() > 0)) (location / "box").fail("must have sides above 0");
         return box(size);
     }
-    const auto name = text(json["builtin"], place / "builtin");
+    const auto name = text(json["builtin"], location / "builtin");
     const auto names = built_in_names();
     if (std::find(names.begin(), names.end(), name) == names.end())
-        (place / "builtin").fail(unknown("mesh", name, names));
+        (location / "builtin").fail(unknown("mesh", name, names));
     return built_in_mesh(name);
 }
 
-Mesh read_one(const Json& json, const Place& place, const std::filesystem::path& folder) {
-    check_names(json, place, {"builtin", "file", "box", "scale"});
+Mesh read_one(const Json& json, const JsonLocation& location, const std::filesystem::path& folder) {
+    check_names(json, location, {"builtin", "file", "box", "scale"});
     if (json.contains("builtin") + json.contains("file") + json.contains("box") != 1)
-        place.fail("must name one builtin, file or box");
-    auto mesh = read_source(json, place, folder);
+        location.fail("must name one builtin, file or box");
+    auto mesh = read_source(json, location, folder);
     if (!json.contains("scale")) return mesh;
-    const double scale = positive(json["scale"], place / "scale");
+    const double scale = positive(json["scale"], location / "scale");
     for (auto& v : mesh.vertices) v *= scale;
-    complete_mesh(mesh, place.text());
+    complete_mesh(mesh, location.text());
     return mesh;
 }
 
 /// Velocity in units a frame, spin as axis and radians a frame. Angles are limited, since the sine of a large
 /// one has lost its digits.
-Motion read_motion(const Json& json, const Place& place, std::size_t frames) {
+Motion read_motion(const Json& json, const JsonLocation& location, std::size_t frames) {
     Motion motion;
-    if (json.contains("position")) motion.start.translation = vector(json["position"], place / "position");
+    if (json.contains("position")) motion.start.translation = vector(json["position"], location / "position");
     if (json.contains("rotation")) {
-        const auto q = numbers<4>(json["rotation"], place / "rotation");
-        motion.start.rotation = quaternion(q[0], q[1], q[2], q[3], place / "rotation");
+        const auto q = numbers<4>(json["rotation"], location / "rotation");
+        motion.start.rotation = quaternion(q[0], q[1], q[2], q[3], location / "rotation");
     }
-    if (json.contains("velocity")) motion.velocity = vector(json["velocity"], place / "velocity");
+    if (json.contains("velocity")) motion.velocity = vector(json["velocity"], location / "velocity");
     if (json.contains("spin")) {
-        const auto spin = numbers<4>(json["spin"], place / "spin");
+        const auto spin = numbers<4>(json["spin"], location / "spin");
         const double length = std::sqrt((spin[0] * spin[0] + spin[1] * spin[1]) + spin[2] * spin[2]);
-        if (!(length > 0)) (place / "spin").fail("must have an axis that is not 0");
+        if (!(length > 0)) (location / "spin").fail("must have an axis that is not 0");
         motion.axis = {spin[0] / length, spin[1] / length, spin[2] / length};
         motion.spin = spin[3];
         if (!(std::fabs(motion.spin) * static_cast<double>(frames) <= 1e6))
-            (place / "spin").fail("must turn by no more than 1e6 radians in all frames together");
+            (location / "spin").fail("must turn by no more than 1e6 radians in all frames together");
     }
     if (!json.contains("poses")) return motion;
     for (const auto* name : {"position", "rotation", "velocity", "spin"})
-        if (json.contains(name)) (place / name).fail("is replaced by poses; leave one out");
+        if (json.contains(name)) (location / name).fail("is replaced by poses; leave one out");
     if (!json["poses"].is_array() || json["poses"].size() != frames)
-        (place / "poses").fail(fmt::format("must be one pose a frame, {} in all", frames));
+        (location / "poses").fail(fmt::format("must be one pose a frame, {} in all", frames));
     for (std::size_t i = 0; i < frames; ++i) {
-        const auto p = numbers<7>(json["poses"][i], place / "poses" / i);
-        motion.poses.push_back({quaternion(p[3], p[4], p[5], p[6], place / "poses" / i), {p[0], p[1], p[2]}});
+        const auto p = numbers<7>(json["poses"][i], location / "poses" / i);
+        motion.poses.push_back(
+            {quaternion(p[3], p[4], p[5], p[6], location / "poses" / i), {p[0], p[1], p[2]}});
     }
     return motion;
 }
 
-Body read_body(const Json& json, const Place& place, const std::map<std::string, std::uint32_t>& meshes) {
+Body read_body(const Json& json, const JsonLocation& location,
+               const std::map<std::string, std::uint32_t>& meshes) {
     check_names(
-        json, place,
+        json, location,
         {"mesh", "fixed", "position", "rotation", "velocity", "spin", "poses", "material", "elastic"});
-    if (!json.contains("mesh")) place.fail("has no mesh");
-    const auto name = text(json["mesh"], place / "mesh");
+    if (!json.contains("mesh")) location.fail("has no mesh");
+    const auto name = text(json["mesh"], location / "mesh");
     std::vector<std::string> names;
     names.reserve(meshes.size());
     for (const auto& [known, index] : meshes) names.push_back(known);
     const auto found = meshes.find(name);
-    if (found == meshes.end()) (place / "mesh").fail(unknown("mesh", name, names));
-    Body body{.mesh = found->second, .fixed = flag(json, "fixed", place), .deformable = false};
+    if (found == meshes.end()) (location / "mesh").fail(unknown("mesh", name, names));
+    Body body{.mesh = found->second, .fixed = flag(json, "fixed", location), .deformable = false};
     if (body.fixed && (json.contains("velocity") || json.contains("spin") || json.contains("poses")))
-        place.fail("is fixed and moves; leave one out");
+        location.fail("is fixed and moves; leave one out");
     return body;
 }
 
@@ -127,7 +129,7 @@ Frame frame_of(const std::vector<Motion>& motions, std::size_t index) {
 }
 
 /// Meshes and bodies into the scene; returns how the bodies move.
-std::vector<Motion> read_bodies(const Json& json, const Place& root, Scene& scene) {
+std::vector<Motion> read_bodies(const Json& json, const JsonLocation& root, Scene& scene) {
     std::map<std::string, std::uint32_t> meshes;
     if (!json.contains("meshes") || !json["meshes"].is_object()) root.fail("has no meshes");
     for (const auto& [name, value] : json["meshes"].items()) {
@@ -151,7 +153,7 @@ Scene load_description(const std::string& path) {
     const auto json = read_json(path, "scene description");
     if (json.is_object() && json.contains("plan"))
         throw InputError(fmt::format("{}: is a plan, not a scene; 'tandem run' takes it", path));
-    const Place root{path, {}};
+    const JsonLocation root{path, {}};
     check_names(json, root, {"name", "units", "frames", "meshes", "bodies", "dynamics"});
     Scene scene;
     scene.name = json.contains("name") ? text(json["name"], root / "name")

@@ -21,9 +21,9 @@ static_assert(sizeof(Pair) == 16, "a row of expand_pairs");
 
 using ContactIds = std::array<std::uint32_t, 2>;
 
-template<class Row>
-std::vector<Row> rows_of(Device& device, const Buffer& buffer, std::uint64_t count) {
-    std::vector<Row> rows(count);
+template<class BodyRow>
+std::vector<BodyRow> rows_of(Device& device, const Buffer& buffer, std::uint64_t count) {
+    std::vector<BodyRow> rows(count);
     const StageScope scope(device, Stage::read);
     device.download(buffer, std::as_writable_bytes(std::span(rows)));
     return rows;
@@ -233,8 +233,8 @@ void AnswerTools::download(const Buffer& pairs, std::uint64_t count, std::vector
 
 Pair AnswerTools::pair_of(const std::uint32_t* row) const {
     const bool slots = layout() == PairLayout::slots;
-    const auto a = slots ? bodies_->slot_owner(row[0]) : Bodies::Place{row[0], row[2]};
-    const auto b = slots ? bodies_->slot_owner(row[1]) : Bodies::Place{row[1], row[3]};
+    const auto a = slots ? bodies_->slot_owner(row[0]) : Bodies::SlotOwner{row[0], row[2]};
+    const auto b = slots ? bodies_->slot_owner(row[1]) : Bodies::SlotOwner{row[1], row[3]};
     const auto& scene = bodies_->scene();
     return {number_of(scene, a.body), bodies_->mesh(a.body).ids[a.item], number_of(scene, b.body),
             bodies_->mesh(b.body).ids[b.item]};

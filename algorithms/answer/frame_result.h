@@ -84,7 +84,7 @@ struct FrameCounts {
 /// next run; a session keeps its buffers apart until then.
 struct FrameResult : FrameCounts {
     std::vector<DeviceWork> shared;                 ///< by device; of a session on one device none
-    std::uint64_t repartitions = 0;                        ///< 1 where the bodies were dealt to the devices anew
+    std::uint64_t repartitions = 0;                 ///< 1 where the bodies were dealt to the devices anew
     std::map<std::string_view, std::uint64_t> work; ///< by Counter; empty unless Session::count_work(true)
     std::optional<Digest> summed;                   ///< output=digest: of the pairs
     std::array<double, 3> origin{}; ///< what points of contacts in the parts count from (Session::origin)

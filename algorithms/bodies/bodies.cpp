@@ -90,8 +90,8 @@ void Bodies::lay_out_slots() {
 }
 
 /// In the form of rows of bodies, with the body where these have the number of tetrahedra.
-std::vector<Bodies::Row> Bodies::block_rows() const {
-    std::vector<Row> blocks;
+std::vector<Bodies::BodyRow> Bodies::block_rows() const {
+    std::vector<BodyRow> blocks;
     blocks.reserve(first_blocks_.back());
     for (std::size_t i = 0; i < slot_order_.size(); ++i) {
         const auto body = slot_order_[i];
@@ -109,7 +109,7 @@ std::uint32_t Bodies::first_slot(std::size_t body) const {
     return (rows_[body].flags >> block_shift) * block_slots;
 }
 
-Bodies::Place Bodies::slot_owner(std::uint32_t slot) const {
+Bodies::SlotOwner Bodies::slot_owner(std::uint32_t slot) const {
     const auto next = std::upper_bound(first_blocks_.begin(), first_blocks_.end(), slot / block_slots);
     const auto i = static_cast<std::size_t>(next - first_blocks_.begin()) - 1;
     return {slot_order_[i], static_cast<std::uint32_t>(slot - first_blocks_[i] * block_slots)};

@@ -19,12 +19,12 @@ public:
     };
 
     /// A row of rows.clh: where a body's data begin, and flags.
-    struct Row {
+    struct BodyRow {
         std::uint32_t tetrahedra = 0, vertices = 0, tetrahedron_count = 0, flags = 0;
     };
 
     /// A tetrahedron: its body, and its position in that body's order.
-    struct Place {
+    struct SlotOwner {
         std::uint32_t body = 0, item = 0;
     };
 
@@ -53,7 +53,7 @@ public:
     const Scene& scene() const { return scene_; }
     const Geometry& geometry() const { return geometry_; }
     std::uint32_t count() const { return static_cast<std::uint32_t>(rows_.size()); }
-    const Row& row(std::size_t body) const { return rows_[body]; }
+    const BodyRow& row(std::size_t body) const { return rows_[body]; }
     /// The body's mesh as the device has it.
     const OrderedMesh& mesh(std::size_t body) const { return meshes_[scene_.bodies[body].mesh]; }
     /// By the scene's number of the mesh.
@@ -68,7 +68,7 @@ public:
     /// Of its tetrahedra; 0 for PairLayout::items.
     std::uint32_t first_slot(std::size_t body) const;
     /// Whose a slot is; of PairLayout::slots.
-    Place slot_owner(std::uint32_t slot) const;
+    SlotOwner slot_owner(std::uint32_t slot) const;
     /// Bytes of device memory in all buffers.
     std::size_t bytes() const;
     /// The rows of all bodies, and a frame's poses, as kernels read them.
@@ -87,7 +87,7 @@ public:
 private:
     void lay_out();
     void lay_out_slots();
-    std::vector<Row> block_rows() const;
+    std::vector<BodyRow> block_rows() const;
     void upload_static();
     std::vector<std::byte> shared_vertices() const;
     std::array<double, 3> drift_of(const Frame& frame, std::size_t body) const;
@@ -101,7 +101,7 @@ private:
     Sharing sharing_;
     std::vector<OrderedMesh> meshes_;
     std::vector<double> is_gpu_aware_; ///< by mesh: reach_of; placement = exact only
-    std::vector<Row> rows_;
+    std::vector<BodyRow> rows_;
     PairLayout pair_layout_;
     std::vector<std::uint32_t> slot_order_;
     std::vector<std::uint64_t> first_blocks_; ///< in slot_order(), and the number of all behind them

@@ -103,9 +103,10 @@ Strips strips_of(const Ends& slabs, std::size_t axis) {
 
 /// Bodies by the cells of two axes that they reach into: a pair is found in the one cell in which both of its
 /// lower ends' larger ones lie.
-class Cells {
+class BodyCells {
 public:
-    Cells(const Ends& slabs, Strips rows, Strips columns) : slabs_(slabs), rows_(rows), columns_(columns) {}
+    BodyCells(const Ends& slabs, Strips rows, Strips columns)
+        : slabs_(slabs), rows_(rows), columns_(columns) {}
 
     std::size_t count() const { return rows_.count * columns_.count; }
     /// Fewer cells until bodies are in few of them.
@@ -159,7 +160,7 @@ private:
 /// By cell.
 std::vector<std::vector<BodyPair>> sweep_cells(const Ends& slabs, Strips rows, Strips columns,
                                                std::size_t axis) {
-    Cells cells(slabs, rows, columns);
+    BodyCells cells(slabs, rows, columns);
     cells.strew();
     std::vector<std::vector<BodyPair>> found(cells.count());
     parallel_for(cells.count(), [&](std::size_t cell) {

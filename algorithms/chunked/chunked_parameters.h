@@ -18,18 +18,18 @@ enum class Descent {
     larger ///< of two nodes of unlike size the larger alone
 };
 
-inline constexpr Setting<std::int64_t> chunk_bytes{"chunk_bytes", 8000, Range{1, std::int64_t{1} << 30}, "",
-                                                   "memory of a pair of chunks in equation (1)"};
+inline constexpr Setting<std::int64_t> chunk_bytes{"chunk_bytes", 8000, ValueRange{1, std::int64_t{1} << 30},
+                                                   "", "memory of a pair of chunks in equation (1)"};
 inline constexpr auto leaves =
-    Setting<std::int64_t>{"leaves", 0, Range{0, 16384}, "",
+    Setting<std::int64_t>{"leaves", 0, ValueRange{0, 16384}, "",
                           "tetrahedra per chunk, a power of two; 0: from chunk_bytes"}
         .with_alternatives({8, 64, 512}, "chunk_bytes");
 inline constexpr Setting<std::int64_t> seed_threshold{
-    "seed_threshold", 0, Range{0, std::int64_t{1} << 31}, "SEED_THRESHOLD",
+    "seed_threshold", 0, ValueRange{0, std::int64_t{1} << 31}, "SEED_THRESHOLD",
     "chunk pairs per body pair above which seeding climbs a level (the paper's: 1e7); 0: seed_target shared "
     "by the frame's body pairs"};
 inline constexpr Setting<std::int64_t> seed_target{
-    "seed_target", 1048576, Range{1, std::int64_t{1} << 31}, "SEED_TARGET",
+    "seed_target", 1048576, ValueRange{1, std::int64_t{1} << 31}, "SEED_TARGET",
     "seeds a frame is to have at most, as far as levels allow, when seed_threshold is 0"};
 inline constexpr Setting<Schedule> schedule{
     "schedule",
@@ -51,8 +51,8 @@ inline constexpr Setting<bool> root_test{
     {{"yes", true}, {"no", false}},
     "ROOT_TEST",
     "resident: drop body pairs whose whole volumes are apart before seeding"};
-inline constexpr Setting<std::int64_t> seed_capacity{"seed_capacity", 65536, Range{1, std::int64_t{1} << 31},
-                                                     "",
+inline constexpr Setting<std::int64_t> seed_capacity{"seed_capacity", 65536,
+                                                     ValueRange{1, std::int64_t{1} << 31}, "",
                                                      "seeds handed down a level there is room for at first"};
 
 } // namespace tandem::chunked_parameters

@@ -15,19 +15,19 @@ namespace {
 /// A body pair and two nodes.
 constexpr std::uint64_t item_bytes = 12;
 
-constexpr Setting<std::int64_t> groups{"groups", 0, Range{0, 1 << 20}, "",
+constexpr Setting<std::int64_t> groups{"groups", 0, ValueRange{0, 1 << 20}, "",
                                        "work-groups, each with a queue; 0: from work_items"};
-constexpr Setting<std::int64_t> local_queue{"local_queue", 0, Range{0, 1 << 20}, "LOCAL_QUEUE",
+constexpr Setting<std::int64_t> local_queue{"local_queue", 0, ValueRange{0, 1 << 20}, "LOCAL_QUEUE",
                                             "items of the local queue; 0: from the device's local memory"};
-constexpr Setting<std::int64_t> initial_items{"initial_items", 0, Range{0, 1 << 20}, "INITIAL_ITEMS",
+constexpr Setting<std::int64_t> initial_items{"initial_items", 0, ValueRange{0, 1 << 20}, "INITIAL_ITEMS",
                                               "items loaded from the own queue; 0: 3 a work-item"};
-constexpr Setting<std::int64_t> queue_bytes{"queue_bytes", 67108864, Range{12, std::int64_t{1} << 40}, "",
-                                            "all queues together; one of the two arrays"};
-constexpr Setting<std::int64_t> queue_capacity{"queue_capacity", 0, Range{0, std::int64_t{1} << 31}, "",
+constexpr Setting<std::int64_t> queue_bytes{"queue_bytes", 67108864, ValueRange{12, std::int64_t{1} << 40},
+                                            "", "all queues together; one of the two arrays"};
+constexpr Setting<std::int64_t> queue_capacity{"queue_capacity", 0, ValueRange{0, std::int64_t{1} << 31}, "",
                                                "items of one queue; 0: from queue_bytes"};
-constexpr Setting<std::int64_t> idle_limit{"idle_limit", 0, Range{0, 1 << 20}, "IDLE_LIMIT",
+constexpr Setting<std::int64_t> idle_limit{"idle_limit", 0, ValueRange{0, 1 << 20}, "IDLE_LIMIT",
                                            "idle groups that end a launch; 0: 2/3 of the groups"};
-constexpr Setting<std::int64_t> batch{"batch", 0, Range{0, std::int64_t{1} << 31}, "",
+constexpr Setting<std::int64_t> batch{"batch", 0, ValueRange{0, std::int64_t{1} << 31}, "",
                                       "body pairs a batch; 0: all"};
 constexpr Setting<QueueUpload> upload{"upload",
                                       QueueUpload::seeds,
@@ -46,7 +46,7 @@ constexpr Setting<Balance> balance{"balance",
                                    {{"parallel", Balance::parallel}, {"serial", Balance::serial}},
                                    "",
                                    "parallel: one item a work-item; serial: one group, queue by queue"};
-constexpr Setting<std::int64_t> balance_group_size{"balance_group_size", 256, Range{1, 1024}, "",
+constexpr Setting<std::int64_t> balance_group_size{"balance_group_size", 256, ValueRange{1, 1024}, "",
                                                    "work-items of the balancing group"};
 
 constexpr std::array<const Parameter*, 12> own{

@@ -21,7 +21,7 @@ AxisOrders::AxisOrders(const std::vector<Eigen::Vector3d>& points)
     }
 }
 
-void AxisOrders::cut(Range range, std::size_t axis, std::size_t place) {
+void AxisOrders::cut(ItemRange range, std::size_t axis, std::size_t place) {
     for (auto i = range.first; i < range.end; ++i) is_left_[sorted_[axis][i]] = i < place;
     for (auto& sorted : sorted_) {
         auto left = range.first, right = place;

@@ -15,7 +15,7 @@ namespace tandem {
 class AxisOrders {
 public:
     /// Consecutive positions.
-    struct Range {
+    struct ItemRange {
         std::size_t first = 0, end = 0;
 
         std::size_t size() const { return end - first; }
@@ -27,7 +27,7 @@ public:
     /// Position -> point, along an axis within every range.
     const std::vector<std::uint32_t>& along(std::size_t axis) const { return sorted_[axis]; }
     /// Brings those before `place` along `axis` before the others of the range along all axes.
-    void cut(Range range, std::size_t axis, std::size_t place);
+    void cut(ItemRange range, std::size_t axis, std::size_t place);
 
 private:
     std::array<std::vector<std::uint32_t>, 3> sorted_;

@@ -10,9 +10,9 @@ namespace tandem {
 
 namespace {
 
-class Search {
+class BreadthFirst {
 public:
-    explicit Search(const Mesh& mesh);
+    explicit BreadthFirst(const Mesh& mesh);
 
     /// Appends all that is reached from `start`, unless that has been.
     void from(std::uint32_t start);
@@ -30,7 +30,7 @@ private:
     std::vector<std::uint32_t> order_; ///< which is the queue as well
 };
 
-Search::Search(const Mesh& mesh)
+BreadthFirst::BreadthFirst(const Mesh& mesh)
     : faces_(sorted_faces(mesh)),
       first_(faces_.size()),
       is_reached_(mesh.tetrahedra.size()),
@@ -43,20 +43,20 @@ Search::Search(const Mesh& mesh)
     order_.reserve(mesh.tetrahedra.size());
 }
 
-void Search::append(std::uint32_t tetrahedron) {
+void BreadthFirst::append(std::uint32_t tetrahedron) {
     if (is_reached_[tetrahedron]) return;
     is_reached_[tetrahedron] = 1;
     order_.push_back(tetrahedron);
 }
 
-void Search::append_across(std::size_t face) {
+void BreadthFirst::append_across(std::size_t face) {
     if (is_crossed_[face]) return;
     is_crossed_[face] = 1;
     for (auto i = face; i < faces_.size() && faces_[i].vertices == faces_[face].vertices; ++i)
         append(faces_[i].tetrahedron);
 }
 
-void Search::from(std::uint32_t start) {
+void BreadthFirst::from(std::uint32_t start) {
     auto next = order_.size();
     append(start);
     for (; next < order_.size(); ++next) {
@@ -70,7 +70,7 @@ void Search::from(std::uint32_t start) {
 } // namespace
 
 std::vector<std::uint32_t> breadth_order(const Mesh& mesh) {
-    Search search(mesh);
+    BreadthFirst search(mesh);
     for (const auto start : morton_order(mesh)) search.from(start);
     return search.take();
 }

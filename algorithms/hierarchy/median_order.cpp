@@ -11,7 +11,7 @@ namespace {
 /// Infinite sides, of coordinates near the largest numbers, are equally long; one between equal infinities is
 /// none.
 std::size_t longest_axis(const AxisOrders& axes, const std::vector<Eigen::Vector3d>& points,
-                         AxisOrders::Range range) {
+                         AxisOrders::ItemRange range) {
     std::size_t longest = 0;
     double most = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -30,7 +30,7 @@ std::size_t longest_axis(const AxisOrders& axes, const std::vector<Eigen::Vector
 std::vector<std::uint32_t> median_order(const Mesh& mesh) {
     const auto points = centroids(mesh);
     AxisOrders axes(points);
-    std::vector<AxisOrders::Range> todo{{0, points.size()}};
+    std::vector<AxisOrders::ItemRange> todo{{0, points.size()}};
     while (!todo.empty()) {
         const auto range = todo.back();
         todo.pop_back();

@@ -137,11 +137,11 @@ typedef struct {
     LOCAL const uint* strip;
     LOCAL Unit* heap;
     uint node, place;
-} Place;
+} NodeAt;
 
-DEVICE Place place_of(const Refit* refit, LOCAL const uint* strips, uint i, uint depth, LOCAL Unit* tile) {
+DEVICE NodeAt strip_node(const Refit* refit, LOCAL const uint* strips, uint i, uint depth, LOCAL Unit* tile) {
     const uint in_depth = i & ((1u << depth) - 1u);
-    Place at;
+    NodeAt at;
     at.strip = strips + (i >> depth) * JOB_WORDS;
     at.heap = HEAP(tile, i >> depth, refit->height);
     at.node = (at.strip[JOB_ROOT] << depth) + in_depth;
@@ -157,7 +157,7 @@ DEVICE Place place_of(const Refit* refit, LOCAL const uint* strips, uint i, uint
 DEVICE void make_pairs(const Refit* refit, LOCAL const uint* strips, uint strip_count, LOCAL Unit* tile) {
     const uint depth = refit->height - 1u;
     for (uint i = TEAM_LANE; i < strip_count << depth; i += TEAM_SIZE) {
-        const Place at = place_of(refit, strips, i, depth, tile);
+        const NodeAt at = strip_node(refit, strips, i, depth, tile);
         if (at.node >= 2u * at.strip[JOB_ITEMS]) continue;
         const uint inner = is_leaf(at.node, at.strip[JOB_ITEMS]) ? 0u : 1u;
         real both[K];
@@ -179,7 +179,7 @@ DEVICE void make_pairs(const Refit* refit, LOCAL const uint* strips, uint strip_
 DEVICE void make_depth(const Refit* refit, LOCAL const uint* strips, uint strip_count, uint depth,
                        LOCAL Unit* tile) {
     for (uint i = TEAM_LANE; i < strip_count << depth; i += TEAM_SIZE) {
-        const Place at = place_of(refit, strips, i, depth, tile);
+        const NodeAt at = strip_node(refit, strips, i, depth, tile);
         if (at.node >= 2u * at.strip[JOB_ITEMS]) continue;
         if (depth == refit->height || is_leaf(at.node, at.strip[JOB_ITEMS])) {
             real values[K];

@@ -32,14 +32,14 @@ public:
     std::vector<std::uint32_t> order();
 
 private:
-    using Range = AxisOrders::Range;
+    using ItemRange = AxisOrders::ItemRange;
     struct Cut {
         double cost = std::numeric_limits<double>::infinity();
         std::size_t axis = 0, place = 0; ///< the first of the right part
     };
 
     /// Consider all places along an axis.
-    void look_along(std::size_t axis, Range range, std::size_t unit, Cut& best);
+    void look_along(std::size_t axis, ItemRange range, std::size_t unit, Cut& best);
 
     std::vector<Box> boxes_;
     AxisOrders axes_;
@@ -66,7 +66,7 @@ std::vector<Eigen::Vector3d> centres_of(const std::vector<Box>& boxes) {
 
 Splitter::Splitter(const Mesh& mesh) : boxes_(boxes_of(mesh)), axes_(centres_of(boxes_)) {}
 
-void Splitter::look_along(std::size_t axis, Range range, std::size_t unit, Cut& best) {
+void Splitter::look_along(std::size_t axis, ItemRange range, std::size_t unit, Cut& best) {
     const auto& sorted = axes_.along(axis);
     const auto units = (range.size() + unit - 1) / unit;
     right_.assign(units, {});
@@ -87,7 +87,7 @@ void Splitter::look_along(std::size_t axis, Range range, std::size_t unit, Cut& 
 }
 
 std::vector<std::uint32_t> Splitter::order() {
-    std::vector<Range> todo{{0, boxes_.size()}};
+    std::vector<ItemRange> todo{{0, boxes_.size()}};
     while (!todo.empty()) {
         const auto range = todo.back();
         todo.pop_back();

@@ -52,7 +52,7 @@ struct Assignment {
 };
 
 /// The least and the greatest value of an integer setting.
-struct Range {
+struct ValueRange {
     std::int64_t least = 0, most = 0;
 };
 
@@ -76,7 +76,7 @@ struct Setting : Parameter {
         throw "a setting's default is none of its choices";
     }
 
-    consteval Setting(std::string_view name_, T initial_, Range range, std::string_view define_,
+    consteval Setting(std::string_view name_, T initial_, ValueRange range, std::string_view define_,
                       std::string_view help_) {
         set(name_, initial_, define_, help_);
         least = range.least;

@@ -113,7 +113,7 @@ inline constexpr Setting<Broad> broad{
     "",
     "who finds body pairs: the host by the paper's spheres, or by boxes, or the device by root k-DOPs"};
 inline constexpr Setting<std::int64_t> body_pair_capacity{
-    "body_pair_capacity", 65536, Range{1, word_limit}, "",
+    "body_pair_capacity", 65536, ValueRange{1, word_limit}, "",
     "broad=device: body pairs there is room for at first"};
 inline constexpr Setting<Residency> residency{
     "residency",
@@ -149,17 +149,17 @@ inline constexpr Setting<PairLayout> pair_layout{
     "a candidate pair on the device: slots: 8 bytes, two numbers of tetrahedra over all bodies; items: 16 "
     "bytes, "
     "as the published data path and scenes of more than 2^32 slots have it"};
-inline constexpr auto group_size = Setting<std::int64_t>{"group_size", 128, Range{1, 1024}, "GROUP_SIZE",
+inline constexpr auto group_size = Setting<std::int64_t>{"group_size", 128, ValueRange{1, 1024}, "GROUP_SIZE",
                                                          "work-items per work-group (1 on host)"}
                                        .with_alternatives({64, 128, 256});
-inline constexpr Setting<std::int64_t> work_items{"work_items", 2048, Range{1, 1 << 20}, "",
+inline constexpr Setting<std::int64_t> work_items{"work_items", 2048, ValueRange{1, 1 << 20}, "",
                                                   "work-items per compute unit of the kernels that stride"};
 inline constexpr Setting<std::int64_t> threads{
-    "threads", 0, Range{0, 4096}, "",
+    "threads", 0, ValueRange{0, 4096}, "",
     "threads that run the work-groups of device host; 0: one for each core; other devices ignore it"};
-inline constexpr Setting<std::int64_t> pair_capacity{"pair_capacity", 1048576, Range{1, word_limit}, "",
+inline constexpr Setting<std::int64_t> pair_capacity{"pair_capacity", 1048576, ValueRange{1, word_limit}, "",
                                                      "candidate pairs there is room for at first"};
-inline constexpr Setting<std::int64_t> contact_capacity{"contact_capacity", 1048576, Range{1, word_limit}, "",
-                                                        "contacts there is room for at first"};
+inline constexpr Setting<std::int64_t> contact_capacity{
+    "contact_capacity", 1048576, ValueRange{1, word_limit}, "", "contacts there is room for at first"};
 
 } // namespace tandem::parameters

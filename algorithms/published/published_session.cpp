@@ -14,39 +14,39 @@ namespace {
 /// Makes contacts after every part of a walk and brings them to the host at once.
 class ContactsBetween final : public LaunchHook {
 public:
-    ContactsBetween(Pipeline& steps, const AnswerBuffers& answer) : steps_(steps), answer_(answer) {}
+    ContactsBetween(Pipeline& pipeline, const AnswerBuffers& answer) : pipeline_(pipeline), answer_(answer) {}
 
     void part_walked() override;
 
 private:
     void read_new(std::uint64_t contacts);
 
-    Pipeline& steps_;
+    Pipeline& pipeline_;
     const AnswerBuffers& answer_;
     std::uint64_t pairs_ = 0, contacts_ = 0; ///< whose contacts are made; that are on the host
 };
 
 /// The release made contacts after every level or batch, and read them back at once.
 void ContactsBetween::part_walked() {
-    steps_.status.read();
-    const auto found = steps_.status.counter(STATUS_PAIRS);
+    pipeline_.status.read();
+    const auto found = pipeline_.status.counter(STATUS_PAIRS);
     const std::uint64_t written = std::min<std::uint64_t>(found, answer_.pairs.capacity());
-    if (written > pairs_ && steps_.makes_contacts()) {
-        steps_.contacts->launch(answer_, pairs_, answer_.pairs.capacity(), steps_.status);
-        steps_.status.read();
+    if (written > pairs_ && pipeline_.makes_contacts()) {
+        pipeline_.contacts->launch(answer_, pairs_, answer_.pairs.capacity(), pipeline_.status);
+        pipeline_.status.read();
         read_new(
-            std::min<std::uint64_t>(steps_.status.counter(STATUS_CONTACTS), answer_.contacts.capacity()));
+            std::min<std::uint64_t>(pipeline_.status.counter(STATUS_CONTACTS), answer_.contacts.capacity()));
     }
     pairs_ = written;
 }
 
 void ContactsBetween::read_new(std::uint64_t contacts) {
     if (contacts <= contacts_) return;
-    const StageScope scope(steps_.device, Stage::read);
+    const StageScope scope(pipeline_.device, Stage::read);
     for (const auto column : {contact_values, contact_ids}) {
         const auto row_bytes = answer_.contacts.row_bytes(column);
         std::vector<std::byte> bytes((contacts - contacts_) * row_bytes);
-        steps_.device.download(answer_.contacts.buffer(column), bytes, contacts_ * row_bytes);
+        pipeline_.device.download(answer_.contacts.buffer(column), bytes, contacts_ * row_bytes);
     }
     contacts_ = contacts;
 }
@@ -54,47 +54,48 @@ void ContactsBetween::read_new(std::uint64_t contacts) {
 class PublishedSession final : public Session {
 public:
     PublishedSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted)
-        : steps_(traversal, device, scene, std::move(fitted)),
-          frame_(*steps_.bodies, *steps_.steps.hierarchy, steps_.shape, steps_.settings[parameters::convert],
-                 static_cast<std::uint32_t>(steps_.settings[parameters::threads])),
+        : pipeline_(traversal, device, scene, std::move(fitted)),
+          frame_(*pipeline_.bodies, *pipeline_.stages.hierarchy, pipeline_.shape,
+                 pipeline_.settings[parameters::convert],
+                 static_cast<std::uint32_t>(pipeline_.settings[parameters::threads])),
           devices_{&device} {}
 
 private:
-    void do_reset() override { steps_.body_pairs->reset(); }
+    void do_reset() override { pipeline_.body_pairs->reset(); }
     FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override;
-    void do_count_work(bool on) override { steps_.count(on); }
+    void do_count_work(bool on) override { pipeline_.count(on); }
     std::span<Device* const> do_devices() const override { return devices_; }
-    const Settings& do_settings() const override { return steps_.settings; }
+    const Settings& do_settings() const override { return pipeline_.settings; }
 
     FrameResult run_whole();
     void walk(const AnswerBuffers& answer);
     bool grow(AnswerBuffers& answer);
     void sort_contacts(const AnswerBuffers& answer, std::uint64_t count);
 
-    Pipeline steps_;
+    Pipeline pipeline_;
     PublishedFrame frame_;
     std::array<Device*, 1> devices_;
     std::uint64_t batches_ = 1; ///< parts that frames begin with
 };
 
 void PublishedSession::walk(const AnswerBuffers& answer) {
-    ContactsBetween between(steps_, answer);
-    const auto task = steps_.task(answer, &between);
-    steps_.status.begin(task.on_host.size());
-    if (task.most_pairs() > 0) steps_.steps.walker->launch(task);
-    steps_.status.read();
+    ContactsBetween between(pipeline_, answer);
+    const auto task = pipeline_.task(answer, &between);
+    pipeline_.status.begin(task.on_host.size());
+    if (task.most_pairs() > 0) pipeline_.stages.walker->launch(task);
+    pipeline_.status.read();
 }
 
 /// Makes room for what the status counts; true when the walk has to start again.
 bool PublishedSession::grow(AnswerBuffers& answer) {
-    bool again = steps_.steps.walker->grow(steps_.status);
-    const auto found = steps_.status.counter(STATUS_PAIRS);
-    if (steps_.output == Output::pairs && found > answer.pairs.capacity()) {
+    bool again = pipeline_.stages.walker->grow(pipeline_.status);
+    const auto found = pipeline_.status.counter(STATUS_PAIRS);
+    if (pipeline_.output == Output::pairs && found > answer.pairs.capacity()) {
         answer.pairs.grow(found);
         again = true;
     }
-    const auto contacts = steps_.status.counter(STATUS_CONTACTS);
-    if (steps_.makes_contacts() && contacts > answer.contacts.capacity()) {
+    const auto contacts = pipeline_.status.counter(STATUS_CONTACTS);
+    if (pipeline_.makes_contacts() && contacts > answer.contacts.capacity()) {
         answer.contacts.grow(contacts);
         again = true;
     }
@@ -103,25 +104,26 @@ bool PublishedSession::grow(AnswerBuffers& answer) {
 
 /// The original sorts the contacts it read back by pair and position, on one thread (prox.md 2.12).
 void PublishedSession::sort_contacts(const AnswerBuffers& answer, std::uint64_t count) {
-    if (!steps_.makes_contacts()) return;
+    if (!pipeline_.makes_contacts()) return;
     std::vector<std::array<std::uint32_t, 2>> ids(count);
     {
-        const StageScope scope(steps_.device, Stage::read);
-        steps_.device.download(answer.contacts.buffer(contact_ids), std::as_writable_bytes(std::span(ids)));
+        const StageScope scope(pipeline_.device, Stage::read);
+        pipeline_.device.download(answer.contacts.buffer(contact_ids),
+                                  std::as_writable_bytes(std::span(ids)));
     }
-    const HostWork work(steps_.device, Stage::postprocess, "sort contacts");
+    const HostWork work(pipeline_.device, Stage::postprocess, "sort contacts");
     std::sort(ids.begin(), ids.end());
 }
 
 FrameResult PublishedSession::run_whole() {
-    auto answer = steps_.answers->take();
+    auto answer = pipeline_.answers->take();
     std::uint64_t retries = 0;
     for (walk(*answer); grow(*answer); walk(*answer)) ++retries;
-    auto result = steps_.counts();
+    auto result = pipeline_.counts();
     result.retries = retries;
-    if (steps_.counting) steps_.steps.walker->report(steps_.status, result.work);
+    if (pipeline_.counting) pipeline_.stages.walker->report(pipeline_.status, result.work);
     sort_contacts(*answer, result.contacts);
-    steps_.add_part(result, std::move(answer));
+    pipeline_.add_part(result, std::move(answer));
     return result;
 }
 
@@ -131,12 +133,12 @@ FrameResult PublishedSession::do_run(const Frame& frame,
                                      std::optional<std::span<const BodyPair>> body_pairs) {
     frame_.update(frame);
     try {
-        steps_.body_pairs->begin(frame, body_pairs);
+        pipeline_.body_pairs->begin(frame, body_pairs);
         if (batches_ == 1) return run_whole();
     } catch (const OutOfMemory&) {
         batches_ = std::max<std::uint64_t>(batches_, 2);
     }
-    return run_in_batches(steps_, &frame, body_pairs, batches_);
+    return run_in_batches(pipeline_, &frame, body_pairs, batches_);
 }
 
 } // namespace

@@ -12,10 +12,10 @@ namespace tandem {
 
 namespace tiled_parameters {
 inline constexpr Setting<std::int64_t> tile_pair_capacity{"tile_pair_capacity", 262144,
-                                                          Range{1, parameters::word_limit}, "",
+                                                          ValueRange{1, parameters::word_limit}, "",
                                                           "pairs of tiles a level has room for at first"};
 /// What 0 stands for is measured: results/h200/README.md.
-inline constexpr Setting<std::int64_t> most_seeds{"most_seeds", 0, Range{0, std::int64_t{1} << 24}, "",
+inline constexpr Setting<std::int64_t> most_seeds{"most_seeds", 0, ValueRange{0, std::int64_t{1} << 24}, "",
                                                   "bodies begin as far below their tops as that makes no "
                                                   "more pairs of tiles; 0: 16384 on GPUs, 256 elsewhere"};
 } // namespace tiled_parameters

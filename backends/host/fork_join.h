@@ -50,9 +50,9 @@ private:
 template<class Work>
 class SynchronizedWork {
 public:
-    explicit SynchronizedWork(const Work& work) : work_(&work) { ForkJoin::release(place_.edge()); }
+    explicit SynchronizedWork(const Work& work) : work_(&work) { ForkJoin::release(anchor_.edge()); }
     SynchronizedWork(const SynchronizedWork& other) : work_(other.received()) {
-        ForkJoin::release(place_.edge());
+        ForkJoin::release(anchor_.edge());
     }
     SynchronizedWork& operator=(const SynchronizedWork&) = delete;
 
@@ -64,22 +64,22 @@ public:
 private:
     /// The memory of a copy: taken before anything is written there, given up after everything is read. Its
     /// address is all there is of it.
-    class Place {
+    class Anchor {
     public:
-        Place() { ForkJoin::acquire(edge()); }
-        Place(const Place&) = delete;
-        Place& operator=(const Place&) = delete;
-        ~Place() { ForkJoin::release(edge()); }
+        Anchor() { ForkJoin::acquire(edge()); }
+        Anchor(const Anchor&) = delete;
+        Anchor& operator=(const Anchor&) = delete;
+        ~Anchor() { ForkJoin::release(edge()); }
 
-        void* edge() const { return const_cast<Place*>(this); }
+        void* edge() const { return const_cast<Anchor*>(this); }
     };
 
     const Work* received() const {
-        ForkJoin::acquire(place_.edge());
+        ForkJoin::acquire(anchor_.edge());
         return work_;
     }
 
-    Place place_;
+    Anchor anchor_;
     const Work* work_;
 };
 

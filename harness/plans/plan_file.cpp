@@ -25,39 +25,39 @@ const Texts valued{"noise",          "seconds",    "repeat", "seed",   "truth",
 const Texts flags{"no-check", "no-count", "check-afresh", "isolate"};
 
 /// A number as a user would write it, or the string.
-std::string scalar(const Json& json, const Place& place) {
+std::string scalar(const Json& json, const JsonLocation& location) {
     if (json.is_string()) {
-        if (json.get<std::string>().empty()) place.fail("is empty");
+        if (json.get<std::string>().empty()) location.fail("is empty");
         return json.get<std::string>();
     }
     if (json.is_number_integer()) return json.dump();
-    if (!json.is_number()) place.fail("must be a string or a number");
-    return fmt::format("{}", number(json, place));
+    if (!json.is_number()) location.fail("must be a string or a number");
+    return fmt::format("{}", number(json, location));
 }
 
 /// One string or number, or a list of them, which is not empty.
-Texts scalars(const Json& json, const Place& place) {
-    if (!json.is_array()) return {scalar(json, place)};
-    if (json.empty()) place.fail("is empty, and so would be the plan; leave it out or name something");
+Texts scalars(const Json& json, const JsonLocation& location) {
+    if (!json.is_array()) return {scalar(json, location)};
+    if (json.empty()) location.fail("is empty, and so would be the plan; leave it out or name something");
     Texts texts;
-    for (std::size_t i = 0; i < json.size(); ++i) texts.push_back(scalar(json[i], place / i));
+    for (std::size_t i = 0; i < json.size(); ++i) texts.push_back(scalar(json[i], location / i));
     return texts;
 }
 
-Texts expanded(const Texts& values, const Place& place) {
+Texts expanded(const Texts& values, const JsonLocation& location) {
     Texts all;
     for (const auto& value : values)
-        for (auto& each : expand_range(value, place.text())) all.push_back(std::move(each));
+        for (auto& each : expand_range(value, location.text())) all.push_back(std::move(each));
     return all;
 }
 
 /// Values by name over those of the plan; null takes a setting of the plan away.
-void read_sets(const Json& json, const Place& place, Request& request) {
-    if (!json.is_object()) place.fail("must be an object: a value, or a list of them, for each setting");
+void read_sets(const Json& json, const JsonLocation& location, Request& request) {
+    if (!json.is_object()) location.fail("must be an object: a value, or a list of them, for each setting");
     for (const auto& [name, value] : json.items()) {
         std::erase_if(request.sets, [&name = name](const auto& set) { return set.first == name; });
         if (!value.is_null())
-            request.sets.emplace_back(name, expanded(scalars(value, place / name), place / name));
+            request.sets.emplace_back(name, expanded(scalars(value, location / name), location / name));
     }
 }
 
@@ -71,61 +71,62 @@ Texts scene_texts(const Texts& given, const std::filesystem::path& folder) {
 }
 
 /// The fields of a product over those of `base`.
-Product read_product(const Json& json, const Place& place, const Product& base) {
+Product read_product(const Json& json, const JsonLocation& location, const Product& base) {
     auto product = base;
     const auto take = [&](const char* name, Texts& texts) {
-        if (json.contains(name)) texts = scalars(json[name], place / name);
+        if (json.contains(name)) texts = scalars(json[name], location / name);
     };
     if (json.contains("scenes"))
-        product.scenes = scene_texts(scalars(json["scenes"], place / "scenes"),
-                                     std::filesystem::path(place.file).parent_path());
+        product.scenes = scene_texts(scalars(json["scenes"], location / "scenes"),
+                                     std::filesystem::path(location.file).parent_path());
     take("frames", product.frames);
     take("algorithms", product.request.algorithms);
     take("presets", product.request.presets);
     take("devices", product.request.devices);
-    if (json.contains("settings")) read_sets(json["settings"], place / "settings", product.request);
+    if (json.contains("settings")) read_sets(json["settings"], location / "settings", product.request);
     return product;
 }
 
-const Json& list(const Json& json, const char* name, const Place& place) {
+const Json& list(const Json& json, const char* name, const JsonLocation& location) {
     static const Json none = Json::array();
     if (!json.contains(name)) return none;
-    if (!json[name].is_array() || json[name].empty()) (place / name).fail("must be a list that is not empty");
+    if (!json[name].is_array() || json[name].empty())
+        (location / name).fail("must be a list that is not empty");
     return json[name];
 }
 
-void read_products(const Json& json, const Place& root, PlanFile& plan) {
+void read_products(const Json& json, const JsonLocation& root, PlanFile& plan) {
     const auto base = read_product(json, root, {});
     if (!base.scenes.empty()) plan.products.push_back(base);
     const auto& more = list(json, "include", root);
     for (std::size_t i = 0; i < more.size(); ++i) {
-        const auto place = root / "include" / i;
-        check_names(more[i], place, product_fields);
-        plan.products.push_back(read_product(more[i], place, base));
-        if (plan.products.back().scenes.empty()) place.fail("has no scenes, and neither has the plan");
+        const auto location = root / "include" / i;
+        check_names(more[i], location, product_fields);
+        plan.products.push_back(read_product(more[i], location, base));
+        if (plan.products.back().scenes.empty()) location.fail("has no scenes, and neither has the plan");
     }
     if (plan.products.empty()) root.fail("has no scenes; name some in \"scenes\", or in \"include\"");
 }
 
-void read_exclusions(const Json& json, const Place& root, PlanFile& plan) {
+void read_exclusions(const Json& json, const JsonLocation& root, PlanFile& plan) {
     const auto& all = list(json, "exclude", root);
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const auto place = root / "exclude" / i;
-        check_names(all[i], place, product_fields);
-        if (all[i].empty()) place.fail("matches every cell; name at least one field");
-        plan.exclusions.push_back({read_product(all[i], place, {}), place.text()});
+        const auto location = root / "exclude" / i;
+        check_names(all[i], location, product_fields);
+        if (all[i].empty()) location.fail("matches every cell; name at least one field");
+        plan.exclusions.push_back({read_product(all[i], location, {}), location.text()});
     }
 }
 
-void read_measure(const Json& json, const Place& place, PlanFile& plan) {
+void read_measure(const Json& json, const JsonLocation& location, PlanFile& plan) {
     auto known = valued;
     known.insert(known.end(), flags.begin(), flags.end());
-    check_names(json, place, known);
+    check_names(json, location, known);
     for (const auto& [name, value] : json.items()) {
         const bool is_flag = std::ranges::find(flags, name) != flags.end();
         if (!is_flag)
-            plan.measure.emplace_back(name, scalar(value, place / name));
-        else if (flag(json, name.c_str(), place))
+            plan.measure.emplace_back(name, scalar(value, location / name));
+        else if (flag(json, name.c_str(), location))
             plan.measure.emplace_back(name, "");
     }
 }
@@ -145,7 +146,7 @@ bool is_plan(const std::string& path) {
 
 PlanFile read_plan(const std::string& path) {
     const auto json = read_json(path, "plan");
-    const Place root{path, {}};
+    const JsonLocation root{path, {}};
     auto known = product_fields;
     for (const auto* name : {"plan", "include", "exclude", "impossible", "measure"}) known.emplace_back(name);
     check_names(json, root, known);

@@ -166,7 +166,7 @@ Ceilings Bench::run() {
     return c;
 }
 
-struct Row {
+struct CeilingRow {
     const char* name;
     const char* text;
     const Samples Ceilings::*samples;
@@ -174,7 +174,7 @@ struct Row {
     const char* unit;
 };
 
-constexpr Row rows[] = {
+constexpr CeilingRow rows[] = {
     {"copy_bytes_per_s", "copy in device memory, read and written", &Ceilings::copy, 1e-9, "GB/s"},
     {"read_bytes_per_s", "read of device memory", &Ceilings::read, 1e-9, "GB/s"},
     {"cache_read_bytes_per_s", "read from the cache", &Ceilings::cache_read, 1e-9, "GB/s"},

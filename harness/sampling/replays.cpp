@@ -100,12 +100,12 @@ std::uint64_t Replays::submissions() const {
 InstrumentedReplay Replays::instrumented() {
     session_->reset();
     for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
-    const ranges::Range cell(name_.c_str());
+    const ranges::ProfilerRange cell(name_.c_str());
     InstrumentedReplay replay;
     replay.by_device.resize(infos_of(cell_).size());
     for (std::size_t i = 0; i < range_.size(); ++i) {
         const auto frame = next_frame(i);
-        const ranges::Range stretch(frame_names_[i].c_str());
+        const ranges::ProfilerRange stretch(frame_names_[i].c_str());
         const auto begin = Clock::now();
         const auto result = session_->run(*frame);
         replay.frame_ns.push_back(since(begin));
@@ -137,13 +137,13 @@ InstrumentedReplay Replays::instrumented() {
 }
 
 std::vector<Trace> Replays::traced(std::size_t index) {
-    const ranges::Range cell(name_.c_str());
+    const ranges::ProfilerRange cell(name_.c_str());
     session_->reset();
     for (std::size_t i = 0; i < index; ++i) session_->run(*next_frame(i));
     const auto frame = next_frame(index);
     session_->run(*frame);
     for (auto* device : cell_.devices) device->set_clocks(Clocks::on);
-    const ranges::Range stretch(frame_names_[index].c_str());
+    const ranges::ProfilerRange stretch(frame_names_[index].c_str());
     const auto result = session_->run(*frame);
     std::vector<Trace> traces;
     for (auto* device : cell_.devices) traces.push_back(device->finish());

@@ -25,12 +25,12 @@ public:
     /// data is colder in caches, and the devices were idle for longer, than where they are held.
     template<class Look>
     TimedReplay timed(const Look& look) {
-        const ranges::Range cell(name_.c_str());
+        const ranges::ProfilerRange cell(name_.c_str());
         session_->reset();
         TimedReplay replay;
         for (std::size_t i = 0; i < range_.size(); ++i) {
             const auto frame = next_frame(i);
-            const ranges::Range stretch(frame_names_[i].c_str());
+            const ranges::ProfilerRange stretch(frame_names_[i].c_str());
             const auto begin = std::chrono::steady_clock::now();
             const auto result = session_->run(*frame);
             replay.frame_ns.push_back(since(begin));

@@ -15,12 +15,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::int64_t device_ns(const Search& search, Stage stage) {
+std::int64_t device_ns(const ContactSearch& search, Stage stage) {
     return search.stages[static_cast<std::size_t>(stage)].device_ns;
 }
 
 /// What the paper's Table 3 calls initialization: transform and refit.
-std::int64_t initialize_ns(const Search& search) {
+std::int64_t initialize_ns(const ContactSearch& search) {
     return device_ns(search, Stage::transform) + device_ns(search, Stage::refit);
 }
 
@@ -55,7 +55,7 @@ Json dynamics_json(const Dynamics& dynamics) {
 
 } // namespace
 
-void RunTotals::add(const StepReport& report, const Search& search, std::int64_t wall) {
+void RunTotals::add(const StepReport& report, const ContactSearch& search, std::int64_t wall) {
     if (steps++ == 0) first = report.step;
     wall_ns += wall;
     initialize_ns += tandem::initialize_ns(search);
@@ -72,7 +72,7 @@ void RunTotals::add(const StepReport& report, const Search& search, std::int64_t
     last = report;
 }
 
-Json step_record(const StepReport& report, const Search& search, std::int64_t wall_ns,
+Json step_record(const StepReport& report, const ContactSearch& search, std::int64_t wall_ns,
                  std::uint64_t session) {
     return {{"schema", 2},
             {"kind", "step"},

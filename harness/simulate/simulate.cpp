@@ -84,7 +84,7 @@ Cell only_cell(Request request, const std::vector<BackendReport>& backends) {
 }
 
 /// Books the simulation's own work on the host under its stage.
-void book(Search& search, Stage stage, std::int64_t host_ns) {
+void book(ContactSearch& search, Stage stage, std::int64_t host_ns) {
     search.stages[static_cast<std::size_t>(stage)].host_ns += host_ns;
 }
 
@@ -153,7 +153,7 @@ void ContactFinder::find(const Frame& frame, std::vector<ContactPoint>& contacts
     }
 }
 
-Search ContactFinder::take() { return std::exchange(search_, {}); }
+ContactSearch ContactFinder::take() { return std::exchange(search_, {}); }
 
 int simulate_command(const SimulateOptions& options) {
     const auto scene = open_scene(options);

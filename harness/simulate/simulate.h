@@ -9,7 +9,7 @@
 namespace tandem {
 
 /// One search for contacts: what was found and host nanoseconds it took.
-struct Search {
+struct ContactSearch {
     std::uint64_t body_pairs = 0, candidate_pairs = 0;
     std::int64_t broad_ns = 0;  ///< body pairs, where the host finds them and stages are measured
     std::int64_t narrow_ns = 0; ///< transform to contacts, with all transfers and waits
@@ -27,14 +27,14 @@ public:
     /// A Detect; what it did is added to search() until that is taken.
     void find(const Frame& frame, std::vector<ContactPoint>& contacts);
     /// What was done since the last call: all searches of one step.
-    Search take();
+    ContactSearch take();
     std::int64_t warm_up_ns() const { return warm_up_ns_; }
 
 private:
     std::unique_ptr<Session> session_;
     bool host_broad_;
     std::int64_t warm_up_ns_ = 0;
-    Search search_;
+    ContactSearch search_;
 };
 
 /// Sums over the steps of a run.
@@ -51,13 +51,13 @@ struct RunTotals {
     std::uint64_t session = 0; ///< the same for all processes that went on with a recording
 
     /// `wall_ns`: of the whole step, searches included.
-    void add(const StepReport& report, const Search& search, std::int64_t wall_ns);
+    void add(const StepReport& report, const ContactSearch& search, std::int64_t wall_ns);
 };
 
 /// Lines of results/simulation.schema.json: of one step, and of a run once it has ended, with `failure` when
 /// it did not reach its last step.
-nlohmann::ordered_json step_record(const StepReport& report, const Search& search, std::int64_t wall_ns,
-                                   std::uint64_t session);
+nlohmann::ordered_json step_record(const StepReport& report, const ContactSearch& search,
+                                   std::int64_t wall_ns, std::uint64_t session);
 nlohmann::ordered_json run_record(const Cell& cell, const Scene& scene, const RunTotals& totals,
                                   const std::string& failure);
 

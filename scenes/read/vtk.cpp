@@ -10,7 +10,7 @@ struct File {
     Scanner in;
     bool binary = false;
     Mesh mesh = {};
-    Cells cells = {};
+    VtkCells cells = {};
 };
 
 /// Runs `body` on text or on binary data, big endian, which start on the next line.

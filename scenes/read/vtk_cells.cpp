@@ -28,37 +28,37 @@ constexpr std::array names = {
     Name{"vtkIdType", Number::i32}, // the legacy writer stores ids in 32 bits
 };
 
-struct Cell {
+struct VtkCell {
     std::int64_t type;
     std::string_view name;
 };
 
 /// VTK's vtkCellType.h: the cells of dimension 3 ...
 constexpr std::array volume_cells = {
-    Cell{11, "voxel"},
-    Cell{12, "hexahedron"},
-    Cell{13, "wedge"},
-    Cell{14, "pyramid"},
-    Cell{15, "pentagonal prism"},
-    Cell{16, "hexagonal prism"},
-    Cell{24, "quadratic tetrahedron"},
-    Cell{25, "quadratic hexahedron"},
-    Cell{26, "quadratic wedge"},
-    Cell{27, "quadratic pyramid"},
-    Cell{29, "triquadratic hexahedron"},
-    Cell{31, "quadratic linear wedge"},
-    Cell{32, "biquadratic quadratic wedge"},
-    Cell{33, "biquadratic quadratic hexahedron"},
-    Cell{37, "triquadratic pyramid"},
-    Cell{42, "polyhedron"},
-    Cell{71, "Lagrange tetrahedron"},
-    Cell{72, "Lagrange hexahedron"},
-    Cell{73, "Lagrange wedge"},
-    Cell{74, "Lagrange pyramid"},
-    Cell{78, "Bezier tetrahedron"},
-    Cell{79, "Bezier hexahedron"},
-    Cell{80, "Bezier wedge"},
-    Cell{81, "Bezier pyramid"},
+    VtkCell{11, "voxel"},
+    VtkCell{12, "hexahedron"},
+    VtkCell{13, "wedge"},
+    VtkCell{14, "pyramid"},
+    VtkCell{15, "pentagonal prism"},
+    VtkCell{16, "hexagonal prism"},
+    VtkCell{24, "quadratic tetrahedron"},
+    VtkCell{25, "quadratic hexahedron"},
+    VtkCell{26, "quadratic wedge"},
+    VtkCell{27, "quadratic pyramid"},
+    VtkCell{29, "triquadratic hexahedron"},
+    VtkCell{31, "quadratic linear wedge"},
+    VtkCell{32, "biquadratic quadratic wedge"},
+    VtkCell{33, "biquadratic quadratic hexahedron"},
+    VtkCell{37, "triquadratic pyramid"},
+    VtkCell{42, "polyhedron"},
+    VtkCell{71, "Lagrange tetrahedron"},
+    VtkCell{72, "Lagrange hexahedron"},
+    VtkCell{73, "Lagrange wedge"},
+    VtkCell{74, "Lagrange pyramid"},
+    VtkCell{78, "Bezier tetrahedron"},
+    VtkCell{79, "Bezier hexahedron"},
+    VtkCell{80, "Bezier wedge"},
+    VtkCell{81, "Bezier pyramid"},
 };
 
 /// ... and those below.
@@ -93,7 +93,7 @@ std::size_t size_of(Number type) {
 std::string_view volume_cell(std::int64_t type) {
     if (std::find(flat_cells.begin(), flat_cells.end(), type) != flat_cells.end()) return "";
     const auto found = std::find_if(volume_cells.begin(), volume_cells.end(),
-                                    [&](const Cell& cell) { return cell.type == type; });
+                                    [&](const VtkCell& cell) { return cell.type == type; });
     return found == volume_cells.end() ? "unknown" : found->name;
 }
 

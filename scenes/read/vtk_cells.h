@@ -27,7 +27,7 @@ std::int64_t get_whole(Scanner& in, Number type, std::string_view what);
 std::int64_t get_whole(Cursor& in, Number type, std::string_view what);
 
 /// All cells of a file: cell i has the vertices from ends[i-1] (or 0) to ends[i].
-struct Cells {
+struct VtkCells {
     std::vector<std::uint32_t> vertices;
     std::vector<std::uint64_t> ends;
 };
@@ -51,7 +51,7 @@ void read_points(In& in, Number type, std::uint64_t n, Mesh& mesh) {
 
 /// Reads n vertex numbers into `cells`, each below `points`.
 template<class In>
-void read_connectivity(In& in, Number type, std::uint64_t n, std::size_t points, Cells& cells) {
+void read_connectivity(In& in, Number type, std::uint64_t n, std::size_t points, VtkCells& cells) {
     in.room(n, 1, size_of(type), "vertex numbers");
     cells.vertices.reserve(cells.vertices.size() + n);
     for (std::uint64_t i = 0; i < n; ++i)
@@ -60,7 +60,7 @@ void read_connectivity(In& in, Number type, std::uint64_t n, std::size_t points,
 
 /// Reads the ends of n cells; the connectivity may still be to come.
 template<class In>
-void read_ends(In& in, Number type, std::uint64_t n, Cells& cells) {
+void read_ends(In& in, Number type, std::uint64_t n, VtkCells& cells) {
     in.room(n, 1, size_of(type), "offsets");
     cells.ends.reserve(n);
     std::uint64_t last = 0;
@@ -75,7 +75,7 @@ void read_ends(In& in, Number type, std::uint64_t n, Cells& cells) {
 
 /// Reads the types of all cells and keeps the tetrahedra, whose vertex numbers count from `base`.
 template<class In>
-void read_types(In& in, Number type, const Cells& cells, std::size_t base, Mesh& mesh) {
+void read_types(In& in, Number type, const VtkCells& cells, std::size_t base, Mesh& mesh) {
     in.room(cells.ends.size(), 1, size_of(type), "cell types");
     std::uint64_t begin = 0;
     for (const auto end : cells.ends) {

@@ -83,7 +83,7 @@ void read_piece(const Xml& xml, const VtuData& data, const Piece& piece, Mesh& m
     const auto base = mesh.vertices.size();
     data.with_array(*piece.points, [&](auto& in, Number type) { read_points(in, type, points, mesh); });
     if (count == 0) return;
-    Cells cells;
+    VtkCells cells;
     data.with_array(*piece.offsets, [&](auto& in, Number type) { read_ends(in, type, count, cells); });
     data.with_array(*piece.connectivity, [&](auto& in, Number type) {
         read_connectivity(in, type, cells.ends.back(), points, cells);

@@ -9,14 +9,14 @@ namespace tandem::simulate {
 
 namespace {
 
-/// Cells are wider than the radius, so that most points reach into one cell only.
+/// PointGrid are wider than the radius, so that most points reach into one cell only.
 constexpr double radii_per_cell = 8;
 /// Points often lie on round coordinates, whose cell walls a point would always be near to.
 constexpr double shift = 0.381966;
 
 } // namespace
 
-void Cells::reset(const Eigen::Vector3d& origin, double radius, std::size_t count) {
+void PointGrid::reset(const Eigen::Vector3d& origin, double radius, std::size_t count) {
     radius_ = radius;
     width_ = radii_per_cell * radius;
     origin_ = origin - Eigen::Vector3d::Constant(shift * width_);
@@ -24,15 +24,15 @@ void Cells::reset(const Eigen::Vector3d& origin, double radius, std::size_t coun
     entries_.clear();
 }
 
-void Cells::insert(const Eigen::Vector3d& point, std::uint32_t value) {
+void PointGrid::insert(const Eigen::Vector3d& point, std::uint32_t value) {
     auto& head = heads_[slot(cell(point, 0))];
     entries_.push_back({value, head});
     head = static_cast<std::uint32_t>(entries_.size() - 1);
 }
 
-Cells::Cell Cells::cell(const Eigen::Vector3d& point, double offset) const {
+PointGrid::GridCell PointGrid::cell(const Eigen::Vector3d& point, double offset) const {
     constexpr double most = 0x1p60;
-    Cell result;
+    GridCell result;
     for (int axis = 0; axis < 3; ++axis) {
         const double place = std::floor((point[axis] - origin_[axis] + offset) / width_);
         result[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::clamp(place, -most, most));
@@ -40,7 +40,7 @@ Cells::Cell Cells::cell(const Eigen::Vector3d& point, double offset) const {
     return result;
 }
 
-std::size_t Cells::slot(const Cell& cell) const {
+std::size_t PointGrid::slot(const GridCell& cell) const {
     std::uint64_t hash = 0;
     for (const auto part : cell) {
         hash = (hash ^ static_cast<std::uint64_t>(part)) * 0x9e3779b97f4a7c15u;

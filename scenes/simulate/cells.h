@@ -9,7 +9,7 @@
 namespace tandem::simulate {
 
 /// Points of one body pair in a hashed grid, for neighbours within `radius`.
-class Cells {
+class PointGrid {
 public:
     /// Empties the grid; room for `count` points.
     void reset(const Eigen::Vector3d& origin, double radius, std::size_t count);
@@ -32,14 +32,14 @@ public:
     static constexpr std::uint32_t none = UINT32_MAX;
 
 private:
-    using Cell = std::array<std::int64_t, 3>;
+    using GridCell = std::array<std::int64_t, 3>;
     struct Entry {
         std::uint32_t value, next;
     };
 
-    Cell cell(const Eigen::Vector3d& point, double offset) const;
-    /// Cells may share a slot: callers judge by distance, so that a stranger costs time only.
-    std::size_t slot(const Cell& cell) const;
+    GridCell cell(const Eigen::Vector3d& point, double offset) const;
+    /// PointGrid may share a slot: callers judge by distance, so that a stranger costs time only.
+    std::size_t slot(const GridCell& cell) const;
 
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
     double radius_ = 0, width_ = 1;

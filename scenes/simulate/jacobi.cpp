@@ -78,12 +78,12 @@ public:
     }
 
 private:
-    struct Part {
+    struct BodyBlock {
         std::size_t begin, end;
     };
 
     /// An equal share, by position alone: results do not depend on which thread takes it.
-    Part part(std::size_t count, std::size_t thread) const {
+    BodyBlock part(std::size_t count, std::size_t thread) const {
         return {count * thread / changes_.size(), count * (thread + 1) / changes_.size()};
     }
 

@@ -12,8 +12,8 @@ namespace tandem {
 
 namespace {
 
-using simulate::Cells;
 using simulate::dot;
+using simulate::PointGrid;
 
 constexpr double same_direction = 0.99984769515639124; ///< cosine of one degree
 
@@ -23,7 +23,7 @@ Eigen::Vector3d normal_of(const ContactPoint& c) { return {c.normal[0], c.normal
 double squared(const Eigen::Vector3d& v) { return dot(v, v); }
 
 /// Merges one body pair's contacts into `kept`.
-void merge(std::span<const ContactPoint> group, double radius, Cells& cells,
+void merge(std::span<const ContactPoint> group, double radius, PointGrid& cells,
            std::vector<ContactPoint>& kept) {
     const auto first = kept.size();
     if (!(radius > 0)) {
@@ -38,7 +38,7 @@ void merge(std::span<const ContactPoint> group, double radius, Cells& cells,
             return squared(point_of(candidate) - point) < radius * radius
                    && dot(normal_of(candidate), normal_of(contact)) > same_direction;
         });
-        if (same != Cells::none) {
+        if (same != PointGrid::none) {
             kept[first + same].depth = std::min(kept[first + same].depth, contact.depth);
             continue;
         }
@@ -81,7 +81,7 @@ void choose(std::span<const ContactPoint> group, std::size_t count, std::vector<
 }
 
 /// Merges one body pair's contacts and keeps some of them.
-void reduce_group(std::span<const ContactPoint> group, double radius, std::size_t per_pair, Cells& cells,
+void reduce_group(std::span<const ContactPoint> group, double radius, std::size_t per_pair, PointGrid& cells,
                   std::vector<ContactPoint>& kept) {
     if (per_pair == 0) return merge(group, radius, cells, kept);
     std::vector<ContactPoint> merged;
@@ -125,7 +125,7 @@ std::vector<ContactPoint> reduce_contacts(std::span<const ContactPoint> contacts
     constexpr std::size_t block = 16; // groups a core takes at a time
     std::vector<std::vector<ContactPoint>> parts((groups.size() + block - 1) / block);
     parallel_for(parts.size(), [&](std::size_t part) {
-        Cells cells;
+        PointGrid cells;
         for (auto i = part * block; i < std::min(groups.size(), (part + 1) * block); ++i) {
             const auto& pair = groups[i].front().pair;
             reduce_group(groups[i], settings.distance * std::min(sizes[pair.body_a], sizes[pair.body_b]),

@@ -32,20 +32,20 @@ struct Topology {
 
 /// Halves the Morton order until one item is left: no path is longer than ceil(log2 items).
 Topology halved(std::uint32_t items) {
-    struct Range {
+    struct ValueRange {
         std::uint32_t first, end;
     };
     Topology tree;
     const auto inner = items - 1;
     std::uint32_t numbered = 1;
-    std::vector<Range> row; // the inner nodes of a depth
+    std::vector<ValueRange> row; // the inner nodes of a depth
     if (items > 1) row.push_back({0, items});
     while (!row.empty()) {
         tree.depths.push_back(static_cast<std::uint32_t>(tree.children.size() / 2));
-        std::vector<Range> below;
+        std::vector<ValueRange> below;
         for (const auto& [first, end] : row) {
             const auto middle = first + (end - first) / 2;
-            for (const auto& half : {Range{first, middle}, Range{middle, end}}) {
+            for (const auto& half : {ValueRange{first, middle}, ValueRange{middle, end}}) {
                 const bool is_leaf = half.end - half.first == 1;
                 tree.children.push_back(is_leaf ? inner + half.first : numbered++);
                 if (!is_leaf) below.push_back(half);

@@ -44,7 +44,8 @@ TEST_P(Slots, NumberEveryTetrahedronOnce) {
     const auto scene = uneven();
     const Bodies bodies(on, scene, {}, Bodies::Sharing::by_mesh);
     ASSERT_EQ(bodies.pair_layout(), PairLayout::slots);
-    const auto rows = contents<Bodies::Row>(bodies.owners(), bodies.owners().bytes() / sizeof(Bodies::Row));
+    const auto rows =
+        contents<Bodies::BodyRow>(bodies.owners(), bodies.owners().bytes() / sizeof(Bodies::BodyRow));
     std::set<std::uint32_t> seen;
     for (std::uint32_t body = 0; body < bodies.count(); ++body) {
         const auto& own = bodies.row(body);

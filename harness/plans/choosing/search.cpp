@@ -18,9 +18,9 @@ constexpr std::size_t most_sweeps = 32;
 /// Replays from which on candidates whose times do not overlap are told apart before the round ends.
 constexpr std::size_t telling = 5;
 
-class Search {
+class SuccessiveHalving {
 public:
-    Search(std::size_t count, const SearchSteps& steps, const SearchLimits& limits)
+    SuccessiveHalving(std::size_t count, const SearchSteps& steps, const SearchLimits& limits)
         : steps_(steps), limits_(limits) {
         result_.replays.resize(count);
     }
@@ -48,7 +48,7 @@ private:
     std::vector<std::size_t> dropped_; ///< in that order
 };
 
-void Search::replay(std::size_t candidate) {
+void SuccessiveHalving::replay(std::size_t candidate) {
     if (const auto time = steps_.replay(candidate)) {
         times(candidate).push_back(*time);
         return;
@@ -59,7 +59,7 @@ void Search::replay(std::size_t candidate) {
 }
 
 /// Half of the time is left for those that are worth it.
-void Search::try_all() {
+void SuccessiveHalving::try_all() {
     for (std::size_t candidate = 0; candidate < result_.replays.size(); ++candidate) {
         const bool late =
             steps_.measured() >= limits_.measuring / 2 || steps_.preparing() >= limits_.preparing;
@@ -70,13 +70,13 @@ void Search::try_all() {
     }
 }
 
-void Search::sort_by_median() {
+void SuccessiveHalving::sort_by_median() {
     std::stable_sort(alive_.begin(), alive_.end(),
                      [&](auto a, auto b) { return median(result_.replays[a]) < median(result_.replays[b]); });
 }
 
 /// Of the sorted ones those from `position` on, the slowest first.
-void Search::drop_from(std::size_t position) {
+void SuccessiveHalving::drop_from(std::size_t position) {
     while (alive_.size() > position) {
         dropped_.push_back(alive_.back());
         steps_.drop(alive_.back());
@@ -84,7 +84,7 @@ void Search::drop_from(std::size_t position) {
     }
 }
 
-void Search::drop_hopeless() {
+void SuccessiveHalving::drop_hopeless() {
     sort_by_median();
     const auto behind = std::find_if(alive_.begin(), alive_.end(), [&](auto candidate) {
         return median(times(candidate)) > static_cast<double>(hopeless) * median(times(alive_.front()));
@@ -93,7 +93,7 @@ void Search::drop_hopeless() {
 }
 
 /// Those whose fastest replay is slower than the slowest of the best.
-void Search::drop_behind() {
+void SuccessiveHalving::drop_behind() {
     sort_by_median();
     const auto& best = times(alive_.front());
     if (best.size() < telling) return;
@@ -105,7 +105,7 @@ void Search::drop_behind() {
                                        - alive_.begin()));
 }
 
-bool Search::sweep(bool backwards) {
+bool SuccessiveHalving::sweep(bool backwards) {
     auto order = alive_;
     if (backwards) std::reverse(order.begin(), order.end());
     for (const auto candidate : order) {
@@ -116,7 +116,7 @@ bool Search::sweep(bool backwards) {
 }
 
 /// There and back: what grows steadily, such as heat, then weighs on all alike.
-void Search::play_round() {
+void SuccessiveHalving::play_round() {
     const auto rounds = std::bit_width(alive_.size() - 1); // halvings until one is left
     const auto now = steps_.measured();
     const auto end = now + (limits_.measuring - now) / static_cast<double>(rounds);
@@ -129,7 +129,7 @@ void Search::play_round() {
     if (has_time()) drop_from(std::min(half, alive_.size()));
 }
 
-SearchResult Search::run() {
+SearchResult SuccessiveHalving::run() {
     try_all();
     while (alive_.size() > 1 && has_time()) play_round();
     sort_by_median();
@@ -141,7 +141,7 @@ SearchResult Search::run() {
 } // namespace
 
 SearchResult search(std::size_t count, const SearchSteps& steps, const SearchLimits& limits) {
-    return Search(count, steps, limits).run();
+    return SuccessiveHalving(count, steps, limits).run();
 }
 
 } // namespace tandem

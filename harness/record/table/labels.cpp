@@ -12,12 +12,12 @@ namespace tandem {
 namespace {
 
 /// What a row may be told apart by, in the order of a label.
-struct Part {
+struct LabelPart {
     std::string name, text;
     bool is_setting = false;
     bool is_said = true; ///< what all share is said of this one: no preset says it
 };
-using Parts = std::vector<Part>;
+using Parts = std::vector<LabelPart>;
 
 Parts parts_of(const Row& row) {
     const auto& cell = *row.cell;
@@ -31,20 +31,20 @@ Parts parts_of(const Row& row) {
 }
 
 std::string text_of(const Parts& parts, const std::string& name) {
-    const auto found = std::ranges::find_if(parts, [&](const Part& part) { return part.name == name; });
+    const auto found = std::ranges::find_if(parts, [&](const LabelPart& part) { return part.name == name; });
     return found == parts.end() ? std::string() : found->text;
 }
 
 /// What decides which pairs are candidates, whatever the algorithm: cells that differ in it are not compared.
 constexpr std::array geometry_names{"k", "axes", "precision", "rounding", "placement", "origin"};
 
-bool is_geometry(const Part& part) {
+bool is_geometry(const LabelPart& part) {
     return std::ranges::find(geometry_names, part.name) != geometry_names.end();
 }
 
 /// Among which rows a part tells one apart: settings those of one algorithm and preset, which says what its
 /// own are.
-std::string scope_of(const Part& part, const Parts& parts) {
+std::string scope_of(const LabelPart& part, const Parts& parts) {
     return part.is_setting && !is_geometry(part) ? parts[0].text + " " + parts[1].text : "";
 }
 
@@ -57,7 +57,7 @@ public:
             for (const auto* name : geometry_names) texts_[{"", name}].insert(text_of(parts, name));
         }
     }
-    bool vary(const Part& part, const Parts& parts) const {
+    bool vary(const LabelPart& part, const Parts& parts) const {
         return texts_.at({scope_of(part, parts), part.name}).size() > 1;
     }
 
@@ -74,12 +74,12 @@ std::set<std::string> varying_names(const Parts& parts, const Texts& texts) {
 
 /// Of one setting that was swept every value is said; of several those that the preset does not have, or
 /// labels would be longer than lines.
-bool is_in_label(const Part& part, const Parts& parts, const std::set<std::string>& varying) {
+bool is_in_label(const LabelPart& part, const Parts& parts, const std::set<std::string>& varying) {
     if (part.name == "algorithm") return true;
     if (!varying.contains(part.name)) return false;
     if (!part.is_setting || is_geometry(part) || part.is_said) return true;
     return std::ranges::count_if(parts,
-                                 [&](const Part& other) {
+                                 [&](const LabelPart& other) {
                                      return other.is_setting && !is_geometry(other)
                                             && varying.contains(other.name);
                                  })

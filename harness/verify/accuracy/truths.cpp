@@ -37,7 +37,7 @@ Truths::Truths(const Scene& scene, const FrameRange& range, TruthAmount amount, 
       kept_(folder, fmt::format("truths of {} {:016x}", scene.key, scene.digest)) {}
 
 /// Found once and kept, for all cells of the same positions.
-const FrameTruth& Truths::truth_of(const Place& place, const Report& report) {
+const FrameTruth& Truths::truth_of(const FramePosition& place, const Report& report) {
     if (const auto found = truths_.find(place); found != truths_.end()) return found->second;
     const auto& [positions, index] = place;
     const auto frame = range_.frame(index, positions.origin);
@@ -46,7 +46,7 @@ const FrameTruth& Truths::truth_of(const Place& place, const Report& report) {
     return truths_.emplace(place, std::move(truth)).first->second;
 }
 
-const ContactTruths& Truths::contact_truths_of(const Place& place, const Report& report) {
+const ContactTruths& Truths::contact_truths_of(const FramePosition& place, const Report& report) {
     if (const auto found = contact_truths_.find(place); found != contact_truths_.end()) return found->second;
     const auto& [positions, index] = place;
     const auto frame = range_.frame(index, positions.origin);
@@ -57,7 +57,7 @@ const ContactTruths& Truths::contact_truths_of(const Place& place, const Report&
 
 const AnswerErrors& Truths::errors(const Geometry& geometry, std::size_t index, const FrameAnswer& answer,
                                    const Report& report) {
-    const Place place{{geometry.precision, geometry.placement, geometry.origin}, index};
+    const FramePosition place{{geometry.precision, geometry.placement, geometry.origin}, index};
     const std::tuple key{geometry.precision, geometry.origin, place,
                          Numbers{answer.pairs.count, answer.pairs.a, answer.pairs.b, answer.contacts.count,
                                  answer.contacts.a, answer.contacts.b}};
@@ -72,7 +72,8 @@ const AnswerErrors& Truths::errors(const Geometry& geometry, std::size_t index, 
 }
 
 /// The frame by what is in it; the first of a range has its drift besides.
-std::string Truths::question(const Geometry& geometry, const Place& place, const FrameAnswer& answer) const {
+std::string Truths::question(const Geometry& geometry, const FramePosition& place,
+                             const FrameAnswer& answer) const {
     const auto& [positions, index] = place;
     const auto& p = answer.pairs;
     const auto& c = answer.contacts;
@@ -93,8 +94,8 @@ const Drift& Truths::drift_of(const Geometry& geometry) {
 }
 
 /// Kept by the caller only when nothing has thrown: a download may fail, and the next cell asks again.
-AnswerErrors Truths::errors_of(const Geometry& geometry, const Place& place, const FrameAnswer& answer,
-                               const Report& report) {
+AnswerErrors Truths::errors_of(const Geometry& geometry, const FramePosition& place,
+                               const FrameAnswer& answer, const Report& report) {
     const auto& truth = truth_of(place, report);
     AnswerErrors errors;
     const auto pairs = answer.download();

@@ -48,12 +48,13 @@ public:
                                const Report& report = {});
 
 private:
-    using Place = std::pair<Positions, std::size_t>;
+    using FramePosition = std::pair<Positions, std::size_t>;
     using Numbers = std::array<std::uint64_t, 6>; ///< of the digests
-    const FrameTruth& truth_of(const Place& place, const Report& report);
-    const ContactTruths& contact_truths_of(const Place& place, const Report& report);
-    std::string question(const Geometry& geometry, const Place& place, const FrameAnswer& answer) const;
-    AnswerErrors errors_of(const Geometry& geometry, const Place& place, const FrameAnswer& answer,
+    const FrameTruth& truth_of(const FramePosition& place, const Report& report);
+    const ContactTruths& contact_truths_of(const FramePosition& place, const Report& report);
+    std::string question(const Geometry& geometry, const FramePosition& place,
+                         const FrameAnswer& answer) const;
+    AnswerErrors errors_of(const Geometry& geometry, const FramePosition& place, const FrameAnswer& answer,
                            const Report& report);
     const Drift& drift_of(const Geometry& geometry);
 
@@ -62,10 +63,10 @@ private:
     TruthAmount amount_;
     std::size_t most_contacts_;
     VerificationCache kept_;
-    std::map<Place, FrameTruth> truths_;
-    std::map<Place, ContactTruths> contact_truths_;
+    std::map<FramePosition, FrameTruth> truths_;
+    std::map<FramePosition, ContactTruths> contact_truths_;
     std::map<std::pair<Precision, Origin>, Drift> drifts_; ///< of the first frame
-    std::map<std::tuple<Precision, Origin, Place, Numbers>, AnswerErrors> errors_;
+    std::map<std::tuple<Precision, Origin, FramePosition, Numbers>, AnswerErrors> errors_;
 };
 
 } // namespace tandem
