@@ -3,6 +3,7 @@
 """scripts.py PROGRAM SOURCE: what reads records and exports (tandem.tables, tandem.error_figures, tandem.answer, scripts/convert_records,
 scripts/render): over every committed file, over cells of every status, and over files that are no such files; and the committed
 microbenchmarks."""
+import collections
 import contextlib
 import importlib
 import importlib.machinery
@@ -18,6 +19,7 @@ import resource
 import shutil
 import subprocess
 import sys
+import textwrap
 import unittest
 
 from program import LONG, PROGRAM, SMALL, SOURCE, Case, sets, tandem
@@ -26,6 +28,29 @@ sys.dont_write_bytecode = True
 sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "python")]
 COMMITTED = sorted([*SOURCE.glob("results/*/*.jsonl"), *SOURCE.glob("results/*/*.jsonl.xz")])
 MODULES = {"tables": "tandem.tables", "figures": "tandem.error_figures", "answer": "tandem.answer"}  # other names are those of scripts
+
+QUOTE = re.compile(r"(?s)<!-- quote: (\S+) -->\n```\w+\n(.*?)```")
+
+
+def stands_in(quote, lines):
+    """Whether the lines of a quote follow each other in a file, whatever their common indentation."""
+    own = textwrap.dedent(quote).splitlines()
+    return bool(own) and any(textwrap.dedent("\n".join(lines[i:i + len(own)])).splitlines() == own for i in range(len(lines)))
+
+
+def wrong_quotes(page):
+    """What is wrong with the blocks of a page that stand below <!-- quote: FILE -->, which all blocks of C++ do."""
+    quotes, blocks = QUOTE.findall(page), page.count("```cpp")
+    of_cpp = sum(name.endswith((".cpp", ".h")) for name, _ in quotes)
+    wrong = [f"{blocks} blocks of C++ and {of_cpp} quotes of it"] if blocks != of_cpp else []
+    if (marks := page.count("<!-- quote:")) != len(quotes):
+        wrong.append(f"{marks} marks and {len(quotes)} quotes")
+    for name, quote in quotes:
+        if not (SOURCE / name).is_file():
+            wrong.append(f"{name}: no such file")
+        elif not stands_in(quote, (SOURCE / name).read_text().splitlines()):
+            wrong.append(f"{name}: has no such lines: {quote.partition(chr(10))[0]}")
+    return wrong
 
 
 def loaded(name, scripts={}):
@@ -427,16 +452,27 @@ class Scripts(Case):
                     self.assertTrue((page.parent / target).exists(), f"{page.relative_to(SOURCE)}: {target}")
 
     def test_quotes_of_the_examples_are_theirs(self):
-        """Fenced lines of their page stand in the file that the section is of."""
-        folder = SOURCE / "scripts/examples"
-        sections = re.split(r"(?m)^## `(.*?)`", (folder / "README.md").read_text())
-        named = dict(zip(sections[1::2], sections[2::2]), **{"find_pairs.h": sections[0]})
-        self.assertEqual(set(named), {p.name for p in folder.iterdir() if p.suffix in (".cpp", ".h", ".py")})
-        for name, text in named.items():
-            lines = [line.strip() for line in (folder / name).read_text().splitlines()]
-            quotes = [line.strip() for quote in re.findall(r"(?s)```\w+\n(.*?)```", text) for line in quote.splitlines()]
-            self.assertGreater(len(quotes), 2, name)
-            self.assertEqual([line for line in quotes if line not in lines], [], name)
+        """Every example is quoted by the user guide, and every quote stands in its file."""
+        quoted, folder = collections.Counter(), SOURCE / "scripts/examples"
+        for page in sorted((SOURCE / "docs/user").glob("*.md")):
+            text = page.read_text()
+            self.assertEqual(wrong_quotes(text), [], page.name)
+            quoted.update(name for name, _ in QUOTE.findall(text))
+        examples = {str(p.relative_to(SOURCE)) for p in folder.iterdir() if p.suffix in (".cpp", ".h", ".py")}
+        self.assertGreater(len(examples), 4)
+        self.assertLessEqual(examples, set(quoted))
+
+    def test_wrong_quotes_are_found(self):
+        name = "scripts/examples/find_pairs.h"
+        lines = (SOURCE / name).read_text().splitlines()
+        page = lambda *quote: "\n".join([f"<!-- quote: {name} -->", "```cpp", *quote, "```", ""])
+        self.assertEqual(wrong_quotes(page(*lines)), [])
+        self.assertEqual(wrong_quotes(page(*(line[4:] for line in lines if line.startswith("    ")))), [])
+        for quote in ([lines[0] + ";"], [lines[0], lines[2]], []):
+            self.assertEqual(wrong_quotes(page(*quote)), [f"{name}: has no such lines: {(quote or [''])[0]}"])
+        self.assertEqual(wrong_quotes(page(lines[0]).replace(name, "scripts/examples/absent.h")), ["scripts/examples/absent.h: no such file"])
+        self.assertEqual(wrong_quotes("```cpp\nint i;\n```\n"), ["1 blocks of C++ and 0 quotes of it"])
+        self.assertEqual(wrong_quotes(f"<!-- quote: {name} -->\ntext\n"), ["1 marks and 0 quotes"])
 
     def test_committed_microbenchmarks(self):
         """What compare.py of Google Benchmark reads, of every benchmark as often, partitions aside; and nothing that names the machine."""
