@@ -392,6 +392,19 @@ class Scripts(Case):
         for option in ("--at=2", "--at=x", "--size=0x4", "--size=9", "--zoom=0", "--box=1,2", "--from=0,0,0", "--cut=x", "--unheard-of"):
             self.refused("render", option.split("=")[0], glb, out, option)
 
+    def test_commands_of_the_pictures_are_those_of_the_page(self):
+        """Each row of the table has the command that its three pictures are made by."""
+        status, text, errors = script("pictures", "--list")
+        self.assertEqual((status, errors), (0, []))
+        page = SOURCE / "docs/user/scenes.md"
+        rows = [row for row in page.read_text().splitlines() if "-0.png" in row]
+        self.assertEqual([re.match("`(.*?)`", row)[1] for row in rows], text.splitlines())
+        for row in rows:
+            pictures = re.findall(r"\]\((.*?)\)", row)
+            self.assertEqual([path[-6:] for path in pictures], ["-0.png", "-1.png", "-2.png"], row)
+            for path in pictures:
+                self.assertTrue((page.parent / path).is_file(), path)
+
     def test_the_tables_of_the_pages_are_those_of_the_records(self):
         plan = SOURCE / "results/h200/plan.jsonl"
         for page in ("README.md", "results/h200/README.md"):
