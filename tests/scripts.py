@@ -398,7 +398,7 @@ class Scripts(Case):
         self.assertEqual((status, errors), (0, []))
         page = SOURCE / "docs/user/scenes.md"
         rows = [row for row in page.read_text().splitlines() if "-0.png" in row]
-        self.assertEqual([re.match("`(.*?)`", row)[1] for row in rows], text.splitlines())
+        self.assertEqual([re.match(r"\|`(.*?)`", row)[1] for row in rows], text.splitlines())
         for row in rows:
             pictures = re.findall(r"\]\((.*?)\)", row)
             self.assertEqual([path[-6:] for path in pictures], ["-0.png", "-1.png", "-2.png"], row)
