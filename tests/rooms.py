@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""rooms.py PROGRAM SOURCE: every include of the tree is one that the tables of docs/developer/rooms.md allow."""
+import pathlib
+import re
+import tempfile
+import unittest
+
+from program import SOURCE
+
+PAGE = "docs/developer/rooms.md"
+INCLUDE = re.compile(r'\s*#\s*include\s*"([^"]+)"')
+ENDINGS = {".h", ".hpp", ".cpp", ".c", ".cl", ".clh", ".cu"}
+LEAST = 500  # includes that a whole tree has at least: fewer mean that the search has missed files
+
+
+def words(cell):
+    """What stands in backquotes in a cell of a table."""
+    return re.findall(r"`([^`]+)`", cell)
+
+
+def tables(text):
+    """Rows of the tables of a page, as lists of cells, by the first heads of their columns."""
+    found = {}
+    for block in re.findall(r"(?m)(?:^\|.*\n)+", text):
+        rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in block.splitlines()]
+        found[tuple(rows[0])[:2]] = rows[2:]
+    return found
+
+
+class Rules:
+    """What the page allows."""
+
+    def __init__(self, text):
+        of_page = tables(text)
+        self.rooms = {words(row[0])[0]: set(words(row[1])) for row in of_page["Room", "May include"]}
+        self.limits = {(words(row[0])[0], words(row[1])[0]): (words(row[2]), words(row[3])) for row in of_page["From", "To"]}
+        self.elsewhere = {words(row[0])[0] for row in of_page["Header", "Found in"]}
+
+    def room_of(self, path):
+        """The longest room that holds the path; without one the folder that has no row."""
+        names = [name for name in self.rooms if path.startswith(name + "/")]
+        return max(names, key=len) if names else path.rpartition("/")[0] or "."
+
+    def error(self, path, target):
+        """Why the file must not include the other; empty where it may."""
+        own, other = self.room_of(path), self.room_of(target)
+        for room in (own, other):
+            if room not in self.rooms:
+                return f"folder {room} is no room of {PAGE}"
+        if own == other:
+            return ""
+        if other not in self.rooms[own]:
+            return f"room {own} must not include room {other}"
+        only, never = self.limits.get((own, other), ((), ()))
+        inner = target[len(other) + 1:]
+        names = lambda entry: inner.startswith(entry) if entry.endswith("/") else inner == entry
+        if any(map(names, never)) or only and not any(map(names, only)):
+            return f"room {own} must not include {inner} of room {other}"
+        return ""
+
+
+def files(root):
+    """Paths below the root that may have includes; build folders and hidden ones are no part of the tree."""
+    for folder in sorted(entry for entry in root.iterdir() if entry.is_dir() and not re.match(r"build|\.", entry.name)):
+        yield from (path for path in sorted(folder.rglob("*")) if path.suffix in ENDINGS)
+
+
+def check(root):
+    """(number of includes, what is wrong with them); each error begins with FILE:LINE."""
+    rules = Rules((root / PAGE).read_text(encoding="utf-8"))
+    count, errors = 0, []
+    for path in files(root):
+        name = path.relative_to(root).as_posix()
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            include = INCLUDE.match(line)
+            if not include:
+                continue
+            count += 1
+            target = include[1]
+            beside = path.parent / target
+            if not (root / target).is_file() and beside.is_file():
+                target = beside.resolve().relative_to(root.resolve()).as_posix()
+            if target in rules.elsewhere:
+                continue
+            error = rules.error(name, target) if (root / target).is_file() else f"no file {target}"
+            if error:
+                errors.append(f"{name}:{number}: {error}")
+    if count < LEAST:
+        errors.append(f"only {count} includes found, fewer than {LEAST}")
+    return count, errors
+
+
+class Rooms(unittest.TestCase):
+    def test_the_tree_keeps_to_the_page(self):
+        count, errors = check(SOURCE)
+        print(f"{count} includes")
+        self.assertEqual(errors, [])
+
+    def test_the_page_names_rooms_that_exist(self):
+        rules = Rules((SOURCE / PAGE).read_text(encoding="utf-8"))
+        for room, others in rules.rooms.items():
+            self.assertTrue((SOURCE / room).is_dir(), room)
+            self.assertLessEqual(others, set(rules.rooms), room)
+        for (own, other), (only, never) in rules.limits.items():
+            self.assertIn(other, rules.rooms[own])
+            for entry in (*only, *never):
+                self.assertTrue((SOURCE / other / entry).exists(), f"{other}/{entry}")
+
+
+class Mistakes(unittest.TestCase):
+    """Small trees with one mistake each; the page is the real one."""
+
+    def errors(self, text, where="geometry/new.h", many=True):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            page = root / PAGE
+            page.parent.mkdir(parents=True)
+            page.write_text((SOURCE / PAGE).read_text(encoding="utf-8"), encoding="utf-8")
+            for path in ("base/error.h", "scenes/scene.h", "scenes/motion.h", "harness/plans/cells.h", "algorithms/traversal.h",
+                         "algorithms/tiled/tiled.h"):
+                (root / path).parent.mkdir(parents=True, exist_ok=True)
+                (root / path).touch()
+            if many:
+                (root / "base/many.cpp").write_text('#include "base/error.h"\n' * LEAST)
+            (root / where).parent.mkdir(parents=True, exist_ok=True)
+            (root / where).write_text(text)
+            return check(root)[1]
+
+    def test_allowed_includes_pass(self):
+        self.assertEqual(self.errors('#include "base/error.h"\n#include <vector>\n'), [])
+        self.assertEqual(self.errors('#include "error.h"\n#include "commit.h"\n', "base/new.h"), [])
+
+    def test_a_wrong_include_fails(self):
+        self.assertEqual(self.errors('\n  #  include "harness/plans/cells.h"\n'), ["geometry/new.h:2: room geometry must not include room harness"])
+        self.assertEqual(self.errors('#include "scenes/motion.h"\n', "algorithms/new.cpp"),
+                         ["algorithms/new.cpp:1: room algorithms must not include motion.h of room scenes"])
+        self.assertEqual(self.errors('#include "algorithms/tiled/tiled.h"\n', "harness/new.cpp"),
+                         ["harness/new.cpp:1: room harness must not include tiled/tiled.h of room algorithms"])
+        self.assertEqual(self.errors('#include "base/nothing.h"\n'), ["geometry/new.h:1: no file base/nothing.h"])
+
+    def test_a_room_without_a_row_fails(self):
+        self.assertEqual(self.errors('#include "base/error.h"\n', "extra/new.cpp"), [f"extra/new.cpp:1: folder extra is no room of {PAGE}"])
+        self.assertEqual(self.errors('#include "base/error.h"\n', "python/other/new.cpp"),
+                         [f"python/other/new.cpp:1: folder python/other is no room of {PAGE}"])
+
+    def test_a_tree_with_few_includes_fails(self):
+        self.assertEqual(self.errors('#include "base/error.h"\n', many=False), [f"only 1 includes found, fewer than {LEAST}"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["rooms.py"], verbosity=2)
