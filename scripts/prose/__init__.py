@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""What scripts/check_prose checks: a module a group of rules."""
