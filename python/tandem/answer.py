@@ -133,13 +133,13 @@ def first_lines(cells, answers):
     next_best = [min(paired(at(s, other), at(s, "tiled")).value for other in ("chunked", "fair")) for s in scenes]
     fixed = [paired(at(s, "fair"), at(s, "chunked")).value for s in scenes]
     return (f"- **Fastest: the tiled walk** (`tiled`, tiles of 32 boxes against 32). A whole frame with contacts is {span(next_best)} times as fast\n"
-            "  as with the better of the other two (one NVIDIA H200, k = 18, everything on the device).\n"
-            "- **The paper's schedule, grouped** (`chunked`) is our form of it: a work-group shares its walks.\n"
+            "  as with the better of `chunked` and gProximity (one NVIDIA H200, k = 18, everything on the device).\n"
+            "- **Ours, grouped** (`chunked` by default) has the paper's chunks and another schedule: a work-group shares its walks.\n"
             f"  It {against_gproximity(fixed, 'scenes', ' ')}\n"
             + paper_schedule(cells) +
-            f"- **Right**: {sum(answers)} of {len(answers)} cells of that plan found the reference's pairs and contacts, bit for bit; "
-            "that no pair that meets is missed is\n"
-            "  [proved](algorithms/bounds/README.md), and [tested](harness/verify/accuracy/README.md) against the exact truth.")
+            f"- **Right**: {sum(answers)} of {len(answers)} cells of the plan have the reference's pairs and contacts, bit for bit.\n"
+            "  With default bounds no colliding pair is missed: this is [proved](algorithms/bounds/README.md), and\n"
+            "  [tested](docs/user/accuracy.md) against the exact truth.")
 
 
 def against_gproximity(ratios, noun, each):
@@ -162,7 +162,7 @@ def paper_schedule(cells):
     return ("- **The paper's own schedule**, in which each work-item walks its own seeds, was measured in "
             f"{len(scenes)} of these scenes (k = {ks}).\n"
             f"  It {against_gproximity(list(ratios.values()), 'cells', ' ')}\n"
-            "  The paper's factors of 6 to 133 come mostly from uploads of empty queues.\n") if ratios else ""
+            "  The paper's factors of 6 to 133 come mostly from [uploads of empty queues](results/paper/README.md).\n") if ratios else ""
 
 
 def title_of(cells, names):
