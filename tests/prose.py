@@ -19,7 +19,7 @@ PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
 
 # Rules that hold in this tree; `scripts/check_prose --help` lists all.
-CLEAN = ["link", "allowed"]
+CLEAN = ["mean", "long", "size", "link", "program", "allowed"]
 
 HELP = """#!/usr/bin/env python3
 import sys
@@ -224,7 +224,7 @@ class Program(Tree):
         self.write(scripts__tool="#!/bin/sh\n[ $1 = --full ]\n")
         for line in ("tandem", "tandem --version: which", "tandem run x -o y --set a=-b,2", "build/tandem check --out=f", "mpirun -n 2 --bind-to x tandem run a", "tandem hidden",
                      "tandem run a && tandem check b --out c | sort --unique", "tandem run SCENE ... | PLAN   text --of it", "tandem COMMAND --help", "A=b tandem run  # --none",
-                     "tandem run --set 'a --none'", "tandem: error", "tandem.run()", "other --none", "scripts/tool --none", "tandem run [--json | -o FILE]"[:11]):
+                     "tandem run --set 'a --none'", "tandem: error", "tandem.run()", "other --none", "T=/a/tandem other --none", "scripts/tool --none", "tandem run [--json | -o FILE]"[:11]):
             self.assertEqual(self.found_in(f"\n    {line}\n\n`{line}`\n"), [], line)
         self.assertEqual(self.found_in("`--set` and `--full` and `-o`, and --none\n"), [])
 

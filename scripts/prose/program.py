@@ -8,11 +8,11 @@ from prose.errors import BadUse
 from prose.markdown import CODE
 
 # The program's name, in front of it what launches it.
-LEADING = re.compile(r"^\s*(?:\$\s+)?(?:(?:\w+=\S*|mpirun|mpiexec|srun|time|env|nice|taskset|parallel|-{1,2}\w\S*|\d+)\s+)*(?:\S*/)?tandem(?=\s|$)")
+LEADING = re.compile(r"^\s*(?:\$\s+)?(?:(?:\w+=\S*|mpirun|mpiexec|srun|time|env|nice|taskset|parallel|-{1,2}\w\S*|\d+)\s+)*(?:[^\s=]*/)?tandem(?=\s|$)")
 # What ends a command in a line: another one, a comment, what explains it behind three blanks, a redirection.
 BEHIND = re.compile(r"\s\|\|?\s|\s?&&|;|\s#\s|\s{3,}|\s[<>]\s?")
 # Between commands of a line.
-NEXT = re.compile(r"\s&&\s|(?:\s\||;)\s(?=(?:\S*/)?tandem\s)")
+NEXT = re.compile(r"\s&&\s|(?:\s\||;)\s(?=(?:[^\s=]*/)?tandem\s)")
 OPTION = re.compile(r"(?<![\w./=-])(-{1,2}[A-Za-z][\w-]*)")
 LONG = re.compile(r"(?<![\w-])--[a-z][\w-]*")
 QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'")
