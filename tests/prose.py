@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """prose.py PROGRAM SOURCE: scripts/check_prose on small trees, in which each rule holds and does not, and on this tree by the rules that
-hold in it."""
+hold in it; scripts/docs."""
 import contextlib
 import importlib.machinery
 import importlib.util
@@ -36,16 +36,16 @@ def sentence(count):
     return " ".join(["word"] * count) + "."
 
 
-def loaded():
-    """check_prose, in this process."""
+def loaded(script):
+    """A script, in this process."""
     sys.dont_write_bytecode = True
-    loader = importlib.machinery.SourceFileLoader("check_prose", str(SOURCE / "scripts/check_prose"))
+    loader = importlib.machinery.SourceFileLoader(script, str(SOURCE / "scripts" / script))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader(loader.name, loader))
     loader.exec_module(module)
     return module
 
 
-CHECKER = loaded()
+CHECKER = loaded("check_prose")
 
 
 def check(*arguments):
@@ -269,6 +269,30 @@ class Use(Tree):
         subprocess.run(["git", "init", "-q", self.root], check=True)
         subprocess.run(["git", "-C", self.root, "add", "a.md"], check=True)
         self.assertEqual([one.split(":")[0] for one in self.found("of")], ["a.md"])
+
+
+class Docs(unittest.TestCase):
+    """scripts/docs, which needs doxygen for the reference itself."""
+
+    def run_docs(self, *arguments, **environment):
+        done = subprocess.run([sys.executable, "-B", SOURCE / "scripts/docs", *map(str, arguments)], capture_output=True, text=True, timeout=60, check=False,
+                              env={**os.environ, **environment})
+        return done.returncode, done.stdout, done.stderr
+
+    def test_doxygen_is_missing(self):
+        self.assertEqual(self.run_docs(PATH="/nonexistent"), (2, "", "doxygen is missing: apt install doxygen\n"))
+
+    def test_links_that_the_reference_can_follow(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".md", dir=SOURCE / "docs") as page:
+            page.write("[a](glossary.md) [b](glossary.md#c) [d](../README.md) [e](https://f.g) [h](#i) `j`\n")
+            page.flush()
+            self.assertEqual(self.run_docs("--filter", page.name), (0, "[a](glossary.md) [b](glossary.md) d [e](https://f.g) h `j`\n", ""))
+
+    def test_public_headers(self):
+        docs = loaded("docs")
+        self.assertGreater(len(docs.public_headers()), 20)
+        self.assertIn("backends/mpi/mpi_ranks.h", docs.public_headers())
+        self.assertEqual([path for path in docs.public_headers() if not (SOURCE / path).is_file()], [])
 
 
 class ThisTree(unittest.TestCase):
