@@ -283,10 +283,13 @@ class Docs(unittest.TestCase):
         self.assertEqual(self.run_docs(PATH="/nonexistent"), (2, "", "doxygen is missing: apt install doxygen\n"))
 
     def test_links_that_the_reference_can_follow(self):
-        with tempfile.NamedTemporaryFile("w", suffix=".md", dir=SOURCE / "docs") as page:
-            page.write("[a](glossary.md) [b](glossary.md#c) [d](../README.md) [e](https://f.g) [h](#i) `j`\n")
-            page.flush()
-            self.assertEqual(self.run_docs("--filter", page.name), (0, "[a](glossary.md) [b](glossary.md) d [e](https://f.g) h `j`\n", ""))
+        code, text, errors = self.run_docs("--filter", SOURCE / "docs/README.md")
+        self.assertEqual((code, errors), (0, ""))
+        self.assertIn("[Quick start](user/quick_start.md)", text)
+        self.assertNotIn("](../", text)
+        page = SOURCE / "docs/user/page.md"
+        self.assertEqual(loaded("docs").filtered(page, "[a](../glossary.md#b) [c](../../README.md) [d](https://e.f) [g](#h) `i`"),
+                         "[a](../glossary.md) c [d](https://e.f) g `i`")
 
     def test_public_headers(self):
         docs = loaded("docs")
