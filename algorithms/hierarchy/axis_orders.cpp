@@ -21,10 +21,10 @@ AxisOrders::AxisOrders(const std::vector<Eigen::Vector3d>& points)
     }
 }
 
-void AxisOrders::cut(ItemRange range, std::size_t axis, std::size_t place) {
-    for (auto i = range.first; i < range.end; ++i) is_left_[sorted_[axis][i]] = i < place;
+void AxisOrders::cut(ItemRange range, std::size_t axis, std::size_t split) {
+    for (auto i = range.first; i < range.end; ++i) is_left_[sorted_[axis][i]] = i < split;
     for (auto& sorted : sorted_) {
-        auto left = range.first, right = place;
+        auto left = range.first, right = split;
         for (auto i = range.first; i < range.end; ++i)
             moved_[is_left_[sorted[i]] ? left++ : right++] = sorted[i];
         std::copy(moved_.begin() + static_cast<std::ptrdiff_t>(range.first),

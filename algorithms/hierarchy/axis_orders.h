@@ -9,12 +9,12 @@
 
 namespace tandem {
 
-/// Points sorted along x, y and z, and kept so within every range of positions that is cut: for orders that
-/// cut a mesh again and again, in linear time a cut. Points of equal coordinates stand by number, so that the
-/// order of any points is one on every machine; a coordinate that is no number counts as zero.
+/// Points sorted along x, y and z. Cutting a range keeps each part sorted along all three axes, in time
+/// linear in the range's size. Points with equal coordinates are ordered by number, so that every machine
+/// produces the same order. A NaN coordinate counts as zero.
 class AxisOrders {
 public:
-    /// Consecutive positions.
+    /// A range of consecutive positions.
     struct ItemRange {
         std::size_t first = 0, end = 0;
 
@@ -24,10 +24,10 @@ public:
     explicit AxisOrders(const std::vector<Eigen::Vector3d>& points);
 
     std::size_t size() const { return sorted_[0].size(); }
-    /// Position -> point, along an axis within every range.
+    /// Maps positions to points, sorted along `axis` within every range.
     const std::vector<std::uint32_t>& along(std::size_t axis) const { return sorted_[axis]; }
-    /// Brings those before `place` along `axis` before the others of the range along all axes.
-    void cut(ItemRange range, std::size_t axis, std::size_t place);
+    /// Moves the points before position `split` along `axis` to the front of the range along all axes.
+    void cut(ItemRange range, std::size_t axis, std::size_t split);
 
 private:
     std::array<std::vector<std::uint32_t>, 3> sorted_;
@@ -35,9 +35,9 @@ private:
     std::vector<std::uint32_t> moved_;
 };
 
-/// How long the runs are that a range is cut into, so that trees whose nodes are runs of 32, 32^2, ... have
-/// whole ones: of more than 32 the longest that leave no more than 32 of them; of fewer half of the perfect
-/// tree over them.
+/// Run length for cutting a range of `size` items, so that trees whose nodes are runs of 32, 32^2, ... get
+/// full runs. Above 32 items: the power of 32 that leaves 2 to 32 runs. Up to 32 items: half the width of the
+/// perfect binary tree over them.
 std::size_t run_of(std::size_t size);
 
 } // namespace tandem

@@ -14,7 +14,7 @@ class BreadthFirst {
 public:
     explicit BreadthFirst(const Mesh& mesh);
 
-    /// Appends all that is reached from `start`, unless that has been.
+    /// Appends every tetrahedron that is reachable from `start`, unless the order already contains it.
     void from(std::uint32_t start);
     std::vector<std::uint32_t> take() { return std::move(order_); }
 
@@ -23,11 +23,12 @@ private:
     void append_across(std::size_t face);
 
     std::vector<Face> faces_;
-    std::vector<std::size_t> first_; ///< by tetrahedron and corner: the first of the same faces
+    /// [4 * tetrahedron + corner]: the first entry of faces_ with the same vertices.
+    std::vector<std::size_t> first_;
     std::vector<std::uint8_t> is_reached_;
-    std::vector<std::uint8_t>
-        is_crossed_;                   ///< by the first of the same faces: all their tetrahedra are reached
-    std::vector<std::uint32_t> order_; ///< which is the queue as well
+    /// By the first entry of equal faces: whether all their tetrahedra are reached.
+    std::vector<std::uint8_t> is_crossed_;
+    std::vector<std::uint32_t> order_; ///< also the queue of the search
 };
 
 BreadthFirst::BreadthFirst(const Mesh& mesh)

@@ -8,10 +8,10 @@
 
 namespace tandem {
 
-/// Tetrahedra of a mesh breadth-first over those that share a face, as the paper tried before curves (section
-/// 3.1, Figure 5 left): position i holds the tetrahedron order[i]. It begins at the first along the Z-curve,
-/// as does each further part of the mesh that shares no face with those before; neighbours follow by number.
-/// O(n log n) for any mesh, faces of many tetrahedra included.
+/// Breadth-first order of a mesh's tetrahedra over shared faces, as the paper tried before curves (section
+/// 3.1, Figure 5 left): order[i] is the tetrahedron at position i. Each part that is connected by faces
+/// starts at its first tetrahedron along the Z-curve. Neighbours follow by number. O(n log n) for any mesh,
+/// also if many tetrahedra share a face.
 std::vector<std::uint32_t> breadth_order(const Mesh& mesh);
 
 } // namespace tandem

@@ -13,11 +13,11 @@ namespace tandem {
 namespace {
 
 constexpr std::uint32_t level_words = 4;
-constexpr std::uint32_t level_bits = 5; ///< TREE_LEVEL_BITS
+constexpr std::uint32_t level_bits = 5; ///< TREE_LEVEL_BITS of node.clh
 constexpr std::uint32_t job_words = 8;
-constexpr std::uint32_t most_top_items = 1024; ///< of a level that one work-group refits
+constexpr std::uint32_t most_top_items = 1024; ///< largest level that one work-group refits
 
-/// Rounded up.
+/// Number of groups, rounded up.
 std::uint64_t groups_for(std::uint64_t items, std::uint64_t per_group) {
     return (items + per_group - 1) / per_group;
 }
@@ -51,7 +51,7 @@ Kernel ChunkTrees::compile(std::string_view entry) const {
     return device_.compile(kernel_source("algorithms/hierarchy/refit.cl"), entry, own);
 }
 
-/// Rows of levels by mesh, of trees by body.
+/// Fills the rows of levels by mesh and the rows of trees by body.
 void ChunkTrees::lay_out() {
     std::vector<std::uint32_t> first_level;
     for (const auto& levels : mesh_levels_) {
@@ -70,8 +70,8 @@ void ChunkTrees::lay_out() {
         throw DeviceError("scene: more than 2^32 nodes; leave bodies out");
 }
 
-/// Level by level, each from its deepest nodes up, in strips of at most strip_height + 1 depths. The small
-/// levels above them are left to refit_tops.
+/// Plans each level from its deepest nodes up, in strips of at most strip_height + 1 depths. refit_tops
+/// refits the small levels above.
 void ChunkTrees::plan_strips() {
     const auto is_small = [&](const std::vector<Level>& levels) {
         return first_top_level_ >= levels.size() || levels[first_top_level_].items <= most_top_items;
@@ -95,13 +95,13 @@ void ChunkTrees::plan_strips() {
     }
 }
 
-/// Adds the jobs of one strip: a row for each subtree whose root is at depth `top` of a chunk, of fixed
-/// bodies or of the others.
+/// Adds a job row for each subtree whose root is at depth `top` of a chunk. `fixed` selects fixed or moving
+/// bodies.
 void ChunkTrees::plan_strip(std::uint32_t level, bool fixed, std::uint32_t top) {
     const auto& scene = bodies_.scene();
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) {
         const auto& levels = this->levels(body);
-        if (scene.bodies[body].fixed != fixed || level >= levels.size() || !takes(body)) continue;
+        if (scene.bodies[body].fixed != fixed || level >= levels.size() || !is_active(body)) continue;
         const auto& row = bodies_.row(body);
         for (std::uint32_t chunk = 0; chunk < levels[level].chunks; ++chunk) {
             const auto first = chunk * leaves_;
@@ -117,7 +117,7 @@ void ChunkTrees::plan_strip(std::uint32_t level, bool fixed, std::uint32_t top) 
     }
 }
 
-/// Tables that no frame changes.
+/// Uploads the tables that do not change between frames.
 void ChunkTrees::upload_static() {
     tree_table_ = uploaded(device_, bytes_of(trees_), "trees");
     level_table_ = uploaded(device_, bytes_of(level_rows_), "levels");
@@ -127,13 +127,13 @@ void ChunkTrees::upload_static() {
     volumes_ = device_.allocate(bodies_.count() * node, "volumes");
 }
 
-/// Bodies that move come first, so that a refit of these alone is a shorter launch.
+/// Moving bodies come first, so that a refit of only these is a shorter launch.
 void ChunkTrees::upload_jobs() {
-    if (jobs_.empty()) jobs_.resize(job_words); // a buffer of nothing there is not
+    if (jobs_.empty()) jobs_.resize(job_words); // buffers cannot be empty
     job_table_ = uploaded(device_, bytes_of(jobs_), "refit jobs");
     std::vector<std::uint32_t> order;
     for (std::uint32_t body = 0; body < bodies_.count(); ++body)
-        if (takes(body)) order.push_back(body);
+        if (is_active(body)) order.push_back(body);
     const auto moving = [&](std::uint32_t body) { return !bodies_.scene().bodies[body].fixed; };
     ordered_bodies_ = static_cast<std::uint32_t>(order.size());
     moving_bodies_ =
@@ -157,7 +157,7 @@ std::size_t ChunkTrees::do_bytes() const {
     return sum;
 }
 
-/// Bottom up: a strip reads what the one before it wrote.
+/// Runs bottom up: each strip reads the nodes that the previous one wrote.
 void ChunkTrees::launch_strips(bool all) {
     for (const auto& s : strips_) {
         const auto per_group = strips_of_group(shape_, s.height);
@@ -194,12 +194,12 @@ void ChunkTrees::upload_masked() {
         device_.upload(buffer, bytes_of(words));
     };
     const StageScope scope(device_, Stage::write);
-    put(masked_rows_, masked_.rows, "emptied nodes");
-    put(masked_starts_, masked_.starts, "rounds of emptied nodes");
+    put(masked_rows_, masked_.rows, "masked nodes");
+    put(masked_starts_, masked_.starts, "rounds of masked nodes");
 }
 
-/// Plans the nodes that tetrahedra skipped by the frame change, when it skips others than the one before.
-void ChunkTrees::leave_out(const Frame& frame) {
+/// Replans the masked nodes when the frame skips other tetrahedra than the previous frame.
+void ChunkTrees::mask_skipped(const Frame& frame) {
     if (frame.skipped == skipped_) return;
     {
         const HostWork work(device_, Stage::preprocess, "skipped tetrahedra");
@@ -221,7 +221,7 @@ void ChunkTrees::leave_out(const Frame& frame) {
 }
 
 void ChunkTrees::do_refit(const Frame& frame, bool all) {
-    leave_out(frame);
+    mask_skipped(frame);
     all |= fresh_;
     const StageScope scope(device_, Stage::refit);
     launch_strips(all);

@@ -9,13 +9,13 @@
 
 namespace tandem {
 
-/// Chunks over every body's tetrahedra and super chunks over those (paper, section 3.1): complete binary
-/// trees without stored children (heap.clh), k-DOPs for nodes.
+/// Chunks over every body's tetrahedra and super chunks over the chunks (paper, section 3.1). The nodes are
+/// k-DOPs in complete binary trees with implicit children (heap.clh).
 class ChunkTrees final : public Hierarchy {
 public:
-    /// `leaves`: tetrahedra per chunk, a power of two. Work-groups are of `group_size` work-items at most.
-    /// `bodies` must outlive this. Throws OutOfMemory when the nodes do not fit, DeviceError when there are
-    /// 2^32 of them.
+    /// `leaves`: tetrahedra per chunk, a power of two. `group_size`: maximum work-items of a work-group.
+    /// `bodies` must outlive this object. Throws OutOfMemory when the nodes do not fit, DeviceError when
+    /// there are 2^32 or more.
     ChunkTrees(const Bodies& bodies, std::uint32_t leaves, std::uint32_t group_size);
 
     const Bodies& bodies() const { return bodies_; }
@@ -29,18 +29,18 @@ public:
     std::uint32_t first_slot(std::size_t body) const { return trees_[body].nodes; }
     /// Node slots of all bodies.
     std::uint64_t slots() const { return slots_; }
-    /// What kernels that include node.clh are compiled with: the geometry and the size of chunks.
+    /// Defines for kernels that include node.clh: the geometry and the chunk size.
     Defines defines(std::uint32_t group_size) const;
 
-    const Buffer& tree_table() const { return tree_table_; }   ///< TREE_WORDS words a body
-    const Buffer& level_table() const { return level_table_; } ///< LEVEL_WORDS words a level
+    const Buffer& tree_table() const { return tree_table_; }   ///< TREE_WORDS words per body
+    const Buffer& level_table() const { return level_table_; } ///< LEVEL_WORDS words per level
 
 private:
-    /// A row of node.clh.
+    /// A row of the tree table (node.clh).
     struct Tree {
         std::uint32_t nodes = 0, levels = 0, level_count_and_block = 0, items = 0;
     };
-    /// One launch of refit_strips: jobs of one level, those of bodies that move first.
+    /// One launch of refit_strips: jobs of one level, those of moving bodies first.
     struct Strip {
         std::uint32_t level, height, first_job, jobs, dynamic_jobs;
     };
@@ -57,7 +57,7 @@ private:
     void plan_strip(std::uint32_t level, bool fixed, std::uint32_t top);
     void upload_static();
     void upload_jobs();
-    void leave_out(const Frame& frame);
+    void mask_skipped(const Frame& frame);
     void upload_masked();
     void launch_strips(bool all);
     void launch_tops(bool all);
@@ -72,15 +72,15 @@ private:
     std::vector<Tree> trees_;
     std::vector<std::uint32_t> jobs_;
     std::vector<Strip> strips_;
-    std::uint32_t first_top_level_ = 1; ///< the first level that refit_tops does
-    std::uint32_t ordered_bodies_ = 0;  ///< how many are in body_order_
-    std::uint32_t moving_bodies_ = 0;   ///< of these those that are not fixed; they come first
+    std::uint32_t first_top_level_ = 1; ///< the first level that refit_tops refits
+    std::uint32_t ordered_bodies_ = 0;  ///< number of bodies in body_order_
+    std::uint32_t moving_bodies_ = 0;   ///< number of moving bodies, which come first in body_order_
     std::uint64_t slots_ = 0;
-    bool fresh_ = true; ///< fixed bodies need a refit: there was no frame yet, or it skipped others of theirs
-    std::vector<std::vector<std::uint32_t>> skipped_; ///< by the last frame
-    std::vector<std::vector<std::uint32_t>>
-        positions_;         ///< by mesh: the inverse of its ids, once it is needed
-    MaskedElements masked_; ///< for skipped_
+    bool fresh_ = true;                               ///< whether the next refit includes fixed bodies
+    std::vector<std::vector<std::uint32_t>> skipped_; ///< by body: tetrahedra that the last frame skips
+    /// By mesh: the inverse of its ids, computed on first use.
+    std::vector<std::vector<std::uint32_t>> positions_;
+    MaskedElements masked_; ///< plan for skipped_
     Buffer nodes_, volumes_, tree_table_, level_table_, job_table_, body_order_;
     Buffer masked_rows_, masked_starts_;
     Kernel strips_kernel_, tops_kernel_, empty_kernel_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// heap.clh for the host: one text says where nodes are.
+// Host version of heap.clh, so that kernels and host share one definition of node positions.
 #pragma once
 
 #include <bit>
@@ -18,7 +18,7 @@ using uint = std::uint32_t;
 
 inline constexpr uint root_node = 1;
 
-/// How far below the root a node is.
+/// Depth of a node below the root.
 inline uint depth_of(uint node) { return static_cast<uint>(std::bit_width(node)) - 1; }
 
 } // namespace tandem::heap

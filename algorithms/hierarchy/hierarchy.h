@@ -7,8 +7,8 @@
 
 namespace tandem {
 
-/// A hierarchy over the tetrahedra of every body, refitted every frame. What a walk needs of it beyond this,
-/// it has from the concrete type: an algorithm makes both together.
+/// A hierarchy over the tetrahedra of every body, refitted every frame. An algorithm creates its walk and its
+/// hierarchy together, so the walk knows the concrete type.
 class Hierarchy {
 public:
     virtual ~Hierarchy() = default;
@@ -16,36 +16,36 @@ public:
     Hierarchy(const Hierarchy&) = delete;
     Hierarchy& operator=(const Hierarchy&) = delete;
 
-    /// Enqueues what makes every bound of `frame` from the vertices and poses that are on the device.
-    /// Tetrahedra that the frame skips are in no bound. Bodies that do not move are left as they are unless
-    /// `all` are to be refitted. Throws DeviceError.
+    /// Enqueues the refit of all bounds of `frame` from the vertices and poses on the device. Tetrahedra that
+    /// the frame skips are in no bound. Fixed bodies keep their bounds unless `all` is set. Throws
+    /// DeviceError.
     void refit(const Frame& frame, bool all = false) { do_refit(frame, all); }
-    /// From the next refit on, which is of all of them, bodies that have no part in `share` are left out:
-    /// their bounds are of no frame. Throws DeviceError.
-    void take(const Subdomain& share, std::size_t bodies) {
-        roles_ = roles_of(share, bodies);
+    /// Limits later refits to bodies with a role in `subdomain`; the next one includes fixed bodies. The
+    /// bounds of all other bodies become invalid. Throws DeviceError.
+    void take(const Subdomain& subdomain, std::size_t bodies) {
+        roles_ = roles_of(subdomain, bodies);
         do_take();
     }
 
-    /// The k-DOP of every body, K reals each (volume.clh), as the last refit made them.
+    /// The k-DOP of every body after the last refit, K reals each (volume.clh).
     const Buffer& volumes() const { return do_volumes(); }
-    /// The nodes, K reals each: what a data path that keeps nothing on the device has to move.
+    /// The nodes, K reals each. A session that keeps nothing on the device transfers these.
     const Buffer& nodes() const { return do_nodes(); }
     /// Bytes of device memory in all buffers.
     std::size_t bytes() const { return do_bytes(); }
 
 protected:
-    bool takes(std::uint32_t body) const { return roles_.empty() || roles_[body] != Role::none; }
+    bool is_active(std::uint32_t body) const { return roles_.empty() || roles_[body] != Role::none; }
 
 private:
     virtual void do_refit(const Frame& frame, bool all) = 0;
     virtual const Buffer& do_volumes() const = 0;
     virtual const Buffer& do_nodes() const = 0;
     virtual std::size_t do_bytes() const = 0;
-    /// A hierarchy may go on making all bounds.
+    /// The default keeps refitting all bodies.
     virtual void do_take() {}
 
-    std::vector<Role> roles_; ///< by body; none where all take part
+    std::vector<Role> roles_; ///< by body; empty if all bodies are active
 };
 
 } // namespace tandem

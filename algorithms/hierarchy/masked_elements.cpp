@@ -9,7 +9,7 @@ namespace tandem {
 
 namespace {
 
-constexpr std::uint32_t holds_nothing = 0xffffffffu; ///< as refit.cl has it
+constexpr std::uint32_t no_children = 0xffffffffu; ///< HOLDS_NOTHING of refit.cl
 
 void make_unique(std::vector<std::uint32_t>& values) {
     std::sort(values.begin(), values.end());
@@ -22,8 +22,8 @@ void MaskedElementsPlan::begin_round() {
     result_.starts.push_back(static_cast<std::uint32_t>(result_.rows.size() / 3));
 }
 
-/// Rounds of one level: its leaves over `items`, then a depth each from the deepest inner nodes up. Returns
-/// the chunks it changed.
+/// Adds the rounds of one level: first its leaves over `items`, then one round per depth from the deepest
+/// inner nodes up. Returns the chunks that change.
 std::vector<std::uint32_t> MaskedElementsPlan::add_level(std::uint32_t first_slot,
                                                          std::span<const Level> levels, std::uint32_t index,
                                                          std::span<const std::uint32_t> items) {
@@ -31,7 +31,7 @@ std::vector<std::uint32_t> MaskedElementsPlan::add_level(std::uint32_t first_slo
     const auto base = first_slot + level.slot;
     const auto depths = ceil_log2(leaves_);
     const auto chunk_slots = heap::heap_slots(leaves_);
-    // Nodes by depth, as slots counted from `base`: those of each chunk before, then the heap index.
+    // Inner nodes by depth, as slots relative to `base`: the slots of all earlier chunks plus the heap index.
     std::vector<std::vector<std::uint32_t>> inner(depths + 1);
     std::vector<std::uint32_t> chunks;
     begin_round();
@@ -40,7 +40,7 @@ std::vector<std::uint32_t> MaskedElementsPlan::add_level(std::uint32_t first_slo
         const auto in_chunk = std::min(leaves_, level.items - chunk * leaves_);
         const auto node = heap::leaf_node(item % leaves_, in_chunk);
         const auto below = index == 0
-                               ? holds_nothing
+                               ? no_children
                                : first_slot + levels[index - 1].slot + chunk_slots * item + heap::root_node;
         result_.rows.insert(result_.rows.end(), {base + chunk_slots * chunk + node, below, below});
         if (node != heap::root_node)
@@ -50,11 +50,11 @@ std::vector<std::uint32_t> MaskedElementsPlan::add_level(std::uint32_t first_slo
     for (auto depth = depths; depth-- > 0;) {
         begin_round();
         make_unique(inner[depth]);
-        for (const auto place : inner[depth]) {
-            const auto node = place % chunk_slots;
-            const auto child = base + place - node + heap::first_child(node);
-            result_.rows.insert(result_.rows.end(), {base + place, child, child + 1});
-            if (depth > 0) inner[depth - 1].push_back(place - node + heap::parent_of(node));
+        for (const auto slot : inner[depth]) {
+            const auto node = slot % chunk_slots;
+            const auto child = base + slot - node + heap::first_child(node);
+            result_.rows.insert(result_.rows.end(), {base + slot, child, child + 1});
+            if (depth > 0) inner[depth - 1].push_back(slot - node + heap::parent_of(node));
         }
     }
     make_unique(chunks);

@@ -5,31 +5,33 @@
 
 namespace tandem {
 
-/// Nodes to make again when some tetrahedra take no part, as kernel empty_nodes takes them.
+/// Nodes to rebuild when a frame skips tetrahedra, in the layout of kernel empty_nodes.
 struct MaskedElements {
-    std::vector<std::uint32_t> rows;   ///< 3 words each: a node's slot, and those of the two it is over
-    std::vector<std::uint32_t> starts; ///< [body * rounds + round]: first row; a last one for their number
+    std::vector<std::uint32_t> rows; ///< 3 words each: a node's slot and the slots of its two children
+    std::vector<std::uint32_t>
+        starts; ///< [body * rounds + round]: first row; the last entry is the number of rows
     std::uint32_t rounds = 0;
-    std::uint32_t bodies = 0; ///< that lack a tetrahedron
+    std::uint32_t bodies = 0; ///< number of bodies with skipped tetrahedra
 };
 
-/// Collects them body by body: the leaves of skipped tetrahedra, their ancestors bottom up, the same in the
-/// next level for the chunk roots that these change, and so on below level `end`, where refit_tops goes on.
+/// Collects the rows body by body: the leaves of skipped tetrahedra, then their ancestors bottom up. It
+/// repeats this in each level below `end` for the changed chunk roots. refit_tops handles the levels from
+/// `end` on.
 class MaskedElementsPlan {
 public:
     MaskedElementsPlan(std::uint32_t leaves, std::uint32_t end) : leaves_(leaves), end_(end) {}
 
-    /// A body with its first node slot, its levels and its skipped tetrahedra, one at least; positions[t] is
-    /// tetrahedron t's in Morton order.
+    /// Adds a body with at least one skipped tetrahedron. `first_slot` is its first node slot; positions[t]
+    /// is the position of tetrahedron t in the builder's order.
     void add(std::uint32_t first_slot, std::span<const Level> levels, std::span<const std::uint32_t> skipped,
              std::span<const std::uint32_t> positions);
-    /// What was collected, ended by the last start.
+    /// Returns the collected rows and completes their starts.
     MaskedElements take();
 
 private:
     std::vector<std::uint32_t> add_level(std::uint32_t first_slot, std::span<const Level> levels,
                                          std::uint32_t index, std::span<const std::uint32_t> items);
-    /// Nodes of one round depend on none of it, only on earlier ones.
+    /// Starts a round. Its nodes depend only on nodes of earlier rounds.
     void begin_round();
 
     std::uint32_t leaves_, end_;

@@ -8,8 +8,8 @@ namespace tandem {
 
 namespace {
 
-/// Infinite sides, of coordinates near the largest numbers, are equally long; one between equal infinities is
-/// none.
+/// Infinite sides, from coordinates near the largest numbers, count as equally long. A side between equal
+/// infinities is NaN and never the longest.
 std::size_t longest_axis(const AxisOrders& axes, const std::vector<Eigen::Vector3d>& points,
                          AxisOrders::ItemRange range) {
     std::size_t longest = 0;
@@ -36,10 +36,10 @@ std::vector<std::uint32_t> median_order(const Mesh& mesh) {
         todo.pop_back();
         if (range.size() < 2) continue;
         const auto run = run_of(range.size());
-        const auto place = range.first + (range.size() + run) / (2 * run) * run;
-        axes.cut(range, longest_axis(axes, points, range), place);
-        todo.push_back({place, range.end});
-        todo.push_back({range.first, place});
+        const auto split = range.first + (range.size() + run) / (2 * run) * run;
+        axes.cut(range, longest_axis(axes, points, range), split);
+        todo.push_back({split, range.end});
+        todo.push_back({range.first, split});
     }
     return axes.along(0);
 }

@@ -32,13 +32,13 @@ Eigen::Vector3d centroid(const Mesh& mesh, const Tetrahedron& t) {
 }
 
 std::uint32_t cell(double offset, double scale) {
-    // The scale is finite and the offset non-negative or, between infinities, no number.
-    const double place = offset * scale;
-    if (place >= static_cast<double>(lattice)) return lattice;
-    return place > 0 ? static_cast<std::uint32_t>(place) : 0;
+    // The scale is finite. The offset is non-negative, or NaN between infinities.
+    const double position = offset * scale;
+    if (position >= static_cast<double>(lattice)) return lattice;
+    return position > 0 ? static_cast<std::uint32_t>(position) : 0;
 }
 
-/// Points by the code of their cell.
+/// Orders points by the code of their cell.
 template<class Code>
 std::vector<std::uint32_t> curve_order(const std::vector<Eigen::Vector3d>& points, Code code) {
     const auto count = points.size();
@@ -62,7 +62,7 @@ std::vector<std::uint32_t> curve_order(const std::vector<Eigen::Vector3d>& point
     return order;
 }
 
-/// The order of a mesh that a builder makes.
+/// Order of a mesh by a builder.
 std::vector<std::uint32_t> order_of(const Mesh& mesh, Builder builder) {
     if (mesh.tetrahedra.empty()) return {};
     switch (builder) {
@@ -77,7 +77,7 @@ std::vector<std::uint32_t> order_of(const Mesh& mesh, Builder builder) {
     case Builder::median:
         return median_order(mesh);
     }
-    throw std::invalid_argument("a builder that is none");
+    throw std::invalid_argument("unknown builder");
 }
 
 } // namespace
@@ -88,7 +88,8 @@ std::uint64_t morton_code(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
 
 std::uint64_t hilbert_code(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
     std::array<std::uint32_t, 3> axes{x, y, z};
-    // From the whole cube down: the octant of a bit says how the curve within is turned and mirrored.
+    // From the whole cube down: the octant at each bit determines how the curve inside it is rotated and
+    // mirrored.
     for (std::uint32_t bit = (lattice + 1) / 2; bit > 1; bit /= 2) {
         const auto below = bit - 1;
         for (auto& axis : axes) {
@@ -97,7 +98,8 @@ std::uint64_t hilbert_code(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
             axis ^= swapped;
         }
     }
-    // Octants are passed in the order of a Gray code, whose number is the exclusive or of the bits above.
+    // The curve visits octants in the order of a Gray code. The index of an octant is the exclusive or of the
+    // bits above.
     axes[1] ^= axes[0];
     axes[2] ^= axes[1];
     std::uint32_t flipped = 0;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Overlap of the leaf k-DOPs of an explicit list of tetrahedron pairs, rows as pairs.clh lists them:
-// constructed cases reach the overlap test of the walks, over nodes that refit has made, without a walk.
+// Overlap of the leaf k-DOPs of an explicit list of tetrahedron pairs, in rows as in pairs.clh. Constructed
+// cases reach the overlap tests of the walks, on refitted nodes, without a walk.
 #include "backends/portable.h"
 #include "algorithms/hierarchy/node.clh"
 #include "algorithms/answer/emit.clh"
 
 // Bits of an answer.
-#define LEAVES_OVERLAP 1u        // as nodes_overlap has it, from registers
-#define LEAVES_OVERLAP_STORED 2u // as overlap has it, from device memory
-#define PARENTS_OVERLAP 4u       // every two nodes above them at one depth, up to their chunks' roots
-#define VOLUMES_OVERLAP 8u       // those of the two bodies
+#define LEAVES_OVERLAP 1u        // by nodes_overlap, from registers
+#define LEAVES_OVERLAP_STORED 2u // by overlap, from device memory
+#define PARENTS_OVERLAP 4u       // all ancestors at equal distances from the leaves, up to the chunk roots
+#define VOLUMES_OVERLAP 8u       // the k-DOPs of the two bodies
 
 DEVICE Chunk chunk_of(GLOBAL const uint* tree, GLOBAL const uint* levels, uint item) {
     return chunk_at(tree[TREE_NODES], level_of(levels, tree, 0u), item / CHUNK_ITEMS);
@@ -32,7 +32,7 @@ DEVICE uint parents_overlap(GLOBAL const real* nodes, Chunk a, uint node_a, Chun
     return PARENTS_OVERLAP;
 }
 
-// answers[i]: the bits above of pair i.
+// answers[i]: the bits above for pair i.
 KERNEL void test_pair_list(GLOBAL const real* nodes, GLOBAL const real* volumes, GLOBAL const uint* trees,
                            GLOBAL const uint* levels, GLOBAL const uint* pairs, uint pair_count,
                            GLOBAL uint* answers) {

@@ -9,7 +9,7 @@ namespace tandem {
 
 namespace {
 
-constexpr std::uint32_t found = 15; ///< all bits of pair_list.cl
+constexpr std::uint32_t found = 15; ///< all answer bits of pair_list.cl
 
 } // namespace
 

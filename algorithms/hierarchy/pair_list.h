@@ -10,15 +10,14 @@
 namespace tandem {
 
 /// Tests an explicit list of tetrahedron pairs of a scene on its device, with the nodes and the overlap tests
-/// of the walks: what these would find of the list if it were all they met.
+/// of the walks. The result is what a walk would find if it reached exactly these pairs.
 class PairList {
 public:
-    /// `pairs` in input order; at most 2^32 - 1. Both must outlive this.
+    /// `pairs`: in input order, at most 2^32 - 1. `trees` must outlive this object.
     PairList(const ChunkTrees& trees, std::span<const Pair> pairs);
 
-    /// Whether the pairs are found, one byte a pair, in the frame that was last refitted: 1 when the leaf
-    /// k-DOPs overlap by both forms of the test and so do all nodes above them that a walk may look at.
-    /// Throws DeviceError.
+    /// Returns one byte per pair, for the frame of the last refit. It is 1 if the leaf k-DOPs overlap by both
+    /// forms of the test and so do all nodes above them that a walk may test. Throws DeviceError.
     std::vector<std::uint8_t> run();
 
 private:

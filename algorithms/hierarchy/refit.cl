@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Transform and refit, fused and level-synchronous. A launch takes strips: subtrees of at most `height` + 1
-// depths below a given root. A team of work-items makes the nodes of its strips bottom up in local memory and
-// writes them out once, neighbouring work-items to neighbouring words, so that device memory sees each node
-// once and in whole sectors. Leaves read vertices through the pose, so that rigid bodies keep no transformed
-// vertices; inner nodes are the exact min/max of their children.
+// Transform and refit, fused and level-synchronous. A launch processes strips: subtrees of at most `height` +
+// 1 depths below a given root. A team of work-items builds the nodes of its strips bottom up in local memory.
+// It writes them out once, neighbouring work-items to neighbouring words, so that each node reaches device
+// memory once and in whole sectors. Leaves read vertices through the pose, so that rigid bodies store no
+// transformed vertices. Inner nodes are the exact min/max of their children.
 #include "backends/portable.h"
 #include "algorithms/bodies/body.clh"
 #include "algorithms/hierarchy/node.clh"
 
-// Nodes a work-group has room for: a power of two, at least those of one strip for each of its teams.
+// Capacity of a work-group in nodes: a power of two, at least one strip for each of its teams.
 #ifndef TILE_NODES
 #define TILE_NODES 128
-#elif (defined(__CUDACC__) || defined(__OPENCL_C_VERSION__)) && TILE_NODES / TEAM_COUNT < 64 // strips.h
-#error "a team has no room for a strip of the greatest height, 5"
+#elif (defined(__CUDACC__) || defined(__OPENCL_C_VERSION__)) && TILE_NODES / TEAM_COUNT < 64 // see strips.h
+#error "a team has no capacity for a strip of the greatest height, 5"
 #endif
 
-// Nodes are moved in units as wide as their alignment allows. Those of neighbouring work-items lie an odd
-// number of units apart, so that they hit different banks; strips lie one unit further apart than they must.
+// Nodes move in units as wide as their alignment allows. Nodes of neighbouring work-items lie an odd number
+// of units apart, so that they use different banks. Strips lie one unit further apart than needed.
 #if K % 4 == 0 && PRECISION == 32
 #define UNIT_REALS 4
 typedef RealRow Unit;
@@ -28,21 +28,21 @@ typedef RealPair Unit;
 #define NODE_STRIDE (NODE_UNITS | 1)
 #define HEAP(tile, strip, height) ((tile) + (strip) * (((2u << (height)) * NODE_STRIDE) + 1u))
 #define TEAM_NODES (TILE_NODES / TEAM_COUNT)
-#define MOST_STRIPS (TEAM_NODES / 16) // of a team: room for strips of fewer nodes would be taken from these
+#define MOST_STRIPS (TEAM_NODES / 16) // per team; a capacity for smaller strips would reduce this one
 #define TEAM_TILE (TEAM_NODES * NODE_STRIDE + MOST_STRIPS)
 
-// A job is a strip: all that its leaves need to know, so that one load starts them.
+// A job is a strip with all that its leaves need, so that one load starts them.
 #define JOB_WORDS 8
 #define JOB_BASE 0  // slot of heap index 0
-#define JOB_ITEMS 1 // of the chunk
+#define JOB_ITEMS 1 // items of the chunk
 #define JOB_ROOT 2  // heap index of the strip's root
 #define JOB_BODY 3
 #define JOB_FIRST 4      // the chunk's first item
 #define JOB_TETRAHEDRA 5 // first of the body's tetrahedra
-#define JOB_VERTICES 6   // first of its vertices
+#define JOB_VERTICES 6   // first of the body's vertices
 #define JOB_FLAGS 7      // as BODY_FLAGS
 
-// What a launch knows.
+// Arguments of a launch.
 typedef struct {
     GLOBAL real* nodes;
     GLOBAL const uint* trees;
@@ -54,7 +54,7 @@ typedef struct {
     uint level, height;
 } Refit;
 
-// Row `job` of the launch; a row without items past the last one.
+// Loads row `job` of the launch; past the last one, a row without items.
 DEVICE void load_job(const Refit* refit, uint word, uint job, uint job_count, LOCAL uint* strip) {
     if (job < job_count)
         strip[word] = refit->jobs[(ulong)job * JOB_WORDS + word];
@@ -62,7 +62,7 @@ DEVICE void load_job(const Refit* refit, uint word, uint job, uint job_count, LO
         strip[word] = word == JOB_ROOT ? 1u : 0u;
 }
 
-// Negative zero becomes positive: equal slabs then have equal bits.
+// Negative zero becomes positive, so that equal slabs have equal bits.
 DEVICE void bound_tetrahedron(const Refit* refit, LOCAL const uint* strip, uint item, real* node) {
     Point corner[4];
     load_corners_of(refit->poses, refit->tetrahedra, refit->vertices, strip[JOB_BODY],
@@ -76,7 +76,7 @@ DEVICE void bound_tetrahedron(const Refit* refit, LOCAL const uint* strip, uint 
     for (int word = 0; word < K; ++word) node[word] = node[word] + (real)0;
 }
 
-// The word of a node over two.
+// A word of the parent of two nodes.
 #define MERGED(word, a, b) ((word) < DIRECTIONS ? MINIMUM(a, b) : MAXIMUM(a, b))
 
 DEVICE Unit unit_of(const real* values) {
@@ -109,7 +109,7 @@ DEVICE void merge_nodes(LOCAL const Unit* a, LOCAL const Unit* b, LOCAL Unit* no
     UNROLL for (int i = 0; i < NODE_UNITS; ++i) node[i] = merged_unit(i * UNIT_REALS, a[i], b[i]);
 }
 
-// A leaf of level 0 is over a tetrahedron, one of a higher level is the root of a chunk below.
+// A leaf of level 0 bounds a tetrahedron; a leaf of a higher level is the root of a chunk below.
 DEVICE void make_leaf(const Refit* refit, LOCAL const uint* strip, uint node, real* values) {
     const uint item = strip[JOB_FIRST] + leaf_item(node, strip[JOB_ITEMS]);
     if (refit->level == 0u) {
@@ -122,7 +122,7 @@ DEVICE void make_leaf(const Refit* refit, LOCAL const uint* strip, uint node, re
     for (int word = 0; word < K; ++word) values[word] = from[word];
 }
 
-// A node of the deepest depth: a leaf, or one over nodes of an earlier launch.
+// A node of the deepest depth: a leaf, or the parent of nodes from an earlier launch.
 DEVICE void make_deepest(const Refit* refit, LOCAL const uint* strip, uint node, real* values) {
     if (is_leaf(node, strip[JOB_ITEMS])) {
         make_leaf(refit, strip, node, values);
@@ -132,7 +132,8 @@ DEVICE void make_deepest(const Refit* refit, LOCAL const uint* strip, uint node,
     for (int word = 0; word < K; ++word) values[word] = MERGED(word, child[word], child[word + K]);
 }
 
-// Where a work-item's node of one depth is: its heap index in the chunk, and in the strip's own heap.
+// A work-item's node at one depth: its heap index in the chunk (`node`) and in the strip's own heap
+// (`place`).
 typedef struct {
     LOCAL const uint* strip;
     LOCAL Unit* heap;
@@ -149,11 +150,11 @@ DEVICE NodeAt strip_node(const Refit* refit, LOCAL const uint* strips, uint i, u
     return at;
 }
 
-// Small nodes are made in pairs; of larger ones a work-item makes one, as the tile of two would leave room
-// for too few work-groups.
+// Small nodes are built in pairs. A work-item builds one larger node at a time, because a tile of two would
+// leave local memory for too few work-groups.
 #define IN_PAIRS (K <= 8)
 
-// The two lowest depths: a work-item makes two siblings and merges them before they leave its registers.
+// The two lowest depths: a work-item builds two siblings and merges them in registers.
 DEVICE void make_pairs(const Refit* refit, LOCAL const uint* strips, uint strip_count, LOCAL Unit* tile) {
     const uint depth = refit->height - 1u;
     for (uint i = TEAM_LANE; i < strip_count << depth; i += TEAM_SIZE) {
@@ -192,8 +193,8 @@ DEVICE void make_depth(const Refit* refit, LOCAL const uint* strips, uint strip_
     }
 }
 
-// `count` nodes that lie one after the other here and there, a unit a work-item. `part` is the unit of a node
-// that it is at: behind the last one there may be padding to skip.
+// Copies `count` consecutive nodes, one unit per work-item. `part` is the position of the current unit in its
+// node; it determines when to skip padding.
 DEVICE void write_run(LOCAL const Unit* from, GLOBAL real* to, uint count) {
     uint part = TEAM_LANE % NODE_UNITS;
     from += TEAM_LANE / NODE_UNITS * NODE_STRIDE + part;
@@ -208,7 +209,7 @@ DEVICE void write_run(LOCAL const Unit* from, GLOBAL real* to, uint count) {
     }
 }
 
-// All of a chunk is one run of nodes; a part of it is a run for each depth.
+// A whole chunk is one run of nodes; a part of a chunk is one run per depth.
 DEVICE void write_strip(const Refit* refit, LOCAL const uint* strip, LOCAL const Unit* heap) {
     const uint end = 2u * strip[JOB_ITEMS];
     const uint root = strip[JOB_ROOT];
@@ -222,8 +223,8 @@ DEVICE void write_strip(const Refit* refit, LOCAL const uint* strip, LOCAL const
     }
 }
 
-// `first_job`, `job_count`: the strips of this launch; a team takes TEAM_NODES / 2^(height + 1)
-// of them, but MOST_STRIPS at most.
+// `first_job`, `job_count`: the strips of this launch. A team processes TEAM_NODES / 2^(height + 1) of them,
+// at most MOST_STRIPS.
 KERNEL void refit_strips(GLOBAL real* nodes, GLOBAL const uint* trees, GLOBAL const uint* levels,
                          GLOBAL const real* poses, GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
                          GLOBAL const uint* jobs, uint first_job, uint job_count, uint level, uint height) {
@@ -240,7 +241,7 @@ KERNEL void refit_strips(GLOBAL real* nodes, GLOBAL const uint* trees, GLOBAL co
     for (uint i = TEAM_LANE; i < strip_count * JOB_WORDS; i += TEAM_SIZE)
         load_job(&refit, i % JOB_WORDS, first + i / JOB_WORDS, job_count, strips + i / JOB_WORDS * JOB_WORDS);
     TEAM_BARRIER;
-    // One loop for all depths: PoCL 3.1 gets barriers wrong in a loop that might not run at all.
+    // One loop for all depths: PoCL 3.1 miscompiles barriers in a loop that might not run at all.
     for (uint up = 0; up <= height; ++up) {
         if (!IN_PAIRS)
             make_depth(&refit, strips, strip_count, height - up, tile);
@@ -253,7 +254,7 @@ KERNEL void refit_strips(GLOBAL real* nodes, GLOBAL const uint* trees, GLOBAL co
     for (uint i = 0; i < strip_count; ++i) write_strip(&refit, strips + i * JOB_WORDS, HEAP(tile, i, height));
 }
 
-// The leaves of a level above 0, a word a work-item.
+// Copies the leaves of a level above 0, one word per work-item.
 DEVICE void copy_roots(GLOBAL real* nodes, uint first, GLOBAL const uint* level) {
     for (uint i = LOCAL_ID; i < level[LEVEL_ITEMS] * K; i += GROUP_SIZE) {
         const uint item = i / K;
@@ -264,7 +265,7 @@ DEVICE void copy_roots(GLOBAL real* nodes, uint first, GLOBAL const uint* level)
     }
 }
 
-// The inner nodes of one depth of all chunks of a level.
+// Merges the inner nodes of one depth in all chunks of a level.
 DEVICE void merge_depth(GLOBAL real* nodes, uint first, GLOBAL const uint* level, uint depth) {
     for (uint i = LOCAL_ID; i < (level[LEVEL_CHUNKS] << depth) * K; i += GROUP_SIZE) {
         const uint index = i / K;
@@ -279,8 +280,8 @@ DEVICE void merge_depth(GLOBAL real* nodes, uint first, GLOBAL const uint* level
     }
 }
 
-// The levels from `first_level` on, which are small, and the volume of the whole body: the union of its top
-// level's chunk roots (paper, Algorithm 1). A work-group a body.
+// Refits the small levels from `first_level` on, and the volume of the whole body: the union of its top
+// level's chunk roots (paper, Algorithm 1). One work-group per body.
 KERNEL void refit_tops(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const uint* trees,
                        GLOBAL const uint* levels, GLOBAL const uint* chosen, uint first_level) {
     const uint body = chosen[GROUP_ID];
@@ -289,7 +290,7 @@ KERNEL void refit_tops(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const ui
     const uint level_count = level_count_of(tree);
     GLOBAL const uint* rows = level_of(levels, tree, 0u);
     uint level = first_level;
-    do { // once at least, and every barrier in it: see refit_strips
+    do { // runs at least once, with all its barriers: see refit_strips
         GLOBAL const uint* row = rows + (ulong)level * LEVEL_WORDS;
         const int exists = level < level_count;
         if (exists) copy_roots(nodes, first, row);
@@ -311,8 +312,8 @@ KERNEL void refit_tops(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const ui
     }
 }
 
-// Rows of three slots: a node and the two it is over; HOLDS_NOTHING twice for a tetrahedron that takes no
-// part.
+// Rows of three slots: a node and its two children. Both children are HOLDS_NOTHING for a skipped
+// tetrahedron.
 #define MASKED_WORDS 3
 #define HOLDS_NOTHING 0xffffffffu
 
@@ -321,14 +322,14 @@ DEVICE real masked_word(GLOBAL const real* nodes, uint a, uint b, uint word) {
     return MERGED(word, node_at(nodes, a)[word], node_at(nodes, b)[word]);
 }
 
-// Between the strips and the tops, in frames where some tetrahedra take no part: their leaves become slabs
-// that end before they start, which overlap nothing and widen nothing, and the nodes above are made again. A
-// work-group a body, whose rows come in `rounds` (some of them empty), each over nodes of earlier ones:
-// starts[body * rounds + round] is a round's first row.
+// Runs between strips and tops in frames that skip tetrahedra. Their leaves get slabs that end before they
+// start, which overlap nothing and widen nothing. The nodes above are rebuilt. One work-group per body
+// processes its rows in `rounds`, some of them empty; each round reads only nodes of earlier ones.
+// starts[body * rounds + round] is the first row of a round.
 KERNEL void empty_nodes(GLOBAL real* nodes, GLOBAL const uint* rows, GLOBAL const uint* starts, uint rounds) {
     GLOBAL const uint* own = starts + (ulong)GROUP_ID * rounds;
     uint round = 0;
-    do { // once at least: see refit_strips
+    do { // runs at least once: see refit_strips
         const ulong first = (ulong)own[round] * K;
         const ulong end = (ulong)own[round + 1u] * K;
         for (ulong i = first + LOCAL_ID; i < end; i += GROUP_SIZE) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The floors of refit.cl and refit_tiles.cl: of bodies that move, all of a frame's launches together.
+// Cost floors of refit.cl and refit_tiles.cl: moving bodies only, all launches of a frame together.
 #include "algorithms/cost.h"
 #include "algorithms/hierarchy/levels.h"
 
@@ -14,7 +14,7 @@ constexpr double tile_boxes = 32, corners = 4;
 
 double parts_of(double count, double each) { return std::ceil(count / each); }
 
-/// What leaves are made from: vertex numbers, vertices and poses.
+/// Bytes that leaves are built from: vertex numbers, vertices and poses.
 double leaf_inputs(const SceneFacts& scene) {
     return scene.tetrahedron_rows * corners * 4 + scene.vertex_rows * 4 * scene.real
            + scene.moving * scene.pose_bytes;
@@ -27,8 +27,8 @@ double sum_of(const std::vector<std::uint32_t>& counts, const auto& of) {
 
 } // namespace
 
-/// A chunk over n tetrahedra has 2n - 1 nodes. Levels above the lowest are few, and left to either kernel:
-/// they are in no floor.
+/// A chunk over n tetrahedra has 2n - 1 nodes. Levels above the lowest are few, and either kernel may refit
+/// them, so neither floor counts them.
 std::vector<KernelCost> chunk_tree_costs(const SceneFacts& scene, std::uint32_t leaves) {
     const auto items = sum_of(scene.tetrahedra, [](double n) { return n; });
     const auto chunks = sum_of(scene.tetrahedra, [&](double n) { return parts_of(n, leaves); });
@@ -37,21 +37,25 @@ std::vector<KernelCost> chunk_tree_costs(const SceneFacts& scene, std::uint32_t 
     const auto top_bytes = (chunks + scene.moving) * scene.dop();
     return {{"refit_strips", [=](const FrameFacts&) { return strip_bytes; },
              [=](const FrameFacts&) { return strip_operations; },
-             "vertex numbers, vertices and poses in, nodes of chunks out; k a corner and an inner node"},
+             "reads vertex numbers, vertices and poses, writes nodes of chunks; k operations per corner and "
+             "inner node"},
             {"refit_tops", [=](const FrameFacts&) { return top_bytes; },
              [=, k = scene.k](const FrameFacts&) { return chunks * k; },
-             "roots of chunks in, volumes of bodies out; k a root"},
-            {"empty_nodes", {}, {}, "nothing: how many nodes skipped tetrahedra change is not counted"}};
+             "reads roots of chunks, writes volumes of bodies; k operations per root"},
+            {"empty_nodes",
+             {},
+             {},
+             "nothing: the number of nodes that skipped tetrahedra change is not counted"}};
 }
 
-/// Tiles of level 1 are made by either kernel, and in neither floor.
+/// Either kernel may build the tiles of level 1, so neither floor counts them.
 std::vector<KernelCost> tile_tree_costs(const SceneFacts& scene, double leaf_words) {
     const auto tiles = sum_of(scene.tetrahedra, [](double n) { return parts_of(n, tile_boxes); });
     const auto items = sum_of(scene.tetrahedra, [](double n) { return n; });
     const auto leaf_bytes = leaf_inputs(scene) - scene.tetrahedron_rows * (corners * 4 - 4)
                             + items * leaf_words * scene.real + tiles * scene.dop();
     const auto leaf_operations = corners * leaf_words * items + (items - tiles) * scene.k;
-    const auto boxes = sum_of(scene.tetrahedra, [](double n) { // of levels above 1, a box for a tile below
+    const auto boxes = sum_of(scene.tetrahedra, [](double n) { // levels above 1: one box per tile below
         double sum = 0;
         auto below = parts_of(parts_of(n, tile_boxes), tile_boxes);
         while (below > 1) {
@@ -61,13 +65,14 @@ std::vector<KernelCost> tile_tree_costs(const SceneFacts& scene, double leaf_wor
         return sum;
     });
     const auto upper_bytes = 2 * boxes * scene.dop();
-    return {{"refit_leaf_tiles", [=](const FrameFacts&) { return leaf_bytes; },
-             [=](const FrameFacts&) { return leaf_operations; },
-             "a word of corners a tetrahedron, vertices and poses in, bounds and roots of tiles out; as many "
-             "as a leaf has ends a corner, k a tetrahedron for roots"},
-            {"refit_upper_tiles", [=](const FrameFacts&) { return upper_bytes; },
-             [=, k = scene.k](const FrameFacts&) { return boxes * k; },
-             "roots of tiles in, the same as boxes out, above level 1; k a box"}};
+    return {
+        {"refit_leaf_tiles", [=](const FrameFacts&) { return leaf_bytes; },
+         [=](const FrameFacts&) { return leaf_operations; },
+         "reads a word of corners per tetrahedron, vertices and poses, writes bounds and roots of tiles; an "
+         "operation per corner and end of a leaf, k per tetrahedron for roots"},
+        {"refit_upper_tiles", [=](const FrameFacts&) { return upper_bytes; },
+         [=, k = scene.k](const FrameFacts&) { return boxes * k; },
+         "reads roots of tiles, writes them as boxes, above level 1; k operations per box"}};
 }
 
 } // namespace tandem

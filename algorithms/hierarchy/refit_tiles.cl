@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Refit of tiles: a work-group makes up to 32 tiles of one level and the tile of the next that is over them,
-// from vertices or from the roots of the level below. A tile's vertices come through the pose once, to local
-// memory, and not once for each of the tetrahedra that share them.
+// Refit of tiles. A work-group builds up to 32 tiles of one level and their parent tile, from vertices or
+// from the roots of the level below. Each vertex of a tile is transformed once, into local memory, not once
+// per tetrahedron that shares it.
 #include "backends/portable.h"
 #include "algorithms/hierarchy/tiles.clh"
 
-// A work-group's job, a unit: tiles of one level that lie one after the other.
+// A unit is the job of a work-group: consecutive tiles of one level.
 #define UNIT_WORDS 4
 #define UNIT_FIRST 0
 #define UNIT_COUNT 1
-#define UNIT_PARENT 2 // the tile over them, or NO_TILE
-#define UNIT_BODY 3   // whose volume the last root is, or NO_BODY
+#define UNIT_PARENT 2 // their parent tile, or NO_TILE
+#define UNIT_BODY 3   // body whose volume is the last root, or NO_BODY
 #define NO_BODY 0xffffffffu
 
-// Lanes' values of one word lie side by side, words LANES + 1 reals apart: those of one lane hit different
-// banks as well.
+// The lanes' values of one word are adjacent. Words lie LANES + 1 reals apart, so that the values of one lane
+// use different banks, too.
 #define ROW (LANES + 1)
 #define ROOT_STRIDE (K | 1)
 
@@ -24,15 +24,15 @@ DEVICE real merged(uint word, real a, real b) {
     return word < (uint)DIRECTIONS ? MINIMUM(b, a) : MAXIMUM(b, a);
 }
 
-// Slabs of a lane for the root of its tile: upper ends negated, so that roots are least values.
+// Stores a lane's slabs for the root of its tile. Upper ends are negated, so that roots are minima.
 DEVICE void keep_slabs(const real* slabs, uint lane, LOCAL real* bounds) {
     UNROLL for (uint word = 0; word < (uint)K; ++word) {
         bounds[word * ROW + lane] = word < (uint)DIRECTIONS ? slabs[word] : -slabs[word];
     }
 }
 
-// A tile's root from what its lanes kept, a word a work-item: a team's work. It is kept for the tile above.
-// Negative zero becomes positive, here as in leaves: equal slabs then have equal bits.
+// Reduces the stored slabs of a tile to its root, one word per work-item of a team, and stores it in `kept`
+// for the parent tile. Negative zero becomes positive as in leaves, so that equal slabs have equal bits.
 DEVICE void make_root(LOCAL const real* bounds, LOCAL real* kept, GLOBAL real* root) {
     for (uint word = LANE_ID; word < (uint)K; word += (uint)LANE_STEP) {
         LOCAL const real* row = bounds + word * ROW;
@@ -44,8 +44,8 @@ DEVICE void make_root(LOCAL const real* bounds, LOCAL real* kept, GLOBAL real* r
     }
 }
 
-// What is above a unit's tiles, from the roots of these: the tile over them with its root, and the volume of
-// the body if that is all of it. The whole group's work. `first_upper`: the first tile of level 1.
+// Builds the levels above a unit's tiles from their roots: the parent tile with its root, and the volume of
+// the body if the unit covers it. The whole group calls it. `first_upper`: the first tile of level 1.
 DEVICE void finish_unit(GLOBAL const uint* unit, LOCAL const real* kept, GLOBAL real* uppers,
                         uint first_upper, GLOBAL real* roots, GLOBAL real* volumes) {
     const uint count = unit[UNIT_COUNT];
@@ -71,8 +71,8 @@ DEVICE void begin_slabs(real* slabs) {
     UNROLL for (uint word = 0; word < (uint)K; ++word) slabs[word] = no_end(word);
 }
 
-// Slabs of all vertices of the tile, each once, a lane those that are its: their union is that of the
-// tetrahedra, as long as every one of these takes part.
+// Stores the slabs of all vertices of the tile, each once, distributed over the lanes. Their union is that of
+// the tetrahedra if all of these are active.
 DEVICE void keep_vertices(const Shapes* shapes, const Tile* tile, LOCAL const real* points, Point drift,
                           LOCAL real* bounds) {
     const uint count = vertices_of(shapes, tile);
@@ -85,23 +85,23 @@ DEVICE void keep_vertices(const Shapes* shapes, const Tile* tile, LOCAL const re
     }
 }
 
-// The same from the tetrahedra that take part, a bit each.
+// The same from the active tetrahedra, one bit each.
 DEVICE void keep_tetrahedra(const Shapes* shapes, const Tile* tile, LOCAL const real* points, Point drift,
-                            uint there, LOCAL real* bounds) {
+                            uint active, LOCAL real* bounds) {
     FOR_LANES {
         real slabs[K];
         begin_slabs(slabs);
-        if ((there >> lane & 1u) != 0u) bound_corners(shapes, tile, points, lane, drift, slabs);
+        if ((active >> lane & 1u) != 0u) bound_corners(shapes, tile, points, lane, drift, slabs);
         keep_slabs(slabs, lane, bounds);
     }
 }
 
 DEVICE void write_leaves(const Shapes* shapes, const Tile* tile, LOCAL const real* points, Point drift,
-                         uint there, GLOBAL real* leaves) {
+                         uint active, GLOBAL real* leaves) {
     FOR_LANES {
         real slabs[K];
         bound_corners(shapes, tile, points, lane, drift, slabs);
-        const int empty = (there >> lane & 1u) == 0u;
+        const int empty = (active >> lane & 1u) == 0u;
         UNROLL for (uint axis = 0; axis < (uint)LEAF_DIRECTIONS; ++axis) {
             const real lower = slabs[axis] + (real)0;
             const real upper = slabs[DIRECTIONS + axis] + (real)0;
@@ -111,7 +111,7 @@ DEVICE void write_leaves(const Shapes* shapes, const Tile* tile, LOCAL const rea
     }
 }
 
-// Level 0. `taking_part` has a word a tile, a bit for each tetrahedron that is there and not skipped.
+// Level 0. `taking_part`: one word per tile, with a bit for each tetrahedron that exists and is not skipped.
 KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint first_upper, GLOBAL real* roots,
                              GLOBAL real* volumes, GLOBAL const uint* units, GLOBAL const uint* tiles,
                              GLOBAL const uint* taking_part, GLOBAL const uint* starts,
@@ -127,7 +127,8 @@ KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint firs
     GLOBAL const uint* unit = units + (ulong)GROUP_ID * UNIT_WORDS;
     const uint count = unit[UNIT_COUNT];
     uint i = LANE_TEAM;
-    // Once at least, as loops with barriers have to: a team without a tile goes through the first one idly.
+    // Runs at least once, as loops with barriers must. A team without a tile processes the first one without
+    // writing.
     do {
         const int has_tile = i < count;
         const uint at = has_tile ? i : 0u;
@@ -135,14 +136,15 @@ KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint firs
         const Tile tile = tile_at(tiles, number);
         load_vertices(&shapes, &tile, points);
         LANE_BARRIER;
-        const uint there = taking_part[number];
+        const uint active = taking_part[number];
         const Point drift = drift_at(poses, tile.body);
-        if (there == 0xffffffffu >> (LANES - tile.count))
+        if (active == 0xffffffffu >> (LANES - tile.count))
             keep_vertices(&shapes, &tile, points, drift, bounds);
         else
-            keep_tetrahedra(&shapes, &tile, points, drift, there, bounds);
+            keep_tetrahedra(&shapes, &tile, points, drift, active, bounds);
         if (has_tile)
-            write_leaves(&shapes, &tile, points, drift, there, leaves + (ulong)number * (LEAF_WORDS * LANES));
+            write_leaves(&shapes, &tile, points, drift, active,
+                         leaves + (ulong)number * (LEAF_WORDS * LANES));
         LANE_BARRIER;
         if (has_tile) make_root(bounds, kept + at * ROOT_STRIDE, roots + (ulong)number * K);
         i += LANE_TEAMS;
@@ -151,7 +153,7 @@ KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint firs
     finish_unit(unit, kept, uppers, first_upper, roots, volumes);
 }
 
-// A level above: its boxes are the roots of the tiles below.
+// A higher level, whose boxes are the roots of the tiles below.
 KERNEL void refit_upper_tiles(GLOBAL real* uppers, uint first_upper, GLOBAL real* roots, GLOBAL real* volumes,
                               GLOBAL const uint* units, GLOBAL const uint* tiles) {
     LOCAL_ARRAY(real, all_bounds, LANE_TEAMS * K * ROW);
@@ -160,7 +162,7 @@ KERNEL void refit_upper_tiles(GLOBAL real* uppers, uint first_upper, GLOBAL real
     GLOBAL const uint* unit = units + (ulong)GROUP_ID * UNIT_WORDS;
     const uint count = unit[UNIT_COUNT];
     uint i = LANE_TEAM;
-    do { // see refit_leaf_tiles
+    do { // runs at least once: see refit_leaf_tiles
         const int has_tile = i < count;
         const uint at = has_tile ? i : 0u;
         const uint number = unit[UNIT_FIRST] + at;

@@ -18,7 +18,7 @@ struct Box {
         lower = lower.cwiseMin(other.lower);
         upper = upper.cwiseMax(other.upper);
     }
-    /// Half of its surface.
+    /// Half of the surface area.
     double area() const {
         const Eigen::Vector3d side = upper - lower;
         return (side.x() * side.y() + side.y() * side.z()) + side.z() * side.x();
@@ -35,15 +35,15 @@ private:
     using ItemRange = AxisOrders::ItemRange;
     struct Cut {
         double cost = std::numeric_limits<double>::infinity();
-        std::size_t axis = 0, place = 0; ///< the first of the right part
+        std::size_t axis = 0, split = 0; ///< first position of the right part
     };
 
-    /// Consider all places along an axis.
-    void look_along(std::size_t axis, ItemRange range, std::size_t unit, Cut& best);
+    /// Updates `best` with the cheapest cut along an axis.
+    void evaluate_axis(std::size_t axis, ItemRange range, std::size_t unit, Cut& best);
 
     std::vector<Box> boxes_;
     AxisOrders axes_;
-    std::vector<Box> right_; ///< unions from the end, by unit
+    std::vector<Box> right_; ///< by unit: union of the boxes from this unit to the end
 };
 
 std::vector<Box> boxes_of(const Mesh& mesh) {
@@ -66,7 +66,7 @@ std::vector<Eigen::Vector3d> centres_of(const std::vector<Box>& boxes) {
 
 Splitter::Splitter(const Mesh& mesh) : boxes_(boxes_of(mesh)), axes_(centres_of(boxes_)) {}
 
-void Splitter::look_along(std::size_t axis, ItemRange range, std::size_t unit, Cut& best) {
+void Splitter::evaluate_axis(std::size_t axis, ItemRange range, std::size_t unit, Cut& best) {
     const auto& sorted = axes_.along(axis);
     const auto units = (range.size() + unit - 1) / unit;
     right_.assign(units, {});
@@ -78,11 +78,11 @@ void Splitter::look_along(std::size_t axis, ItemRange range, std::size_t unit, C
     }
     Box left;
     for (std::size_t u = 1; u < units; ++u) {
-        const auto place = range.first + u * unit;
-        for (auto i = place - unit; i < place; ++i) left.add(boxes_[sorted[i]]);
-        const auto cost = left.area() * static_cast<double>(place - range.first)
-                          + right_[u].area() * static_cast<double>(range.end - place);
-        if (cost < best.cost || best.place == 0) best = {cost, axis, place};
+        const auto split = range.first + u * unit;
+        for (auto i = split - unit; i < split; ++i) left.add(boxes_[sorted[i]]);
+        const auto cost = left.area() * static_cast<double>(split - range.first)
+                          + right_[u].area() * static_cast<double>(range.end - split);
+        if (cost < best.cost || best.split == 0) best = {cost, axis, split};
     }
 }
 
@@ -93,10 +93,10 @@ std::vector<std::uint32_t> Splitter::order() {
         todo.pop_back();
         if (range.size() < 2) continue;
         Cut cut;
-        for (std::size_t axis = 0; axis < 3; ++axis) look_along(axis, range, run_of(range.size()), cut);
-        axes_.cut(range, cut.axis, cut.place);
-        todo.push_back({cut.place, range.end});
-        todo.push_back({range.first, cut.place});
+        for (std::size_t axis = 0; axis < 3; ++axis) evaluate_axis(axis, range, run_of(range.size()), cut);
+        axes_.cut(range, cut.axis, cut.split);
+        todo.push_back({cut.split, range.end});
+        todo.push_back({range.first, cut.split});
     }
     return axes_.along(0);
 }

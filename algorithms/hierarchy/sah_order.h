@@ -8,11 +8,11 @@
 
 namespace tandem {
 
-/// Tetrahedra of a mesh in an order whose runs of 32, 32^2, ... have small boxes: position i holds the
-/// tetrahedron order[i]. A range is cut, again and again, along the axis and at the multiple of the run's
-/// length at which the surface area heuristic (MacDonald and Booth 1990: areas of the two boxes, each times
-/// what is in it) is least; runs of 32 and less are halved. O(n log n) and, for the worst meshes, 31 n for
-/// each length; ties go to the lower axis, place and number, so that a mesh has one order.
+/// Order of a mesh's tetrahedra whose runs of 32, 32^2, ... have small boxes: order[i] is the tetrahedron at
+/// position i. Ranges are cut recursively at a multiple of the run length (run_of), along one axis. The cut
+/// minimises the surface area heuristic (MacDonald and Booth 1990: area of each box times its number of
+/// items). Runs of up to 32 are halved. Ties go to the lower axis, position and number, so that a mesh has
+/// one order. O(n log n) and, for the worst meshes, 31 n for each run length.
 std::vector<std::uint32_t> sah_order(const Mesh& mesh);
 
 } // namespace tandem

@@ -8,13 +8,13 @@ namespace tandem {
 
 namespace {
 
-constexpr std::uint32_t most_refitting = 128; ///< work-items of a group: of more, too few groups fit
-constexpr std::uint32_t team = 32;            ///< TEAM_SIZE of portable.h where it is not the whole group
+constexpr std::uint32_t most_refitting =
+    128;                           ///< work-items per group; of larger groups too few fit on a compute unit
+constexpr std::uint32_t team = 32; ///< TEAM_SIZE of portable.h, unless a team is the whole group
 constexpr std::uint64_t tile_bytes = 32 << 10;
 constexpr std::uint32_t strip_nodes = 2u << strip_height;
 
-/// For every work-item two leaves (IN_PAIRS of refit.cl) or one, but one strip at least and no more than
-/// fits.
+/// Two leaves (IN_PAIRS of refit.cl) or one for each work-item. At least one strip and at most what fits.
 std::uint32_t tile_nodes(const Geometry& geometry, std::uint32_t group_size) {
     const auto node = static_cast<std::uint64_t>(geometry.k + 2) * real_bytes(geometry) + 8;
     const auto wanted = std::max(strip_nodes, (geometry.k <= 8 ? 4 : 2) * group_size);
@@ -25,7 +25,7 @@ std::uint32_t tile_nodes(const Geometry& geometry, std::uint32_t group_size) {
 
 RefitShape refit_shape(const Geometry& geometry, std::uint32_t group_size) {
     auto group = std::bit_floor(std::min(group_size, most_refitting));
-    // Where nodes are large the tile has no strip for so many teams.
+    // If nodes are large, the tile has no capacity for a strip of each team.
     while (group > team && tile_nodes(geometry, group) / (group / team) < strip_nodes) group /= 2;
     return {group, tile_nodes(geometry, group)};
 }

@@ -13,11 +13,11 @@ namespace {
 struct Tables {
     std::vector<std::uint32_t> starts, vertex_numbers, corners;
 
-    /// One tile: the tetrahedra `first`..`end` - 1 of a mesh.
+    /// Adds a tile: the tetrahedra `first`..`end` - 1 of a mesh.
     void add(const OrderedMesh& mesh, std::size_t first, std::size_t end) {
         const std::span given(mesh.tetrahedra.data() + 4 * first, 4 * (end - first));
         std::vector<std::uint32_t> own(given.begin(), given.end());
-        std::sort(own.begin(), own.end()); // neighbours in memory side by side
+        std::sort(own.begin(), own.end()); // adjacent work-items read adjacent vertices
         own.erase(std::unique(own.begin(), own.end()), own.end());
         starts.push_back(static_cast<std::uint32_t>(vertex_numbers.size()));
         vertex_numbers.insert(vertex_numbers.end(), own.begin(), own.end());

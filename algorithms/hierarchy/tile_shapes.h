@@ -5,21 +5,23 @@
 
 namespace tandem {
 
-/// What the tiles of level 0 have their tetrahedra from, which meshes have and no frame changes (tiles.clh):
-/// the vertices of each 32 tetrahedra once, and four of those, a byte each, for every tetrahedron.
+/// Static tables of the tiles of level 0, by mesh (tiles.clh): the distinct vertices of every 32 tetrahedra,
+/// and four byte indices into these for every tetrahedron.
 class TileShapes {
 public:
-    /// Tetrahedra of a tile.
+    /// Tetrahedra per tile.
     static constexpr std::uint32_t lanes = 32;
 
-    /// Of the meshes of `bodies`. Throws OutOfMemory.
+    /// Uploads the tables of the meshes of `bodies`. Throws OutOfMemory.
     explicit TileShapes(const Bodies& bodies);
 
     /// The row of a mesh's first tile.
     std::uint32_t first_row(std::size_t mesh) const { return first_rows_[mesh]; }
-    const Buffer& starts() const { return starts_; }                 ///< a word a row, and one at the end
-    const Buffer& vertex_numbers() const { return vertex_numbers_; } ///< words, of the mesh's vertices
-    const Buffer& corners() const { return corners_; }               ///< a word a tetrahedron, 32 a row
+    const Buffer& starts() const { return starts_; } ///< one word per row, and a final one
+    const Buffer& vertex_numbers() const {
+        return vertex_numbers_;
+    }                                                  ///< vertex numbers within the mesh, one word each
+    const Buffer& corners() const { return corners_; } ///< one word per tetrahedron, 32 per row
     std::size_t bytes() const { return starts_.bytes() + vertex_numbers_.bytes() + corners_.bytes(); }
 
 private:

@@ -13,13 +13,13 @@ namespace tandem {
 namespace {
 
 constexpr std::uint32_t lanes = TileShapes::lanes;
-constexpr std::uint32_t count_shift = 8;         ///< TILE_COUNT_SHIFT
+constexpr std::uint32_t count_shift = 8;         ///< TILE_COUNT_SHIFT of tiles.clh
 constexpr std::uint32_t nothing = 0xffffffff;    ///< NO_TILE, NO_BODY
-constexpr std::uint64_t most_tiles = 1ull << 27; ///< so that a word numbers their boxes
+constexpr std::uint64_t most_tiles = 1ull << 27; ///< so that 32 bits can number their boxes
 
 std::uint32_t in_tiles(std::uint32_t boxes) { return (boxes + lanes - 1) / lanes; }
 
-/// Levels of a tree over so many tetrahedra, the top tile's included.
+/// Levels of a tree over `items` tetrahedra, including that of the top tile.
 std::uint32_t levels_over(std::uint32_t items) {
     std::uint32_t levels = 1;
     for (auto boxes = items; boxes > lanes; boxes = in_tiles(boxes)) ++levels;
@@ -63,15 +63,15 @@ Defines TileTrees::defines(std::uint32_t group_size) const {
     return defines;
 }
 
-/// Boxes of a body's level; level 0: its tetrahedra.
+/// Boxes of a body's level. At level 0 these are its tetrahedra.
 std::uint32_t TileTrees::boxes_of(std::uint32_t body, std::uint32_t level) const {
     auto boxes = bodies_.row(body).tetrahedron_count;
     for (; level > 0; --level) boxes = in_tiles(boxes);
     return boxes;
 }
 
-/// Numbers tiles level after level, bodies in the order of their slots: a tile of level 0 is a block of
-/// slots.
+/// Numbers tiles level by level, with bodies in the order of their slots. A tile of level 0 is then a block
+/// of slots.
 void TileTrees::lay_out() {
     first_tiles_.resize(bodies_.count());
     std::uint64_t count = 0;
@@ -92,8 +92,8 @@ void TileTrees::lay_out() {
     for (const auto& first : first_tiles_) is_top_[first.size() - 1] = true;
 }
 
-/// The lowest level that every body has, and at which the pairs of their tiles are few enough to be tested
-/// without what the levels above would tell of them.
+/// Selects the lowest level that all bodies have and whose tile pairs are few enough to test without the
+/// levels above.
 void TileTrees::choose_beginnings(std::uint64_t most_seeds) {
     const std::uint64_t pairs = std::uint64_t{bodies_.count()} * (bodies_.count() - 1) / 2;
     for (std::uint32_t level = 0; level + 1 < levels(); ++level) {
@@ -130,7 +130,7 @@ std::vector<TileTrees::Tile> TileTrees::tile_rows() const {
     for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
         const auto& first = first_tiles_[body];
         const auto shapes = shapes_.first_row(bodies_.scene().bodies[body].mesh);
-        std::uint32_t items = lanes; // below a tile of the level
+        std::uint32_t items = lanes; // tetrahedra below a tile of the level
         for (std::uint32_t level = 0; level < first.size(); ++level, items *= lanes) {
             const auto boxes = boxes_of(body, level);
             for (std::uint32_t tile = 0; tile < in_tiles(boxes); ++tile) {
@@ -143,14 +143,14 @@ std::vector<TileTrees::Tile> TileTrees::tile_rows() const {
     return rows;
 }
 
-/// The units of one body that make `level`, of so many tiles each; those of 32 tiles make the level above,
-/// too.
+/// Adds the units of one body that build `level`, of `unit_tiles` tiles each. Units of 32 tiles also build
+/// the level above.
 void TileTrees::add_units(std::uint32_t body, std::uint32_t level, std::uint32_t unit_tiles,
                           std::vector<Unit>& units) const {
     const auto& first = first_tiles_[body];
     if (level >= first.size()) return;
     const auto tiles = in_tiles(boxes_of(body, level));
-    const std::uint32_t made = unit_tiles == lanes ? 2 : 1; // levels
+    const std::uint32_t made = unit_tiles == lanes ? 2 : 1; // levels that a unit builds
     const bool has_parents = made == 2 && level + 1 < first.size();
     const bool is_whole = level + made >= first.size();
     for (std::uint32_t unit = 0; unit * unit_tiles < tiles; ++unit)
@@ -161,12 +161,13 @@ void TileTrees::add_units(std::uint32_t body, std::uint32_t level, std::uint32_t
 std::uint32_t TileTrees::units_of_leaves() const {
     std::uint64_t units = 0;
     for (std::uint32_t body = 0; body < bodies_.count(); ++body)
-        if (takes(body)) units += in_tiles(boxes_of(body, 1));
+        if (is_active(body)) units += in_tiles(boxes_of(body, 1));
     return static_cast<std::uint32_t>(units);
 }
 
-/// Two levels a step. Where the lowest two would leave most of the device idle, leaves are a step of their
-/// own, in units of a tile for each team of a group: no team then makes one tile after the other.
+/// Each step builds two levels. If the units of the lowest two would leave most of the device idle, leaves
+/// are a separate step. Its units have one tile for each team of a group, so that no team builds several
+/// tiles in sequence.
 void TileTrees::plan_refit() {
     const bool few = units_of_leaves() < units_at_once_;
     std::uint32_t unit_tiles = few ? std::max(1u, group_size_ / lanes) : lanes;
@@ -175,13 +176,13 @@ void TileTrees::plan_refit() {
         std::vector<Unit> units;
         Step step;
         for (const auto body : bodies_.slot_order()) {
-            if (!takes(body)) continue;
+            if (!is_active(body)) continue;
             add_units(body, level, unit_tiles, units);
             if (!bodies_.scene().bodies[body].fixed)
                 step.moving_units = static_cast<std::uint32_t>(units.size());
         }
         step.units = static_cast<std::uint32_t>(units.size());
-        if (units.empty()) units.emplace_back(); // a buffer of nothing there is not
+        if (units.empty()) units.emplace_back(); // buffers cannot be empty
         step.table = uploaded(device_, bytes_of(units), "units of a refit");
         steps_.push_back(std::move(step));
     }
@@ -201,7 +202,7 @@ std::size_t TileTrees::do_bytes() const {
     return sum;
 }
 
-/// A bit for every tetrahedron that is there and that the frame does not skip.
+/// Uploads a bit for every tetrahedron: whether it exists and the frame does not skip it.
 void TileTrees::upload_taking_part(const Frame& frame) {
     std::vector<std::uint32_t> words(first_upper());
     {
@@ -221,16 +222,16 @@ void TileTrees::upload_taking_part(const Frame& frame) {
     device_.upload(taking_part_, bytes_of(words));
 }
 
-void TileTrees::leave_out(const Frame& frame) {
+void TileTrees::mask_skipped(const Frame& frame) {
     if (frame.skipped == skipped_) return;
     upload_taking_part(frame);
     skipped_ = frame.skipped;
     fresh_ = true;
 }
 
-/// Bottom up, two levels a launch.
+/// Runs bottom up, two levels per launch.
 void TileTrees::do_refit(const Frame& frame, bool all) {
-    leave_out(frame);
+    mask_skipped(frame);
     all |= fresh_;
     const StageScope scope(device_, Stage::refit);
     for (std::size_t i = 0; i < steps_.size(); ++i) {
