@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The chunked static scheduler (paper, sections 3.2 and 3.3): pairs of chunks are the seeds, and which
-// work-items walk them is fixed beforehand.
+// The chunked static scheduler (paper, sections 3.2 and 3.3). The seeds are pairs of chunks, and the
+// assignment of walks to work-items is fixed before the launch.
 #include "backends/portable.h"
 #include "algorithms/broad_phase/body_pairs.clh"
 #include "algorithms/chunked/walk.clh"
@@ -9,18 +9,17 @@
 #define ROOT_TEST 1
 #endif
 
-// Where a level's seeds stand: the starts of all body pairs and their sum. Written so for NVIDIA's compiler:
-// with level * (pair_count + 1) it gives traverse_in_groups 64 registers instead of 72 at k = 8, which is 9 %
-// slower.
+// Row of a level: the starts of all body pairs and their sum. This form suits NVIDIA's compiler: with level *
+// (pair_count + 1) it gives traverse_in_groups 64 registers instead of 72 at k = 8, which is 9 % slower.
 DEVICE ulong row_of_level(uint level, uint pair_count) { return (ulong)level * pair_count + level; }
 
-// seeds[row_of_level(level) + pair] = number of chunk pairs that body pair starts with at that level.
+// seeds[row_of_level(level) + pair] = number of chunk pairs that a body pair starts with at that level.
 KERNEL void count_seeds(GLOBAL const real* volumes, GLOBAL const uint* trees, GLOBAL const uint* levels,
                         GLOBAL const uint* pairs, uint pair_capacity, uint level_count, GLOBAL ulong* seeds,
                         GLOBAL const uint* status) {
     const uint pair_count = body_pair_count(pair_capacity, status);
     const ulong threshold = seed_threshold(pair_count);
-    for (ulong pair = GLOBAL_ID; pair < pair_count; pair += GLOBAL_COUNT) { // in 32 bits it might start over
+    for (ulong pair = GLOBAL_ID; pair < pair_count; pair += GLOBAL_COUNT) { // 32 bits might wrap around
         const uint body_a = body_a_of(pairs, (uint)pair);
         const uint body_b = body_b_of(pairs, (uint)pair);
         GLOBAL const uint* a = tree_of(trees, body_a);
@@ -35,7 +34,7 @@ KERNEL void count_seeds(GLOBAL const real* volumes, GLOBAL const uint* trees, GL
     }
 }
 
-// Turns each level's counts into starts, with the total at the end: one work-group a level; each work-item
+// Turns each level's counts into starts, with the total at the end. One work-group per level: each work-item
 // sums a contiguous part, work-item 0 scans the parts.
 KERNEL void scan_seeds(GLOBAL ulong* seeds, uint pair_capacity, GLOBAL const uint* status) {
     LOCAL_ARRAY(ulong, parts, GROUP_SIZE);
@@ -66,7 +65,7 @@ KERNEL void scan_seeds(GLOBAL ulong* seeds, uint pair_capacity, GLOBAL const uin
     }
 }
 
-// Walk number `seed` of this launch: those of the level's own table first, then the handed ones.
+// Walk number `seed` of this launch: first the seeds of the level's own table, then those handed down.
 DEVICE Walk walk_of_seed(const Job* job, uint pair_count, GLOBAL const ulong* starts, ulong own, uint near,
                          GLOBAL const uint* handed, ulong seed) {
     if (seed >= own) {
@@ -77,7 +76,7 @@ DEVICE Walk walk_of_seed(const Job* job, uint pair_count, GLOBAL const ulong* st
     return walk_in_pair(job->trees, job->levels, job->pairs, job->level, pair, seed - starts[pair]);
 }
 
-// How many seeds a launch has: the level's own and the handed ones.
+// Number of seeds of a launch: the level's own and those handed down.
 DEVICE ulong seed_total(ulong own, GLOBAL const uint* status, uint level, uint handed_capacity) {
     const uint above = status[STATUS_LEVELS + 2u * level];
     return own + (above < handed_capacity ? above : handed_capacity);
@@ -85,9 +84,9 @@ DEVICE ulong seed_total(ulong own, GLOBAL const uint* status, uint level, uint h
 
 #define STACK_DEPTH MOST_WAITING(LEAF_BITS)
 
-// Schedule `item`, the paper's: every work-item walks seed after seed, a fixed stride apart, each to its end,
-// with a stack of its own. One launch takes the seeds of one level: `seeds` holds the starts of that level's
-// own ones.
+// Schedule `item`, the paper's: each work-item walks seeds a fixed stride apart, one after the other, with
+// its own stack. One launch processes the seeds of one level. `seeds` has the starts of that level's own
+// seeds.
 KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* levels,
                      GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* pairs,
                      uint pair_capacity, uint level, GLOBAL const ulong* seeds, GLOBAL const uint* handed,
@@ -129,15 +128,15 @@ KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL 
     flush(&tally, status);
 }
 
-// A work-group's stack: rows of body pair, chunk of a, chunk of b, node pair. Seeds are looked at a batch of
-// at most BATCH at a time, while there are fewer rows than work-items; SHARED_RESERVE is what the walk of one
-// row can add.
+// A work-group's stack: rows of body pair, chunk of a, chunk of b, node pair. While there are fewer rows than
+// work-items, the group tests the roots of at most BATCH seeds at a time. SHARED_RESERVE is the maximum
+// number of rows that the walk of one row adds.
 #define ROW_WORDS SHARED_ROW_WORDS
 #define BATCH BATCH_SEEDS(GROUP_SIZE)
 #define SHARED_RESERVE MOST_WAITING(LEAF_BITS)
 #define SHARED_ROWS SHARED_ROW_COUNT(GROUP_SIZE, LEAF_BITS)
 
-// Word by word, so that neighbouring work-items use different banks.
+// Stored word by word, so that neighbouring work-items use different banks.
 DEVICE void push_row(LOCAL uint* rows, uint count, LOCAL uint* pushed, uint pair, uint chunk_a, uint chunk_b,
                      uint nodes) {
     LOCAL uint* row = rows + count + LOCAL_ATOMIC_ADD(pushed, 1u);
@@ -147,36 +146,36 @@ DEVICE void push_row(LOCAL uint* rows, uint count, LOCAL uint* pushed, uint pair
     row[3 * SHARED_ROWS] = nodes;
 }
 
-// How many rows the group expands at once. Each adds three at most. Without room for that it is one alone,
-// whose walk down to its end the reserve has room for.
+// Number of rows that the group expands together. Each adds at most three. If they might exceed the capacity,
+// the group expands one row, whose whole walk fits in the reserve.
 DEVICE uint rows_to_take(uint count) {
-    const uint room = ((uint)(SHARED_ROWS - SHARED_RESERVE) - count) / 3u;
+    const uint capacity = ((uint)(SHARED_ROWS - SHARED_RESERVE) - count) / 3u;
     uint taken = count < (uint)GROUP_SIZE ? count : (uint)GROUP_SIZE;
     if (count >= (uint)(SHARED_ROWS - SHARED_RESERVE)) return 1u;
-    taken = taken < room ? taken : room;
+    taken = taken < capacity ? taken : capacity;
     return taken == 0u && count != 0u ? 1u : taken;
 }
 
-// As few turns of batches as BATCH allows, all of one size: few seeds are spread over all work-groups, and
-// none has a turn more than its share.
+// Batches have equal sizes, in as few turns as BATCH allows. Few seeds are thus spread over all work-groups,
+// and no group has more turns than needed.
 DEVICE uint batch_size(ulong seeds) {
     const ulong most = (ulong)GROUP_COUNT * BATCH;
-    const ulong dealt = (seeds + most - 1u) / most * GROUP_COUNT;
-    return dealt == 0 ? 1u : (uint)((seeds + dealt - 1u) / dealt);
+    const ulong batches = (seeds + most - 1u) / most * GROUP_COUNT;
+    return batches == 0 ? 1u : (uint)((seeds + batches - 1u) / batches);
 }
 
-// Schedule `group`: batches of seeds are dealt to work-groups, a fixed stride apart. A group tests the roots
-// of a batch, which few seeds survive, and expands what is left from a stack that its work-items share, so
-// that all of them have work however unlike the walks are.
+// Schedule `group`: batches of seeds are assigned to work-groups, a fixed stride apart. A group tests the
+// roots of a batch, which few seeds pass. It expands the rest from a stack that its work-items share. All of
+// them thus have work, however different the walks are.
 KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* levels,
                                GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* pairs,
                                uint pair_capacity, uint level, GLOBAL const ulong* seeds,
                                GLOBAL const uint* handed, uint handed_capacity, GLOBAL uint* below,
                                uint below_capacity, GLOBAL uint* found, uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, rows, SHARED_ROWS * ROW_WORDS);
-    LOCAL_ARRAY(uint, pushed,
-                3); // rows pushed in this turn, and in the one before, which slow work-items may
-    // still read; the third is made ready for the next
+    // Rows pushed in this turn, and in the one before, which slow work-items may still read. The third
+    // counter is reset for the next turn.
+    LOCAL_ARRAY(uint, pushed, 3);
     const Job job = {nodes, trees, bodies,         levels, ids,      pairs,
                      level, below, below_capacity, found,  capacity, status};
     const uint all_pairs = body_pair_count(pair_capacity, status);
@@ -200,7 +199,7 @@ KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* tree
         if (LOCAL_ID == 0u) pushed[(turn + 1u) % 3u] = 0u;
         BARRIER;
         if (collecting) {
-            const uint pair_count = body_pair_count(pair_capacity, status); // again, for want of registers
+            const uint pair_count = body_pair_count(pair_capacity, status); // read again to save registers
             const uint near = start < own ? pair_between(starts, 0u, pair_count, start) : 0u;
             for (ulong seed = start + LOCAL_ID; seed < start + batch && seed < total; seed += GROUP_SIZE) {
                 const Walk walk = walk_of_seed(&job, pair_count, starts, own, near, handed, seed);

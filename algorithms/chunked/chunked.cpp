@@ -31,7 +31,7 @@ const std::vector<Preset> all_presets{
 
 constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds};
 
-/// Tetrahedra of a chunk: given, or as many as its bytes hold (paper, section 3.1).
+/// Tetrahedra per chunk: the setting, or as many as fit in chunk_bytes (paper, section 3.1).
 std::uint32_t leaves_of(const Settings& settings) {
     const auto given = static_cast<std::uint32_t>(settings[leaves]);
     if (given == 0)
@@ -43,18 +43,18 @@ std::uint32_t leaves_of(const Settings& settings) {
     return given;
 }
 
-/// Bytes of local memory that a work-group's walk takes.
-std::uint64_t local_bytes(Schedule who, std::uint64_t group_size, std::uint64_t leaf_bits) {
-    return who == Schedule::group ? SHARED_ROW_COUNT(group_size, leaf_bits) * SHARED_ROW_WORDS * 4 + 12
-                                  : MOST_WAITING(leaf_bits) * group_size * 4;
+/// Bytes of local memory of a work-group's walk.
+std::uint64_t local_bytes(Schedule kind, std::uint64_t group_size, std::uint64_t leaf_bits) {
+    return kind == Schedule::group ? SHARED_ROW_COUNT(group_size, leaf_bits) * SHARED_ROW_WORDS * 4 + 12
+                                   : MOST_WAITING(leaf_bits) * group_size * 4;
 }
 
 class Chunked : public Traversal {
 public:
     std::string_view name() const override { return "chunked"; }
     std::string_view summary() const override {
-        return "chunked static scheduler (Schmidtke and Erleben): all chunk pairs seeded, walks dealt to "
-               "work-groups, or one to each work-item as in the paper, before any begins";
+        return "chunked static scheduler (Schmidtke and Erleben): all chunk pairs are seeds; walks are "
+               "assigned to work-groups, or to work-items as in the paper, before the first one starts";
     }
     std::span<const Parameter* const> parameters() const override {
         static const auto all = pipeline_parameters(own, true);
@@ -76,21 +76,21 @@ private:
         auto costs = chunk_tree_costs(s, leaves_of(settings));
         const auto rows = [](const FrameFacts& f) { return 16 * f.body_pairs; };
         costs.push_back(
-            {"count_seeds", rows, no_operations, "body pairs in, a number of seeds for each out"});
-        costs.push_back(
-            {"scan_seeds", rows, no_operations, "a number for each body pair in, a start for each out"});
+            {"count_seeds", rows, no_operations, "reads body pairs, writes a number of seeds for each"});
+        costs.push_back({"scan_seeds", rows, no_operations,
+                         "reads a number for each body pair, writes a start for each"});
         for (const auto* entry : {"traverse", "traverse_in_groups"}) costs.push_back(walk_cost(s, entry));
         return costs;
     }
 
-    AlgorithmStages do_build(const BuildContext& ground) const override {
-        auto trees =
-            std::make_unique<ChunkTrees>(ground.bodies, leaves_of(ground.settings), ground.shape.group_size);
+    AlgorithmStages do_build(const BuildContext& context) const override {
+        auto trees = std::make_unique<ChunkTrees>(context.bodies, leaves_of(context.settings),
+                                                  context.shape.group_size);
         std::unique_ptr<Walker> walker;
-        if (ground.settings[tandem::parameters::residency] == Residency::published)
-            walker = std::make_unique<PublishedChunkedWalker>(*trees, ground);
+        if (context.settings[tandem::parameters::residency] == Residency::published)
+            walker = std::make_unique<PublishedChunkedWalker>(*trees, context);
         else
-            walker = std::make_unique<ChunkedWalker>(*trees, ground);
+            walker = std::make_unique<ChunkedWalker>(*trees, context);
         return {std::move(trees), std::move(walker)};
     }
 };

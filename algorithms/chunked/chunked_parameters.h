@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
-// The chunked scheduler's own settings.
+// Settings of the chunked scheduler.
 #pragma once
 
 #include "algorithms/parameters/table.h"
 
 namespace tandem::chunked_parameters {
 
-/// Who walks.
+/// Unit that walks seeds.
 enum class Schedule {
-    group, ///< a work-group, those seeds of its batches that overlap
-    item   ///< a work-item, every seed a stride apart, as the paper's code
+    group, ///< a work-group walks the seeds of its batches that overlap
+    item   ///< a work-item walks every seed a stride apart, as in the paper's code
 };
 
-/// What a step of a walk descends.
+/// Nodes that a step of a walk descends.
 enum class Descent {
-    both,  ///< both nodes at once, as the paper's code
-    larger ///< of two nodes of unlike size the larger alone
+    both,  ///< both nodes at once, as in the paper's code
+    larger ///< only the larger of two nodes of different size
 };
 
 inline constexpr Setting<std::int64_t> chunk_bytes{"chunk_bytes", 8000, ValueRange{1, std::int64_t{1} << 30},
@@ -26,33 +26,33 @@ inline constexpr auto leaves =
         .with_alternatives({8, 64, 512}, "chunk_bytes");
 inline constexpr Setting<std::int64_t> seed_threshold{
     "seed_threshold", 0, ValueRange{0, std::int64_t{1} << 31}, "SEED_THRESHOLD",
-    "chunk pairs per body pair above which seeding climbs a level (the paper's: 1e7); 0: seed_target shared "
-    "by the frame's body pairs"};
+    "chunk pairs per body pair above which seeding climbs a level (the paper's: 1e7); 0: seed_target divided "
+    "by the number of body pairs"};
 inline constexpr Setting<std::int64_t> seed_target{
     "seed_target", 1048576, ValueRange{1, std::int64_t{1} << 31}, "SEED_TARGET",
-    "seeds a frame is to have at most, as far as levels allow, when seed_threshold is 0"};
+    "maximum number of seeds in a frame, as far as levels allow, when seed_threshold is 0"};
 inline constexpr Setting<Schedule> schedule{
     "schedule",
     Schedule::group,
     {{"group", Schedule::group}, {"item", Schedule::item}},
     "",
-    "who walks: a work-group the seeds of its batches that overlap, or, as the paper's code, a work-item "
-    "every seed a stride apart"};
+    "unit that walks seeds: a work-group those of its batches that overlap, or a work-item every seed a "
+    "stride apart, as in the paper's code"};
 inline constexpr Setting<Descent> descent{
     "descent",
     Descent::larger,
     {{"larger", Descent::larger}, {"both", Descent::both}},
     "DESCEND_LARGER",
-    "what a step of a walk descends: of two nodes of unlike size the larger alone, or always both at once, "
-    "as the paper's code"};
+    "nodes that a step of a walk descends: only the larger of two nodes of different size, or always both, "
+    "as in the paper's code"};
 inline constexpr Setting<bool> root_test{
     "root_test",
     true,
     {{"yes", true}, {"no", false}},
     "ROOT_TEST",
-    "resident: drop body pairs whose whole volumes are apart before seeding"};
+    "resident: drop body pairs whose whole volumes do not overlap before seeding"};
 inline constexpr Setting<std::int64_t> seed_capacity{"seed_capacity", 65536,
                                                      ValueRange{1, std::int64_t{1} << 31}, "",
-                                                     "seeds handed down a level there is room for at first"};
+                                                     "initial capacity for seeds handed down a level"};
 
 } // namespace tandem::chunked_parameters

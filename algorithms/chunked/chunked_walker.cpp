@@ -15,23 +15,23 @@ constexpr std::size_t seed_bytes = 12; ///< SEED_WORDS words
 
 } // namespace
 
-ChunkedWalker::ChunkedWalker(const ChunkTrees& trees, const BuildContext& ground)
+ChunkedWalker::ChunkedWalker(const ChunkTrees& trees, const BuildContext& context)
     : trees_(trees),
-      shape_(ground.shape),
-      threshold_(ground.settings[chunked_parameters::seed_threshold]),
-      target_(ground.settings[chunked_parameters::seed_target]),
-      schedule_(ground.settings[chunked_parameters::schedule]),
-      larger_(ground.settings[chunked_parameters::descent] == chunked_parameters::Descent::larger),
+      shape_(context.shape),
+      threshold_(context.settings[chunked_parameters::seed_threshold]),
+      target_(context.settings[chunked_parameters::seed_target]),
+      schedule_(context.settings[chunked_parameters::schedule]),
+      larger_(context.settings[chunked_parameters::descent] == chunked_parameters::Descent::larger),
       // Body pairs found on the device have passed the same test.
-      root_test_(ground.settings[chunked_parameters::root_test]
-                 && ground.settings[parameters::broad] != Broad::device) {
+      root_test_(context.settings[chunked_parameters::root_test]
+                 && context.settings[parameters::broad] != Broad::device) {
     find_top_level();
-    const bool hands = top_level_ > 0 || ground.settings[parameters::residency] == Residency::published;
+    const bool hands_down = top_level_ > 0 || context.settings[parameters::residency] == Residency::published;
     const auto seeds =
-        first_rows(ground.device, ground.settings[chunked_parameters::seed_capacity], seed_bytes, 1.0 / 16);
+        first_rows(context.device, context.settings[chunked_parameters::seed_capacity], seed_bytes, 1.0 / 16);
     const Column column{"seeds", seed_bytes};
-    handed_ = GrowableBuffer(ground.device, {column, column}, hands ? seeds : 1);
-    starts_ = GrowableBuffer(ground.device, "seed starts", 8, top_level_ + 1);
+    handed_ = GrowableBuffer(context.device, {column, column}, hands_down ? seeds : 1);
+    starts_ = GrowableBuffer(context.device, "seed starts", 8, top_level_ + 1);
 }
 
 void ChunkedWalker::do_compile(const WalkBuild& build) {
@@ -60,12 +60,12 @@ std::uint32_t ChunkedWalker::seed_level(std::uint32_t a, std::uint32_t b, std::u
     return level;
 }
 
-/// Which levels can be seeded depends on meshes and the number of bodies only, so that the sequence of
-/// launches is fixed beforehand.
+/// The levels that may have seeds depend only on the meshes and the number of bodies. The sequence of
+/// launches is therefore fixed in advance.
 void ChunkedWalker::find_top_level() {
     const std::uint64_t bodies = trees_.bodies().count();
     const auto most_pairs = bodies * (bodies - 1) / 2;
-    std::map<const std::vector<Level>*, std::uint32_t> first_with; // one body for each mesh
+    std::map<const std::vector<Level>*, std::uint32_t> first_with; // one body per mesh
     for (std::uint32_t body = 0; body < bodies; ++body) first_with.emplace(&trees_.levels(body), body);
     for (const auto& [levels_a, a] : first_with)
         for (const auto& [levels_b, b] : first_with)

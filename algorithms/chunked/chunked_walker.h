@@ -8,30 +8,30 @@
 
 namespace tandem {
 
-/// The chunked static scheduler's walk: seeds made on the device, then one launch a level, from the highest
-/// that any pair of the scene's meshes is seeded at.
+/// Walk of the chunked static scheduler. Seeds are made on the device. Then one launch per level runs, from
+/// the highest level at which any pair of the scene's meshes has seeds.
 class ChunkedWalker : public Walker {
 public:
-    /// Both must outlive this.
-    ChunkedWalker(const ChunkTrees& trees, const BuildContext& ground);
+    /// Both arguments must outlive this object.
+    ChunkedWalker(const ChunkTrees& trees, const BuildContext& context);
 
 protected:
-    /// The rule of seed_level in seeds.clh, for the host.
+    /// The rule of seed_level in seeds.clh, on the host.
     std::uint32_t seed_level(std::uint32_t a, std::uint32_t b, std::uint64_t pair_count) const;
-    /// Enqueues the walks of a level: its own seeds, as the starts have them, and those handed down to it.
+    /// Enqueues the walks of a level: its own seeds, given by the starts, and those handed down to it.
     void traverse(const WalkTask& task, std::uint32_t level, std::uint32_t pair_capacity);
-    /// Makes starts for so many body pairs; what was there is lost.
+    /// Reserves starts for `pairs` body pairs; existing starts are lost.
     void reserve_starts(std::uint64_t pairs);
 
     const ChunkTrees& trees() const { return trees_; }
     Device& device() const { return trees_.bodies().device(); }
     std::uint32_t top_level() const { return top_level_; }
     const GrowableBuffer& starts() const { return starts_; }
-    /// Seeds handed down to a level, and from outside; rows of SEED_WORDS words.
+    /// Seeds handed down to a level or made by the host; rows of SEED_WORDS words.
     const Buffer& handed(std::uint32_t level) const { return handed_.buffer(level % 2); }
-    /// How many a level can be handed.
+    /// Maximum number of seeds handed down to a level.
     std::uint32_t handed_capacity() const { return handed_.capacity(); }
-    /// Makes that larger; what was there is lost. Throws OutOfMemory.
+    /// Grows this capacity; existing seeds are lost. Throws OutOfMemory.
     void grow_handed(std::uint64_t seeds) { handed_.grow(seeds); }
 
 private:
@@ -41,18 +41,18 @@ private:
     void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
 
     void find_top_level();
-    /// Counts the seeds of every body pair and level, then turns counts into starts.
+    /// Counts the seeds of every body pair and level, then turns the counts into starts.
     void make_seeds(const WalkTask& task);
 
     const ChunkTrees& trees_;
     LaunchShape shape_;
-    std::int64_t threshold_; ///< 0: target_ shared by the body pairs
+    std::int64_t threshold_; ///< 0: target_ divided by the number of body pairs
     std::int64_t target_;
     chunked_parameters::Schedule schedule_;
     bool larger_;
     bool root_test_;
-    std::uint32_t top_level_ = 0; ///< the highest level any pair of this scene's meshes is seeded at
-    GrowableBuffer handed_;       ///< seeds handed down to even and odd levels, a column each
+    std::uint32_t top_level_ = 0; ///< highest level at which any pair of the scene's meshes has seeds
+    GrowableBuffer handed_;       ///< seeds handed down to even and odd levels, one column each
     GrowableBuffer starts_;
     Kernel count_kernel_, scan_kernel_, traverse_kernel_;
 };
