@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // gProximity's traversal with dynamic load balancing (Lauterbach, Mo, Manocha 2010), from its published
 // description and the numbers of its two implementations. Every work-group owns a queue of node pairs in
-// global memory and works on a local queue loaded from its top; an idle counter ends the launch; balancing
-// evens the queues out.
+// global memory. It works on a local queue that it loads from the top of its own queue. A counter of idle
+// groups ends the launch. Balancing then evens out the queues.
 #include "backends/portable.h"
 #include "algorithms/broad_phase/body_pairs.clh"
 #include "algorithms/answer/emit.clh"
@@ -33,34 +33,34 @@ DEVICE void copy_item(GLOBAL uint* to, GLOBAL const uint* from) {
     to[2] = from[2];
 }
 
-// Queue `queue` of item number `item` when `total` items are spread evenly over `queues`, the first ones
-// taking one more; its place in that queue in *place.
-DEVICE uint queue_of_item(uint item, uint total, uint queues, uint* place) {
-    const uint share = total / queues;
-    const uint longer = total % queues; // queues with share + 1 items
-    const uint in_longer = longer * (share + 1u);
+// Queue of item number `item` when `total` items are spread evenly over `queues`; the first queues get one
+// more. *slot receives its index in that queue.
+DEVICE uint queue_of_item(uint item, uint total, uint queues, uint* slot) {
+    const uint per_queue = total / queues;
+    const uint longer = total % queues; // queues with per_queue + 1 items
+    const uint in_longer = longer * (per_queue + 1u);
     if (item < in_longer) {
-        *place = item % (share + 1u);
-        return item / (share + 1u);
+        *slot = item % (per_queue + 1u);
+        return item / (per_queue + 1u);
     }
-    *place = (item - in_longer) % share;
-    return longer + (item - in_longer) / share;
+    *slot = (item - in_longer) % per_queue;
+    return longer + (item - in_longer) / per_queue;
 }
 
 DEVICE uint share_of_queue(uint queue, uint total, uint queues) {
     return total / queues + (queue < total % queues ? 1u : 0u);
 }
 
-// Root pairs of the body pairs from number `first` on, `most` at most, spread evenly over the queues.
+// Spreads the root pairs of at most `most` body pairs, from number `first` on, evenly over the queues.
 KERNEL void scatter_roots(GLOBAL uint* items, GLOBAL uint* counts, uint queues, uint queue_capacity,
                           uint first, uint most, GLOBAL const uint* status) {
     const uint all = body_pair_count(0xffffffffu, status);
     const uint rest = all > first ? all - first : 0u;
     const uint count = rest < most ? rest : most;
-    for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) { // in 32 bits it might start over
-        uint place;
-        const uint queue = queue_of_item((uint)i, count, queues, &place);
-        GLOBAL uint* item = items + ((ulong)queue * queue_capacity + place) * ITEM_WORDS;
+    for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) { // 32 bits might wrap around
+        uint slot;
+        const uint queue = queue_of_item((uint)i, count, queues, &slot);
+        GLOBAL uint* item = items + ((ulong)queue * queue_capacity + slot) * ITEM_WORDS;
         item[0] = first + (uint)i;
         item[1] = ROOT_NODE;
         item[2] = ROOT_NODE;
@@ -69,7 +69,7 @@ KERNEL void scatter_roots(GLOBAL uint* items, GLOBAL uint* counts, uint queues, 
         counts[queue] = share_of_queue((uint)queue, count, queues);
 }
 
-// What one node pair leads to: a candidate pair, nothing, or two children to push.
+// Result of one node pair: a candidate pair, nothing, or two children to push.
 typedef struct {
     uint pair, a, b;
     uint descend; // 0 none, 1 children of a, 2 children of b
@@ -104,8 +104,8 @@ DEVICE Step walk_item(Step step, GLOBAL const real* nodes, GLOBAL const uint* tr
     return step;
 }
 
-// Pushes the two children of a step: into the local queue, or past its end onto the top of the group's own
-// queue, where room was made sure of beforehand.
+// Pushes the two children of a step into the local queue, or past its end onto the top of the group's own
+// queue. The caller ensures that this queue has the capacity.
 DEVICE void push_children(Step step, LOCAL uint* queue, LOCAL uint* size, GLOBAL uint* own, uint stored) {
     const uint slot = LOCAL_ATOMIC_ADD(size, 2u);
     for (uint child = 0; child < 2u; ++child) {
@@ -124,10 +124,10 @@ DEVICE void push_children(Step step, LOCAL uint* queue, LOCAL uint* size, GLOBAL
     }
 }
 
-// A group's shared words.
+// Words that a group shares.
 #define SIZE 0   // items in the local queue
 #define STORED 1 // items in the group's own queue in global memory, below the local ones
-#define TAKE 2   // of SIZE, items that still lie on top of the own queue and are to be loaded
+#define TAKE 2   // items of SIZE that are still on top of the own queue and must be loaded
 #define STOP 3
 
 // Takes up to INITIAL_ITEMS from the top of the own queue.
@@ -139,9 +139,9 @@ DEVICE void take_items(LOCAL uint* shared, uint stored) {
     shared[STOP] = shared[SIZE] == 0u ? 1u : 0u;
 }
 
-// After a round of `active` items: accounts for what went past the local queue, refills an empty one, and
-// decides whether the group stops: nothing left or no progress, local or own queue full, or too many groups
-// idle.
+// Ends a round of `active` items: accounts for items past the local queue, refills an empty one, and decides
+// whether the group stops. It stops without items or progress, with a full local or own queue, or when too
+// many groups are idle.
 DEVICE void settle_round(LOCAL uint* shared, uint active, uint queue_capacity, GLOBAL uint* idle,
                          GLOBAL uint* status) {
     const uint size = shared[SIZE];
@@ -162,9 +162,8 @@ DEVICE void settle_round(LOCAL uint* shared, uint active, uint queue_capacity, G
     shared[STOP] = stop;
 }
 
-// One launch: every group empties its queue as far as the rules let it. A round takes the top of the local
-// queue, at most one item a work-item, and never more than the group's own queue could store if all of them
-// split.
+// One launch: every group empties its queue as far as the rules allow. A round processes the top of the local
+// queue, at most one item per work-item. Even if all its items split, the group's own queue can store them.
 KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* bodies,
                             GLOBAL const uint* ids, GLOBAL const uint* pairs, GLOBAL uint* items,
                             GLOBAL uint* counts, uint queue_capacity, GLOBAL uint* idle, GLOBAL uint* found,
@@ -173,7 +172,7 @@ KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* trees, 
     LOCAL_ARRAY(uint, shared, 4);
     GLOBAL uint* own = items + (ulong)GROUP_ID * queue_capacity * ITEM_WORDS;
     Tally tally = empty_tally();
-    // Of work-item 0: the group has nothing to begin with, and others need not wait for its end.
+    // Set in work-item 0 if the group starts without items; it then counts as idle from the start.
     uint idles = 0;
     if (LOCAL_ID == 0u) {
         take_items(shared, counts[GROUP_ID]);
@@ -182,15 +181,15 @@ KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* trees, 
     }
     BARRIER;
     uint stop;
-    do { // once at least, as loops with barriers have to; a group without items stops at its end
+    do { // runs at least once, as loops with barriers must; a group without items stops at its end
         const uint size = shared[SIZE];
         const uint stored = shared[STORED];
         for (uint i = LOCAL_ID; i < shared[TAKE] * ITEM_WORDS; i += (uint)GROUP_SIZE)
             queue[i] = own[(ulong)stored * ITEM_WORDS + i];
         BARRIER;
-        const uint room = queue_capacity - stored - size;
+        const uint free_items = queue_capacity - stored - size;
         const uint lanes = size < (uint)GROUP_SIZE ? size : (uint)GROUP_SIZE;
-        const uint active = lanes < room ? lanes : room;
+        const uint active = lanes < free_items ? lanes : free_items;
         Step step = {0u, 0u, 0u, 0u};
         if (LOCAL_ID < active) {
             LOCAL const uint* item = queue + (size - active + LOCAL_ID) * ITEM_WORDS;
@@ -209,7 +208,8 @@ KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* trees, 
         BARRIER;
         stop = shared[STOP];
     } while (stop == 0u);
-    // Back onto the own queue's top. Items of a refill that was not begun still lie there.
+    // Stores the items back onto the own queue's top. Items of a refill that is not loaded yet are still
+    // there.
     for (uint i = LOCAL_ID; shared[TAKE] == 0u && i < shared[SIZE] * ITEM_WORDS; i += (uint)GROUP_SIZE)
         own[(ulong)shared[STORED] * ITEM_WORDS + i] = queue[i];
     if (LOCAL_ID == 0u) {
@@ -224,7 +224,7 @@ DEVICE uint add_items(uint sum, uint more) {
 }
 
 // Sums the queues and decides whether to balance: totals = {items, balance}, starts = exclusive sums. Sums
-// end at MOST_QUEUE_ITEMS, of which nothing is moved. One group.
+// saturate at MOST_QUEUE_ITEMS; then nothing is moved. One group.
 KERNEL void plan_balance(GLOBAL const uint* counts, uint queues, uint low, uint high, GLOBAL uint* starts,
                          GLOBAL uint* totals) {
     LOCAL_ARRAY(uint, sums, GROUP_SIZE);
@@ -262,8 +262,7 @@ KERNEL void plan_balance(GLOBAL const uint* counts, uint queues, uint low, uint 
     }
 }
 
-// Moves every item to its place with the whole device: the two-phase balance of g-Planner
-// (gproximity.md 12.1).
+// Moves every item to its new queue with the whole device: the two-phase balance of g-Planner.
 KERNEL void move_balance(GLOBAL const uint* from, GLOBAL uint* to, GLOBAL uint* counts, uint queues,
                          uint queue_capacity, GLOBAL const uint* starts, GLOBAL const uint* totals) {
     const uint total = totals[1] != 0u ? totals[0] : 0u;
@@ -277,41 +276,41 @@ KERNEL void move_balance(GLOBAL const uint* from, GLOBAL uint* to, GLOBAL uint* 
             else
                 high = middle;
         }
-        uint place;
-        const uint queue = queue_of_item(i, total, queues, &place);
-        copy_item(to + ((ulong)queue * queue_capacity + place) * ITEM_WORDS,
+        uint slot;
+        const uint queue = queue_of_item(i, total, queues, &slot);
+        copy_item(to + ((ulong)queue * queue_capacity + slot) * ITEM_WORDS,
                   from + ((ulong)low * queue_capacity + (i - starts[low])) * ITEM_WORDS);
     }
     for (uint queue = GLOBAL_ID; total != 0u && queue < queues; queue += GLOBAL_COUNT)
         counts[queue] = share_of_queue(queue, total, queues);
 }
 
-// The same as the originals do it: one group, output queue after output queue, in runs of at most one item a
-// work-item with a barrier behind each. Source and target queues are walked together.
+// The same as in the originals: one group fills output queue after output queue, in runs of at most one item
+// per work-item with a barrier after each. It advances through source and target queues together.
 KERNEL void move_balance_serially(GLOBAL const uint* from, GLOBAL uint* to, GLOBAL uint* counts, uint queues,
                                   uint queue_capacity, GLOBAL const uint* starts, GLOBAL const uint* totals) {
     const uint total = totals[1] != 0u ? totals[0] : 0u;
     uint source = 0;
     uint moved = 0;
     uint queue = 0;
-    uint place = 0;
-    do { // once at least, as loops with barriers have to; then it moves nothing
+    uint slot = 0;
+    do { // runs at least once, as loops with barriers must; without items it moves nothing
         while (moved < total && starts[source + 1u] <= moved) ++source;
-        while (moved < total && place >= share_of_queue(queue, total, queues)) {
+        while (moved < total && slot >= share_of_queue(queue, total, queues)) {
             ++queue;
-            place = 0;
+            slot = 0;
         }
         uint run = moved < total ? starts[source + 1u] - moved : 0u;
-        const uint space = share_of_queue(queue, total, queues) - place;
+        const uint space = share_of_queue(queue, total, queues) - slot;
         run = run < space ? run : space;
         run = run < (uint)GROUP_SIZE ? run : (uint)GROUP_SIZE;
         if (LOCAL_ID < run)
             copy_item(
-                to + ((ulong)queue * queue_capacity + place + LOCAL_ID) * ITEM_WORDS,
+                to + ((ulong)queue * queue_capacity + slot + LOCAL_ID) * ITEM_WORDS,
                 from + ((ulong)source * queue_capacity + (moved - starts[source]) + LOCAL_ID) * ITEM_WORDS);
         BARRIER;
         moved += run;
-        place += run;
+        slot += run;
     } while (moved < total);
     for (uint i = LOCAL_ID; total != 0u && i < queues; i += (uint)GROUP_SIZE)
         counts[i] = share_of_queue(i, total, queues);

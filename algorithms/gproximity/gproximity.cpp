@@ -14,7 +14,7 @@ namespace tandem {
 
 namespace {
 
-/// One chunk over all tetrahedra of the largest mesh: a plain hierarchy per body.
+/// Leaves of one chunk over all tetrahedra of the largest mesh, so that each body has a plain hierarchy.
 std::uint32_t whole_mesh(const Scene& scene) {
     std::uint32_t most = 2;
     for (const auto& mesh : scene.meshes)
@@ -41,31 +41,30 @@ private:
         const auto sizes = queue_sizes(settings, info);
         if (settings[tandem::parameters::broad] == Broad::device
             && (sizes.batch != 0 || sizes.upload == QueueUpload::queues))
-            throw InputError(
-                "setting broad=device goes with batch=0 and upload=seeds only: the host makes "
-                "batches and queues, and would have to know the body pairs; choose broad=sphere");
+            throw InputError("setting broad=device goes with batch=0 and upload=seeds only: the host makes "
+                             "batches and queues, and needs the body pairs for them; choose broad=sphere");
     }
 
     std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const override {
         const SceneFacts s(scene, settings);
         auto costs = chunk_tree_costs(s, whole_mesh(scene));
         costs.push_back({"scatter_roots", [](const FrameFacts& f) { return 12 * f.body_pairs; },
-                         no_operations, "an item for each body pair out"});
+                         no_operations, "writes an item for each body pair"});
         costs.push_back(walk_cost(s, "traverse_queues"));
-        costs.push_back({"plan_balance", {}, {}, "nothing: a sum over queues, a launch"});
+        costs.push_back({"plan_balance", {}, {}, "nothing: one sum over queues per launch"});
         for (const auto* entry : {"move_balance", "move_balance_serially"})
-            costs.push_back({entry, {}, {}, "nothing: how many items move is not counted"});
+            costs.push_back({entry, {}, {}, "nothing: the number of items that move is not counted"});
         return costs;
     }
 
-    AlgorithmStages do_build(const BuildContext& ground) const override {
+    AlgorithmStages do_build(const BuildContext& context) const override {
         auto trees =
-            std::make_unique<ChunkTrees>(ground.bodies, whole_mesh(ground.scene), ground.shape.group_size);
+            std::make_unique<ChunkTrees>(context.bodies, whole_mesh(context.scene), context.shape.group_size);
         std::unique_ptr<Walker> walker;
-        if (ground.settings[tandem::parameters::residency] == Residency::published)
-            walker = std::make_unique<PublishedQueueWalker>(*trees, ground);
+        if (context.settings[tandem::parameters::residency] == Residency::published)
+            walker = std::make_unique<PublishedQueueWalker>(*trees, context);
         else
-            walker = std::make_unique<QueueWalker>(*trees, ground);
+            walker = std::make_unique<QueueWalker>(*trees, context);
         return {std::move(trees), std::move(walker)};
     }
 };

@@ -5,7 +5,7 @@
 
 namespace tandem {
 
-/// gProximity's dynamic load balancing, from scratch, with its published numbers as presets.
+/// gProximity's dynamic load balancing, implemented from scratch, with its published numbers as presets.
 const Traversal& gproximity();
 
 } // namespace tandem

@@ -20,22 +20,25 @@ constexpr Setting<std::int64_t> groups{"groups", 0, ValueRange{0, 1 << 20}, "",
 constexpr Setting<std::int64_t> local_queue{"local_queue", 0, ValueRange{0, 1 << 20}, "LOCAL_QUEUE",
                                             "items of the local queue; 0: from the device's local memory"};
 constexpr Setting<std::int64_t> initial_items{"initial_items", 0, ValueRange{0, 1 << 20}, "INITIAL_ITEMS",
-                                              "items loaded from the own queue; 0: 3 a work-item"};
+                                              "items that a group loads from its queue; 0: 3 per work-item"};
 constexpr Setting<std::int64_t> queue_bytes{"queue_bytes", 67108864, ValueRange{12, std::int64_t{1} << 40},
-                                            "", "all queues together; one of the two arrays"};
+                                            "", "bytes of all queues in one of the two arrays"};
 constexpr Setting<std::int64_t> queue_capacity{"queue_capacity", 0, ValueRange{0, std::int64_t{1} << 31}, "",
                                                "items of one queue; 0: from queue_bytes"};
 constexpr Setting<std::int64_t> idle_limit{"idle_limit", 0, ValueRange{0, 1 << 20}, "IDLE_LIMIT",
                                            "idle groups that end a launch; 0: 2/3 of the groups"};
 constexpr Setting<std::int64_t> batch{"batch", 0, ValueRange{0, std::int64_t{1} << 31}, "",
-                                      "body pairs a batch; 0: all"};
+                                      "body pairs per batch; 0: all"};
 constexpr Setting<QueueUpload> upload{"upload",
                                       QueueUpload::seeds,
                                       {{"seeds", QueueUpload::seeds}, {"queues", QueueUpload::queues}},
                                       "",
-                                      "queues: the whole array in every batch, as published"};
-constexpr Setting<bool> refill{
-    "refill", true, {{"yes", true}, {"no", false}}, "REFILL", "load more from the own queue inside a launch"};
+                                      "queues: upload the whole array in every batch, as published"};
+constexpr Setting<bool> refill{"refill",
+                               true,
+                               {{"yes", true}, {"no", false}},
+                               "REFILL",
+                               "load more items from the group's queue inside a launch"};
 constexpr Setting<bool> full_exit{"full_exit",
                                   false,
                                   {{"yes", true}, {"no", false}},
@@ -45,7 +48,7 @@ constexpr Setting<Balance> balance{"balance",
                                    Balance::parallel,
                                    {{"parallel", Balance::parallel}, {"serial", Balance::serial}},
                                    "",
-                                   "parallel: one item a work-item; serial: one group, queue by queue"};
+                                   "parallel: one item per work-item; serial: one group, queue by queue"};
 constexpr Setting<std::int64_t> balance_group_size{"balance_group_size", 256, ValueRange{1, 1024}, "",
                                                    "work-items of the balancing group"};
 
@@ -53,8 +56,9 @@ constexpr std::array<const Parameter*, 12> own{
     &groups, &local_queue, &initial_items, &queue_bytes, &queue_capacity, &idle_limit,
     &batch,  &upload,      &refill,        &full_exit,   &balance,        &balance_group_size};
 
-/// A preset of the release that made the paper's tables (tvcg18.md 2.1): one root pair per group and batch,
-/// the whole array uploaded, a full local queue ends the launch. `idle` 0.67 times the local size, as it was.
+/// A preset of the release that produced the paper's tables: one root pair per group and batch, the whole
+/// array uploaded, and a full local queue ends the launch. As in the release, `idle` is 0.67 times the local
+/// size.
 std::vector<Assignment> published(int group_count, int local_size, int local_items, int idle, int balancing) {
     return {parameters::k(8),
             parameters::residency(Residency::published),
@@ -75,7 +79,7 @@ const std::vector<Preset> presets{
     {"fair",
      "all body pairs at once, found on the device, refill inside a launch, parallel balance",
      {parameters::broad(Broad::device)}},
-    {"published", "the paper's release with the geometry it had on a K40c",
+    {"published", "the paper's release with its launch geometry on a K40c",
      published(30, 992, 1023, 664, 1024)},
     {"published-c2075", "the same on a C2075", published(28, 1024, 2047, 686, 1024)},
     {"published-k20c", "the same on a K20c", published(26, 992, 1023, 664, 1024)},
@@ -92,7 +96,7 @@ std::uint32_t number(const Settings& settings, const Setting<std::int64_t>& sett
     return static_cast<std::uint32_t>(settings[setting]);
 }
 
-/// Items of one queue when queue_bytes are shared out evenly.
+/// Items of one queue when queue_bytes are divided evenly.
 std::uint32_t capacity_from_bytes(const Settings& settings, std::uint32_t queues) {
     const auto items = static_cast<std::uint64_t>(settings[queue_bytes]) / (item_bytes * queues);
     if (items > MOST_QUEUE_ITEMS)
@@ -102,7 +106,7 @@ std::uint32_t capacity_from_bytes(const Settings& settings, std::uint32_t queues
     return static_cast<std::uint32_t>(items);
 }
 
-/// A quarter of the local memory unless it is said, so that several groups share a compute unit.
+/// Unless set, a quarter of the local memory, so that several groups share a compute unit.
 std::uint32_t local_items(const Settings& settings, const DeviceInfo& info) {
     const auto fitting =
         static_cast<std::uint32_t>(std::min<std::uint64_t>(info.local_bytes / item_bytes / 4, 2048));

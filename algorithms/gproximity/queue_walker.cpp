@@ -11,9 +11,9 @@ namespace tandem {
 namespace {
 
 constexpr std::uint64_t item_words = 3;
-constexpr std::uint64_t least_capacity = 2; ///< of a queue, one item of which stays free
+constexpr std::uint64_t least_capacity = 2; ///< of a queue; one of its items stays free
 constexpr auto too_many_items =
-    "gproximity: 2^31 node pairs or more wait in its queues, past what it counts; set batch, or take chunked";
+    "gproximity: its queues have 2^31 node pairs or more, which it cannot count; set batch, or use chunked";
 
 constexpr Counter balances{"balances", "launches", "balance launches that moved work"};
 constexpr Counter refills{"refills", "loads", "times a group loaded more from its own queue inside a launch"};
@@ -21,7 +21,7 @@ constexpr Counter spills{"spills", "node pairs",
                          "node pairs that left a full local queue for the global one"};
 constexpr Counter own_bytes{"queue_bytes", "bytes", "one of the two arrays of queues", Counter::Total::last};
 constexpr Counter published_bytes{"published_queue_bytes", "bytes",
-                                  "what the paper's release would have taken for it on this device",
+                                  "bytes that the paper's release would allocate for it on this device",
                                   Counter::Total::last};
 
 constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds, balances, refills, spills, own_bytes,
@@ -31,15 +31,15 @@ constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds, balance
 
 std::span<const Counter> queue_counters() { return all_counters; }
 
-QueueWalker::QueueWalker(const ChunkTrees& trees, const BuildContext& ground)
-    : trees_(trees), shape_(ground.shape), sizes_(queue_sizes(ground.settings, ground.device.info())) {
+QueueWalker::QueueWalker(const ChunkTrees& trees, const BuildContext& context)
+    : trees_(trees), shape_(context.shape), sizes_(queue_sizes(context.settings, context.device.info())) {
     counts_ = device().allocate(sizes_.groups * 4, "queue counts");
     starts_ = device().allocate((sizes_.groups + 1) * 4, "queue starts");
     totals_ = device().allocate(8, "balance totals");
     idle_ = device().allocate(4, "idle groups");
-    const auto room = first_rows(device(), sizes_.queue_capacity, sizes_.groups * item_words * 4, 0.25);
+    const auto rows = first_rows(device(), sizes_.queue_capacity, sizes_.groups * item_words * 4, 0.25);
     const Column queues{"queues", sizes_.groups * item_words * 4};
-    queues_ = GrowableBuffer(device(), {queues, queues}, std::max(room, least_capacity));
+    queues_ = GrowableBuffer(device(), {queues, queues}, std::max(rows, least_capacity));
 }
 
 void QueueWalker::do_compile(const WalkBuild& build) {
@@ -73,7 +73,7 @@ bool QueueWalker::do_grow(const Status& status) {
     return true;
 }
 
-/// The release took min(largest allocation, a quarter of the memory) for one array (tvcg18.md 2.1).
+/// The release takes min(largest allocation, a quarter of the memory) for one array.
 void QueueWalker::do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
     const auto& info = device().info();
     work[counters::bvtt_nodes.name] += status.counter(STATUS_BVTT_NODES);
@@ -85,7 +85,7 @@ void QueueWalker::do_report(const Status& status, std::map<std::string_view, std
     work[published_bytes.name] = std::min(info.max_allocation, info.global_bytes / 4);
 }
 
-/// Spreads the roots of body pairs over the queues; the pairs themselves are on the device.
+/// Spreads the roots of body pairs over the queues. The body pairs are already on the device.
 void QueueWalker::seed(const WalkTask& task, std::uint32_t first, std::uint32_t most) {
     const StageScope scope(device(), Stage::seed);
     const std::array<Argument, 7> arguments{items(), counts_, sizes_.groups,       queue_capacity(),
@@ -93,8 +93,8 @@ void QueueWalker::seed(const WalkTask& task, std::uint32_t first, std::uint32_t 
     device().launch(scatter_, {shape_.groups, shape_.group_size}, arguments);
 }
 
-/// What the release did: a fresh host array as large as all queues, one root at the start of each, uploaded
-/// whole.
+/// As in the release: a new host array as large as all queues, with one root at the start of each, uploaded
+/// as a whole.
 void QueueWalker::upload_whole_queues(std::uint32_t first, std::uint32_t count) {
     const auto words = std::uint64_t{sizes_.groups} * queue_capacity() * item_words;
     std::unique_ptr<std::uint32_t[]> items;
@@ -103,7 +103,7 @@ void QueueWalker::upload_whole_queues(std::uint32_t first, std::uint32_t count) 
         const HostWork work(device(), Stage::preprocess, "queue array");
         items = std::make_unique_for_overwrite<std::uint32_t[]>(words);
         for (std::uint32_t i = 0; i < count; ++i) {
-            // A batch may be larger than the groups: roots then lie one above the other.
+            // If a batch has more roots than there are groups, a queue has several.
             const auto queue = i % sizes_.groups;
             auto* item = &items[(std::uint64_t{queue} * queue_capacity() + counts[queue]++) * item_words];
             item[0] = first + i;
@@ -147,15 +147,15 @@ void QueueWalker::plan_and_move() {
     const StageScope scope(device(), Stage::balance);
     const std::array<Argument, 6> plan{counts_, sizes_.groups, low, high, starts_, totals_};
     device().launch(plan_, {1, sizes_.balance_group_size}, plan);
-    const std::array<Argument, 7> move{items(),          other_items(), counts_, sizes_.groups,
-                                       queue_capacity(), starts_,       totals_};
+    const std::array<Argument, 7> move{items(),          target_items(), counts_, sizes_.groups,
+                                       queue_capacity(), starts_,        totals_};
     if (sizes_.balance == Balance::serial)
         device().launch(move_, {1, sizes_.balance_group_size}, move);
     else
         device().launch(move_, {shape_.groups, shape_.group_size}, move);
 }
 
-/// Plans and moves; returns {items left, at most MOST_QUEUE_ITEMS, and whether they moved}.
+/// Plans and moves. Returns the number of items left, at most MOST_QUEUE_ITEMS, and whether they moved.
 std::array<std::uint32_t, 2> QueueWalker::balance() {
     plan_and_move();
     std::array<std::uint32_t, 2> totals{};
@@ -164,7 +164,7 @@ std::array<std::uint32_t, 2> QueueWalker::balance() {
     return totals;
 }
 
-/// Walks one batch to its end; false when the queues are too small for it.
+/// Walks one batch to its end. Returns false if the queues are too small for it.
 bool QueueWalker::walk_batch(const WalkTask& task, std::uint32_t first, std::uint32_t count) {
     if (count > total_capacity()) return false;
     if (sizes_.upload == QueueUpload::queues)
@@ -188,7 +188,7 @@ bool QueueWalker::walk_batch(const WalkTask& task, std::uint32_t first, std::uin
 void QueueWalker::do_launch(const WalkTask& task) {
     balances_ = 0;
     short_of_queue_ = false;
-    // Pairs found on the device are as many as there is room for; do_grow looks whether these were all.
+    // The device may have found more body pairs than the queues can store; do_grow checks this.
     const auto most = task.searched ? total_capacity() : std::uint64_t{task.most_pairs()};
     const auto total = static_cast<std::uint32_t>(std::min<std::uint64_t>(task.most_pairs(), most));
     const auto batch = sizes_.batch == 0 ? total : sizes_.batch;

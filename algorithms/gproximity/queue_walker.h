@@ -8,16 +8,16 @@
 
 namespace tandem {
 
-/// gProximity's walk: queues of node pairs, one for each work-group, balanced between launches.
+/// gProximity's walk: queues of node pairs, one per work-group, balanced between launches.
 class QueueWalker : public Walker {
 public:
-    /// `trees` of one chunk a body. Both must outlive this.
-    QueueWalker(const ChunkTrees& trees, const BuildContext& ground);
+    /// `trees` must have one chunk per body. Both arguments must outlive this object.
+    QueueWalker(const ChunkTrees& trees, const BuildContext& context);
 
 protected:
     Device& device() const { return trees_.bodies().device(); }
     const QueueSizes& sizes() const { return sizes_; }
-    const Buffer& idle() const { return idle_; }     ///< the counter of idle groups
+    const Buffer& idle() const { return idle_; }     ///< counter of idle groups
     const Buffer& counts() const { return counts_; } ///< items in each queue
 
 private:
@@ -26,19 +26,19 @@ private:
     bool do_grow(const Status& status) override;
     void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
 
-    /// Sets the counter of idle groups to 0 before a launch; what else happens after one.
+    /// Sets the counter of idle groups to 0 before a launch. do_after_launch runs after each launch.
     virtual void do_clear_idle();
     virtual void do_after_launch() {}
 
     /// Bytes of one of the two arrays of queues.
     std::uint64_t queue_bytes() const;
-    /// Items that each queue holds.
+    /// Capacity of each queue in items.
     std::uint32_t queue_capacity() const { return queues_.capacity(); }
-    /// Items that may wait in all queues together.
+    /// Maximum number of items in all queues together.
     std::uint64_t total_capacity() const;
-    /// The queues that are walked, and those that balancing moves their items to.
+    /// Queues that are walked, and those to which balancing moves their items.
     const Buffer& items() const { return queues_.buffer(side_); }
-    const Buffer& other_items() const { return queues_.buffer(1 - side_); }
+    const Buffer& target_items() const { return queues_.buffer(1 - side_); }
     void seed(const WalkTask& task, std::uint32_t first, std::uint32_t most);
     void upload_whole_queues(std::uint32_t first, std::uint32_t count);
     bool walk_batch(const WalkTask& task, std::uint32_t first, std::uint32_t count);
@@ -51,13 +51,13 @@ private:
     QueueSizes sizes_;
     bool short_of_queue_ = false;
     std::uint64_t balances_ = 0;
-    GrowableBuffer queues_; ///< two arrays of queues, a column each; row i: item i of every queue
+    GrowableBuffer queues_; ///< two arrays of queues, one column each; row i: item i of every queue
     std::size_t side_ = 0;  ///< the column of items()
     Buffer counts_, starts_, totals_, idle_;
     Kernel scatter_, traverse_, plan_, move_;
 };
 
-/// Counters of this walk beside those of every walk.
+/// Counters of this walk, in addition to those of every walk.
 std::span<const Counter> queue_counters();
 
 } // namespace tandem
