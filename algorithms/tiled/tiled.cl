@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The tiled walk: a team of lanes tests 32 boxes of one body against 32 of the other at once, without a
-// stack. A launch takes the pairs of tiles of one level, those that the level above has found and the body
-// pairs whose trees end there, and finds those of the next, or, at level 0, candidate pairs.
+// stack. A launch processes the pairs of tiles of one level: those that the level above found, and those with
+// which body pairs start there. It finds the pairs of the next level or, at level 0, candidate pairs.
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
 #include "algorithms/tiled/turns.clh"
 
-// A pair with PAIR_ITEMS: tiles of level 0 are blocks of slots, in their order.
+// A pair in layout PAIR_ITEMS. Tiles of level 0 are blocks of slots, in their order.
 DEVICE WordRow items_of_slots(GLOBAL const uint* tiles, uint a, uint b) {
     const Tile tile_a = tile_at(tiles, a / LANES);
     const Tile tile_b = tile_at(tiles, b / LANES);
@@ -18,31 +18,31 @@ DEVICE WordRow items_of_slots(GLOBAL const uint* tiles, uint a, uint b) {
     return pair;
 }
 
-// Past `capacity` nothing is written.
+// Writes nothing past `capacity`.
 DEVICE void write_candidates(const Team* team, uint waiting, GLOBAL const uint* tiles, GLOBAL uint* found,
                              uint capacity) {
-    const ulong place = *team->place;
+    const ulong start = *team->place;
     for (uint i = LANE_ID; i < waiting; i += (uint)LANE_STEP)
-        if (place + i < capacity) {
+        if (start + i < capacity) {
             const uint a = team->pairs[2u * i];
             const uint b = team->pairs[2u * i + 1u];
             if (PAIR_LAYOUT == PAIR_SLOTS) {
                 const WordPair row = {a, b};
-                ((GLOBAL WordPair*)found)[place + i] = row;
+                ((GLOBAL WordPair*)found)[start + i] = row;
             } else {
-                ((GLOBAL WordRow*)found)[place + i] = items_of_slots(tiles, a, b);
+                ((GLOBAL WordRow*)found)[start + i] = items_of_slots(tiles, a, b);
             }
         }
 }
 
 DEVICE void write_tile_pairs(const Team* team, uint waiting, GLOBAL uint* list, uint capacity) {
-    const ulong place = *team->place;
+    const ulong start = *team->place;
     for (uint i = LANE_ID; i < 2u * waiting; i += (uint)LANE_STEP)
-        if (place + i / 2u < capacity) list[place * TILE_PAIR_WORDS + i] = team->pairs[i];
+        if (start + i / 2u < capacity) list[start * TILE_PAIR_WORDS + i] = team->pairs[i];
 }
 
-// What a level above 0 tests a tile as: its boxes, or, where it is of a lower level than the launch, its root
-// as the only one.
+// Loads the boxes of a tile for a level above 0. A tile of a lower level than the launch has its root as its
+// only box.
 DEVICE void load_boxes(GLOBAL const real* uppers, uint first_upper, GLOBAL const real* roots, uint number,
                        const Tile* tile, uint level, LANE_BOX(box, DIRECTIONS)) {
     GLOBAL const real* boxes = uppers + (ulong)(number - first_upper) * (K * LANES);
@@ -56,7 +56,7 @@ DEVICE void load_boxes(GLOBAL const real* uppers, uint first_upper, GLOBAL const
     }
 }
 
-// Lanes with items in the window of a windowed walk.
+// Marks lanes with items in the window of a windowed walk.
 DEVICE void lanes_in_window(GLOBAL const uint* status, const Tile* tile, uint level, uint* keeps) {
     const uint shift = tile->level == level ? 5u * level : 5u * (tile->level + 1u);
     FOR_LANES {
@@ -71,8 +71,8 @@ DEVICE void count_tests(Tally* tally, uint rows, int is_seed) {
     tally->seeds += is_seed ? 1u : 0u;
 }
 
-// Tiles of `level` or lower ones; what overlaps goes to `below`, the list of level - 1. `begins`: with how
-// many tiles a body begins here, or 0.
+// Tests tiles of `level` or lower. Overlapping pairs go to `below`, the list of level - 1. `begins`: number
+// of tiles with which a body starts on this level, or 0.
 KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL const real* roots,
                              GLOBAL const uint* tiles, GLOBAL const uint* tops, GLOBAL const uint* pairs,
                              uint pair_capacity, uint begins, uint level, GLOBAL const uint* list,
@@ -83,12 +83,12 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
     Turns turns =
         first_turn(own_pairs(begins, pair_capacity, status), tile_pair_count(status, level, capacity));
     LANE_BARRIER;
-    do { // once at least, as loops with barriers have to
+    do { // runs at least once, as loops with barriers must
         const TilePair pair = tile_pair_at(&turns, pairs, tops, begins, roots, list);
         const Tile a = tile_at(tiles, pair.a);
         const Tile b = tile_at(tiles, pair.b);
         const int highest = a.level > b.level ? a.level == level : b.level == level;
-        const int tested = pair.is_any && highest; // others begin in another launch
+        const int tested = pair.is_any && highest; // other pairs start in another launch
         uint keeps[LANE_PARTS];
         FOR_LANES keeps[part] = 1u;
         LANE_BOX(box, DIRECTIONS);
@@ -102,7 +102,7 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
         LANE_BARRIER;
         const uint rows = reserved_slots(&team.boxes);
         if (tested) count_tests(&tally, rows, turns.next < turns.own);
-        // Boxes are those of the tiles below, or the tile itself is its only one.
+        // The boxes of a tile are the tiles below, or the tile itself is its only box.
         const uint first_a = a.level == level ? a.boxes : pair.a;
         const uint first_b = b.level == level ? b.boxes : pair.b;
         const uint step_a = a.level == level ? 1u : 0u;
@@ -131,8 +131,8 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
 }
 
 #if REST_DIRECTIONS > 0
-// Slabs along the directions that leaves have none of, in local memory; those of b, which come last, lie
-// where the vertices are that they are made from.
+// Slabs along the directions that leaves do not store, in local memory. Those of b are computed last and
+// overwrite the vertices of b.
 #define REST_WORDS (2 * REST_DIRECTIONS)
 #define REST_STRIDE (REST_WORDS | 1)
 #define REST_A_REALS (LANES * REST_STRIDE)
@@ -174,10 +174,10 @@ DEVICE void load_leaves(GLOBAL const real* leaves, uint tile, LANE_BOX(box, LEAF
     }
 }
 
-// Whether candidates are pairs as they are found.
+// Whether every pair found is a candidate pair.
 #define IS_DECIDED (REST_DIRECTIONS == 0 && OUTPUT == OUTPUT_PAIRS)
 
-// Tiles of level 0: what overlaps in all of k's directions is a candidate pair.
+// Tests tiles of level 0: boxes that overlap along all directions of k are candidate pairs.
 KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots, GLOBAL const uint* tiles,
                             GLOBAL const uint* tops, GLOBAL const uint* pairs, uint pair_capacity,
                             uint begins, GLOBAL const uint* list, uint list_capacity,
@@ -191,19 +191,20 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
     LOCAL real* rest_a = all_rest + LANE_TEAM * (REST_A_REALS + REST_B_REALS);
     LOCAL real* rest_b = rest_a + REST_A_REALS;
     const Shapes shapes = {starts, vertex_numbers, corners, bodies, poses, vertices};
-    uint rest_of = 0xffffffffu; // the tile that rest_a is of
+    uint rest_of = 0xffffffffu; // tile of rest_a
 #endif
     Tally tally = empty_tally();
     Turns turns =
         first_turn(own_pairs(begins, pair_capacity, status), tile_pair_count(status, 0u, list_capacity));
     LANE_BOX(box, LEAF_DIRECTIONS);
-    uint box_of = 0xffffffffu; // the tile whose boxes these are
+    uint box_of = 0xffffffffu; // tile of `box`
     LANE_BARRIER;
-    do { // once at least, as loops with barriers have to
+    do { // runs at least once, as loops with barriers must
         const TilePair pair = tile_pair_at(&turns, pairs, tops, begins, roots, list);
         const Tile a = tile_at(tiles, pair.a);
         const Tile b = tile_at(tiles, pair.b);
-        const int tested = pair.is_any && a.level == 0u && b.level == 0u; // others begin in another launch
+        const int tested =
+            pair.is_any && a.level == 0u && b.level == 0u; // other pairs start in another launch
         uint keeps[LANE_PARTS];
         FOR_LANES keeps[part] = 1u;
         if (tested) {
@@ -263,8 +264,8 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
                             && rest_overlaps(rest_a + lane_a * REST_STRIDE, rest_b + lane_b * REST_STRIDE);
 #endif
                         if (OUTPUT == OUTPUT_PAIRS) {
-                            const uint place = reserve_slot(&team.kept, is_pair);
-                            if (is_pair) put_pair(&team, place, slot_a[part], slot_b[part]);
+                            const uint slot = reserve_slot(&team.kept, is_pair);
+                            if (is_pair) put_pair(&team, slot, slot_a[part], slot_b[part]);
                         } else if (is_pair) {
                             tally.count += 1;
                             if (OUTPUT == OUTPUT_DIGEST)

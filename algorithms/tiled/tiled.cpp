@@ -23,8 +23,8 @@ const std::vector<Preset> all_presets{
 constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds, tiled_counters::upper_tests,
                                   tiled_counters::leaf_tile_pairs};
 
-/// Local memory in bytes of a work-group of so many teams of lanes, in the greediest of the kernels
-/// (tiled.cl, refit_tiles.cl).
+/// Bytes of local memory of a work-group of `teams` teams of lanes, in the kernel that needs most (tiled.cl,
+/// refit_tiles.cl).
 std::uint64_t local_bytes(const Settings& settings, std::uint64_t teams, bool is_warp) {
     constexpr std::uint64_t lanes = 32, words = 4, points = 4 * lanes * 3;
     const auto k = static_cast<std::uint64_t>(settings[parameters::k]);
@@ -39,21 +39,21 @@ std::uint64_t local_bytes(const Settings& settings, std::uint64_t teams, bool is
     return std::max(teams * std::max(leaves, uppers), teams * refit + lanes * (k | 1) * real);
 }
 
-/// What the tiles' kernels take in groups of that size. Whether lanes are a warp is the compiler's to say
-/// (portable.h); elsewhere the group is one team.
+/// Bytes of local memory of the tile kernels in groups of `group_size`. Lanes are a warp or not by compiler
+/// (portable.h); if not, the group is one team.
 std::uint64_t local_bytes_of_group(const Settings& settings, std::uint32_t group_size) {
     const auto one = local_bytes(settings, 1, false);
     return group_size % 32 == 0 ? std::max(one, local_bytes(settings, group_size / 32, true)) : one;
 }
 
-/// Ends of slabs that the bounds of a tetrahedron have.
+/// Ends of slabs in the bounds of a tetrahedron.
 double leaf_words_of(const Settings& settings) {
     const auto k = static_cast<double>(settings[parameters::k]);
     return settings[parameters::slabs] == Slabs::three ? std::min(k, 6.0) : k;
 }
 
-/// Groups of the tiles' own kernels: as large as the setting says and local memory has room for. Doubles with
-/// many directions take more than 48 KiB in groups of 128.
+/// Groups of the tile kernels: as large as the setting and local memory allow. Doubles with many directions
+/// need more than 48 KiB in groups of 128.
 LaunchShape fitting_shape(const Settings& settings, const DeviceInfo& info, LaunchShape shape) {
     while (shape.group_size % 64 == 0
            && local_bytes_of_group(settings, shape.group_size) > info.local_bytes) {
@@ -68,8 +68,7 @@ public:
     std::string_view name() const override { return "tiled"; }
     std::string_view summary() const override {
         return "tiles of 32 boxes tested against 32 at once, from the top of each body's tree to its "
-               "tetrahedra, without "
-               "a stack";
+               "tetrahedra, without a stack";
     }
     std::span<const Parameter* const> parameters() const override {
         static const auto all = pipeline_parameters(own, false);
@@ -79,21 +78,21 @@ public:
     std::span<const Counter> counters() const override { return all_counters; }
 
 private:
-    /// What a scene of more tetrahedra than that gains in the walk by bounds along all directions it loses in
-    /// the refit. Measured on an H200 (results/h200/README.md): with k = 14, 18 and 26 they took 2 to 12 %
-    /// off whole frames of plates and jacks of up to 1.9 M tetrahedra, made no difference to the colosseum,
-    /// and made funnel and glasses of 4.7 M and more 8 and 3 % slower (k = 18); up to k = 12 they took 2 to
-    /// 12 % off these as well. Two cores of a processor, on which refit counts for more, took up to 2.3 times
-    /// as long with them (not recorded).
+    /// Maximum number of tetrahedra for bounds along all directions. In larger scenes the refit loses what
+    /// the walk gains. Measured on an H200 (results/h200/README.md): with k = 14, 18 and 26 they saved 2 to
+    /// 12 % of whole frames of plates and jacks of up to 1.9 M tetrahedra. The colosseum did not change.
+    /// Funnel and glasses of 4.7 M and more became 8 and 3 % slower (k = 18); up to k = 12 these also became
+    /// 2 to 12 % faster. Two cores of a processor, where refit weighs more, took up to 2.3 times as long with
+    /// them (not recorded).
     static constexpr std::size_t most_with_all_slabs = std::size_t{1} << 21;
 
     void do_fit(Settings& settings, const DeviceInfo& info, const Scene* scene) const override {
         if (settings[tiled_parameters::most_seeds] == 0)
             settings.set(tiled_parameters::most_seeds(info.is_gpu ? 16384 : 256));
         if (settings[tandem::parameters::slabs] != Slabs::usual) return;
-        const bool asks_scene = info.is_gpu && settings[tandem::parameters::k] > 12;
-        if (asks_scene && scene == nullptr) return;
-        const bool all = asks_scene ? tetrahedron_count(*scene) <= most_with_all_slabs : info.is_gpu;
+        const bool needs_scene = info.is_gpu && settings[tandem::parameters::k] > 12;
+        if (needs_scene && scene == nullptr) return;
+        const bool all = needs_scene ? tetrahedron_count(*scene) <= most_with_all_slabs : info.is_gpu;
         settings.set(tandem::parameters::slabs(all ? Slabs::all : Slabs::three));
     }
 
@@ -112,9 +111,10 @@ private:
         const auto pairs = [](const FrameFacts& f) {
             return 4 * TILE_PAIR_WORDS * f.counted(tiled_counters::leaf_tile_pairs.name);
         };
-        costs.push_back({"walk_upper_tiles", [=](const FrameFacts& f) { return 8 * f.body_pairs + pairs(f); },
-                         [=](const FrameFacts& f) { return s.k * upper(f); },
-                         "body pairs in, pairs of tiles of tetrahedra out; k a box tested"});
+        costs.push_back(
+            {"walk_upper_tiles", [=](const FrameFacts& f) { return 8 * f.body_pairs + pairs(f); },
+             [=](const FrameFacts& f) { return s.k * upper(f); },
+             "reads body pairs, writes pairs of tiles of tetrahedra; k operations per tested box"});
         costs.push_back(
             {"walk_leaf_tiles",
              [=](const FrameFacts& f) {
@@ -124,17 +124,17 @@ private:
                  return words * (f.counted(counters::bvtt_nodes.name) - upper(f))
                         + (s.k - words) * f.candidate_pairs;
              },
-             "pairs of tiles and bounds of tetrahedra in candidate pairs in, candidate pairs out; as many a "
-             "box tested as leaves have ends, and the rest of k a candidate pair"});
+             "reads pairs of tiles and bounds of tetrahedra in candidate pairs, writes candidate pairs; an "
+             "operation per tested box and end of a leaf, the rest of k per candidate pair"});
         return costs;
     }
 
-    AlgorithmStages do_build(const BuildContext& ground) const override {
-        const auto shape = fitting_shape(ground.settings, ground.device.info(), ground.shape);
+    AlgorithmStages do_build(const BuildContext& context) const override {
+        const auto shape = fitting_shape(context.settings, context.device.info(), context.shape);
         auto trees = std::make_unique<TileTrees>(
-            ground.bodies, ground.settings[tandem::parameters::slabs], shape.group_size,
-            static_cast<std::uint64_t>(ground.settings[tiled_parameters::most_seeds]));
-        auto walker = std::make_unique<TiledWalker>(*trees, ground, shape);
+            context.bodies, context.settings[tandem::parameters::slabs], shape.group_size,
+            static_cast<std::uint64_t>(context.settings[tiled_parameters::most_seeds]));
+        auto walker = std::make_unique<TiledWalker>(*trees, context, shape);
         return {std::move(trees), std::move(walker)};
     }
 };

@@ -5,7 +5,7 @@
 
 namespace tandem {
 
-/// Tiles of 32 boxes against 32: the paper's chunks without trees inside.
+/// Tiles of 32 boxes against 32: the paper's chunks without inner trees.
 const Traversal& tiled();
 
 } // namespace tandem

@@ -13,14 +13,16 @@ constexpr std::size_t row_bytes = 4 * TILE_PAIR_WORDS;
 
 } // namespace
 
-TiledWalker::TiledWalker(const TileTrees& trees, const BuildContext& ground, LaunchShape shape)
+TiledWalker::TiledWalker(const TileTrees& trees, const BuildContext& context, LaunchShape shape)
     : trees_(trees), shape_(shape) {
     const auto rows =
-        first_rows(ground.device, ground.settings[tiled_parameters::tile_pair_capacity], row_bytes, 1.0 / 16);
-    const auto lists =
-        std::max<std::size_t>(1, trees.walked_levels() - 1); // nothing is found for the highest level
+        // The level above finds the pairs of a list, so the highest level has none.
+        first_rows(context.device, context.settings[tiled_parameters::tile_pair_capacity], row_bytes,
+                   1.0 / 16);
+    const auto lists = std::max<std::size_t>(1, trees.walked_levels() - 1);
     for (std::size_t level = 0; level < lists; ++level)
-        lists_.emplace_back(ground.device, "pairs of tiles", row_bytes, trees.walked_levels() > 1 ? rows : 1);
+        lists_.emplace_back(context.device, "pairs of tiles", row_bytes,
+                            trees.walked_levels() > 1 ? rows : 1);
     expected_.resize(trees.walked_levels());
 }
 
@@ -39,7 +41,7 @@ Grid TiledWalker::grid(std::uint32_t level) {
     const auto teams = std::max(1u, shape_.group_size / TileShapes::lanes);
     if (!pairs) return {shape_.groups, shape_.group_size};
     const auto wanted = (*pairs + teams - 1) / teams;
-    // Groups that look at roots only, most of which are apart, are soon gone.
+    // Groups that only test roots finish early, because most roots are apart.
     const auto most =
         trees_.begins(level) > 1 ? std::max<std::uint64_t>(shape_.groups, wanted) : shape_.groups;
     return {groups.enough_for(wanted, static_cast<std::uint32_t>(most)), shape_.group_size};
@@ -117,10 +119,9 @@ void TiledWalker::launch_leaves(const WalkTask& task) {
 
 void TiledWalker::do_launch(const WalkTask& task) {
     const std::uint64_t begins = trees_.begins(trees_.walked_levels() - 1);
-    if (begins > 1 && begins * begins * task.on_host.size() > 0xffffffffu) // a word to turns.clh
+    if (begins > 1 && begins * begins * task.on_host.size() > 0xffffffffu) // turns.clh counts them in a word
         throw InputError(
-            "more than 2^32 pairs of tiles to begin with, of body pairs given more than once; lower "
-            "most_seeds");
+            "body pairs given more than once make more than 2^32 initial pairs of tiles; lower most_seeds");
     const StageScope scope(trees_.bodies().device(), Stage::traverse);
     for (auto level = trees_.walked_levels(); --level > 0;) launch_upper(task, level);
     launch_leaves(task);

@@ -13,27 +13,27 @@ namespace tandem {
 namespace tiled_parameters {
 inline constexpr Setting<std::int64_t> tile_pair_capacity{"tile_pair_capacity", 262144,
                                                           ValueRange{1, parameters::word_limit}, "",
-                                                          "pairs of tiles a level has room for at first"};
-/// What 0 stands for is measured: results/h200/README.md.
+                                                          "initial capacity of a level in pairs of tiles"};
+/// The value that 0 selects is measured: results/h200/README.md.
 inline constexpr Setting<std::int64_t> most_seeds{"most_seeds", 0, ValueRange{0, std::int64_t{1} << 24}, "",
-                                                  "bodies begin as far below their tops as that makes no "
-                                                  "more pairs of tiles; 0: 16384 on GPUs, 256 elsewhere"};
+                                                  "maximum number of pairs of tiles with which bodies "
+                                                  "start below their tops; 0: 16384 on GPUs, 256 elsewhere"};
 } // namespace tiled_parameters
 
-/// Beside those of every walk.
+/// Counters in addition to those of every walk.
 namespace tiled_counters {
-inline constexpr Counter upper_tests{"upper_tests", "boxes",
-                                     "of the node pairs tested those above tetrahedra"};
+inline constexpr Counter upper_tests{"upper_tests", "boxes", "tested node pairs above tetrahedra"};
 inline constexpr Counter leaf_tile_pairs{"leaf_tile_pairs", "pairs of tiles",
-                                         "pairs of tiles of tetrahedra that were tested, by their roots at "
-                                         "least"};
+                                         "pairs of tiles of tetrahedra that were tested, at least by their "
+                                         "roots"};
 } // namespace tiled_counters
 
-/// Pairs of tiles, a launch a level from the highest of any body down to candidate pairs.
+/// Walks pairs of tiles with one launch per level, from the highest level of any body down to candidate
+/// pairs.
 class TiledWalker final : public Walker {
 public:
-    /// Launches groups of `shape`. Both others must outlive this.
-    TiledWalker(const TileTrees& trees, const BuildContext& ground, LaunchShape shape);
+    /// Launches groups of `shape`. `trees` and `context` must outlive this object.
+    TiledWalker(const TileTrees& trees, const BuildContext& context, LaunchShape shape);
 
 private:
     void do_compile(const WalkBuild& build) override;
@@ -41,11 +41,12 @@ private:
     bool do_grow(const Status& status) override;
     void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
 
-    /// The pairs of tiles of a level; of the highest one there is none but those that body pairs begin with.
+    /// Pairs of tiles that the level above finds. The highest level has only those with which body pairs
+    /// start.
     const GrowableBuffer& list(std::uint32_t level) const {
         return lists_[std::min<std::size_t>(level, lists_.size() - 1)];
     }
-    /// The groups of a level's launch: few where the last frame had few pairs.
+    /// The grid of a level's launch: few groups if the last frame had few pairs.
     Grid grid(std::uint32_t level);
     void launch_upper(const WalkTask& task, std::uint32_t level);
     void launch_leaves(const WalkTask& task);
@@ -53,7 +54,7 @@ private:
     const TileTrees& trees_;
     LaunchShape shape_;
     std::vector<GrowableBuffer> lists_; ///< by level
-    /// Of a level: pairs in the last frame, nothing before the first, and the groups for them.
+    /// By level: pairs in the last frame, empty before the first one, and the groups for them.
     struct Expected {
         std::optional<std::uint64_t> pairs;
         ExpectedGroups groups;
