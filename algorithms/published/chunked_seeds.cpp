@@ -28,9 +28,9 @@ void PublishedChunkedWalker::do_launch(const WalkTask& task) {
     wanted_ = 0;
     {
         const StageScope scope(device(), Stage::write);
-        device().clear(starts().buffer(), starts().buffer().bytes()); // no seeds made on the device
+        device().clear(starts().buffer(), starts().buffer().bytes()); // the device makes no seeds
     }
-    // From the top: walks of a level may hand pairs down to the next, behind which its own seeds are put.
+    // From the top: walks of a level may hand seeds down to the next one, which appends its own seeds.
     std::uint64_t from_above = 0;
     for (std::uint32_t level = top_level() + 1; level-- > 0;) {
         std::vector<std::uint32_t> seeds;

@@ -5,8 +5,8 @@
 
 namespace tandem {
 
-/// The chunked walk by the paper's schedule: seeds made and uploaded by the host, counters written before and
-/// read after every launch, contacts after every launch that found pairs (tvcg18.md 1.2 and 3).
+/// The chunked walk with the paper's schedule. The host makes and uploads seeds, writes counters before every
+/// launch and reads them afterwards. Contacts follow every launch that found pairs.
 class PublishedChunkedWalker final : public ChunkedWalker {
 public:
     using ChunkedWalker::ChunkedWalker;
@@ -17,7 +17,7 @@ private:
 
     std::vector<std::uint32_t> seeds_of_level(std::span<const BodyPair> pairs, std::uint32_t level) const;
 
-    std::uint64_t wanted_ = 0; ///< seeds that a launch had no room for
+    std::uint64_t wanted_ = 0; ///< seeds that exceeded the capacity of the last launch; 0: none
 };
 
 } // namespace tandem

@@ -15,8 +15,8 @@ namespace tandem {
 
 namespace {
 
-constexpr std::size_t block = std::size_t{1} << 18; ///< bytes a thread takes at a time
-constexpr std::size_t least_for_threads = 4;        ///< parts; fewer are done before another thread has begun
+constexpr std::size_t block = std::size_t{1} << 18; ///< bytes that a thread processes at a time
+constexpr std::size_t least_for_threads = 4;        ///< parts; fewer finish before another thread starts
 
 std::size_t blocks_of(std::size_t bytes) { return (bytes + block - 1) / block; }
 
@@ -26,7 +26,7 @@ Converter::Converter(const Bodies& bodies, Conversion conversion, std::uint32_t 
     if (conversion == Conversion::serial) return;
     const auto cores = tbb::info::default_concurrency();
     const auto wanted = threads == 0 ? cores : static_cast<int>(threads);
-    // As in host_device.cpp: oneTBB has no more threads than cores for who does not ask.
+    // As in host_device.cpp: by default, oneTBB has no more threads than cores.
     if (wanted > cores)
         more_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(wanted));
     arena_.emplace(wanted);
@@ -46,7 +46,7 @@ void Converter::each(std::size_t count, const std::function<void(std::size_t)>& 
     arena_->execute([&] { tbb::parallel_for(Parts(0, count), host::SynchronizedWork(work)); });
 }
 
-/// A body's place in every array is its row's.
+/// Each array stores a body at the position of its row.
 void Converter::convert_body(const Frame& frame, std::uint32_t body, Converted& converted) const {
     const auto& scene = bodies_.scene();
     const auto& mesh = bodies_.mesh(body);
@@ -61,7 +61,7 @@ void Converter::convert_body(const Frame& frame, std::uint32_t body, Converted& 
     std::copy(mesh.boundary.begin(), mesh.boundary.end(), converted.boundary.begin() + row.tetrahedra);
 }
 
-/// Nodes that hold nothing, as many as fill `bytes`.
+/// Fills `bytes` with empty nodes, which bound nothing.
 template<class Real>
 void Converter::empty_nodes(Converted::Array<std::byte>& nodes, std::size_t bytes) {
     const auto k = static_cast<std::size_t>(bodies_.geometry().k);

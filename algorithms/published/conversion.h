@@ -10,7 +10,7 @@
 
 namespace tandem {
 
-/// Memory that is not zeroed before it is written: one thread would touch every page first.
+/// Allocator that does not zero memory, because one thread would touch every page first.
 template<class T>
 struct Unwritten : std::allocator<T> {
     template<class U>
@@ -27,42 +27,43 @@ struct Unwritten : std::allocator<T> {
     }
 };
 
-/// A frame's bodies as the device's arrays, one after the other.
+/// A frame's bodies as the device's arrays.
 struct Converted {
     template<class T>
     using Array = std::vector<T, Unwritten<T>>;
 
     Array<std::byte> vertices; ///< 4 reals each
     std::vector<std::byte> poses;
-    Array<std::byte> nodes;             ///< K reals each, which hold nothing yet
+    Array<std::byte> nodes;             ///< K reals each; empty before the refit
     Array<std::uint32_t> tetrahedra;    ///< 4 vertices each
-    Array<std::uint32_t> vertex_bodies; ///< of each vertex
-    Array<std::uint8_t> boundary;       ///< of each tetrahedron
-    bool rigid = false;                 ///< some body is: there is a transform
+    Array<std::uint32_t> vertex_bodies; ///< by vertex
+    Array<std::uint8_t> boundary;       ///< by tetrahedron
+    bool rigid = false;                 ///< whether some body is rigid and needs a transform
 };
 
-/// What the paper's code does on the host with every frame's bodies (tvcg18.md 1.2): on one thread, or, as
-/// its OpenMP did ("a simple OpenMP acceleration of the conversion", abstract), a body or a block of bytes at
-/// a time on several. The arrays have the same bytes.
+/// Conversion of every frame's bodies on the host, as in the paper's code. It runs on one thread or, as with
+/// its OpenMP ("a simple OpenMP acceleration of the conversion", abstract), on several. Each thread then
+/// converts one body or block of bytes at a time. The arrays have the same bytes either way.
 class Converter {
 public:
-    /// `bodies` share nothing and must outlive this. `threads` of parallel: 0: one for each core.
+    /// `bodies` must not share data and must outlive this object. `threads`: for parallel conversion; 0: one
+    /// per core.
     Converter(const Bodies& bodies, Conversion conversion, std::uint32_t threads);
 
-    /// `node_bytes`: of the hierarchy's nodes.
+    /// `node_bytes`: size of the hierarchy's nodes.
     Converted convert(const Frame& frame, std::size_t node_bytes);
     Converted::Array<std::byte> copy(const Converted::Array<std::byte>& bytes);
 
 private:
-    /// Calls with parts 0..count - 1, on several threads where it may.
+    /// Calls `part` with 0..count - 1, on several threads if the conversion is parallel.
     void each(std::size_t count, const std::function<void(std::size_t)>& part);
     void convert_body(const Frame& frame, std::uint32_t body, Converted& converted) const;
     template<class Real>
     void empty_nodes(Converted::Array<std::byte>& nodes, std::size_t bytes);
 
     const Bodies& bodies_;
-    std::optional<tbb::global_control> more_; ///< threads than cores
-    std::optional<tbb::task_arena> arena_;    ///< of parallel
+    std::optional<tbb::global_control> more_; ///< allows more threads than cores
+    std::optional<tbb::task_arena> arena_;    ///< for parallel conversion
 };
 
 } // namespace tandem

@@ -34,7 +34,8 @@ void PublishedFrame::download(const Buffer& from, std::span<std::byte> bytes) {
     device_.download(from, bytes);
 }
 
-/// Scenes of deformable bodies have no transform stage: their vertices are in world coordinates already.
+/// Scenes without rigid bodies have no transform stage, because their vertices are already in world
+/// coordinates.
 void PublishedFrame::transform(Converted& converted) {
     if (converted.rigid || bodies_.geometry().placement == Placement::exact)
         upload(bodies_.poses(), converted.poses);
@@ -56,7 +57,7 @@ void PublishedFrame::refit(const Frame& frame, Converted& converted) {
     upload(hierarchy_.nodes(), std::span(converted.nodes));
     hierarchy_.refit(frame, true);
     download(hierarchy_.nodes(), converted.nodes);
-    // Two copies of all nodes: the release kept its trees on the host and flattened them anew for the
+    // Two copies of all nodes: the release keeps its trees on the host and flattens them again for the
     // traversal.
     Converted::Array<std::byte> host_trees;
     {
@@ -70,7 +71,7 @@ void PublishedFrame::refit(const Frame& frame, Converted& converted) {
     upload(hierarchy_.nodes(), std::span(converted.nodes));
 }
 
-/// In the order of the release: transform, refit, traversal, each with all its inputs uploaded again.
+/// Follows the order of the release: transform, refit, traversal, each with all its inputs uploaded again.
 void PublishedFrame::update(const Frame& frame) {
     auto converted = convert(frame);
     transform(converted);

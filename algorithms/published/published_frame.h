@@ -7,13 +7,14 @@
 
 namespace tandem {
 
-/// Bodies and hierarchy as the paper's code has them (tvcg18.md 1.2, prox.md 2.11): every step converts all
-/// bodies on the host, uploads vertices, transforms, reads the vertices back, uploads tetrahedra and nodes,
-/// refits, reads the nodes back, and uploads everything again for the traversal. Buffers persist, which is
-/// kinder than the original.
+/// Bodies and hierarchy in the data path of the paper's code. Every step converts all bodies on the host,
+/// uploads vertices, transforms, and reads the vertices back. It then uploads tetrahedra and nodes, refits,
+/// reads the nodes back, and uploads everything again for the traversal. Buffers persist, which costs less
+/// than in the original.
 class PublishedFrame {
 public:
-    /// `bodies` share nothing. Both must outlive this. `conversion`, `threads`: of a Converter.
+    /// `bodies` must not share data. `bodies` and `hierarchy` must outlive this object. `conversion`,
+    /// `threads`: as for Converter.
     PublishedFrame(const Bodies& bodies, Hierarchy& hierarchy, LaunchShape shape,
                    Conversion conversion = Conversion::serial, std::uint32_t threads = 0);
 
@@ -32,7 +33,7 @@ private:
     Converter converter_;
     std::uint32_t group_size_;
     Kernel transform_kernel_;
-    Buffer local_vertices_, vertex_bodies_; ///< vertices before the transform, and whose they are
+    Buffer local_vertices_, vertex_bodies_; ///< vertices before the transform, and their bodies
 };
 
 } // namespace tandem

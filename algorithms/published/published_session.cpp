@@ -11,7 +11,7 @@ namespace tandem {
 
 namespace {
 
-/// Makes contacts after every part of a walk and brings them to the host at once.
+/// Makes contacts after every part of a walk and reads them back at once.
 class ContactsBetween final : public LaunchHook {
 public:
     ContactsBetween(Pipeline& pipeline, const AnswerBuffers& answer) : pipeline_(pipeline), answer_(answer) {}
@@ -23,10 +23,10 @@ private:
 
     Pipeline& pipeline_;
     const AnswerBuffers& answer_;
-    std::uint64_t pairs_ = 0, contacts_ = 0; ///< whose contacts are made; that are on the host
+    std::uint64_t pairs_ = 0, contacts_ = 0; ///< pairs with finished contacts; contacts on the host
 };
 
-/// The release made contacts after every level or batch, and read them back at once.
+/// The release makes contacts after every level or batch, and reads them back at once.
 void ContactsBetween::part_walked() {
     pipeline_.status.read();
     const auto found = pipeline_.status.counter(STATUS_PAIRS);
@@ -75,7 +75,7 @@ private:
     Pipeline pipeline_;
     PublishedFrame frame_;
     std::array<Device*, 1> devices_;
-    std::uint64_t batches_ = 1; ///< parts that frames begin with
+    std::uint64_t batches_ = 1; ///< number of parts with which frames start
 };
 
 void PublishedSession::walk(const AnswerBuffers& answer) {
@@ -86,7 +86,7 @@ void PublishedSession::walk(const AnswerBuffers& answer) {
     pipeline_.status.read();
 }
 
-/// Makes room for what the status counts; true when the walk has to start again.
+/// Grows buffers to what the status counts. Returns true if the walk must start again.
 bool PublishedSession::grow(AnswerBuffers& answer) {
     bool again = pipeline_.stages.walker->grow(pipeline_.status);
     const auto found = pipeline_.status.counter(STATUS_PAIRS);
@@ -102,7 +102,7 @@ bool PublishedSession::grow(AnswerBuffers& answer) {
     return again;
 }
 
-/// The original sorts the contacts it read back by pair and position, on one thread (prox.md 2.12).
+/// As in the original, sorts the contacts that were read back by pair and position, on one thread.
 void PublishedSession::sort_contacts(const AnswerBuffers& answer, std::uint64_t count) {
     if (!pipeline_.makes_contacts()) return;
     std::vector<std::array<std::uint32_t, 2>> ids(count);
@@ -127,8 +127,8 @@ FrameResult PublishedSession::run_whole() {
     return result;
 }
 
-/// A frame that does not fit is walked in parts, as the release launches again with what is left of a full
-/// buffer; each part has its contacts before the next is walked.
+/// A frame that does not fit is walked in parts, as the release launches again with the rest of a full
+/// buffer. Each part gets its contacts before the next one is walked.
 FrameResult PublishedSession::do_run(const Frame& frame,
                                      std::optional<std::span<const BodyPair>> body_pairs) {
     frame_.update(frame);

@@ -5,7 +5,7 @@
 
 namespace tandem {
 
-/// A session with the paper's data path: everything is converted, uploaded and read back in every frame,
+/// A session with the paper's data path: every frame converts, uploads and reads back everything, with
 /// contacts after every part of a walk.
 std::unique_ptr<Session> published_session(const Traversal& traversal, Device& device, const Scene& scene,
                                            Settings fitted);

@@ -5,14 +5,14 @@
 
 namespace tandem {
 
-/// gProximity's walk as the release drove it: counters uploaded and read, a wait each.
+/// gProximity's walk as in the release: counters are uploaded and read back, with one wait each.
 class PublishedQueueWalker final : public QueueWalker {
 public:
     using QueueWalker::QueueWalker;
 
 private:
     void do_clear_idle() override;
-    /// The release reads the queues' counts after every launch, to look for full ones.
+    /// As in the release, reads the queues' counts after every launch to detect full queues.
     void do_after_launch() override;
 };
 

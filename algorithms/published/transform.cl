@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// World vertices as the paper's code makes them: a stage of its own, read back and uploaded again by the
-// host.
+// World vertices as in the paper's code: a separate stage, whose result the host reads back and uploads
+// again.
 #include "backends/portable.h"
 #include "algorithms/bodies/body.clh"
 
