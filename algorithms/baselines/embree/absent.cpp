@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Instead of embree_stages.cpp and what it needs, where CMake has found no Embree.
+// Replaces embree_stages.cpp and its dependencies if CMake finds no Embree.
 #include "algorithms/baselines/embree/embree_stages.h"
 
 #include <stdexcept>
@@ -13,7 +13,7 @@ std::string_view embree_absence() {
 }
 
 AlgorithmStages embree_stages(const BuildContext&) {
-    throw std::logic_error("embree_steps() of a program without Embree");
+    throw std::logic_error("embree_stages() called in a program without Embree");
 }
 
 } // namespace tandem

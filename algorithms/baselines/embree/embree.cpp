@@ -14,7 +14,7 @@ namespace {
 
 const std::vector<Preset> all_presets{
     {"resident",
-     "boxes, a tree a body built once and refitted in every frame, body pairs by the device's kernels",
+     "boxes, one tree per body built once and refitted in every frame, body pairs by the device's kernels",
      {parameters::k(6), parameters::broad(Broad::device), parameters::builder(Builder::sah)}}};
 
 constexpr std::array all_counters{embree_counters::leaf_tests};
@@ -24,7 +24,8 @@ public:
     std::string_view name() const override { return "embree"; }
     std::string_view summary() const override {
         static const auto text = [] {
-            std::string summary = "Intel's Embree, rtcCollide over a tree a body: device host, k=6, float";
+            std::string summary =
+                "Intel's Embree, rtcCollide over one tree per body: device host, k=6, float";
             if (!embree_absence().empty()) summary += fmt::format(" ({})", embree_absence());
             return summary;
         }();
@@ -57,11 +58,11 @@ private:
     std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const override {
         auto costs = tile_tree_costs({scene, settings}, 6);
         for (const auto* entry : {"refit_embree", "collide_embree"})
-            costs.push_back({entry, {}, {}, "nothing: what another library does is its own"});
+            costs.push_back({entry, {}, {}, "nothing: the work of another library is not counted"});
         return costs;
     }
 
-    AlgorithmStages do_build(const BuildContext& ground) const override { return embree_stages(ground); }
+    AlgorithmStages do_build(const BuildContext& context) const override { return embree_stages(context); }
 };
 
 } // namespace

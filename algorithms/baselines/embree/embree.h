@@ -5,8 +5,8 @@
 
 namespace tandem {
 
-/// Intel's Embree, rtcCollide over a tree a body: what a user of a processor would otherwise take. A peer:
-/// one precision, one k, device host.
+/// Intel's Embree, rtcCollide over one tree per body: the usual choice on a processor. A baseline for one
+/// precision and one k, on device host.
 const Traversal& embree();
 
 } // namespace tandem

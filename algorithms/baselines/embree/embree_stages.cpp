@@ -7,9 +7,9 @@ namespace tandem {
 
 std::string_view embree_absence() { return {}; }
 
-AlgorithmStages embree_stages(const BuildContext& ground) {
-    auto trees = std::make_unique<EmbreeTrees>(ground);
-    auto walker = std::make_unique<EmbreeWalker>(*trees, ground);
+AlgorithmStages embree_stages(const BuildContext& context) {
+    auto trees = std::make_unique<EmbreeTrees>(context);
+    auto walker = std::make_unique<EmbreeWalker>(*trees, context);
     return {std::move(trees), std::move(walker)};
 }
 

@@ -19,18 +19,20 @@ constexpr const char* refit_entry = "refit_embree";
 
 constexpr std::uint32_t lanes = TileShapes::lanes;
 constexpr std::uint32_t box_words = 6;
-/// Embree leaves out boxes that reach 1.844e18; where all are cut off at the same place none comes apart.
+/// Embree drops boxes that reach 1.844e18. All ends are clamped to the same value, so that no boxes come
+/// apart.
 constexpr float most_coordinate = 1e18f;
 constexpr float least_normal = std::numeric_limits<float>::min();
 
-/// Embree builds with denormal numbers taken for zero and walks without: it is given none, and boxes that are
-/// wider by them. Cutting off and widening keep the order of any two ends: what overlaps still does.
+/// Embree treats denormal numbers as zero in builds, but not in walks. It therefore gets none: boxes are
+/// widened over them. Clamping and widening keep the order of any two ends, so that overlapping boxes still
+/// overlap.
 float end_for_embree(float end, float widened) {
     const auto cut = std::clamp(end, -most_coordinate, most_coordinate);
     return std::abs(cut) < least_normal ? widened : cut;
 }
 
-/// An upper end that is at least `tolerance` higher, however that is rounded.
+/// An upper end that is at least `tolerance` higher, whatever the rounding.
 float raised(float end, float tolerance) {
     return tolerance > 0 ? std::nextafter(end + 2 * tolerance, std::numeric_limits<float>::max()) : end;
 }
@@ -44,23 +46,23 @@ std::uint32_t concurrency_of(const Settings& settings) {
 
 } // namespace
 
-// Leaves of tiles have all of k = 6 with either choice of slabs; this one has the host's fastest kernels.
-EmbreeTrees::EmbreeTrees(const BuildContext& ground)
-    : device_(ground.device),
-      tiles_(ground.bodies, Slabs::three, ground.shape.group_size, 1),
+// Leaves of tiles have all 6 slabs with either choice of slabs; this choice has the host's fastest kernels.
+EmbreeTrees::EmbreeTrees(const BuildContext& context)
+    : device_(context.device),
+      tiles_(context.bodies, Slabs::three, context.shape.group_size, 1),
       embree_(rtcNewDevice(nullptr)),
-      trees_(ground.bodies.count()),
-      arena_(static_cast<int>(concurrency_of(ground.settings))),
-      kernel_(compile_native(ground.device, refit_entry)),
-      self_(ground.device.adopt(this, sizeof(*this), "Embree's trees")) {
+      trees_(context.bodies.count()),
+      arena_(static_cast<int>(concurrency_of(context.settings))),
+      kernel_(compile_native(context.device, refit_entry)),
+      self_(context.device.adopt(this, sizeof(*this), "Embree's trees")) {
     if (!embree_)
         throw DeviceError(fmt::format("host: Embree does not start (code {})",
                                       static_cast<int>(rtcGetDeviceError(nullptr))));
-    rtcSetDeviceErrorFunction(embree_.get(), complain, this);
-    const bool tolerant = ground.settings[parameters::rounding] == Rounding::published;
+    rtcSetDeviceErrorFunction(embree_.get(), store_error, this);
+    const bool tolerant = context.settings[parameters::rounding] == Rounding::published;
     for (std::uint32_t body = 0; body < trees_.size(); ++body) {
         trees_[body].tolerance = tolerant ? published_tolerance : 0;
-        trees_[body].boxes.resize(ground.bodies.row(body).tetrahedron_count);
+        trees_[body].boxes.resize(context.bodies.row(body).tetrahedron_count);
     }
 }
 
@@ -69,19 +71,19 @@ RTCScene EmbreeTrees::scene(std::uint32_t body) const {
     return tree.skipped.size() < tree.boxes.size() ? tree.scene.get() : nullptr;
 }
 
-void EmbreeTrees::complain(void* trees, RTCError code, const char* text) {
+void EmbreeTrees::store_error(void* trees, RTCError code, const char* text) {
     auto& self = *static_cast<EmbreeTrees*>(trees);
-    const std::lock_guard lock(self.complaint_lock_);
-    if (self.complaint_ != RTC_ERROR_NONE) return;
-    self.complaint_ = code;
-    self.complaint_text_ = text ? text : "";
+    const std::lock_guard lock(self.error_lock_);
+    if (self.error_ != RTC_ERROR_NONE) return;
+    self.error_ = code;
+    self.error_text_ = text ? text : "";
 }
 
 void EmbreeTrees::check() {
-    const std::lock_guard lock(complaint_lock_);
-    const auto code = std::exchange(complaint_, RTC_ERROR_NONE);
+    const std::lock_guard lock(error_lock_);
+    const auto code = std::exchange(error_, RTC_ERROR_NONE);
     if (code == RTC_ERROR_NONE) return;
-    const auto text = fmt::format("host: Embree: {} (code {})", complaint_text_, static_cast<int>(code));
+    const auto text = fmt::format("host: Embree: {} (code {})", error_text_, static_cast<int>(code));
     if (code == RTC_ERROR_OUT_OF_MEMORY) throw OutOfMemory(text);
     throw DeviceError(text);
 }
@@ -98,7 +100,7 @@ void EmbreeTrees::give_bounds(const RTCBoundsFunctionArguments* arguments) {
     *arguments->bounds_o = {lower[0], lower[1], lower[2], 0, upper[0], upper[1], upper[2], 0};
 }
 
-/// A scene of its own for a body: quality low keeps a tree a geometry, and only such trees are refitted.
+/// Each body has its own scene: low quality keeps one tree per geometry, and only such trees are refitted.
 void EmbreeTrees::begin_tree(Tree& tree) const {
     tree.geometry.reset(rtcNewGeometry(embree_.get(), RTC_GEOMETRY_TYPE_USER));
     auto* geometry = tree.geometry.get();
@@ -112,7 +114,7 @@ void EmbreeTrees::begin_tree(Tree& tree) const {
     rtcAttachGeometry(tree.scene.get(), geometry);
 }
 
-/// From a tile's lanes to a box after the other, which is what single leaf tests read.
+/// Converts the lanes of tiles to consecutive boxes, which single leaf tests read.
 void EmbreeTrees::copy_boxes(std::uint32_t body, const float* leaves) {
     auto& boxes = trees_[body].boxes;
     const auto* first = leaves + std::size_t{tiles_.first_tile(body, 0)} * (box_words * lanes);
@@ -143,14 +145,14 @@ void EmbreeTrees::run(const float* leaves, EmbreeTrees* trees) {
     });
     try {
         trees->check();
-    } catch (const DeviceError&) { // trees that may be half made are none
+    } catch (const DeviceError&) { // trees may be incomplete
         for (const auto body : chosen) trees->trees_[body].scene.reset();
         throw;
     }
 }
 
-/// Bodies that move, or that skip other tetrahedra than before; trees of the latter are built anew, since a
-/// refit keeps what a tree was built over.
+/// Selects bodies that move or that skip other tetrahedra than before. Trees of the latter are built again,
+/// because a refit keeps the primitives of a tree.
 void EmbreeTrees::choose(const Frame& frame, bool all) {
     static const std::vector<std::uint32_t> nothing;
     chosen_.clear();
@@ -161,8 +163,9 @@ void EmbreeTrees::choose(const Frame& frame, bool all) {
             tree.skipped = skipped;
             tree.scene.reset();
         }
-        const bool is_there = tree.skipped.size() < tree.boxes.size();
-        if (is_there && (all || !tree.scene || !bodies().scene().bodies[body].fixed)) chosen_.push_back(body);
+        const bool has_tetrahedra = tree.skipped.size() < tree.boxes.size();
+        if (has_tetrahedra && (all || !tree.scene || !bodies().scene().bodies[body].fixed))
+            chosen_.push_back(body);
     }
 }
 

@@ -14,30 +14,30 @@
 
 namespace tandem {
 
-/// What slabs may be apart and overlap with rounding=published (PUBLISHED_TOLERANCE).
+/// Maximum gap of slabs that overlap with rounding=published (PUBLISHED_TOLERANCE).
 inline constexpr float published_tolerance = 10 * std::numeric_limits<float>::epsilon();
 
-/// Embree's trees, one a body, over the leaf slabs that the project's own kernels make (k = 6: boxes). Embree
-/// is driven by a kernel of device host that is compiled C++: its work is booked as any kernel's is.
+/// Embree's trees, one per body, over the leaf slabs that the project's own kernels make (k = 6: boxes). A
+/// kernel of device host that is compiled C++ drives Embree, so that its work is recorded like any kernel's.
 class EmbreeTrees final : public Hierarchy {
 public:
-    /// Slabs of a tetrahedron: two cells that agree in it agree in their pairs. Ends before it starts where
-    /// the tetrahedron takes no part.
+    /// Slabs of a tetrahedron. Cells with equal slabs have equal pairs. The box of a skipped tetrahedron ends
+    /// before it starts.
     struct Box {
         std::array<float, 3> lower, upper;
     };
 
     /// Throws DeviceError when Embree does not start.
-    explicit EmbreeTrees(const BuildContext& ground);
+    explicit EmbreeTrees(const BuildContext& context);
 
     const Bodies& bodies() const { return tiles_.bodies(); }
-    /// The body's tree; null when no tetrahedron of it takes part.
+    /// The body's tree; null if all its tetrahedra are skipped.
     RTCScene scene(std::uint32_t body) const;
-    /// By position in the order of the builder.
+    /// By position in the builder's order.
     std::span<const Box> boxes(std::uint32_t body) const { return trees_[body].boxes; }
-    /// As many threads as setting threads says; Embree's own tasks stay on them.
+    /// Has as many threads as setting threads gives; Embree's own tasks stay on them.
     tbb::task_arena& arena() { return arena_; }
-    /// Throws what Embree has complained of since the last call: OutOfMemory or DeviceError.
+    /// Throws the first error that Embree reported since the last call: OutOfMemory or DeviceError.
     void check();
 
     /// Kernel refit_embree. `leaves`: those of the tiles.
@@ -58,11 +58,11 @@ private:
     using OwnedGeometry = Owned<RTCGeometry, rtcReleaseGeometry>;
 
     struct Tree {
-        float tolerance = 0; ///< by which boxes may be apart and overlap
+        float tolerance = 0; ///< maximum gap of boxes that overlap
         std::vector<Box> boxes;
-        OwnedScene scene; ///< none before the first refit
+        OwnedScene scene; ///< null before the first refit
         OwnedGeometry geometry;
-        std::vector<std::uint32_t> skipped; ///< tetrahedra that it was built without
+        std::vector<std::uint32_t> skipped; ///< tetrahedra that the tree does not contain
     };
 
     void do_refit(const Frame& frame, bool all) override;
@@ -71,7 +71,7 @@ private:
     std::size_t do_bytes() const override { return tiles_.bytes(); }
 
     static void give_bounds(const RTCBoundsFunctionArguments* arguments);
-    static void complain(void* trees, RTCError code, const char* text);
+    static void store_error(void* trees, RTCError code, const char* text);
     void choose(const Frame& frame, bool all);
     void refit_body(std::uint32_t body, const float* leaves);
     void copy_boxes(std::uint32_t body, const float* leaves);
@@ -79,15 +79,15 @@ private:
 
     Device& device_;
     TileTrees tiles_;
-    std::mutex complaint_lock_;
-    RTCError complaint_ = RTC_ERROR_NONE; ///< the first one
-    std::string complaint_text_;
+    std::mutex error_lock_;
+    RTCError error_ = RTC_ERROR_NONE; ///< the first one
+    std::string error_text_;
     OwnedDevice embree_;
     std::vector<Tree> trees_;
-    std::vector<std::uint32_t> chosen_; ///< bodies that the refit at hand is of
+    std::vector<std::uint32_t> chosen_; ///< bodies of the current refit
     tbb::task_arena arena_;
     Kernel kernel_;
-    Buffer self_; ///< these, as an argument of the kernel
+    Buffer self_; ///< this object, as an argument of the kernel
 };
 
 } // namespace tandem

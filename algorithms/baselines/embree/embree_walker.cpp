@@ -18,7 +18,7 @@ constexpr const char* collide_entry = "collide_embree";
 
 constexpr std::size_t status_leaf_tests = STATUS_OWN;
 
-/// A 64-bit counter of the status, which any thread of Embree's may add to. Returns the low word before.
+/// Adds to a 64-bit counter of the status, from any of Embree's threads. Returns the previous low word.
 std::uint32_t add(std::uint32_t* status, std::size_t word, std::uint64_t value) {
     const auto low = static_cast<std::uint32_t>(value);
     const auto before = std::atomic_ref(status[word]).fetch_add(low, std::memory_order_relaxed);
@@ -37,7 +37,7 @@ bool starts_beyond(float lower, float upper) {
     return tolerant ? lower - upper > published_tolerance : lower > upper;
 }
 
-/// Without a branch: which of Embree's pairs overlap cannot be foretold.
+/// Without branches: the outcome for Embree's pairs is unpredictable.
 template<bool tolerant>
 bool overlap(const EmbreeTrees::Box& a, const EmbreeTrees::Box& b) {
     bool apart = false;
@@ -49,7 +49,7 @@ bool overlap(const EmbreeTrees::Box& a, const EmbreeTrees::Box& b) {
 
 } // namespace
 
-struct EmbreeWalker::Meeting {
+struct EmbreeWalker::PairTask {
     const EmbreeWalker& walker;
     std::uint32_t a, b;
     const EmbreeTrees::Box* boxes_a;
@@ -57,7 +57,7 @@ struct EmbreeWalker::Meeting {
     std::uint32_t* found;
     std::uint32_t capacity;
     std::uint32_t* status;
-    std::uint32_t window_first, window_end; ///< of items of body a
+    std::uint32_t window_first, window_end; ///< range of items of body a
     bool in_slots;                          ///< PairLayout::slots
     std::uint32_t first_a, first_b;         ///< the bodies' first slots
 
@@ -65,8 +65,8 @@ struct EmbreeWalker::Meeting {
     void write(std::span<const RTCCollision> pairs) const;
 };
 
-/// Past `capacity` the counter counts on and nothing is written.
-void EmbreeWalker::Meeting::write(std::span<const RTCCollision> pairs) const {
+/// Past `capacity` the counter still counts, and nothing is written.
+void EmbreeWalker::PairTask::write(std::span<const RTCCollision> pairs) const {
     std::uint64_t row = add(status, STATUS_PAIRS, pairs.size());
     for (const auto& pair : pairs) {
         if (row >= capacity) return;
@@ -81,7 +81,7 @@ void EmbreeWalker::Meeting::write(std::span<const RTCCollision> pairs) const {
     }
 }
 
-void EmbreeWalker::Meeting::emit(std::span<const RTCCollision> pairs) const {
+void EmbreeWalker::PairTask::emit(std::span<const RTCCollision> pairs) const {
     if (walker.build_.output == Output::pairs) {
         write(pairs);
         return;
@@ -96,28 +96,28 @@ void EmbreeWalker::Meeting::emit(std::span<const RTCCollision> pairs) const {
     add(status, STATUS_DIGEST_B, digest.b);
 }
 
-/// Embree hands over all pairs of two leaves of its trees whose boxes overlap; called by any of its threads.
+/// Receives all pairs of two leaves of Embree's trees whose boxes overlap, from any of Embree's threads.
 template<bool tolerant>
-void EmbreeWalker::hand_over(void* meeting, RTCCollision* collisions, unsigned count) {
-    const auto& self = *static_cast<const Meeting*>(meeting);
+void EmbreeWalker::test_leaves(void* task, RTCCollision* collisions, unsigned count) {
+    const auto& self = *static_cast<const PairTask*>(task);
     std::size_t kept = 0;
     for (unsigned i = 0; i < count; ++i) {
         const auto pair = collisions[i];
         const auto item = pair.primID0;
-        const bool is_asked_for = (item >= self.window_first) & (item < self.window_end);
+        const bool is_in_window = (item >= self.window_first) & (item < self.window_end);
         collisions[kept] = pair;
-        kept += is_asked_for & overlap<tolerant>(self.boxes_a[item], self.boxes_b[pair.primID1]);
+        kept += is_in_window & overlap<tolerant>(self.boxes_a[item], self.boxes_b[pair.primID1]);
     }
     if (kept > 0) self.emit({collisions, kept});
     if (self.walker.build_.counting) add(self.status, status_leaf_tests, count);
 }
 
-EmbreeWalker::EmbreeWalker(EmbreeTrees& trees, const BuildContext& ground)
+EmbreeWalker::EmbreeWalker(EmbreeTrees& trees, const BuildContext& context)
     : trees_(trees),
-      leaf_test_(ground.settings[parameters::rounding] == Rounding::published ? hand_over<true>
-                                                                              : hand_over<false>),
-      kernel_(compile_native(ground.device, collide_entry)),
-      self_(ground.device.adopt(this, sizeof(*this), "Embree's walk")) {}
+      leaf_test_(context.settings[parameters::rounding] == Rounding::published ? test_leaves<true>
+                                                                               : test_leaves<false>),
+      kernel_(compile_native(context.device, collide_entry)),
+      self_(context.device.adopt(this, sizeof(*this), "Embree's walk")) {}
 
 void EmbreeWalker::run(const std::uint32_t* body_pairs, std::uint32_t pair_capacity, std::uint32_t* found,
                        std::uint32_t capacity, std::uint32_t* status, const EmbreeWalker* walker) {
@@ -132,11 +132,11 @@ void EmbreeWalker::run(const std::uint32_t* body_pairs, std::uint32_t pair_capac
     trees.arena().execute([&] {
         tbb::parallel_for(std::uint64_t{0}, count, [&](std::uint64_t i) {
             const auto a = body_pairs[2 * i], b = body_pairs[2 * i + 1];
-            Meeting meeting{
+            PairTask task{
                 self,  a,   b,        trees.boxes(a).data(), trees.boxes(b).data(), found, capacity, status,
                 first, end, in_slots, bodies.first_slot(a),  bodies.first_slot(b)};
             if (trees.scene(a) && trees.scene(b))
-                rtcCollide(trees.scene(a), trees.scene(b), self.leaf_test_, &meeting);
+                rtcCollide(trees.scene(a), trees.scene(b), self.leaf_test_, &task);
         });
     });
     trees.check();

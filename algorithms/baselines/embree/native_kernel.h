@@ -7,10 +7,10 @@ namespace tandem {
 
 inline constexpr const char* native_source = "algorithms/baselines/embree/native_kernel.h";
 
-/// Makes a compiled function a kernel of device host: what another library does for a stage is then a launch,
-/// under the clock that all launches have. Its parameters are pointers, for which launches give buffers
-/// (adopted ones: any object), and scalars. It is launched as one group and may have threads of its own,
-/// since then there are no others. To be called before main begins; returns true.
+/// Registers a compiled function as a kernel of device host, so that another library's work for a stage is a
+/// launch with the same clock as all launches. Its parameters are scalars and pointers. Launches pass buffers
+/// for pointers (adopted ones: any object). It runs as one group, the only one, and may start its own
+/// threads. Must be called before main starts; returns true.
 template<auto Function>
 bool list_native(const char* entry) {
     using Call = host::Invoke<Function>;
