@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The first of three kernels from candidate pairs to contacts: what can be said of a pair at little cost.
+// The first of three kernels from candidate pairs to contacts: decides pairs by certificates, at little cost.
 #include "backends/portable.h"
 
 #include "algorithms/narrow_phase/trial.clh"
 #include "algorithms/narrow_phase/waiting.clh"
 
-// How many pairs a work-item takes before its group hands out what it has found: every time the group meets.
+// Pairs per work-item between two writes of its group's results, each of which needs barriers.
 #define PAIRS_AT_A_TIME 4
 #define FOUND_CAPACITY (PAIRS_AT_A_TIME * GROUP_SIZE)
 
-// Puts what a group has found at the ends of the lists; the whole group comes here.
+// Appends a group's results to the lists. The whole group must call it.
 DEVICE void hand_out(LOCAL const uint* found, LOCAL uint* group, GLOBAL uint* open, GLOBAL uint* meeting,
                      GLOBAL uint* status) {
     BARRIER;
@@ -25,8 +25,8 @@ DEVICE void hand_out(LOCAL const uint* found, LOCAL uint* group, GLOBAL uint* op
     BARRIER;
 }
 
-// Of pairs first..`pair_capacity` - 1, at most OPEN_PAIRS of them, as far as the status counts so many.
-// `verdicts` are read when DECIDED only; a pair that is not known to be apart then counts as one that meets.
+// Processes pairs first..`pair_capacity` - 1, at most OPEN_PAIRS of them, up to the count in the status.
+// `verdicts` are read only if DECIDED; pairs not known to be apart then count as meeting.
 KERNEL void certify_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* owners,
                           GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
                           GLOBAL const real* vertices, GLOBAL const uchar* boundary,

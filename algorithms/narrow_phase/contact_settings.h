@@ -5,7 +5,7 @@
 
 namespace tandem {
 
-/// How contacts of a candidate pair are made, and what decides first whether it meets.
+/// How contacts of a candidate pair are made, and how it is decided whether the pair meets.
 struct ContactSettings {
     ContactRule rule = ContactRule::opposing;
     DecisionPrecision decision = DecisionPrecision::fp32;
@@ -13,7 +13,7 @@ struct ContactSettings {
     bool operator==(const ContactSettings&) const = default;
 };
 
-/// Of resolved settings; the defaults when contact_rule=none.
+/// Contact settings of resolved settings; the defaults when contact_rule=none.
 ContactSettings contact_settings_of(const Settings& settings);
 
 } // namespace tandem

@@ -10,13 +10,13 @@ namespace tandem {
 
 namespace {
 
-/// What a round of all three kernels takes at most.
+/// Maximum number of pairs in a round of all three kernels.
 constexpr std::uint64_t most_waiting = std::uint64_t{1} << OPEN_PAIR_BITS;
-/// Lists for fewer pairs are not tried when memory is short.
+/// Minimum capacity of the lists when memory is short.
 constexpr std::uint64_t least_waiting = 1024;
 
-/// No larger groups than kernels of this stage have local memory for; of a GPU's unit, 2048 / `divisor` of
-/// its work-items.
+/// Groups are no larger than the local memory of this stage's kernels allows. They use 2048 / `divisor`
+/// work-items per compute unit of a GPU.
 LaunchShape shape_for(LaunchShape shape, std::uint32_t divisor) {
     constexpr std::uint32_t largest = 128;
     const auto items = std::uint64_t{shape.groups} * shape.group_size / divisor;
@@ -55,7 +55,7 @@ ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings
     waiting_ = GrowableBuffer(device, {{"pairs to be tested", 4}, {"pairs that meet", 4}}, 0);
 }
 
-/// Makes lists for so many pairs, or for fewer where memory is short: there are more launches then.
+/// Reserves lists for `pairs` pairs, or for fewer when memory is short, which takes more launches.
 void ContactStage::reserve(std::uint64_t pairs) {
     for (auto rows = std::min(pairs, most_waiting); rows > waiting_.capacity(); rows /= 2) {
         try {
@@ -66,7 +66,7 @@ void ContactStage::reserve(std::uint64_t pairs) {
     }
 }
 
-/// The lists of those that meet among pairs first..end - 1; both lists are empty before.
+/// Lists the pairs that meet among first..end - 1. Both lists must be empty before.
 void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first, std::uint32_t end,
                                 const Status& status) {
     auto& device = bodies_.device();
@@ -100,7 +100,7 @@ void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first
     device.launch(separate_, grid, separate);
 }
 
-/// Contacts of the list of those that meet, or of pairs first..end - 1.
+/// Makes contacts of the listed pairs that meet, or of pairs first..end - 1.
 void ContactStage::generate(const Kernel& kernel, LaunchShape shape, const AnswerBuffers& answer,
                             std::uint32_t first, std::uint32_t end, const Status& status) {
     const std::array<Argument, 14> arguments{answer.pairs.buffer(),
@@ -125,7 +125,8 @@ void ContactStage::launch(const AnswerBuffers& answer, std::uint64_t first, std:
                           const Status& status) {
     auto& device = bodies_.device();
     const StageScope scope(device, Stage::contact);
-    // No more than a pair for each work-item that runs: what counts then is the way of one, and launches.
+    // With at most one pair per running work-item, the latency of one pair and the number of launches
+    // dominate.
     const bool few = expected_ && *expected_ <= std::uint64_t{few_shape_.groups} * few_shape_.group_size / 2;
     const bool at_once = at_once_ && (few || !generate_);
     if (decision_) decision_->reserve(end);
@@ -140,7 +141,7 @@ void ContactStage::launch(const AnswerBuffers& answer, std::uint64_t first, std:
         return;
     }
     reserve(end - first);
-    bool waiting = status.counter(STATUS_WAITING) != 0; // those of a launch before
+    bool waiting = status.counter(STATUS_WAITING) != 0; // pairs of an earlier launch
     for (auto from = first; from < end; from += waiting_.capacity()) {
         if (waiting) device.clear(status.buffer(), STATUS_WAITING_WORDS * 4, STATUS_WAITING * 4);
         const auto begin = static_cast<std::uint32_t>(from);

@@ -12,23 +12,22 @@
 
 namespace tandem {
 
-/// Decides which candidate pairs in a buffer meet and generates their contacts. Knows bodies only.
+/// Decides which candidate pairs in a buffer meet and generates their contacts. It depends only on bodies.
 class ContactStage {
 public:
-    /// `at_once`: a launch takes pairs from one end to the other, one for each work-item, as the paper's
-    /// release does. `apart`: a kernel each for certificates, for the tests of pairs of which they say
-    /// nothing, and for the contacts of those that meet, so that work-items which run together all have work;
-    /// a GPU with less than a pair for each of its work-items, as far as expect() tells, still does it at
-    /// once.
+    /// `at_once`: one launch processes each pair completely, one per work-item, as the paper's release does.
+    /// `apart`: separate kernels for certificates, for tests of the pairs that these leave open, and for
+    /// contacts of those that meet. Work-items that run together thus all have work. A GPU that expects less
+    /// than one pair per work-item (see expect()) still uses one launch.
     enum class Launches { at_once, apart };
 
     ContactStage(const Bodies& bodies, const ContactSettings& settings, LaunchShape shape, Launches launches);
 
-    /// About how many pairs the next launches will find; nothing is known before the first call. No answer
+    /// Sets the expected number of pairs of the next launches; unknown before the first call. No answer
     /// depends on it.
     void expect(std::uint64_t pairs) { expected_ = pairs; }
-    /// Enqueues contact generation for pairs `first`..`end` - 1 of the answer's, as far as the status has
-    /// counted so many; contacts follow those that the status counts already. Throws OutOfMemory.
+    /// Enqueues contact generation for pairs `first`..`end` - 1 of the answer, up to the count in the status.
+    /// Contacts are appended to those that the status already counts. Throws OutOfMemory.
     void launch(const AnswerBuffers& answer, std::uint64_t first, std::uint64_t end, const Status& status);
 
 private:
@@ -37,19 +36,19 @@ private:
                       const Status& status);
     void generate(const Kernel& kernel, LaunchShape shape, const AnswerBuffers& answer, std::uint32_t first,
                   std::uint32_t end, const Status& status);
-    /// Whether verdicts are wanted of those pairs only that certificates leave open.
-    bool decides_open() const { return decision_ && decision_->takes_certificates(); }
+    /// Whether only the pairs that certificates leave open need verdicts.
+    bool decides_open() const { return decision_ && decision_->uses_certificates(); }
     const Buffer& verdicts() const { return decision_ ? decision_->verdicts() : nothing_; }
 
     const Bodies& bodies_;
-    LaunchShape shape_, few_shape_;        ///< of three launches, of one
-    ExpectedGroups groups_;                ///< of one launch
-    Kernel certify_, separate_, generate_; ///< none for Launches::at_once
-    Kernel at_once_;                       ///< none where it is never the better one
+    LaunchShape shape_, few_shape_;        ///< for three launches, for one
+    ExpectedGroups groups_;                ///< for one launch
+    Kernel certify_, separate_, generate_; ///< null for Launches::at_once
+    Kernel at_once_;                       ///< null where it is never the better choice
     std::optional<std::uint64_t> expected_;
-    GrowableBuffer waiting_; ///< lists of waiting.clh: a column each, LIST_OPEN, LIST_MEETING
-    Buffer nothing_;         ///< for a kernel that does not look at it
-    std::unique_ptr<DecisionStage> decision_; ///< none for decision=fp32, which certify and separate do
+    GrowableBuffer waiting_; ///< lists of waiting.clh, one column each: LIST_OPEN, LIST_MEETING
+    Buffer nothing_;         ///< for kernels that do not read the argument
+    std::unique_ptr<DecisionStage> decision_; ///< null for decision=fp32, where certify and separate decide
 };
 
 } // namespace tandem

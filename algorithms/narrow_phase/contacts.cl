@@ -1,38 +1,38 @@
 // SPDX-License-Identifier: MIT
 // Contacts between candidate pairs: 2 words (pair, feature) and 8 reals (point, normal, depth, 0) each.
-// README.md here has the rule.
+// README.md describes the rules.
 #include "backends/portable.h"
 
 #include "algorithms/narrow_phase/trial.clh"
 #include "algorithms/narrow_phase/waiting.clh"
 
-// 1: generate_contacts goes all the way with every pair, as the paper's release does in one launch; 0: it is
-// the last of three kernels and makes the contacts of the pairs that the other two found meeting.
+// 1: generate_contacts decides pairs and makes their contacts in one launch, as the paper's release does. 0:
+// it is the last of three kernels and makes contacts of the pairs that the first two found to meet.
 #ifndef AT_ONCE
 #define AT_ONCE 0
 #endif
 
-// What becomes of a pair by certificate and tests.
+// State of a pair after certificate and tests.
 DEVICE int try_pair(const Candidates* all, uint index) {
     int edge = -1;
     const int state = try_certificate(all, index, &edge);
     return state == OPEN ? try_all(all, index, edge) : state;
 }
 
-// The words of a group's local memory here: how many contacts are on the tray and beside it, which are 0
-// between steps; how many rows there are to write from the tray, and from which row of the answer on.
+// Words of a group's local memory. IN_STORAGE, BESIDE: numbers of contacts in the storage and outside it, 0
+// between steps. ROWS: number of rows to write from the storage. FIRST_ROW: the first of them in the answer.
 #define IN_STORAGE 0
 #define BESIDE 1
 #define ROWS 2
 #define FIRST_ROW 3
 
-// Gives the contacts of a group their places, in one piece, and writes them; the whole group comes here.
+// Reserves consecutive rows for the contacts of a group and writes them. The whole group must call it.
 DEVICE void write_together(const ContactBatch* batch, uint index, const BatchStorage* storage,
                            LOCAL uint* group, const Sink* sink) {
     const uint staged = batch->count != 0u ? staged_of(batch) : 0u;
-    const uint others = batch->count - staged;
+    const uint unstored = batch->count - staged;
     const uint before = staged != 0u ? LOCAL_ATOMIC_ADD(group + IN_STORAGE, staged) : 0u;
-    const uint before_others = others != 0u ? LOCAL_ATOMIC_ADD(group + BESIDE, others) : 0u;
+    const uint before_unstored = unstored != 0u ? LOCAL_ATOMIC_ADD(group + BESIDE, unstored) : 0u;
     for (uint i = 0; i < staged; ++i)
         storage->in_order[before + i] = (unsigned short)(i * GROUP_SIZE + LOCAL_ID);
     BARRIER;
@@ -46,11 +46,11 @@ DEVICE void write_together(const ContactBatch* batch, uint index, const BatchSto
     const uint rows = group[ROWS];
     const ulong slot = group[FIRST_ROW];
     write_staged(storage, rows, slot, sink);
-    if (others != 0u) write_others(batch, staged, index, slot + rows + before_others, sink);
+    if (unstored != 0u) write_others(batch, staged, index, slot + rows + before_unstored, sink);
     BARRIER;
 }
 
-// `meeting`: read unless AT_ONCE. `first`, `pair_capacity` and `verdicts` as in certify_pairs, when AT_ONCE.
+// `meeting`: read unless AT_ONCE. `first`, `pair_capacity` and `verdicts`: as in certify_pairs, if AT_ONCE.
 KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_capacity,
                               GLOBAL const uint* owners, GLOBAL const real* poses,
                               GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,

@@ -15,7 +15,7 @@ constexpr std::size_t corner_reals = 24;
 
 using Corners = std::array<std::array<double, 3>, 4>;
 
-/// Verdicts of pairs whose corners are given as gather_corners has them.
+/// Verdicts of pairs whose corners are in the layout of gather_corners.
 template<class Real>
 std::vector<std::uint8_t> verdicts_of(const std::vector<std::byte>& bytes) {
     std::vector<Real> reals(bytes.size() / sizeof(Real));
@@ -38,9 +38,9 @@ DecisionStage::DecisionStage(const Bodies& bodies, DecisionPrecision decision, L
     define(defines, parameters::pair_layout, bodies.pair_layout());
     auto& device = bodies.device();
     std::vector<Column> columns{{"verdicts", 1}, {"pairs undecided in double", 4}};
-    if (takes_certificates()) columns.push_back({"pairs undecided by the filter", 4});
+    if (uses_certificates()) columns.push_back({"pairs undecided by the filter", 4});
     decided_ = GrowableBuffer(device, std::move(columns), 0);
-    if (takes_certificates()) {
+    if (uses_certificates()) {
         const auto& filter = kernel_source("algorithms/narrow_phase/filter.cl");
         filter_ = device.compile(filter, "filter_pairs", defines);
         defines["OVER_OPEN"] = "1";
@@ -60,9 +60,8 @@ void DecisionStage::reserve(std::uint64_t pairs) { decided_.reserve(pairs); }
 void DecisionStage::launch(const Buffer& found, std::uint64_t first, std::uint64_t end,
                            const Status& status) {
     const StageScope scope(bodies_.device(), Stage::contact);
-    // Where the kernel reads no list any buffer will do.
-    if (takes_certificates())
-        filter(filter_, found, first, end, decided_.buffer(undecided_by_double), status);
+    // The kernel reads no list, so any buffer is valid.
+    if (uses_certificates()) filter(filter_, found, first, end, decided_.buffer(undecided_by_double), status);
     recheck(found, first, end, status);
 }
 
@@ -86,7 +85,7 @@ void DecisionStage::recheck(const Buffer& found, std::uint64_t first, std::uint6
     if (decision_ == DecisionPrecision::exact) settle(found, status);
 }
 
-/// Either kernel; they differ in what they read and write.
+/// Launches either kernel; `own` has the arguments in which they differ.
 void DecisionStage::decide(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
                            const std::array<Argument, 3>& own, const Status& status) {
     const std::array<Argument, 11> arguments{found,
@@ -103,10 +102,10 @@ void DecisionStage::decide(const Kernel& kernel, const Buffer& found, std::uint6
     bodies_.device().launch(kernel, {shape_.groups, shape_.group_size}, arguments);
 }
 
-/// Those that are new since the status was last read or written: the others have been settled.
+/// Settles the pairs added since the status was last read or written; earlier ones are settled.
 void DecisionStage::settle(const Buffer& found, const Status& status) {
     auto& device = bodies_.device();
-    std::uint32_t end = 0; // at most one for each of the pairs, whose numbers are words
+    std::uint32_t end = 0; // at most one per pair, and pair numbers are 32 bits
     device.download(status.buffer(), std::as_writable_bytes(std::span(&end, 1)),
                     STATUS_UNDECIDED_BY_DOUBLE * 4);
     const auto first = static_cast<std::uint32_t>(status.counter(STATUS_UNDECIDED_BY_DOUBLE));

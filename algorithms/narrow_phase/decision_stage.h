@@ -10,25 +10,25 @@
 namespace tandem {
 
 /// Decides with certainty which candidate pairs in a buffer meet: settings decision=recheck, fp64 and exact.
-/// STATUS_UNDECIDED_BY_FILTER counts the pairs that the filter, STATUS_UNDECIDED_BY_DOUBLE those that double
-/// could not decide.
+/// STATUS_UNDECIDED_BY_FILTER counts the pairs that the filter could not decide, STATUS_UNDECIDED_BY_DOUBLE
+/// those that double could not.
 class DecisionStage {
 public:
     DecisionStage(const Bodies& bodies, DecisionPrecision decision, LaunchShape shape);
 
-    /// Whether pairs that have a certificate need no verdict: double by itself has none.
-    bool takes_certificates() const { return decision_ != DecisionPrecision::fp64; }
-    /// Room for verdicts of so many pairs, as what follows needs it. Throws OutOfMemory.
+    /// Whether pairs with a certificate need no verdict. decision=fp64 has no certificates.
+    bool uses_certificates() const { return decision_ != DecisionPrecision::fp64; }
+    /// Reserves verdicts for `pairs` pairs, which the launches below require. Throws OutOfMemory.
     void reserve(std::uint64_t pairs);
-    /// Enqueues verdicts for pairs `first`..`end` - 1 of `found`, as far as `status` has counted so many.
-    /// With decision=exact it waits for the counts and, where there are any, for the pairs that double cannot
-    /// decide; throws OutOfMemory then.
+    /// Enqueues verdicts for pairs `first`..`end` - 1 of `found`, up to the count in `status`. With
+    /// decision=exact it waits for the counts and for the pairs that double cannot decide, if any. It may
+    /// then throw OutOfMemory.
     void launch(const Buffer& found, std::uint64_t first, std::uint64_t end, const Status& status);
-    /// The same for those of them that certify_pairs has left in list `open`.
+    /// The same for those pairs that certify_pairs put into list `open`.
     void launch_open(const Buffer& found, std::uint64_t first, std::uint64_t end, const Buffer& open,
                      const Status& status);
 
-    /// A byte a pair, VERDICT_* of candidates.clh.
+    /// One byte per pair, VERDICT_* of candidates.clh.
     const Buffer& verdicts() const { return decided_.buffer(verdict); }
 
 private:
@@ -42,14 +42,14 @@ private:
     const Bodies& bodies_;
     DecisionPrecision decision_;
     LaunchShape shape_;
-    /// Columns of what is known of pairs: verdicts, and numbers of pairs that are undecided.
+    /// Columns by pair: verdicts, and numbers of undecided pairs.
     enum DecisionColumn : std::size_t { verdict, undecided_by_double, undecided_by_filter };
-    /// The last column, or any buffer where no kernel reads that.
+    /// The last column, or any buffer if no kernel reads it.
     const Buffer& filtered() const {
-        return decided_.buffer(takes_certificates() ? undecided_by_filter : undecided_by_double);
+        return decided_.buffer(uses_certificates() ? undecided_by_filter : undecided_by_double);
     }
     GrowableBuffer decided_;   ///< by pair
-    Buffer corners_, answers_; ///< of the pairs the host decides; they live until their commands are done
+    Buffer corners_, answers_; ///< of the pairs that the host decides; they live until their commands finish
     Kernel filter_, filter_open_, recheck_, gather_, settle_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The digest of contacts; README.md of algorithms/answer has that of pairs.
+// The digest of contacts; algorithms/answer/README.md describes that of pairs.
 #include "backends/portable.h"
 
 #include "algorithms/answer/pairs.clh"
@@ -14,8 +14,8 @@ DEVICE ulong contact_term(ulong pair_term, uint feature, GLOBAL const uint* bits
     return term;
 }
 
-// Adds the terms of the first `count` contacts to `sums`. `value_bits`: their values as words. `ids`:
-// how answers name bodies and tetrahedra.
+// Adds the terms of the first `count` contacts to `sums`. `value_bits`: their values as words. `ids`: input
+// numbers of bodies and tetrahedra.
 KERNEL void digest_contacts(GLOBAL const uint* found, GLOBAL const uint* owners, GLOBAL const uint* ids,
                             GLOBAL const uint* contact_ids, GLOBAL const uint* value_bits, uint count,
                             GLOBAL uint* sums) {

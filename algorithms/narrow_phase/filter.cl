@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The certified filter in the cell's precision: a verdict for every pair, and a list of those it cannot
-// decide. A certificate comes first, by this kernel or, of the pairs that OVER_OPEN leaves, by certify_pairs
-// before it.
+// decide. Each pair first gets a certificate, from this kernel or, with OVER_OPEN, from certify_pairs before
+// it.
 #include "backends/portable.h"
 
 #define CERTAIN_IN_DOUBLE 0
@@ -9,7 +9,7 @@
 #include "algorithms/narrow_phase/certificate.clh"
 #include "algorithms/narrow_phase/open_pairs.clh"
 
-// 1: of the pairs in the list `open` only, whose words are counted from `first`.
+// 1: only the pairs in the list `open`, whose words are relative to `first`.
 #ifndef OVER_OPEN
 #define OVER_OPEN 0
 #endif
@@ -25,7 +25,7 @@ DEVICE int filtered(const Candidates* all, uint index) {
     return certain_verdict(a, b);
 }
 
-// `undecided_by_filter` has room for every pair.
+// `undecided_by_filter` has capacity for every pair.
 KERNEL void filter_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* owners,
                          GLOBAL const real* poses, GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
                          GLOBAL const uint* open, GLOBAL uchar* verdicts, GLOBAL uint* undecided_by_filter,

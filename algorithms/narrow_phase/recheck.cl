@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The certified decision in double, of all pairs or of those the filter cannot decide; and the way of those
-// that remain to the host and back.
+// The certified decision in double, for all pairs or for those that the filter cannot decide, and the
+// transfer of the remaining pairs to the host and back.
 #include "backends/portable.h"
 
 #define CERTAIN_IN_DOUBLE 1
@@ -9,10 +9,10 @@
 #ifndef RECHECK_ALL
 #define RECHECK_ALL 0
 #endif
-#define CORNER_REALS 24 // of a pair: A's corners, then B's
+#define CORNER_REALS 24 // per pair: A's corners, then B's
 
 // `undecided_by_filter`: the list that filter_pairs made. `undecided_by_double`: pairs that double cannot
-// decide either; it has room for every pair.
+// decide either; it has capacity for every pair.
 KERNEL void recheck_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* owners,
                           GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
                           GLOBAL const real* vertices, GLOBAL uchar* verdicts,
@@ -34,7 +34,7 @@ KERNEL void recheck_pairs(GLOBAL const uint* found, uint first, uint pair_capaci
     }
 }
 
-// World corners of the pairs first.. of the list, for the host to decide.
+// World corners of the list's pairs from `first` on, for the host to decide.
 KERNEL void gather_corners(GLOBAL const uint* found, GLOBAL const uint* owners, GLOBAL const real* poses,
                            GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
                            GLOBAL const uint* undecided_by_double, uint first, uint count,
@@ -52,7 +52,7 @@ KERNEL void gather_corners(GLOBAL const uint* found, GLOBAL const uint* owners, 
     }
 }
 
-// The host's verdicts of those pairs.
+// Stores the host's verdicts of those pairs.
 KERNEL void settle_pairs(GLOBAL const uint* undecided_by_double, uint first, uint count,
                          GLOBAL const uchar* settled, GLOBAL uchar* verdicts) {
     for (uint i = GLOBAL_ID; i < count; i += GLOBAL_COUNT)

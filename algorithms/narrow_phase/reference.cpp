@@ -10,7 +10,7 @@ namespace {
 
 using namespace contact_reference;
 
-/// A tetrahedron's corners in ascending order and which of the given ones they are.
+/// A tetrahedron's corners in ascending order, and their given numbers.
 template<class Real>
 struct Sorted {
     Corners<Real> corners;
@@ -22,8 +22,8 @@ struct Sorted {
     }
 };
 
-/// The number of a feature of the sorted pair in the given one. `own`, `other`: whose feature it is, and the
-/// rest.
+/// The number of a feature of the sorted pair in the given one. `own` has the feature; `other` is the other
+/// tetrahedron.
 template<class Real>
 unsigned given_feature(unsigned feature, const Sorted<Real>& own, const Sorted<Real>& other,
                        unsigned given_owner) {
@@ -39,7 +39,7 @@ bool is_canonical(ContactRule rule) {
     return rule != ContactRule::opposing && rule != ContactRule::published;
 }
 
-/// Bit i of the given faces as that of the sorted corner it is opposite to.
+/// Boundary bits of the given faces, in the order of the sorted corners opposite to them.
 template<class Real>
 unsigned sorted_faces(unsigned given, const Sorted<Real>& sorted) {
     unsigned faces = 0;
@@ -64,7 +64,7 @@ Corners<double> widened(const Corners<Real>& corners) {
     return result;
 }
 
-/// Whether the decision tells the pair apart before contacts are made.
+/// Whether the decision finds the pair apart before contacts are made.
 template<class Real>
 bool decided_apart(const Corners<Real>& a, const Corners<Real>& b, DecisionPrecision decision,
                    ContactCounts& counts) {
@@ -89,7 +89,8 @@ bool finite(const Corners<Real>& corners) {
     });
 }
 
-/// Loads the pair and tells it apart unless it has been decided; false: it makes no contacts, and is counted.
+/// Loads the pair and tests separation unless it is decided. Returns false, and counts why, if it makes no
+/// contacts.
 template<class Real>
 bool meets(ReferencePair<Real>& pair, const Corners<Real>& a, const Corners<Real>& b, bool decided,
            ContactCounts& counts) {

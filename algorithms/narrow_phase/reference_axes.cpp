@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Rules sat, restricted, clip and growth, which have one normal and depth a pair.
+// Rules sat, restricted, clip and growth, which have one normal and one depth per pair.
 #include "algorithms/narrow_phase/reference_pair.h"
 
 namespace tandem::contact_reference {
 
 namespace {
 
-/// The best axis so far; the less the measure, the better.
+/// The best axis so far: the one with the least measure.
 template<class Real>
 struct Best {
     Vector<Real> normal{};
@@ -17,8 +17,8 @@ struct Best {
     }
 };
 
-/// Calls visit with the unit normals of faces, out of A, and the unit products of edges. With boundaries, of
-/// boundary faces and of the edges they have.
+/// Calls visit with the unit normals of faces, out of A, and the unit cross products of edges. Only boundary
+/// faces and their edges count.
 template<class Real, class Visit>
 void for_each_axis(const ReferencePair<Real>& pair, const Boundaries& boundaries, Visit visit) {
     const auto has_edge = [&](unsigned solid, unsigned edge) {
@@ -43,10 +43,11 @@ void for_each_axis(const ReferencePair<Real>& pair, const Boundaries& boundaries
         }
 }
 
-/// Of a tetrahedron by itself, whatever mesh it is in.
+/// For rules that use every face of a tetrahedron, whatever its mesh.
 constexpr Boundaries all_faces{15, 15};
 
-/// The least translation as measure. Boundaries without a face: no axis, and an infinite measure.
+/// The axis with the least translation as its measure. Without boundary faces there is no axis, and the
+/// measure is infinite.
 template<class Real>
 Best<Real> least_translation(const ReferencePair<Real>& pair, const Boundaries& boundaries) {
     Best<Real> best;
@@ -75,7 +76,7 @@ bool concentric(const ReferencePair<Real>& pair) {
     return largest(centres[1] - centres[0]) <= pair.tolerance();
 }
 
-/// Where the two meet first when they grow about their centres. The measure is minus the growth.
+/// The normal where the two touch first when they grow about their centres. The measure is minus the growth.
 template<class Real>
 Vector<Real> growth_normal(const ReferencePair<Real>& pair) {
     Best<Real> best{pair.solids[0].normals[0]};
@@ -128,7 +129,7 @@ bool nested(const ReferencePair<Real>& pair) {
     return has_all(pair.solids[0], pair.solids[1]) || has_all(pair.solids[1], pair.solids[0]);
 }
 
-/// The direction in which the common volume shrinks fastest, unless it has none.
+/// The direction in which the common volume shrinks fastest; empty if there is none.
 template<class Real>
 std::optional<Vector<Real>> area_normal(const ReferencePair<Real>& pair) {
     if (nested(pair)) return std::nullopt;
@@ -143,15 +144,15 @@ std::optional<Vector<Real>> area_normal(const ReferencePair<Real>& pair) {
     return unit(sum);
 }
 
-/// How far the points extend along the normal.
+/// Extent of the points along the normal.
 template<class Real>
-Real extent(const ReferencePair<Real>& pair, const std::vector<Meeting<Real>>& meetings,
+Real extent(const ReferencePair<Real>& pair, const std::vector<SharedPoint<Real>>& shared_points,
             const Vector<Real>& normal) {
-    if (meetings.empty()) return 0;
+    if (shared_points.empty()) return 0;
     std::vector<Real> heights;
-    heights.reserve(meetings.size());
-    for (const auto& meeting : meetings)
-        heights.push_back(dot(normal, meeting.point - pair.solids[0].corners[0]));
+    heights.reserve(shared_points.size());
+    for (const auto& shared : shared_points)
+        heights.push_back(dot(normal, shared.point - pair.solids[0].corners[0]));
     const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
     return *high - *low;
 }
@@ -163,13 +164,13 @@ std::vector<Contact<Real>> axis_contacts(const ReferencePair<Real>& pair, Contac
                                          const Boundaries& boundaries) {
     const bool restricted = rule == ContactRule::restricted;
     if (restricted && boundaries == Boundaries{}) return {};
-    const auto meetings = pair.meetings();
+    const auto shared_points = pair.shared_points();
     auto [normal, overlap] = least_translation(pair, restricted ? boundaries : all_faces);
     // A common volume as thin as rounding has no direction of its own.
     if (rule == ContactRule::clip && overlap > pair.tolerance())
         if (const auto n = area_normal(pair)) {
             normal = *n;
-            overlap = extent(pair, meetings, normal);
+            overlap = extent(pair, shared_points, normal);
         }
     if (rule == ContactRule::growth && !concentric(pair)) {
         normal = growth_normal(pair);
@@ -177,8 +178,8 @@ std::vector<Contact<Real>> axis_contacts(const ReferencePair<Real>& pair, Contac
         overlap = high_a - low_b;
     }
     std::vector<Contact<Real>> result;
-    result.reserve(meetings.size());
-    for (const auto& meeting : meetings) result.push_back(pair.contact(meeting, normal, -overlap));
+    result.reserve(shared_points.size());
+    for (const auto& shared : shared_points) result.push_back(pair.contact(shared, normal, -overlap));
     return result;
 }
 

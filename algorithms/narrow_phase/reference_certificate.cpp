@@ -5,11 +5,11 @@ namespace tandem::contact_reference {
 
 namespace {
 
-/// One of a pair seen from its first corner, in the order of operations of certificate.clh.
+/// A tetrahedron relative to its first corner, in the order of operations of certificate.clh.
 template<class Real>
 struct Solid {
     std::array<Vector<Real>, 3> normals; ///< inward, of the faces opposite corners 1 to 3
-    Real volume = 0;                     ///< six times
+    Real volume = 0;                     ///< six times the volume
     Real length = 0;                     ///< longest component of an edge from the first corner
 
     explicit Solid(const Corners<Real>& corners) {
@@ -27,13 +27,13 @@ struct Solid {
     bool certain() const { return volume > 1024 * unit_roundoff<Real> * length * length * length; }
 };
 
-/// Distances [corner of the other][face] behind the faces of one, less what they may be wrong by.
+/// Distances [corner of the other][face] behind the faces of one tetrahedron, minus their error bound.
 template<class Real>
 struct Distances {
     std::array<std::array<Real, 4>, 4> behind;
     Real error;
 
-    /// `corners`: of the other, from the first of this one.
+    /// `corners`: of the other tetrahedron, relative to the first corner of this one.
     Distances(const Solid<Real>& solid, const Corners<Real>& corners, Real reach)
         : error(1024 * unit_roundoff<Real> * solid.length * solid.length * reach) {
         for (unsigned i = 0; i < 4; ++i) {
@@ -62,7 +62,7 @@ struct Distances {
             if (!(most(face) > 0)) return false;
         return true;
     }
-    /// Whether a corner, or a point between two, is behind both faces.
+    /// Whether a corner, or a point between two corners, is behind both faces.
     bool entered(unsigned face, unsigned other) const {
         for (unsigned i = 0; i < 4; ++i)
             if (behind[i][face] > 0 && behind[i][other] > 0) return true;

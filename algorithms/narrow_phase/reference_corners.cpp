@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Rules vertex and consistent, which make contacts of corners inside the other.
+// Rules vertex and consistent, which make contacts of corners inside the other tetrahedron.
 #include "algorithms/narrow_phase/reference_pair.h"
 
 namespace tandem::contact_reference {
 
 namespace {
 
-/// The corner's contact with that face of the other, the normal out of A.
+/// The corner's contact with a face of the other tetrahedron; the normal points out of A.
 template<class Real>
 Contact<Real> contact_with(const ReferencePair<Real>& pair, unsigned feature, unsigned owner, unsigned corner,
                            unsigned face) {
@@ -16,7 +16,7 @@ Contact<Real> contact_with(const ReferencePair<Real>& pair, unsigned feature, un
                         other.distance(face, p));
 }
 
-/// The face with the least value, the first on ties; nothing when all are left out.
+/// The face with the least value, the first on ties; empty if no face has a value.
 template<class Real>
 std::optional<unsigned> least(const std::array<std::optional<Real>, 4>& values) {
     std::optional<unsigned> best;
@@ -25,7 +25,7 @@ std::optional<unsigned> least(const std::array<std::optional<Real>, 4>& values) 
     return best;
 }
 
-/// Bit i: corner i is in the other.
+/// Bit i: corner i is inside the other tetrahedron.
 template<class Real>
 unsigned corners_inside(const ReferencePair<Real>& pair, unsigned owner) {
     unsigned inside = 0;
@@ -35,22 +35,22 @@ unsigned corners_inside(const ReferencePair<Real>& pair, unsigned owner) {
     return inside;
 }
 
-/// The boundary face of the other whose plane the edge from `inner` to `outer` crosses first.
+/// The boundary face of the other tetrahedron whose plane the edge from `inner` to `outer` crosses first.
 template<class Real>
 std::optional<unsigned> first_crossed(const ReferencePair<Real>& pair, unsigned owner, unsigned inner,
                                       unsigned outer, unsigned boundary) {
-    std::array<std::optional<Real>, 4> shares;
+    std::array<std::optional<Real>, 4> fractions;
     for (unsigned face = 0; face < 4; ++face) {
         const Real from = pair.solids[1 - owner].distance(face, pair.solids[owner].corners[inner]);
         const Real to = pair.solids[1 - owner].distance(face, pair.solids[owner].corners[outer]);
-        if ((boundary & 1u << face) != 0 && to > pair.tolerance()) shares[face] = from / (from - to);
+        if ((boundary & 1u << face) != 0 && to > pair.tolerance()) fractions[face] = from / (from - to);
     }
-    return least(shares);
+    return least(fractions);
 }
 
 } // namespace
 
-/// A contact for each corner inside the other, with the boundary face whose plane is nearest.
+/// One contact for each corner inside the other tetrahedron, with the boundary face whose plane is nearest.
 template<class Real>
 std::vector<Contact<Real>> vertex_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries) {
     std::vector<Contact<Real>> result;
@@ -67,7 +67,7 @@ std::vector<Contact<Real>> vertex_contacts(const ReferencePair<Real>& pair, cons
     return result;
 }
 
-/// A contact for each edge that leaves the other through a boundary face, at its inner corner.
+/// One contact for each edge that leaves the other tetrahedron through a boundary face, at its inner corner.
 template<class Real>
 std::vector<Contact<Real>> consistent_contacts(const ReferencePair<Real>& pair,
                                                const Boundaries& boundaries) {

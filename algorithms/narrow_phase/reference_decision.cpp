@@ -37,7 +37,8 @@ public:
 private:
     Vector<Real> edge(unsigned i, unsigned j) const { return (world_[j] - world_[i]) * scale_; }
 
-    /// Projections on the product of two edges; notes what its gap says. Returns them and their error.
+    /// Projects the corners on the cross product of two edges and records what the gap proves. Returns the
+    /// projections and their error bound.
     std::pair<std::array<Real, 8>, Real> project(const Vector<Real>& p, const Vector<Real>& q) {
         const auto axis = cross(p, q);
         Vector<Real> terms;
@@ -60,18 +61,18 @@ private:
 
     void try_face(unsigned owner, unsigned face) {
         const auto& [first, second, third] = face_corners[face];
-        const unsigned own = 4 * owner, others = 4 - own;
+        const unsigned own = 4 * owner, other = 4 - own;
         const auto [along, error] = project(edge(own + first, own + second), edge(own + first, own + third));
         const Real height = along[own + face] - along[own + first];
         for (unsigned i = 0; i < 4; ++i) {
-            const Real depth = along[others + i] - along[own + first];
+            const Real depth = along[other + i] - along[own + first];
             const bool same = height > 0 ? depth > error : -depth > error;
             if (std::abs(height) <= error || !same) behind_all_[owner] &= ~(1u << i);
         }
     }
 
     std::array<Vector<Real>, 8> world_, local_;
-    std::array<unsigned, 2> behind_all_{15, 15}; ///< corners of the other, a bit each
+    std::array<unsigned, 2> behind_all_{15, 15}; ///< corners of the other tetrahedron, one bit each
     Real size_ = 0, scale_ = 1;
     bool usable_ = true, apart_ = false, overlapping_ = true;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rules opposing and published, which take their normal from a boundary face of A.
+// Rules opposing and published, whose normal is that of a boundary face of A.
 #include "algorithms/narrow_phase/reference_pair.h"
 
 namespace tandem::contact_reference {
@@ -21,16 +21,16 @@ std::optional<unsigned> opposing(const ReferencePair<Real>& pair, const Boundari
     return best;
 }
 
-/// The meetings that lie within half of A's height over the face, less `margin`.
+/// The points within half of A's height over the face, minus `margin`.
 template<class Real>
 std::vector<Contact<Real>> kept(const ReferencePair<Real>& pair, unsigned face,
-                                const std::vector<Meeting<Real>>& meetings, Real margin) {
+                                const std::vector<SharedPoint<Real>>& points, Real margin) {
     std::vector<Contact<Real>> result;
     const auto& a = pair.solids[0];
     const Real within = std::abs(a.distance(face, a.corners[face])) / 2 - margin;
-    for (const auto& meeting : meetings) {
-        const Real depth = a.distance(face, meeting.point);
-        if (std::abs(depth) < within) result.push_back(pair.contact(meeting, a.normals[face], depth));
+    for (const auto& shared : points) {
+        const Real depth = a.distance(face, shared.point);
+        if (std::abs(depth) < within) result.push_back(pair.contact(shared, a.normals[face], depth));
     }
     return result;
 }
@@ -41,7 +41,7 @@ template<class Real>
 std::vector<Contact<Real>> opposing_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries) {
     const auto face = opposing(pair, boundaries);
     if (!face) return {};
-    return kept(pair, *face, pair.meetings(), Real(0));
+    return kept(pair, *face, pair.shared_points(), Real(0));
 }
 
 template<class Real>
@@ -49,24 +49,23 @@ std::vector<Contact<Real>> published_contacts(const ReferencePair<Real>& pair, c
     const auto face = opposing(pair, boundaries);
     if (!face) return {};
     const Real tolerance = 10 * std::ldexp(Real(1), -23) * pair.scale;
-    std::vector<Meeting<Real>> meetings;
+    std::vector<SharedPoint<Real>> points;
     for (unsigned owner = 0; owner < 2; ++owner)
         for (unsigned corner = 0; corner < 4; ++corner) {
             const auto& p = pair.solids[owner].corners[corner];
             bool clear = true;
             for (unsigned side = 0; side < 4; ++side)
                 clear = clear && pair.solids[1 - owner].distance(side, p) < -tolerance;
-            if (clear) meetings.push_back({4 * owner + corner, p});
+            if (clear) points.push_back({4 * owner + corner, p});
         }
     for (unsigned edge = 0; edge < 6; ++edge)
         for (unsigned side = 0; side < 4; ++side) {
             const auto [ahead, behind] = pair.ends(1, edge, side);
             if (ahead * behind >= -(tolerance * pair.scale)) continue;
             const auto p = pair.crossing(1, edge, side);
-            if (pair.inside(pair.solids[0], p, side, -tolerance))
-                meetings.push_back({32 + 4 * edge + side, p});
+            if (pair.inside(pair.solids[0], p, side, -tolerance)) points.push_back({32 + 4 * edge + side, p});
         }
-    return kept(pair, *face, meetings, tolerance);
+    return kept(pair, *face, points, tolerance);
 }
 
 template std::vector<Contact<float>> opposing_contacts(const ReferencePair<float>&, const Boundaries&);

@@ -14,7 +14,7 @@ namespace tandem::contact_reference {
 template<class Real>
 using Vector = std::array<Real, 3>;
 
-/// Edges by their corners and faces by theirs, opposite corner i, in the order of features.
+/// Corners of edges and of faces, in the order of features. Face i is opposite corner i.
 constexpr unsigned edge_ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 constexpr unsigned face_corners[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
 
@@ -41,7 +41,7 @@ Vector<Real> operator/(const Vector<Real>& a, Real b) {
     return {a[0] / b, a[1] / b, a[2] / b};
 }
 
-/// x and y first, then z: as the kernels add.
+/// Adds x and y first, then z, as the kernels do.
 template<class Real>
 Real dot(const Vector<Real>& a, const Vector<Real>& b) {
     const Real xy = a[0] * b[0] + a[1] * b[1];
@@ -63,7 +63,7 @@ Real largest(const Vector<Real>& a) {
     return std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])});
 }
 
-/// The power of two that takes `length` into [1, 2), bounded by the largest finite one.
+/// The power of two that scales `length` into [1, 2), bounded by the largest finite one.
 template<class Real>
 Real scale_of(Real length) {
     int exponent = 0;
@@ -74,16 +74,16 @@ Real scale_of(Real length) {
 /// A tetrahedron and its planes.
 template<class Real>
 struct Tetrahedron {
-    Corners<Real> corners; ///< relative to A's first one and scaled
+    Corners<Real> corners; ///< relative to A's first corner and scaled
     Corners<Real> normals; ///< outward, of the face opposite each corner
 
-    /// Along the face's normal, times its length; negative inside.
+    /// Distance of p along the face's normal, times the normal's length; negative inside.
     Real distance(unsigned face, const Vector<Real>& p) const {
         return dot(normals[face], p - corners[face_corners[face][0]]);
     }
 };
 
-/// Outward normals of any length, or nothing when the volume could be zero.
+/// Outward normals of any length; empty if the volume may be zero.
 template<class Real>
 std::optional<Corners<Real>> outward_normals(const Corners<Real>& world) {
     Vector<Real> extent;
@@ -110,7 +110,7 @@ std::optional<Corners<Real>> outward_normals(const Corners<Real>& world) {
     return normals;
 }
 
-/// Divided by the largest component first, so that its square neither overflows nor underflows.
+/// Divides by the largest component first, so that its square neither overflows nor underflows.
 template<class Real>
 Vector<Real> unit(const Vector<Real>& a) {
     const auto shorter = a / largest(a);

@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: MIT
-// One pair as the serial reference sees it: loaded, told apart, and the features of what its two have in
-// common.
+// One pair in the serial reference: loading, separation, and the features of the common part.
 #pragma once
 
 #include "algorithms/narrow_phase/reference_geometry.h"
 
 namespace tandem::contact_reference {
 
-/// What two tetrahedra have in common at one feature.
+/// A point that two tetrahedra have in common, at one feature.
 template<class Real>
-struct Meeting {
+struct SharedPoint {
     unsigned feature = 0;
     Vector<Real> point{}; ///< local
 };
 
 template<class Real>
 struct ReferencePair {
-    static inline const Real shortest = std::ldexp(Real(1), -96); ///< axis that is tried
+    static inline const Real shortest = std::ldexp(Real(1), -96); ///< shortest axis that is tested
 
     std::array<Tetrahedron<Real>, 2> solids;
     std::array<Corners<Real>, 2> world;
@@ -25,7 +24,7 @@ struct ReferencePair {
     Real size = 0;
     Real scale = 1;
 
-    /// False when the pair is degenerate.
+    /// Returns false if the pair is degenerate.
     bool load(const Corners<Real>& a, const Corners<Real>& b) {
         const Real longest_allowed = std::ldexp(Real(1), std::numeric_limits<Real>::max_exponent - 5);
         world = {a, b};
@@ -81,9 +80,9 @@ struct ReferencePair {
         return false;
     }
 
-    /// Corners inside the other and edges through its faces, in ascending order of feature.
-    std::vector<Meeting<Real>> meetings() const {
-        std::vector<Meeting<Real>> result;
+    /// Corners inside the other tetrahedron and edges through its faces, in ascending order of feature.
+    std::vector<SharedPoint<Real>> shared_points() const {
+        std::vector<SharedPoint<Real>> result;
         for (unsigned owner = 0; owner < 2; ++owner)
             for (unsigned corner = 0; corner < 4; ++corner)
                 if (inside(solids[1 - owner], solids[owner].corners[corner], 4, tolerance()))
@@ -101,14 +100,14 @@ struct ReferencePair {
         return result;
     }
 
-    /// Whether p is at most `near` in front of all faces of the solid but `skipped`.
+    /// Whether p is at most `near` in front of all faces of the solid except `skipped`.
     bool inside(const Tetrahedron<Real>& solid, const Vector<Real>& p, unsigned skipped, Real near) const {
         for (unsigned face = 0; face < 4; ++face)
             if (face != skipped && solid.distance(face, p) > near) return false;
         return true;
     }
 
-    /// Distances of an edge's ends from a face of the other.
+    /// Distances of an edge's ends from a face of the other tetrahedron.
     std::pair<Real, Real> ends(unsigned owner, unsigned edge, unsigned face) const {
         const auto& corners = solids[owner].corners;
         const auto& other = solids[1 - owner];
@@ -123,9 +122,9 @@ struct ReferencePair {
         return from + (to - from) * (ahead / (ahead - behind));
     }
 
-    Contact<Real> contact(const Meeting<Real>& meeting, const Vector<Real>& normal, Real depth) const {
+    Contact<Real> contact(const SharedPoint<Real>& shared, const Vector<Real>& normal, Real depth) const {
         const Vector<Real> no_negative_zero{};
-        return {meeting.feature, meeting.point / scale + origin + no_negative_zero, normal + no_negative_zero,
+        return {shared.feature, shared.point / scale + origin + no_negative_zero, normal + no_negative_zero,
                 depth / scale + Real(0)};
     }
 
@@ -142,13 +141,13 @@ private:
 /// Bits of the boundary faces of A and of B.
 using Boundaries = std::array<unsigned, 2>;
 
-/// Contacts of a loaded pair by each rule, in ascending order of feature. All but the first two want it in
-/// canonical order.
+/// Contacts of a loaded pair by each rule, in ascending order of feature. All rules except the first two
+/// require canonical order.
 template<class Real>
 std::vector<Contact<Real>> opposing_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
 template<class Real>
 std::vector<Contact<Real>> published_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
-/// Rules sat, clip, restricted and growth, which have one normal and depth a pair.
+/// Rules sat, clip, restricted and growth, which have one normal and one depth per pair.
 template<class Real>
 std::vector<Contact<Real>> axis_contacts(const ReferencePair<Real>& pair, ContactRule rule,
                                          const Boundaries& boundaries);
@@ -157,13 +156,13 @@ std::vector<Contact<Real>> vertex_contacts(const ReferencePair<Real>& pair, cons
 template<class Real>
 std::vector<Contact<Real>> consistent_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
 
-/// What distances of corners behind faces are certain of: 1 apart, 2 they meet, 0 neither. That it is certain
-/// may depend on the order of corners and of the two; what it is does not.
+/// What distances of corners behind faces prove: 1 apart, 2 meeting, 0 neither. Whether they prove anything
+/// may depend on the order of corners and tetrahedra; the verdict does not.
 template<class Real>
 unsigned certificate(const Corners<Real>& a, const Corners<Real>& b);
 
-/// What arithmetic in Real is certain of: 1 apart, 2 they meet, 0 neither. Order of corners and of the two
-/// makes no difference.
+/// What arithmetic in Real proves: 1 apart, 2 meeting, 0 neither. The order of corners and tetrahedra makes
+/// no difference.
 template<class Real>
 unsigned certain_verdict(const Corners<Real>& a, const Corners<Real>& b);
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The second of three kernels from candidate pairs to contacts: the tests of pairs of which no certificate
-// tells whether they meet.
+// The second of three kernels from candidate pairs to contacts: tests the pairs that certificates leave open.
 #include "backends/portable.h"
 
 #include "algorithms/narrow_phase/trial.clh"
 #include "algorithms/narrow_phase/waiting.clh"
 
-// `first`: that of certify_pairs, which the words of `open` are counted from. `verdicts` are read when
-// DECIDED only; a pair that is not known to be apart then counts as one that meets.
+// `first`: that of certify_pairs; the words of `open` are relative to it. `verdicts` are read only if
+// DECIDED; pairs not known to be apart then count as meeting.
 KERNEL void separate_pairs(GLOBAL const uint* found, uint first, GLOBAL const uint* owners,
                            GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
                            GLOBAL const real* vertices, GLOBAL const uchar* boundary,
@@ -25,16 +24,16 @@ KERNEL void separate_pairs(GLOBAL const uint* found, uint first, GLOBAL const ui
         if (start + LOCAL_ID < count) {
             const uint word = open[start + LOCAL_ID];
             index = first + PAIR_OF_OPEN(word);
-            // Asked before the tests: who they are would otherwise be kept through them, and the registers
-            // are few.
+            // Read before the tests. Otherwise the pair's members would occupy registers during the tests,
+            // and registers are few.
             has_normal = !has_no_normal(&all, index);
             const int apart = DECIDED && verdicts[index] == VERDICT_APART;
             state = apart ? REJECTED : try_all(&all, index, EDGE_OF_OPEN(word));
         }
         count_state(state, group);
         const int meets = state == MEETING && has_normal;
-        const uint place = local_index(meets ? LIST_MEETING : NO_LIST, group, status);
-        if (meets) meeting[place] = index;
+        const uint slot = local_index(meets ? LIST_MEETING : NO_LIST, group, status);
+        if (meets) meeting[slot] = index;
         start += GLOBAL_COUNT;
     } while (start < count);
     end_group(group, status);
