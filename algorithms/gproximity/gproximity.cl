@@ -228,18 +228,18 @@ DEVICE uint add_items(uint sum, uint more) {
 KERNEL void plan_balance(GLOBAL const uint* counts, uint queues, uint low, uint high, GLOBAL uint* starts,
                          GLOBAL uint* totals) {
     LOCAL_ARRAY(uint, sums, GROUP_SIZE);
-    LOCAL_ARRAY(uint, wanted, GROUP_SIZE);
+    LOCAL_ARRAY(uint, all_unbalanced, GROUP_SIZE);
     const uint part = (queues + (uint)GROUP_SIZE - 1u) / (uint)GROUP_SIZE;
     const uint first = LOCAL_ID * part < queues ? LOCAL_ID * part : queues;
     const uint last = first + part < queues ? first + part : queues;
     uint sum = 0;
-    uint want = 0;
+    uint unbalanced = 0;
     for (uint i = first; i < last; ++i) {
         sum = add_items(sum, counts[i]);
-        want |= counts[i] < low || counts[i] >= high ? 1u : 0u;
+        unbalanced |= counts[i] < low || counts[i] >= high ? 1u : 0u;
     }
     sums[LOCAL_ID] = sum;
-    wanted[LOCAL_ID] = want;
+    all_unbalanced[LOCAL_ID] = unbalanced;
     BARRIER;
     if (LOCAL_ID == 0u) {
         uint start = 0;
@@ -248,7 +248,7 @@ KERNEL void plan_balance(GLOBAL const uint* counts, uint queues, uint low, uint 
             const uint own = sums[i];
             sums[i] = start;
             start = add_items(start, own);
-            any |= wanted[i];
+            any |= all_unbalanced[i];
         }
         starts[queues] = start;
         totals[0] = start;

@@ -11,7 +11,7 @@ namespace tandem {
 namespace {
 
 constexpr std::uint64_t item_words = 3;
-constexpr std::uint64_t least_capacity = 2; ///< of a queue; one of its items stays free
+constexpr std::uint64_t least_capacity = 2; ///< minimum for a queue; one of its items stays free
 constexpr auto too_many_items =
     "gproximity: its queues have 2^31 node pairs or more, which it cannot count; set batch, or use chunked";
 

@@ -8,7 +8,7 @@
 namespace tandem {
 
 /// A hierarchy over the tetrahedra of every body, refitted every frame. An algorithm creates its walk and its
-/// hierarchy together, so the walk knows the concrete type.
+/// hierarchy together, so the walk uses the concrete type.
 class Hierarchy {
 public:
     virtual ~Hierarchy() = default;

@@ -7,7 +7,7 @@ namespace tandem {
 
 namespace {
 
-constexpr double row_words = 4; ///< of a tetrahedron's vertex numbers, and reals of a vertex
+constexpr double row_words = 4; ///< vertex numbers of a tetrahedron, or reals of a vertex
 
 } // namespace
 

@@ -49,7 +49,7 @@ private:
         return decided_.buffer(uses_certificates() ? undecided_by_filter : undecided_by_double);
     }
     GrowableBuffer decided_;   ///< by pair
-    Buffer corners_, answers_; ///< of the pairs that the host decides; they live until their commands finish
+    Buffer corners_, answers_; ///< data of pairs that the host decides; they live until their commands finish
     Kernel filter_, filter_open_, recheck_, gather_, settle_;
 };
 

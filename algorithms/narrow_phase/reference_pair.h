@@ -133,8 +133,8 @@ private:
         const Real norm = taxicab(axis);
         if (norm < shortest) return false;
         const auto [low_a, high_a, low_b, high_b] = extents(axis);
-        const Real enough = 12 * unit_roundoff<Real> * norm * size;
-        return low_b - high_a > enough || low_a - high_b > enough;
+        const Real error = 12 * unit_roundoff<Real> * norm * size;
+        return low_b - high_a > error || low_a - high_b > error;
     }
 };
 
