@@ -27,7 +27,7 @@ Dynamics masonry::dynamics() {
     constexpr Surface ball_ground{0.45, 0.3};
     constexpr Surface balls{0.3, 0.9};
     Dynamics result;
-    // The ground does not meet itself.
+    // The ground is always fixed, so that the pair ground-ground needs no surface.
     result.materials = {.names = {"stone", "ground", "cannonball"},
                         .densities = {2000, 5500, 7900},
                         .surfaces = {{{0, 0}, stones},
@@ -56,11 +56,11 @@ std::uint32_t Assembly::add_box(const Eigen::Vector3d& exact) {
     return boxes_.back().second;
 }
 
-void Assembly::add(std::uint32_t mesh, const Placing& placing) {
-    scene_.bodies.push_back({.mesh = mesh, .fixed = placing.fixed, .deformable = false});
-    start_.poses.push_back(placing.pose);
+void Assembly::add(std::uint32_t mesh, const BodyPlacement& placement) {
+    scene_.bodies.push_back({.mesh = mesh, .fixed = placement.fixed, .deformable = false});
+    start_.poses.push_back(placement.pose);
     start_.deformed.emplace_back();
-    dynamics.bodies.push_back({.material = placing.material, .velocity = placing.velocity});
+    dynamics.bodies.push_back({.material = placement.material, .velocity = placement.velocity});
 }
 
 void Assembly::add_deformable(std::uint32_t mesh, double turn, const Eigen::Vector3d& translation,
@@ -70,7 +70,7 @@ void Assembly::add_deformable(std::uint32_t mesh, double turn, const Eigen::Vect
     dynamics.bodies.push_back({.elastic = elastic});
     const auto [sine, cosine] = sine_cosine(turn);
     auto& vertices = start_.deformed.emplace_back();
-    // Heights are not touched by the turn, so that bodies on each other touch exactly.
+    // The rotation leaves heights unchanged, so that stacked bodies touch exactly.
     for (const auto& p : scene_.meshes[mesh].vertices)
         vertices.emplace_back((cosine * p.x() + sine * p.z()) + translation.x(), p.y() + translation.y(),
                               (cosine * p.z() - sine * p.x()) + translation.z());

@@ -6,20 +6,19 @@
 
 namespace tandem {
 
-/// The settings that the paper's scenes are measured with, in place of the defaults, which are for scenes of
-/// one's own: no correction of positions, its damping, and a solver that ends early in heaps.
+/// The settings of the measured scenes of the paper; user scenes start from the defaults instead. Positions
+/// are not corrected, damping has the paper's value, and the solver ends early in heaps.
 StepSettings measured_stepping();
 SolverSettings measured_solver();
 
-/// The materials of the paper's rigid scenes, brick, earth and iron, with the settings they are measured
-/// with.
+/// Materials of the paper's rigid scenes (brick, earth and iron) with the settings of their measurements.
 namespace masonry {
 enum : std::uint32_t { stone, ground, cannonball };
 Dynamics dynamics();
 } // namespace masonry
 
-/// How a rigid body is put into a scene.
-struct Placing {
+/// Pose, material and initial motion of a rigid body.
+struct BodyPlacement {
     Pose pose;
     std::uint32_t material = 0;
     bool fixed = false;
@@ -29,28 +28,28 @@ struct Placing {
 /// A scene with dynamics under construction.
 class Assembly {
 public:
-    /// Refines every mesh as the parameter `refine` says.
+    /// Refines every mesh by the levels of the parameter `refine`.
     explicit Assembly(std::span<const SceneParameter> parameters);
 
-    Dynamics dynamics; ///< for the caller to fill in; add() fills `bodies`
+    Dynamics dynamics; ///< the caller fills it in; add() fills `bodies`
 
-    /// Numbers of meshes in the scene. Boxes of equal size share one; sizes are halved_on_grid.
+    /// Return the mesh's number in the scene. Boxes of equal size share a mesh; sizes are halved_on_grid.
     std::uint32_t add_mesh(const Mesh& mesh);
     std::uint32_t add_box(const Eigen::Vector3d& size);
     const Mesh& mesh(std::uint32_t number) const { return scene_.meshes[number]; }
 
-    /// Throws InputError where so many bodies of a mesh are more than there is memory for.
-    void expect(std::uint64_t bodies, std::uint32_t mesh) const {
+    /// Throws InputError when memory does not suffice for this many bodies of a mesh.
+    void check_memory(std::uint64_t bodies, std::uint32_t mesh) const {
         refuse_bodies_beyond_memory(bodies, scene_.meshes[mesh], 0);
     }
-    void add(std::uint32_t mesh, const Placing& placing);
-    /// A deformable body: its mesh turned by `turn` about the vertical, then moved.
+    void add(std::uint32_t mesh, const BodyPlacement& placement);
+    /// Adds a deformable body: its mesh rotated by `turn` radians about the vertical, then translated.
     void add_deformable(std::uint32_t mesh, double turn, const Eigen::Vector3d& translation,
                         std::int32_t elastic);
-    /// The ground: a fixed square box one metre thick, its top at y = 0.
+    /// Adds the ground: a fixed square box one metre thick, its top at y = 0.
     void add_ground(double width, std::uint32_t material);
 
-    /// Ends the construction.
+    /// Returns the scene; the assembly is empty afterwards.
     Scene finish();
 
 private:
@@ -60,8 +59,8 @@ private:
     std::vector<std::pair<Eigen::Vector3d, std::uint32_t>> boxes_;
 };
 
-/// Bodies in a regular block twice as high as it is wide, layer by layer from `bottom`, about the y-axis: the
-/// footprint is the least square that this shape needs, and no more than 10 x 10 (the paper's 10 x 20 x 10).
+/// Centres of bodies in a regular block about the y-axis, layer by layer from `bottom`, twice as high as
+/// wide. The footprint is the smallest square for this shape, at most 10 x 10 (the paper's 10 x 20 x 10).
 std::vector<Eigen::Vector3d> block(std::size_t bodies, double pitch, double bottom);
 
 } // namespace tandem

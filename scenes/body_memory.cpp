@@ -6,7 +6,7 @@
 namespace tandem {
 
 void refuse_bodies_beyond_memory(std::uint64_t bodies, const Mesh& mesh, std::uint64_t levels) {
-    // A refinement has a vertex a tetrahedron more at the least.
+    // A refinement adds at least one vertex a tetrahedron.
     double vertices = static_cast<double>(mesh.vertices.size()),
            tetrahedra = static_cast<double>(mesh.tetrahedra.size());
     for (std::uint64_t level = 0; level < levels; ++level, tetrahedra *= 8) vertices += tetrahedra;

@@ -6,8 +6,8 @@
 
 namespace tandem {
 
-/// refuse_beyond_memory() for bodies of one mesh after `levels` refinements, by what a frame of them has at
-/// least: three floats a vertex.
+/// Throws InputError when one frame of `bodies` bodies exceeds memory (refuse_beyond_memory). The mesh is
+/// refined `levels` times; a frame has at least three floats a vertex.
 void refuse_bodies_beyond_memory(std::uint64_t bodies, const Mesh& mesh, std::uint64_t levels);
 
 } // namespace tandem

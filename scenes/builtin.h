@@ -8,10 +8,10 @@
 
 namespace tandem {
 
-/// Names of the meshes that are part of the program (scenes/meshes), in ascending order.
+/// Names of the meshes embedded in the program (scenes/meshes), in ascending order.
 std::span<const std::string> built_in_names();
 
-/// One of them; throws InputError that names the nearest.
+/// The embedded mesh of that name. Throws InputError with the nearest name when there is none.
 Mesh built_in_mesh(std::string_view name);
 
 } // namespace tandem

@@ -17,7 +17,7 @@ struct Pair {
 /// A contact between a pair: point and normal (out of body a) in world coordinates, depth < 0 inside.
 struct ContactPoint {
     Pair pair;
-    std::uint32_t feature = 0; ///< as algorithms/narrow_phase numbers them
+    std::uint32_t feature = 0; ///< number defined by algorithms/narrow_phase
     std::array<double, 3> point{}, normal{};
     double depth = 0;
 };

@@ -6,16 +6,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-/// Reading of values from scene descriptions and plans; every function throws InputError that names the
-/// place.
+/// Functions that read values from scene descriptions and plans. Each throws InputError with the location.
 namespace tandem::description {
 
 using Json = nlohmann::json;
 
-/// No setting is larger.
+/// Upper limit of settings without a limit of their own.
 constexpr double largest = 1e9;
 
-/// A place in the description, for messages: "file.json: /bodies/3/pose: ".
+/// A location in the description, for messages: "file.json: /bodies/3/pose: ".
 struct JsonLocation {
     std::string file;
     std::string pointer;
@@ -28,7 +27,7 @@ struct JsonLocation {
     [[noreturn]] void fail(std::string_view what) const;
 };
 
-/// Refuses what is no object or has other names than these.
+/// Throws InputError unless `object` is a JSON object whose names are all in `allowed`.
 void check_names(const Json& object, const JsonLocation& location, const std::vector<std::string>& allowed);
 
 double number(const Json& json, const JsonLocation& location);
@@ -37,10 +36,10 @@ double positive(const Json& json, const JsonLocation& location);
 /// An integer from `least` to `most`.
 double whole(const Json& json, const JsonLocation& location, double least, double most);
 std::string text(const Json& json, const JsonLocation& location);
-/// The number of a name among choices; `what` they are, for messages.
+/// Index of the name in `choices`; messages call a choice `what`.
 std::size_t choice(const Json& json, const JsonLocation& location, std::string_view what,
                    const std::vector<std::string>& choices);
-/// False when `json` has no such name.
+/// The boolean of that name; false when `json` has none.
 bool flag(const Json& json, const char* name, const JsonLocation& location);
 Eigen::Vector3d vector(const Json& json, const JsonLocation& location);
 

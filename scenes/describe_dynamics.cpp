@@ -60,17 +60,17 @@ Elastic read_elastic(const Json& json, const JsonLocation& location, const Mesh&
     return elastic;
 }
 
-/// World vertices of a body at its start, after which its pose is the identity.
+/// Moves a body's start into world vertices and resets its pose to the identity.
 void deform(const Mesh& mesh, Pose& pose, std::vector<Eigen::Vector3d>& vertices) {
     for (const auto& v : mesh.vertices) vertices.push_back(rotated(pose.rotation, v) + pose.translation);
     pose = {};
 }
 
-/// A scene with one material need not name it.
+/// The material is optional in a scene with one material.
 BodyDynamics read_body(const Json& json, const JsonLocation& location, const Materials& materials) {
     BodyDynamics body;
     if (json.contains("poses"))
-        (location / "poses").fail("has no use in a scene with dynamics; leave it out");
+        (location / "poses").fail("cannot be used in a scene with dynamics; leave it out");
     if (json.contains("material"))
         body.material = static_cast<std::uint32_t>(
             choice(json["material"], location / "material", "material", materials.names));
@@ -84,7 +84,7 @@ BodyDynamics read_body(const Json& json, const JsonLocation& location, const Mat
     return body;
 }
 
-/// Every two materials that can meet need a surface.
+/// Any two materials whose bodies can touch need a surface.
 void check_surfaces(const Materials& materials, const Scene& scene, const std::vector<BodyDynamics>& bodies,
                     const JsonLocation& location) {
     if (const auto missing = missing_surface(materials, scene.bodies, bodies))
@@ -93,7 +93,7 @@ void check_surfaces(const Materials& materials, const Scene& scene, const std::v
                               materials.names[missing->second]));
 }
 
-/// Materials and elasticity of all bodies.
+/// Reads materials and elasticity of all bodies.
 void read_bodies(const Json& json, const JsonLocation& location, Scene& scene, Frame& start,
                  Dynamics& dynamics) {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -101,7 +101,7 @@ void read_bodies(const Json& json, const JsonLocation& location, Scene& scene, F
         dynamics.bodies.push_back(read_body(entry, location / i, dynamics.materials));
         if (!entry.contains("elastic")) continue;
         if (scene.bodies[i].fixed)
-            (location / i / "elastic").fail("has no use for a fixed body; leave one out");
+            (location / i / "elastic").fail("cannot be used for a fixed body; leave one out");
         if (entry.contains("spin")) (location / i / "spin").fail("cannot be given to an elastic body");
         const auto& mesh = scene.meshes[scene.bodies[i].mesh];
         dynamics.bodies.back().elastic = static_cast<std::int32_t>(dynamics.elastics.size());
@@ -120,7 +120,7 @@ std::shared_ptr<const Dynamics> read_dynamics(const Json& json, const JsonLocati
     check_names(entry, location,
                 {"gravity", "step", "steps", "materials", "surfaces", "solver", "stepping", "reduction"});
     if (scene.frame_count != 1)
-        (root / "frames").fail("must be 1 or left out in a scene with dynamics; steps stand in /dynamics");
+        (root / "frames").fail("must be 1 or left out in a scene with dynamics; give steps in /dynamics");
     auto dynamics = std::make_shared<Dynamics>();
     dynamics->materials = read_materials(entry, location);
     read_settings(entry, location, *dynamics);

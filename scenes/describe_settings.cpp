@@ -9,7 +9,7 @@ namespace tandem::description {
 
 namespace {
 
-/// The settings of one object of a description: its own name for each, and the setting's.
+/// Settings in one object of a description: pairs of the name in the object and the setting's name.
 struct Group {
     const char* name;
     std::vector<std::pair<const char*, const char*>> members;
@@ -45,7 +45,7 @@ const DynamicsSetting& setting_named(std::string_view name) {
     return *std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == name; });
 }
 
-/// What --dynamics would be given for the member of that name.
+/// The value of a member in the text form of --dynamics.
 std::string text_of(const Json& json, const char* name, const JsonLocation& location,
                     const DynamicsSetting& setting) {
     switch (setting.kind) {
@@ -61,7 +61,7 @@ std::string text_of(const Json& json, const char* name, const JsonLocation& loca
     return setting.words[choice(json[name], location / name, name, setting.words)];
 }
 
-/// By way of the setting's text, so that a description and --dynamics pass the same checks.
+/// Sets the value through its text form, so that a description and --dynamics pass the same checks.
 void read(const Json& json, const char* name, const JsonLocation& location, std::string_view setting_name,
           Dynamics& dynamics) {
     if (!json.contains(name)) return;

@@ -5,7 +5,7 @@
 
 namespace tandem::description {
 
-/// Gravity, step, solver and reduction of a description's dynamics over their defaults.
+/// Overwrites gravity, step, solver and reduction in `dynamics` by the values of a description.
 void read_settings(const Json& json, const JsonLocation& location, Dynamics& dynamics);
 
 } // namespace tandem::description

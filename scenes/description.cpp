@@ -22,13 +22,13 @@ namespace {
 
 using namespace description;
 
-/// Brought to unit length: descriptions are written by hand.
+/// Normalises the quaternion, since descriptions are written by hand.
 Eigen::Quaterniond quaternion(double w, double x, double y, double z, const JsonLocation& location) {
     if (!(w * w + x * x + y * y + z * z > 0)) location.fail("must not be the zero quaternion");
     return unit(Eigen::Quaterniond(w, x, y, z));
 }
 
-/// How one body moves: a start, a velocity and a spin per frame, or a list of poses.
+/// Motion of one body: a start with a velocity and a spin per frame, or a list of poses.
 struct Motion {
     Pose start;
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
@@ -43,7 +43,7 @@ struct Motion {
     }
 };
 
-/// A file is looked for beside the description, not where the program runs.
+/// File paths are relative to the description, not to the working directory.
 Mesh read_source(const Json& json, const JsonLocation& location, const std::filesystem::path& folder) {
     if (json.contains("file")) return read_mesh((folder / text(json["file"], location / "file")).string());
     if (json.contains("box")) {
@@ -70,8 +70,8 @@ Mesh read_one(const Json& json, const JsonLocation& location, const std::filesys
     return mesh;
 }
 
-/// Velocity in units a frame, spin as axis and radians a frame. Angles are limited, since the sine of a large
-/// one has lost its digits.
+/// Velocity is in units a frame, spin is an axis and radians a frame. Angles are limited, since the sine of a
+/// large angle has no accurate digits.
 Motion read_motion(const Json& json, const JsonLocation& location, std::size_t frames) {
     Motion motion;
     if (json.contains("position")) motion.start.translation = vector(json["position"], location / "position");
@@ -120,7 +120,7 @@ Body read_body(const Json& json, const JsonLocation& location,
     return body;
 }
 
-/// Made when asked for: a scripted scene has no frames in memory.
+/// Computed on demand, since a scripted scene keeps no frames in memory.
 Frame frame_of(const std::vector<Motion>& motions, std::size_t index) {
     Frame frame;
     frame.deformed.resize(motions.size());
@@ -128,7 +128,7 @@ Frame frame_of(const std::vector<Motion>& motions, std::size_t index) {
     return frame;
 }
 
-/// Meshes and bodies into the scene; returns how the bodies move.
+/// Reads meshes and bodies into the scene and returns the motions of the bodies.
 std::vector<Motion> read_bodies(const Json& json, const JsonLocation& root, Scene& scene) {
     std::map<std::string, std::uint32_t> meshes;
     if (!json.contains("meshes") || !json["meshes"].is_object()) root.fail("has no meshes");
@@ -152,7 +152,7 @@ std::vector<Motion> read_bodies(const Json& json, const JsonLocation& root, Scen
 Scene load_description(const std::string& path) {
     const auto json = read_json(path, "scene description");
     if (json.is_object() && json.contains("plan"))
-        throw InputError(fmt::format("{}: is a plan, not a scene; 'tandem run' takes it", path));
+        throw InputError(fmt::format("{}: is a plan, not a scene; give it to 'tandem run'", path));
     const JsonLocation root{path, {}};
     check_names(json, root, {"name", "units", "frames", "meshes", "bodies", "dynamics"});
     Scene scene;

@@ -5,11 +5,11 @@
 
 namespace tandem {
 
-/// 64-bit digest of a frame: poses, vertices of deformable bodies, and what is skipped.
+/// 64-bit digest of a frame: poses, vertices of deformable bodies, and skipped tetrahedra.
 std::uint64_t digest_of(const Frame& frame);
 
 /// 64-bit digest of a scene: key, meshes, bodies, and the states of the first and the last frame. The key
-/// holds every parameter of a motion, so that frames between need no visit.
+/// has every parameter of the motion, so that the frames between need not be read.
 std::uint64_t digest_of(const Scene& scene);
 
 } // namespace tandem

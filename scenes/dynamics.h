@@ -14,13 +14,13 @@
 
 namespace tandem {
 
-/// What two materials do where they touch.
+/// Contact parameters of two materials.
 struct Surface {
     double friction = 0;    ///< Coulomb's coefficient
     double restitution = 0; ///< Newton's coefficient, 0..1
 };
 
-/// Two materials in either order.
+/// An unordered pair of materials.
 struct MaterialPair {
     MaterialPair(std::uint32_t one, std::uint32_t other)
         : first(std::min(one, other)), second(std::max(one, other)) {}
@@ -29,30 +29,30 @@ struct MaterialPair {
     std::uint32_t first, second;
 };
 
-/// Densities by material, surfaces by pair of those materials that can meet: of thousands of materials few
-/// do.
+/// Densities by material and surfaces by pair of materials. Only pairs whose bodies can touch need a surface,
+/// which are few even with thousands of materials.
 struct Materials {
     std::vector<std::string> names;
     std::vector<double> densities; ///< kg/m^3
     std::map<MaterialPair, Surface> surfaces;
 
-    /// Of two materials that have one.
+    /// The surface of two materials, which must have one.
     const Surface& surface(std::uint32_t a, std::uint32_t b) const { return surfaces.at({a, b}); }
 };
 
-/// How a deformable body resists.
+/// Elasticity of a deformable body.
 struct Elastic {
     enum class Law { corotational, saint_venant_kirchhoff };
 
     Law law = Law::corotational;
     double young = 0;   ///< Pa
     double poisson = 0; ///< below 0.5
-    /// Damping force per unit of velocity and volume (kg/(s m^3)), of an element's consistent matrix.
+    /// Damping force per unit of velocity and volume (kg/(s m^3)), in an element's consistent matrix.
     double damping = 0;
     std::vector<std::uint32_t> pinned; ///< vertices that do not move
 };
 
-/// How one body starts and what it is made of.
+/// Material and initial velocities of one body.
 struct BodyDynamics {
     std::uint32_t material = 0;
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero(); ///< m/s, of the centre of mass
@@ -62,54 +62,55 @@ struct BodyDynamics {
 
 struct Body;
 
-/// Two materials without a surface whose bodies can meet, since they are not both fixed; none where all have
-/// one. One of `moves` a body, with a material that there is.
+/// A pair of materials that needs a surface and has none; none when all are present. A pair needs one when
+/// two bodies of these materials are not both fixed. `dynamics` has one entry a body, each with a valid
+/// material.
 std::optional<MaterialPair> missing_surface(const Materials& materials, std::span<const Body> bodies,
-                                            std::span<const BodyDynamics> moves);
+                                            std::span<const BodyDynamics> dynamics);
 
-/// The proximal contact solver (Erleben 2017). The defaults bring single bodies and short stacks within 2 %
-/// of closed forms (tests/unit/simulate_defaults.cpp), whatever they weigh.
+/// The proximal contact solver (Erleben 2017). With the defaults, single bodies and short stacks of any mass
+/// are within 2 % of closed forms (tests/unit/simulate_defaults.cpp).
 struct SolverSettings {
     enum class Method { gauss_seidel, jacobi };
 
     Method method = Method::gauss_seidel;
     std::size_t iterations = 1000;
-    double absolute_tolerance = 0; ///< N s; 0: 1e-5 of what holds the lightest body for a step
-    double relative_tolerance = 0; ///< 0: the absolute one alone
-    bool warm_start = true;        ///< from the last step's forces at the same features
+    double absolute_tolerance = 0; ///< N s; 0: 1e-5 of the lightest body's weight times the step
+    double relative_tolerance = 0; ///< 0: only the absolute tolerance
+    bool warm_start = true;        ///< start from the last step's forces at the same features
 };
 
-/// What a step does beside solving for contact forces.
+/// Parts of a time step other than the solution for contact forces.
 struct StepSettings {
     double step = 0.01;         ///< s
-    bool pre_stabilize = false; ///< velocities that lessen penetration
-    bool post_stabilize = true; ///< positions corrected after the step
+    bool pre_stabilize = false; ///< adds velocities that reduce penetration
+    bool post_stabilize = true; ///< corrects positions after the step
     bool bounce = true;         ///< Newton's restitution
-    bool bound_energy = true;   ///< a step whose bounces would add energy is taken without them
-    /// Normals that no surface near the contact has are replaced by the nearest that one has (rigid bodies).
+    bool bound_energy = true;   ///< repeats a step without bounces when they would add energy
+    /// Rigid bodies: replaces a contact normal that no nearby surface has by the nearest surface normal.
     bool surface_normals = true;
-    /// How deep bodies that rest lie in each other, times the smaller one's size, so that rounding does not
-    /// part them; 0: not at all.
+    /// Depth to which resting bodies penetrate, times the smaller body's size, so that rounding does not
+    /// separate them; 0: none.
     double contact_layer = 2e-5;
     double linear_damping = 0;  ///< 1/s
     double angular_damping = 0; ///< 1/s
-    /// Deformables: the step is halved until the difference to two half steps is below this (m), and doubled
-    /// after ten steps that passed at once; 0 keeps `step`.
+    /// Deformables: the step is halved until the difference to two half steps is below this (m). It is
+    /// doubled after ten steps without halving; 0 keeps `step`.
     double adaptive_tolerance = 0;
     double least_step = 1e-5; ///< s
     bool couple_contacts =
-        true; ///< deformables: contacts push; false only counts them, as the paper's code did
+        true; ///< deformables: contacts exert forces; false only counts them, as in the paper's code
 };
 
-/// Which of the contacts found reach the solver.
+/// Selection of the contacts for the solver.
 struct ReductionSettings {
-    /// Contacts of a body pair closer than this times the smaller body's size are one.
+    /// Contacts of a body pair closer than this times the smaller body's size are merged.
     double distance = 1e-6;
-    /// At most so many of a body pair, chosen to span the contact region; 0 keeps all.
+    /// Maximum number of contacts of a body pair, chosen to span the contact region; 0 keeps all.
     std::size_t per_pair = 0;
 };
 
-/// What moves the bodies of a scene; its frame 0 is where they start.
+/// Physical model of a scene; frame 0 of the scene is the initial state.
 struct Dynamics {
     Materials materials;
     std::vector<Elastic> elastics;
@@ -118,7 +119,7 @@ struct Dynamics {
     StepSettings stepping;
     SolverSettings solver;
     ReductionSettings reduction;
-    std::size_t steps = 500; ///< of a whole run
+    std::size_t steps = 500; ///< number of steps in a complete run
 };
 
 } // namespace tandem

@@ -12,7 +12,7 @@ namespace tandem {
 
 namespace {
 
-/// The whole text, without a locale; NaN is outside every range.
+/// Parses the whole text independently of the locale; NaN is outside every range.
 template<class Number>
 Number number(std::string_view name, std::string_view text, Number least, Number most) {
     Number value{};
@@ -30,7 +30,7 @@ bool flag(std::string_view name, std::string_view text) {
     return text == "1";
 }
 
-// Each takes a function that returns the setting's place in (const) dynamics.
+// `field` is a function that returns a reference to the setting's member in (const) dynamics.
 
 template<class Field>
 DynamicsSetting real(std::string_view name, Field field, double least, double most, std::string_view help) {
@@ -81,7 +81,7 @@ DynamicsSetting method() {
         d.solver.method = text == "jacobi" ? Method::jacobi : Method::gauss_seidel;
     };
     return {"method",
-            "of the contact solver: gauss_seidel, or jacobi on all cores",
+            "contact solver: gauss_seidel, or jacobi on all cores",
             DynamicsSetting::Kind::word,
             0,
             0,
@@ -90,7 +90,7 @@ DynamicsSetting method() {
             set};
 }
 
-/// A member of a member of (const) dynamics.
+/// Returns a function to a member of a member of (const) dynamics.
 template<class Part, class Value>
 auto at(Part Dynamics::*part, Value Part::*value) {
     return [=](auto& dynamics) -> auto& { return dynamics.*part.*value; };
@@ -101,38 +101,38 @@ std::vector<DynamicsSetting> make_settings() {
         real("step", at(&Dynamics::stepping, &StepSettings::step), 1e-9, 10, "time step, s"),
         method(),
         whole("iterations", at(&Dynamics::solver, &SolverSettings::iterations), 1,
-              "of the contact solver, at most"),
+              "maximum iterations of the contact solver"),
         real("absolute_tolerance", at(&Dynamics::solver, &SolverSettings::absolute_tolerance), 0, 1e9,
-             "where it stops, N s; 0: 1e-5 of what holds the lightest body for a step"),
+             "where the solver stops, N s; 0: 1e-5 of the lightest body's weight times the step"),
         real("relative_tolerance", at(&Dynamics::solver, &SolverSettings::relative_tolerance), 0, 1,
-             "where it stops, relative change; 0: never"),
+             "where the solver stops, relative change; 0: never"),
         toggle("warm_start", at(&Dynamics::solver, &SolverSettings::warm_start),
                "start from the last step's forces at equal features"),
         toggle("pre_stabilize", at(&Dynamics::stepping, &StepSettings::pre_stabilize),
-               "velocities that lessen penetration"),
+               "add velocities that reduce penetration"),
         toggle("post_stabilize", at(&Dynamics::stepping, &StepSettings::post_stabilize),
-               "positions corrected after the step"),
+               "correct positions after the step"),
         toggle("bounce", at(&Dynamics::stepping, &StepSettings::bounce), "Newton's restitution"),
         toggle("bound_energy", at(&Dynamics::stepping, &StepSettings::bound_energy),
-               "a step whose bounces would add energy is taken without them"),
+               "repeat a step without bounces when they would add energy"),
         toggle("surface_normals", at(&Dynamics::stepping, &StepSettings::surface_normals),
-               "normals that no surface near the contact has are replaced"),
+               "replace contact normals that no nearby surface has"),
         real("contact_layer", at(&Dynamics::stepping, &StepSettings::contact_layer), 0, 0.1,
-             "how deep bodies at rest lie in each other, times the smaller one's size"),
+             "depth to which resting bodies penetrate, times the smaller body's size"),
         real("linear_damping", at(&Dynamics::stepping, &StepSettings::linear_damping), 0, 1e6,
-             "of rigid bodies, 1/s"),
+             "linear damping of rigid bodies, 1/s"),
         real("angular_damping", at(&Dynamics::stepping, &StepSettings::angular_damping), 0, 1e6,
-             "of rigid bodies, 1/s"),
+             "angular damping of rigid bodies, 1/s"),
         real("adaptive_tolerance", at(&Dynamics::stepping, &StepSettings::adaptive_tolerance), 0, 1e6,
-             "of deformables' steps, m; 0 keeps the step"),
+             "error limit of deformables' steps, m; 0 keeps the step"),
         real("least_step", at(&Dynamics::stepping, &StepSettings::least_step), 1e-12, 10,
-             "of adaptive steps, s"),
+             "shortest adaptive step, s"),
         toggle("couple_contacts", at(&Dynamics::stepping, &StepSettings::couple_contacts),
-               "contacts push deformables"),
+               "contacts exert forces on deformables"),
         real("merge_distance", at(&Dynamics::reduction, &ReductionSettings::distance), 0, 1,
-             "contacts of a body pair closer than this times the smaller body's size are one"),
+             "contacts of a body pair closer than this times the smaller body's size are merged"),
         whole("per_pair", at(&Dynamics::reduction, &ReductionSettings::per_pair), 0,
-              "contacts of a body pair kept at most; 0: all"),
+              "maximum contacts kept of a body pair; 0: all"),
     };
 }
 

@@ -5,7 +5,7 @@
 
 namespace tandem {
 
-// Sorted, so that there is no need of a hash of them.
+// Sorting replaces a hash table of faces.
 std::vector<Face> sorted_faces(const Mesh& mesh) {
     std::vector<Face> faces;
     faces.reserve(mesh.tetrahedra.size() * 4);

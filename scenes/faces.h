@@ -9,15 +9,15 @@
 
 namespace tandem {
 
-/// A face of a tetrahedron: its vertices in ascending order, and where it came from.
+/// A face of a tetrahedron: its vertices in ascending order, and its source.
 struct Face {
     std::array<std::uint32_t, 3> vertices;
     std::uint32_t tetrahedron;
-    std::uint32_t corner; ///< the one opposite
+    std::uint32_t corner; ///< the opposite corner of the tetrahedron
 };
 
-/// The four faces of every tetrahedron, by vertices: tetrahedra that share a face have theirs side by side,
-/// in no order among them.
+/// The four faces of every tetrahedron, sorted by vertices. Copies of a shared face are adjacent, in
+/// unspecified order.
 std::vector<Face> sorted_faces(const Mesh& mesh);
 
 } // namespace tandem

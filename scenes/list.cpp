@@ -29,7 +29,7 @@ Number number(const SceneParameter& p, Number least, Number most) {
     return value;
 }
 
-/// A number without digits that say nothing (0.20 as 0.2), so that equal scenes have equal keys.
+/// Removes redundant digits of a number (0.20 becomes 0.2), so that equal scenes have equal keys.
 std::string canonical(std::string_view value) {
     double number = 0;
     const auto* end = value.data() + value.size();
@@ -39,7 +39,7 @@ std::string canonical(std::string_view value) {
     return fmt::format("{}", number);
 }
 
-/// Writes the values of "par=value,par=value" over the defaults.
+/// The kind's parameters with their defaults replaced by "par=value,par=value".
 std::vector<SceneParameter> with_values(const SceneKind& kind, std::string_view text) {
     auto parameters = kind.parameters;
     std::vector<std::string> names;
@@ -112,7 +112,9 @@ const std::string& text_parameter(std::span<const SceneParameter> parameters, st
 }
 
 SceneParameter refine_parameter() {
-    return {"refine", "0", fmt::format("times each tetrahedron becomes eight, 0..{}", most_refinement)};
+    return {
+        "refine", "0",
+        fmt::format("levels of refinement, each replaces a tetrahedron by eight, 0..{}", most_refinement)};
 }
 
 std::uint64_t refine_value(std::span<const SceneParameter> parameters) {

@@ -20,7 +20,7 @@ double determinant(const Mesh& mesh, const Tetrahedron& t) {
            + a.z() * (b.x() * c.y() - b.y() * c.x());
 }
 
-/// A face that stands alone is on the boundary.
+/// A face of only one tetrahedron is on the boundary.
 void flag_boundary(Mesh& mesh) {
     mesh.boundary.assign(mesh.tetrahedra.size(), 0);
     const auto faces = sorted_faces(mesh);

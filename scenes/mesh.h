@@ -11,16 +11,16 @@ namespace tandem {
 
 using Tetrahedron = std::array<std::uint32_t, 4>;
 
-/// Vertices and tetrahedra in the mesh's own frame. Tetrahedra keep the order of their source: dumps number
-/// them by it. Every index is in range and every coordinate finite once check_mesh has passed.
+/// Vertices and tetrahedra in mesh coordinates. Tetrahedra keep the order of their source, which numbers them
+/// in dumps. After complete_mesh every index is in range and every coordinate is finite.
 struct Mesh {
     std::string name;
     std::vector<Eigen::Vector3d> vertices;
     std::vector<Tetrahedron> tetrahedra;
     /// Bit i of boundary[t]: the face of tetrahedron t opposite its corner i belongs to no other tetrahedron.
     std::vector<std::uint8_t> boundary;
-    std::size_t inverted = 0;   ///< tetrahedra of negative volume: kept, counted
-    std::size_t degenerate = 0; ///< tetrahedra of zero volume: kept, counted
+    std::size_t inverted = 0;   ///< number of tetrahedra with negative volume; they are kept
+    std::size_t degenerate = 0; ///< number of tetrahedra with zero volume; they are kept
 };
 
 /// Checks indices and coordinates (throws InputError naming `source`), then fills boundary, inverted and
@@ -30,7 +30,7 @@ void complete_mesh(Mesh& mesh, const std::string& source);
 /// Counts inverted and degenerate tetrahedra; indices must be in range.
 void count_flawed(Mesh& mesh);
 
-/// Reads a tetrahedral mesh; the format is told by content and suffix: Gmsh .msh 2.2 and 4.1 (ASCII and
+/// Reads a tetrahedral mesh; content and suffix determine the format: Gmsh .msh 2.2 and 4.1 (ASCII and
 /// binary), Medit .mesh, TetGen .node/.ele (either file names the pair), legacy .vtk and .vtu. Returns a
 /// completed mesh; throws InputError with file:line.
 Mesh read_mesh(const std::string& path);

@@ -5,8 +5,8 @@
 
 namespace tandem {
 
-/// Quaternion algebra in a fixed order of operations: Eigen's own may use vector instructions that add in
-/// another order, and poses must have the same bits on every machine.
+/// Quaternion algebra in a fixed order of operations, since poses must have the same bits on every machine.
+/// Eigen may use vector instructions that add in another order.
 Eigen::Quaterniond product(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
 Eigen::Quaterniond unit(const Eigen::Quaterniond& q);
 /// q v q*, q a unit quaternion.

@@ -10,7 +10,7 @@ namespace tandem {
 
 namespace {
 
-constexpr double tolerance = 1e-5; ///< of the smaller body's diagonal
+constexpr double tolerance = 1e-5; ///< times the smaller body's diagonal
 
 using Box = Eigen::AlignedBox3d;
 
@@ -39,8 +39,8 @@ Solid solid_of(const Scene& scene, const Frame& frame, std::size_t body) {
     return solid;
 }
 
-/// Tetrahedra whose boxes meet `region`, with these boxes, by their least x.
-std::vector<std::pair<Box, std::size_t>> inside(const Solid& solid, const Box& region) {
+/// Tetrahedra whose boxes intersect `region`, with these boxes, in ascending order of their least x.
+std::vector<std::pair<Box, std::size_t>> tetrahedra_in(const Solid& solid, const Box& region) {
     std::vector<std::pair<Box, std::size_t>> found;
     for (std::size_t t = 0; t < solid.tetrahedra->size(); ++t) {
         Box box;
@@ -52,19 +52,19 @@ std::vector<std::pair<Box, std::size_t>> inside(const Solid& solid, const Box& r
     return found;
 }
 
-/// Tetrahedra of each whose boxes meet the other body's, then pairs of them in the order of x.
-bool meet(const Solid& a, const Solid& b) {
+/// Takes the tetrahedra of each body whose boxes intersect the other body's box and sweeps them along x.
+bool bodies_overlap(const Solid& a, const Solid& b) {
     const double slack = tolerance * std::min(a.box.diagonal().norm(), b.box.diagonal().norm());
-    const auto of_b = inside(b, a.box);
-    for (const auto& [box_a, t] : inside(a, b.box))
-        for (const auto& [box_b, u] : of_b) {
+    const auto candidates_b = tetrahedra_in(b, a.box);
+    for (const auto& [box_a, t] : tetrahedra_in(a, b.box))
+        for (const auto& [box_b, u] : candidates_b) {
             if (box_b.min().x() > box_a.max().x()) break;
             if (box_a.intersects(box_b) && overlap(a.corners(t), b.corners(u), slack)) return true;
         }
     return false;
 }
 
-/// Least and largest coordinate along an axis that need not be of unit length.
+/// Least and largest coordinate along an axis of any length.
 std::array<double, 2> range(const Corners3& corners, const Eigen::Vector3d& axis) {
     std::array<double, 2> result{axis.dot(corners[0]), axis.dot(corners[0])};
     for (const auto& corner : corners) {
@@ -74,7 +74,7 @@ std::array<double, 2> range(const Corners3& corners, const Eigen::Vector3d& axis
     return result;
 }
 
-/// True as well for an axis that is no direction: parallel edges, flat tetrahedra.
+/// Also true for an axis close to zero, which parallel edges and flat tetrahedra give.
 bool overlap_along(const Eigen::Vector3d& axis, const Corners3& a, const Corners3& b, double slack) {
     const double length = axis.norm();
     if (!(length > 1e-12 * (a[1] - a[0]).norm() * (b[1] - b[0]).norm())) return true;
@@ -117,8 +117,8 @@ std::optional<std::array<std::size_t, 2>> first_overlap(const Scene& scene, cons
     for (auto a = solids.begin(); a != solids.end(); ++a)
         for (auto b = a + 1; b != solids.end() && b->box.min().x() <= a->box.max().x(); ++b) {
             const std::array<std::size_t, 2> pair{std::min(a->body, b->body), std::max(a->body, b->body)};
-            // The sweep is in the order of x; the answer is the first in the order of numbers.
-            if (!a->box.intersects(b->box) || (first && *first < pair) || !meet(*a, *b)) continue;
+            // The sweep runs in the order of x, but the result is the first pair in the order of numbers.
+            if (!a->box.intersects(b->box) || (first && *first < pair) || !bodies_overlap(*a, *b)) continue;
             first = pair;
         }
     return first;

@@ -5,7 +5,7 @@
 
 namespace tandem {
 
-/// The value of a scene parameter; throws InputError that names the allowed range.
+/// The value of a scene parameter. Throws InputError with the allowed range.
 double real_parameter(std::span<const SceneParameter> parameters, std::string_view name, double least,
                       double most);
 std::uint64_t integer_parameter(std::span<const SceneParameter> parameters, std::string_view name,
@@ -16,8 +16,8 @@ const std::string& text_parameter(std::span<const SceneParameter> parameters, st
 SceneParameter refine_parameter();
 std::uint64_t refine_value(std::span<const SceneParameter> parameters);
 
-/// "NAME:par=value,..." of a scene kind and its parameters; refine=0 is left out, so that scenes keep the key
-/// they had before they could be refined.
+/// "NAME:par=value,..." of a scene kind and its parameters. refine=0 is left out, so that keys equal those of
+/// records without this parameter.
 std::string key_of(std::string_view name, std::span<const SceneParameter> parameters);
 
 /// The kinds of scene, one function each.
@@ -34,7 +34,7 @@ SceneKind temple_kind();
 SceneKind arch_kind();
 SceneKind block_kind();
 
-/// Scene description in JSON (scenes/scene.schema.json); mesh files are found relative to it.
+/// Reads a scene description in JSON (scenes/scene.schema.json); paths of mesh files are relative to it.
 Scene load_description(const std::string& path);
 
 } // namespace tandem

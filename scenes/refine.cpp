@@ -16,13 +16,13 @@ namespace {
 
 constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
 
-/// Points of a tetrahedron: corners 0..3, then the middles of these edges.
+/// Points of a tetrahedron: corners 0..3, then the midpoints of these edges.
 constexpr std::array<std::array<std::uint32_t, 2>, 6> edges = {
     {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 enum Point : std::uint8_t { p0, p1, p2, p3, m01, m02, m03, m12, m13, m23 };
 
-/// Bey's children; the sixth and the eighth have two corners swapped, 0 and 2, so that all are oriented as
-/// their parent is. That swap leaves their own inner edge where Bey has it.
+/// Bey's children. Corners 0 and 2 of the sixth and the eighth are swapped, so that all have the orientation
+/// of their parent. The swap does not change their own inner edge.
 constexpr std::array<std::array<Point, 4>, 8> children = {{{p0, m01, m02, m03},
                                                            {m01, p1, m12, m13},
                                                            {m02, m12, p2, m23},
@@ -32,7 +32,7 @@ constexpr std::array<std::array<Point, 4>, 8> children = {{{p0, m01, m02, m03},
                                                            {m02, m03, m13, m23},
                                                            {m13, m12, m02, m23}}};
 
-/// Bit i: the point lies in the face opposite corner i.
+/// Bit i is set when the point lies in the face opposite corner i.
 constexpr unsigned faces_of(Point point) {
     if (point < m01) return 0b1111u & ~(1u << point);
     const auto& edge = edges[point - m01];
@@ -70,7 +70,7 @@ std::vector<std::uint64_t> edges_of(const Mesh& mesh) {
 void check_count(std::size_t count, std::string_view what, const std::string& name) {
     if (count > most)
         throw InputError(
-            fmt::format("mesh {} would have {} {} after refinement, more than 32-bit numbers tell apart; "
+            fmt::format("mesh {} would have {} {} after refinement, which exceeds 32-bit numbers; "
                         "refine less",
                         name, count, what));
 }
@@ -114,7 +114,7 @@ Mesh refined(const Mesh& mesh, std::uint64_t levels) {
         throw InputError(
             fmt::format("refinement by {} levels; give a number from 0 to {}", levels, most_refinement));
     check_count(mesh.tetrahedra.size() << 3 * levels, "tetrahedra", mesh.name);
-    // A child's corners, its flags, a sixth of a vertex at least, and its parent's six edges.
+    // Corners and flags of a child, at least a sixth of a vertex, and an eighth of the parent's six edges.
     constexpr double bytes_per_tetrahedron =
         4 * sizeof(std::uint32_t) + 1 + sizeof(Eigen::Vector3d) / 6.0 + 6;
     if (levels > 0)

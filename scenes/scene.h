@@ -18,8 +18,8 @@ struct Pose {
     Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 };
 
-/// An instance of a mesh. A fixed body has the same pose in every frame; a deformable body has world vertices
-/// of its own in every frame, and its pose is the identity.
+/// An instance of a mesh. A fixed body has the same pose in every frame. A deformable body has its own world
+/// vertices in every frame, and its pose is the identity.
 struct Body {
     std::uint32_t mesh = 0;
     bool fixed = false;
@@ -30,8 +30,8 @@ struct Body {
 struct Frame {
     std::vector<Pose> poses;                            ///< one per body
     std::vector<std::vector<Eigen::Vector3d>> deformed; ///< one per body; empty for rigid bodies
-    /// Tetrahedra that take no part: they are in no pair and in no bound. One ascending list a body; no lists
-    /// where all take part.
+    /// Masked tetrahedra, which are in no pair and in no bound. One ascending list a body; no lists when none
+    /// is masked.
     std::vector<std::vector<std::uint32_t>> skipped{};
 };
 
@@ -44,28 +44,28 @@ struct Scene {
     std::vector<Body> bodies;
     std::size_t frame_count = 1;
     std::function<Frame(std::size_t)> frame;  ///< frame(i) for i < frame_count; pure
-    std::shared_ptr<const Dynamics> dynamics; ///< null: the motion is scripted, frames are known beforehand
-    std::function<double(std::size_t)> time;  ///< s at frame i; null: frames have no times
-    std::string end;          ///< why there are no more frames, one line; empty: there never were
-    std::uint64_t digest = 0; ///< of meshes, bodies and motion; equal on every machine
-    /// Of a part of another scene: by body, ascending, the number that answers give it. None of a whole one.
+    std::shared_ptr<const Dynamics> dynamics; ///< null: the motion is scripted, all frames are defined
+    std::function<double(std::size_t)> time;  ///< time of frame i in s; null: frames have no times
+    std::string end;                          ///< why a recording ends early, one line; empty: it is complete
+    std::uint64_t digest = 0;                 ///< digest of meshes, bodies and motion; equal on every machine
+    /// In a subscene, the number of each body in the whole scene, ascending. Empty in a whole scene.
     std::vector<std::uint32_t> numbers{};
 };
 
-/// The number that answers give a body.
+/// The number of a body in the whole scene, which results use.
 inline std::uint32_t number_of(const Scene& scene, std::size_t body) {
     return scene.numbers.empty() ? static_cast<std::uint32_t>(body) : scene.numbers[body];
 }
 
-/// A named parameter of a scene with its default, for listings.
+/// A named parameter of a scene with its value; in a SceneKind, its default.
 struct SceneParameter {
     std::string name, value, help;
 };
 
-/// A scene the project makes itself.
+/// A kind of scene that the project generates.
 struct SceneKind {
     std::string name;
-    std::string models; ///< what it models and what it leaves out, one line
+    std::string models; ///< what the scene models and what it leaves out, one line
     std::vector<SceneParameter> parameters;
     std::function<Scene(std::span<const SceneParameter>)> make; ///< all parameters, with their values
 };
@@ -76,7 +76,7 @@ std::span<const SceneKind> scene_kinds();
 /// (.frames). Throws InputError.
 Scene make_scene(std::string_view specification);
 
-/// One body per mesh file; poses[i] belongs to files[i], missing ones are the identity.
+/// A scene with one body per mesh file. poses[i] belongs to files[i]; missing poses are the identity.
 Scene scene_from_meshes(std::span<const std::string> files, std::span<const Pose> poses);
 
 std::size_t vertex_count(const Scene& scene);

@@ -16,11 +16,10 @@ constexpr double grid = 0x1p18;
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Rounded to single precision; -0 becomes 0.
+/// Rounds to single precision; -0 becomes 0.
 double single(double x) { return static_cast<double>(static_cast<float>(x)) + 0.0; }
 
-/// Sizes that are right in double may be flat when rounded: such a mesh is refused here and not found out
-/// later.
+/// Completes the mesh. Valid sizes in double can give flat tetrahedra after rounding: throws InputError.
 Mesh completed(Mesh mesh, const std::string& name) {
     mesh.name = name;
     complete_mesh(mesh, name);
@@ -30,7 +29,7 @@ Mesh completed(Mesh mesh, const std::string& name) {
     return mesh;
 }
 
-/// Tetrahedra from a centre, which becomes the last vertex, to triangles that face outward.
+/// Tetrahedra between a centre, which becomes the last vertex, and triangles that face outward.
 Mesh fan(std::vector<Eigen::Vector3d> vertices, const std::vector<Triangle>& triangles,
          const std::string& name) {
     Mesh mesh;
@@ -43,7 +42,7 @@ Mesh fan(std::vector<Eigen::Vector3d> vertices, const std::vector<Triangle>& tri
     return completed(std::move(mesh), name);
 }
 
-/// Points of a horizontal circle, the first at +z, the next towards +x.
+/// Adds the points of a horizontal circle, the first at +z, the next towards +x.
 void add_circle(std::vector<Eigen::Vector3d>& vertices, std::size_t slices, double radius, double y) {
     for (std::size_t i = 0; i < slices; ++i) {
         const auto turn = sine_cosine(2 * pi * static_cast<double>(i) / static_cast<double>(slices));
@@ -51,7 +50,7 @@ void add_circle(std::vector<Eigen::Vector3d>& vertices, std::size_t slices, doub
     }
 }
 
-/// Between two circles of vertices that begin with these numbers, outward.
+/// Adds outward triangles between two circles whose vertices begin at `lower` and `upper`.
 void add_band(std::vector<Triangle>& triangles, std::uint32_t lower, std::uint32_t upper,
               std::uint32_t slices) {
     for (std::uint32_t i = 0; i < slices; ++i) {
@@ -61,7 +60,7 @@ void add_band(std::vector<Triangle>& triangles, std::uint32_t lower, std::uint32
     }
 }
 
-/// From a point on the axis above (or below) to a circle, outward.
+/// Adds outward triangles from a point on the axis, above or below, to a circle.
 void add_cap(std::vector<Triangle>& triangles, std::uint32_t tip, std::uint32_t circle, std::uint32_t slices,
              bool above) {
     for (std::uint32_t i = 0; i < slices; ++i) {
@@ -99,7 +98,7 @@ Mesh hexahedron(const std::array<Eigen::Vector3d, 8>& corners) {
     mesh.vertices.assign(corners.begin(), corners.end());
     for (auto& v : mesh.vertices)
         for (auto& x : v) x = on_grid(x);
-    // The six ways from corner 0 to corner 7; the odd ones have their middle corners swapped.
+    // The six paths from corner 0 to corner 7. The odd ones have their middle corners swapped.
     mesh.tetrahedra = {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 3, 2, 7}, {0, 6, 4, 7}, {0, 5, 1, 7}};
     return completed(std::move(mesh), "stone");
 }

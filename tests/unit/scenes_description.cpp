@@ -232,7 +232,7 @@ TEST_F(ScenesDescription, ErrorsOfDynamicsNameThePath) {
                 HasSubstr("/dynamics/surfaces: has no entry for stone and stone"));
     EXPECT_THAT(stone(R"("poses": [[0,0,0,1,0,0,0]])"), HasSubstr("is replaced by poses"));
     EXPECT_THAT(body(R"({"mesh": "s", "material": "earth", "poses": [[0, 0, 0, 1, 0, 0, 0]]})"),
-                HasSubstr("/bodies/2/poses: has no use"));
+                HasSubstr("/bodies/2/poses: cannot be used"));
     EXPECT_THAT(stone(R"("elastic": {"young": 1, "poisson": 0.5})"),
                 HasSubstr("/bodies/1/elastic/poisson: must be from 0 to 0.499"));
     EXPECT_THAT(stone(R"("elastic": {"poisson": 0.3})"), HasSubstr("/bodies/1/elastic: has no young"));
