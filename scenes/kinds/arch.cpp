@@ -24,13 +24,13 @@ Scene make(std::span<const SceneParameter> parameters) {
 
 SceneKind arch_kind() {
     return {"arch",
-            "one arch of the colosseum on its pillars; with keystone=0 it cannot stand; no mortar, nothing "
+            "one arch of the colosseum on its pillars; with keystone=0 it collapses; no mortar, nothing "
             "breaks",
             {{"radius", "1.3", "outer radius and height of the pillars, m"},
-             {"thickness", "0.4", "of the stones and pillars, part of the radius"},
-             {"depth", "0.8", "m"},
-             {"stones", "7", "of the arch, odd"},
-             {"segments", "5", "boxes to a pillar"},
+             {"thickness", "0.4", "thickness of stones and pillars, fraction of the radius"},
+             {"depth", "0.8", "depth, m"},
+             {"stones", "7", "stones of the arch, odd"},
+             {"segments", "5", "boxes of a pillar"},
              {"keystone", "1", "0 leaves out the keystone"},
              refine_parameter()},
             make};

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double pi = 0x1.921fb54442d18p1;
 
-/// Stone `number` of the arch, counted from +x, about the middle of the arch.
+/// Stone `number` of the arch, counted from +x; the origin is the centre of the arch.
 Mesh wedge(const ArchShape& shape, std::uint64_t number) {
     std::array<Eigen::Vector3d, 8> corners;
     for (unsigned corner = 0; corner < 8; ++corner) {
@@ -27,7 +27,7 @@ Mesh wedge(const ArchShape& shape, std::uint64_t number) {
     return hexahedron(corners);
 }
 
-/// A stone of the ring over a layer, about the middle of the ring's section.
+/// A stone of the ring above a layer; the origin is the centre of the ring's cross-section.
 Mesh ring_stone(const Amphitheatre& shape, double height) {
     const auto turn = sine_cosine(pi / static_cast<double>(shape.slices));
     const double centre = shape.inner + 0.5 * shape.width;
@@ -42,8 +42,8 @@ Mesh ring_stone(const Amphitheatre& shape, double height) {
 
 } // namespace
 
-/// Heights are rounded to the grid before they are added up, so that stones meet exactly; the arch is as high
-/// as its keystone's upper vertices.
+/// Heights are rounded to the grid before they are added, so that stones touch exactly. The upper vertices of
+/// the keystone define the height of the arch.
 Arch::Arch(Assembly& assembly, const ArchShape& shape) : shape_(shape) {
     if (shape.stones % 2 == 0)
         throw InputError("an arch with an even number of stones has no keystone; give an odd number");
@@ -60,7 +60,7 @@ Arch::Arch(Assembly& assembly, const ArchShape& shape) : shape_(shape) {
 void Arch::place(Assembly& assembly, double turn_angle, double x, double base, double z,
                  bool keystone) const {
     const auto rotation = turn({0, 1, 0}, turn_angle);
-    // Pillars stand under the middle of the arch's ring.
+    // Pillars are centred under the ring of stones.
     for (const double side : {1.0, -1.0}) {
         const auto foot = rotated(rotation, {side * 0.5 * (shape_.outer + shape_.inner), 0, 0});
         for (std::uint64_t i = 0; i < shape_.segments; ++i) {
@@ -84,8 +84,8 @@ void add_amphitheatre(Assembly& assembly, const Amphitheatre& shape) {
     for (std::uint64_t layer = 0; layer < shape.layers; ++layer) {
         for (std::uint64_t i = 0; i < shape.slices; ++i) {
             const double angle = step * static_cast<double>(i);
-            const auto to = sine_cosine(angle);
-            arch.place(assembly, angle, centre * to.sine, base, centre * to.cosine,
+            const auto direction = sine_cosine(angle);
+            arch.place(assembly, angle, centre * direction.sine, base, centre * direction.cosine,
                        shape.keystone || layer > 0 || i > 0);
             const double between = angle + 0.5 * step;
             const auto middle = sine_cosine(between);

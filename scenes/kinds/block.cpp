@@ -27,7 +27,7 @@ Scene make(std::span<const SceneParameter> parameters) {
     dynamics.gravity = {9.82 * slope.sine, -9.82 * slope.cosine, 0};
     assembly.add_ground(std::max(100.0, 2 * static_cast<double>(bodies)) * side, 1);
     const auto cube = assembly.add_box({side, side, side});
-    assembly.expect(bodies, cube);
+    assembly.check_memory(bodies, cube);
     for (std::uint64_t i = 0; i < bodies; ++i) {
         const auto number = static_cast<double>(i);
         const double y = drop + side * (stack ? number + 0.5 : 0.5);
@@ -46,9 +46,9 @@ SceneKind block_kind() {
             "is known; a slope turns gravity, not the ground",
             {{"bodies", "1", "cubes"},
              {"size", "1", "side of a cube, m; the ground is 100 times as wide or more"},
-             {"speed", "0", "at the start along x, m/s"},
-             {"drop", "0", "height over the ground at the start, m"},
-             {"stack", "0", "1 puts cubes upon each other, 0 in a row across the motion"},
+             {"speed", "0", "initial speed along x, m/s"},
+             {"drop", "0", "initial height above the ground, m"},
+             {"stack", "0", "1 stacks the cubes, 0 puts them in a row across the motion"},
              {"friction", "0.5", "Coulomb's coefficient"},
              {"restitution", "0", "Newton's coefficient"},
              {"slope", "0", "degrees downhill along x"},

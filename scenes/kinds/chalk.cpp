@@ -14,7 +14,7 @@ constexpr double pitch = 1.1;     ///< m; a grain is less than 1 m across in eve
 constexpr double wall = 0.5;      ///< thickness, m
 enum : std::uint32_t { grain, steel };
 
-/// As in the paper's configuration, which takes small steps and corrects positions.
+/// Sets the paper's configuration, with small steps and correction of positions.
 void set_solver(Dynamics& dynamics) {
     constexpr Surface rough{0.65, 0};
     dynamics.materials = {
@@ -35,18 +35,18 @@ void set_solver(Dynamics& dynamics) {
     dynamics.steps = 3000;
 }
 
-/// A floor, its top at y = 0, and four walls on it, around a square.
+/// Adds a square floor, its top at y = 0, with four walls on it.
 void add_box_of_walls(Assembly& assembly, double width, double height) {
     const auto fixed = [](double x, double y, double z) {
-        return Placing{.pose = {.translation = {x, y, z}}, .material = steel, .fixed = true};
+        return BodyPlacement{.pose = {.translation = {x, y, z}}, .material = steel, .fixed = true};
     };
-    const double away = 0.5 * (width + wall);
+    const double offset = 0.5 * (width + wall);
     assembly.add(assembly.add_box({width + 2 * wall, wall, width + 2 * wall}), fixed(0, -0.5 * wall, 0));
     const auto along_z = assembly.add_box({wall, height, width + 2 * wall});
     const auto along_x = assembly.add_box({width, height, wall});
     for (const double side : {1.0, -1.0}) {
-        assembly.add(along_z, fixed(side * away, 0.5 * height, 0));
-        assembly.add(along_x, fixed(0, 0.5 * height, side * away));
+        assembly.add(along_z, fixed(side * offset, 0.5 * height, 0));
+        assembly.add(along_x, fixed(0, 0.5 * height, side * offset));
     }
 }
 
@@ -64,12 +64,12 @@ Scene make(std::span<const SceneParameter> parameters) {
     std::vector<std::uint32_t> grains;
     for (std::size_t i = 1; i <= shapes; ++i)
         grains.push_back(assembly.add_mesh(built_in_mesh(fmt::format("grain{}", i))));
-    assembly.expect(bodies, grains.front());
-    const auto place = [&](std::size_t n) { return pitch * (static_cast<double>(n) + 0.5); };
+    assembly.check_memory(bodies, grains.front());
+    const auto position = [&](std::size_t n) { return pitch * (static_cast<double>(n) + 0.5); };
     for (std::size_t i = 0; i < bodies; ++i) {
         const std::size_t layer = i / (side * side);
-        const Eigen::Vector3d centre(place(i % side) - 0.5 * width, place(layer),
-                                     place(i / side % side) - 0.5 * width);
+        const Eigen::Vector3d centre(position(i % side) - 0.5 * width, position(layer),
+                                     position(i / side % side) - 0.5 * width);
         assembly.add(grains[i % shapes], {.pose = {random.rotation(), centre}, .material = grain});
     }
     assembly.add(assembly.add_box({width - 0.1, wall, width - 0.1}),
@@ -83,9 +83,9 @@ SceneKind chalk_kind() {
     return {
         "chalk",
         "the paper's Fig. 2, bottom: convex grains in a box under a heavy lid; grains are rigid and do not "
-        "crush, six shapes in place of scanned ones",
-        {{"bodies", "15", "grains; five walls and the lid come on top"},
-         {"seed", "1", "of their orientations"},
+        "crush, six shapes replace scanned ones",
+        {{"bodies", "15", "grains, without the five walls and the lid"},
+         {"seed", "1", "seed of the orientations"},
          refine_parameter()},
         make};
 }

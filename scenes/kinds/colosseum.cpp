@@ -26,9 +26,9 @@ SceneKind colosseum_kind() {
         "the paper's structure of stones without mortar: layers of arches in a circle on the ground, a ring "
         "of stones on each layer; stones are rigid and do not break",
         {{"slices", "24", "arches in a layer, 18 bodies each"},
-         {"layers", "4", "on each other"},
+         {"layers", "4", "layers of arches"},
          {"radius", "10", "inner radius, m"},
-         {"width", "1", "outer less inner radius, m"},
+         {"width", "1", "outer minus inner radius, m"},
          {"keystone", "1", "0 leaves out the keystone of one arch, the first of the lowest layer"},
          refine_parameter()},
         make};

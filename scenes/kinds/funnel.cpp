@@ -8,13 +8,13 @@ namespace tandem {
 namespace {
 
 constexpr double jack_size = 0.9; ///< m
-constexpr double spacing = 0.1;   ///< between boxes of jacks, m
+constexpr double spacing = 0.1;   ///< gap between boxes of jacks, m
 
 /// Lengths in units of the funnel's diameter.
 struct Layout {
-    double centre; ///< of the funnel, over the ground
-    double bottom; ///< of the block of jacks, over the ground
-    double ground; ///< its width
+    double centre; ///< height of the funnel's centre above the ground
+    double bottom; ///< height of the block of jacks above the ground
+    double ground; ///< width of the ground
 };
 
 Scene make(std::span<const SceneParameter> parameters, const Layout& layout) {
@@ -26,7 +26,7 @@ Scene make(std::span<const SceneParameter> parameters, const Layout& layout) {
     const auto jack = assembly.add_mesh(scaled(built_in_mesh("jack"), Eigen::Vector3d::Constant(jack_size)));
     assembly.add_ground(layout.ground * size, masonry::ground);
     assembly.add(funnel, {.pose = {.translation = {0, layout.centre * size, 0}}, .fixed = true});
-    assembly.expect(bodies, jack);
+    assembly.check_memory(bodies, jack);
     for (const auto& centre : block(bodies, jack_size + spacing, layout.bottom * size))
         assembly.add(jack, {.pose = {.translation = centre}});
     return assembly.finish();
@@ -39,7 +39,7 @@ SceneKind funnel_kind() {
             "the paper's Funnel: a block of jacks falls into a funnel above the ground and jams; jacks are "
             "rigid, "
             "their start is a regular grid",
-            {{"bodies", "2000", "jacks; the ground and the funnel come on top"},
+            {{"bodies", "2000", "jacks, without the ground and the funnel"},
              {"size", "16", "diameter of the funnel, m; a jack has 0.9"},
              refine_parameter()},
             [](auto parameters) {
@@ -52,7 +52,7 @@ SceneKind jacks_kind() {
             "the paper's Fig. 1, and with bodies=1000 Fig. 2: jacks jam in a wider, lower funnel; its size "
             "is that "
             "of the interactive variant, which the figures are likely to show; jacks are rigid",
-            {{"bodies", "2000", "jacks; the ground and the funnel come on top"},
+            {{"bodies", "2000", "jacks, without the ground and the funnel"},
              {"size", "20", "diameter of the funnel, m; a jack has 0.9"},
              refine_parameter()},
             [](auto parameters) { return make(parameters, {.centre = 0.5, .bottom = 1, .ground = 1.5}); }};

@@ -8,7 +8,7 @@ namespace tandem {
 namespace {
 
 constexpr double small = 0.75;  ///< height of a falling glass, m
-constexpr double spacing = 0.1; ///< between them, m
+constexpr double spacing = 0.1; ///< gap between falling glasses, m
 
 Scene make(std::span<const SceneParameter> parameters) {
     Assembly assembly(parameters);
@@ -20,8 +20,8 @@ Scene make(std::span<const SceneParameter> parameters) {
     const auto falling = assembly.add_mesh(scaled(glass, Eigen::Vector3d::Constant(small)));
     assembly.add_ground(1.25 * size, masonry::ground);
     assembly.add(large, {.pose = {.translation = {0, 0.5 * size, 0}}, .fixed = true});
-    assembly.expect(bodies, falling);
-    // The paper's block begins half a metre lower, where it would overlap the rim of our glass.
+    assembly.check_memory(bodies, falling);
+    // The paper's block begins half a metre lower, which would overlap the rim of this glass.
     for (const auto& centre : block(bodies, small + spacing, size))
         assembly.add(falling, {.pose = {.translation = centre}});
     return assembly.finish();
@@ -33,8 +33,8 @@ SceneKind glasses_kind() {
     return {
         "glasses",
         "the paper's Glasses: a block of upright goblets falls into a large one that stands on the ground; "
-        "glass is rigid stone here and does not break",
-        {{"bodies", "2000", "falling glasses; the ground and the large glass come on top"},
+        "glass is modelled as rigid stone and does not break",
+        {{"bodies", "2000", "falling glasses, without the ground and the large glass"},
          {"size", "16", "height of the large glass, m; a falling one has 0.75"},
          refine_parameter()},
         make};

@@ -33,9 +33,9 @@ SceneKind meteor_kind() {
             "breaks, "
             "melts or burns",
             {{"slices", "20", "arches in a layer, 18 bodies each"},
-             {"layers", "3", "on each other"},
+             {"layers", "3", "layers of arches"},
              {"ball", "1.5", "radius, m"},
-             {"speed", "90", "towards the building, m/s; a sixth of it goes to the side"},
+             {"speed", "90", "speed towards the building, m/s; the sideways speed is a sixth of it"},
              refine_parameter()},
             make};
 }

@@ -15,9 +15,9 @@ namespace tandem {
 namespace {
 
 constexpr double spin_per_frame = 0.03;  ///< radians
-constexpr double drift_per_frame = 0.01; ///< of the mesh's radius
+constexpr double drift_per_frame = 0.01; ///< times the mesh's radius
 
-/// A body that turns and drifts in every frame.
+/// A body that rotates and translates in every frame.
 struct Mover {
     Eigen::Vector3d centre, drift, axis;
     Eigen::Quaterniond rotation;
@@ -31,8 +31,8 @@ Mesh mesh_named(const std::string& name) {
     return read_mesh(name);
 }
 
-/// Centre of the mesh's box and radius about it.
-std::pair<Eigen::Vector3d, double> ball_of(const Mesh& mesh) {
+/// Centre of the mesh's box and radius of the mesh about it.
+std::pair<Eigen::Vector3d, double> bounding_sphere(const Mesh& mesh) {
     Eigen::Vector3d lower = mesh.vertices.front();
     Eigen::Vector3d upper = lower;
     for (const auto& v : mesh.vertices) {
@@ -44,7 +44,7 @@ std::pair<Eigen::Vector3d, double> ball_of(const Mesh& mesh) {
     return {0.5 * (lower + upper), radius};
 }
 
-/// Newton's iteration from IEEE operations: the library's cube root may differ between machines.
+/// Newton's iteration with IEEE operations, since the library's cube root may differ between machines.
 double cube_root(double x) {
     int exponent = 0;
     std::frexp(x, &exponent);
@@ -77,7 +77,7 @@ Scene make(std::span<const SceneParameter> parameters) {
     const auto levels = refine_value(parameters);
     refuse_bodies_beyond_memory(bodies, scene.meshes.front(), levels);
     scene.bodies.assign(bodies, Body{});
-    const auto [middle, radius] = ball_of(scene.meshes.front());
+    const auto [middle, radius] = bounding_sphere(scene.meshes.front());
     const double side = cube_root(static_cast<double>(bodies) * volume(scene.meshes.front()) / density);
     scene.meshes.front() = refined(scene.meshes.front(), levels);
     Random random(integer_parameter(parameters, "seed", 0, ~std::uint64_t{0}));
@@ -100,12 +100,12 @@ SceneKind pile_kind() {
     return {"pile",
             "rigid bodies of one mesh at random poses in a box, drifting and spinning slowly; no forces, "
             "bodies overlap",
-            {{"bodies", "64", "how many"},
+            {{"bodies", "64", "number of bodies"},
              {"mesh", "jack", "a built-in mesh or a mesh file"},
              {"density", "0.2", "sum of the bodies' volumes over the volume of the box"},
-             {"seed", "1", "of the poses"},
-             {"frames", "8", "steps"},
-             {"far", "0", "adds this to all coordinates"},
+             {"seed", "1", "seed of the poses"},
+             {"frames", "8", "time steps"},
+             {"far", "0", "offset added to all coordinates"},
              refine_parameter()},
             make};
 }

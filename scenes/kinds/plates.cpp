@@ -11,10 +11,10 @@ namespace {
 
 constexpr double degree = 0x1.1df46a2529d39p-6; ///< pi / 180
 constexpr double half_depth = 2;
-constexpr double pitch = 0.5;       ///< the plates' thickness: neighbours touch at rest
-constexpr std::size_t period = 200; ///< steps of 0.01 s between two flips of the twist's sign
+constexpr double pitch = 0.5;       ///< thickness of a plate, so that neighbours touch at rest
+constexpr std::size_t period = 200; ///< steps of 0.01 s between two reversals of the twist
 
-/// Twist of a plate's ends in degrees: one a step, back and forth.
+/// Twist of a plate's ends in degrees. It changes by one degree a step, up and down.
 double twist_at(std::size_t step) {
     const auto phase = step % (2 * period);
     return static_cast<double>(phase < period ? phase : 2 * period - phase);
@@ -28,8 +28,8 @@ Eigen::Vector3d about_y(const Eigen::Vector3d& p, const SineCosine& turn) {
     return {turn.cosine * p.x() + turn.sine * p.z(), p.y(), turn.cosine * p.z() - turn.sine * p.x()};
 }
 
-/// Rest shape, twisted about the plate's own z-axis in proportion to z, turned by its place in the stack,
-/// lifted.
+/// World vertices of all plates. The rest shape is twisted about the plate's z-axis in proportion to z,
+/// rotated by the plate's index in the stack, and lifted.
 Frame twisted(const std::vector<Eigen::Vector3d>& rest, std::size_t plates, double angle, std::size_t step) {
     Frame frame;
     frame.poses.resize(plates);
@@ -68,7 +68,7 @@ SceneKind plates_kind() {
             "pass through "
             "each other",
             {{"count", "3", "plates"},
-             {"angle", "0.3", "turn of each plate against the one below, radians"},
+             {"angle", "0.3", "rotation of each plate relative to the plate below, radians"},
              {"frames", "500", "steps of 0.01 s"},
              refine_parameter()},
             make};

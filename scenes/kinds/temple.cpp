@@ -8,11 +8,11 @@ namespace tandem {
 
 namespace {
 
-constexpr std::size_t sides = 12;      ///< of a drum
+constexpr std::size_t sides = 12;      ///< sides of a drum
 constexpr std::size_t shaft = 5;       ///< drums of a shaft
-constexpr double pitch_of_width = 2.5; ///< from pillar to pillar, in widths of a pillar
+constexpr double pitch_of_width = 2.5; ///< distance of adjacent pillars, in widths of a pillar
 
-/// A grid of pillars of this width, one storey high; beams are `thickness` wide, stone courses `course` high.
+/// A grid of pillars, one storey high. Beams are `thickness` wide, stone courses are `course` high.
 struct Plan {
     std::uint64_t columns, rows;
     double height, width;
@@ -28,7 +28,7 @@ struct Plan {
     }
 };
 
-/// A pillar's meshes from below and how high each begins.
+/// A pillar's meshes from bottom to top, with the heights of their centres.
 struct Pillar {
     std::vector<std::uint32_t> meshes;
     std::vector<double> heights;
@@ -41,38 +41,38 @@ struct Pillar {
     }
 };
 
-/// Plinth, base, tapering shaft, capital and abacus, in the proportions of the paper's code.
+/// A pillar of plinth, base, tapering shaft, capital and abacus, in the proportions of the paper's code.
 Pillar make_pillar(Assembly& assembly, const Plan& plan) {
     Pillar pillar;
-    const auto share = [&](double part) { return halved_on_grid(part * plan.height); };
+    const auto part_height = [&](double fraction) { return halved_on_grid(fraction * plan.height); };
     const double half = 0.5 * plan.width;
     const auto add_drum = [&](double lower, double upper, double height) {
         pillar.add(assembly.add_mesh(drum(sides, lower * half, upper * half, height)), height);
     };
-    pillar.add(assembly.add_box({plan.width, share(0.06), plan.width}), share(0.06));
-    add_drum(0.9, 0.9, share(0.06));
+    pillar.add(assembly.add_box({plan.width, part_height(0.06), plan.width}), part_height(0.06));
+    add_drum(0.9, 0.9, part_height(0.06));
     for (std::size_t i = 0; i < shaft; ++i) {
         const auto radius = [](std::size_t joint) {
             return 0.8 - 0.2 * static_cast<double>(joint) / static_cast<double>(shaft);
         };
-        add_drum(radius(i), radius(i + 1), share(0.8 / static_cast<double>(shaft)));
+        add_drum(radius(i), radius(i + 1), part_height(0.8 / static_cast<double>(shaft)));
     }
-    add_drum(0.6, 0.9, share(0.05));
-    pillar.add(assembly.add_box({plan.width, share(0.03), plan.width}), share(0.03));
+    add_drum(0.6, 0.9, part_height(0.05));
+    pillar.add(assembly.add_box({plan.width, part_height(0.03), plan.width}), part_height(0.03));
     return pillar;
 }
 
-bool outside(const Plan& plan, std::uint64_t column, std::uint64_t row) {
+bool on_perimeter(const Plan& plan, std::uint64_t column, std::uint64_t row) {
     return column == 0 || row == 0 || column + 1 == plan.columns || row + 1 == plan.rows;
 }
 
-/// A box between two points of the plan.
+/// Adds a box between two points of the plan.
 void add_slab(Assembly& assembly, double x0, double x1, double base, double height, double z0, double z1) {
     assembly.add(assembly.add_box({x1 - x0, height, z1 - z0}),
                  {.pose = {.translation = {0.5 * (x0 + x1), base + 0.5 * height, 0.5 * (z0 + z1)}}});
 }
 
-/// From pillar to pillar: those along x reach over the corners, those along z begin behind them.
+/// Adds beams between adjacent pillars. Beams along x cover the corners; beams along z begin behind them.
 void add_architraves(Assembly& assembly, const Plan& plan, double base) {
     const double half = 0.5 * plan.thickness();
     for (const auto row : {std::uint64_t{0}, plan.rows - 1})
@@ -86,7 +86,7 @@ void add_architraves(Assembly& assembly, const Plan& plan, double base) {
                      plan.z(i) + (i == 0 ? half : 0), plan.z(i + 1) - (i + 2 == plan.rows ? half : 0));
 }
 
-/// Slabs side by side across the whole width.
+/// Adds slabs side by side across the whole width.
 void add_ceiling(Assembly& assembly, const Plan& plan, double base) {
     const double half_width = 0.5 * plan.width - plan.x(0);
     const double half_depth = 0.5 * plan.width - plan.z(0);
@@ -110,7 +110,7 @@ Scene make(std::span<const SceneParameter> parameters) {
     const auto pillar = make_pillar(assembly, plan);
     for (std::uint64_t row = 0; row < plan.rows; ++row)
         for (std::uint64_t column = 0; column < plan.columns; ++column) {
-            if (!outside(plan, column, row)) continue;
+            if (!on_perimeter(plan, column, row)) continue;
             for (std::size_t i = 0; i < pillar.meshes.size(); ++i)
                 assembly.add(pillar.meshes[i],
                              {.pose = {.translation = {plan.x(column), pillar.heights[i], plan.z(row)}}});
@@ -129,8 +129,8 @@ SceneKind temple_kind() {
             "a flat ceiling; no gable, no inner walls, no mortar, nothing breaks",
             {{"columns", "6", "pillars along the front"},
              {"rows", "8", "pillars along the side"},
-             {"height", "3", "of a pillar, m"},
-             {"width", "0.5", "of a pillar, m; pillars stand 2.5 widths apart"},
+             {"height", "3", "height of a pillar, m"},
+             {"width", "0.5", "width of a pillar, m; the distance of pillars is 2.5 widths"},
              refine_parameter()},
             make};
 }

@@ -10,7 +10,7 @@ namespace tandem {
 namespace {
 
 constexpr double pi = 0x1.921fb54442d18p1;
-constexpr double beam_width = 1.9, beam_depth = 4; ///< of the mesh, whose height is 1
+constexpr double beam_width = 1.9, beam_depth = 4; ///< sizes of the mesh, whose height is 1
 
 std::vector<std::uint32_t> end_vertices(const Mesh& mesh) {
     std::vector<std::uint32_t> end;
@@ -19,7 +19,7 @@ std::vector<std::uint32_t> end_vertices(const Mesh& mesh) {
     return end;
 }
 
-/// The integrator of the paper's adaptive run: 30 s in steps of a thirtieth.
+/// Settings of the paper's adaptive run: 30 s in steps of a thirtieth of a second.
 StepSettings stepping(bool couple) {
     auto result = measured_stepping();
     result.step = 0.033;
@@ -48,11 +48,12 @@ Scene make(std::span<const SceneParameter> parameters) {
     const double centre = radius + 0.5 * beam_depth;
     for (std::uint64_t row = 0; row < segments; ++row)
         for (std::uint64_t i = 0; i < slices; ++i) {
-            const double place = static_cast<double>(i) + (row % 2 == 1 ? 0.5 : 0.0);
-            const double angle = 2 * pi * place / static_cast<double>(slices);
-            const auto to = sine_cosine(angle);
+            const double position = static_cast<double>(i) + (row % 2 == 1 ? 0.5 : 0.0);
+            const double angle = 2 * pi * position / static_cast<double>(slices);
+            const auto direction = sine_cosine(angle);
             assembly.add_deformable(
-                beam, angle, {centre * to.sine, static_cast<double>(row) + 0.5, centre * to.cosine}, 0);
+                beam, angle,
+                {centre * direction.sine, static_cast<double>(row) + 0.5, centre * direction.cosine}, 0);
         }
     return assembly.finish();
 }
@@ -63,13 +64,13 @@ SceneKind tower_kind() {
     return {
         "tower",
         "the paper's Tower: rows of soft beams held at their outer ends sag onto each other; corotational "
-        "elasticity; contacts are found but push only with couple=1; no plasticity, no contact of a beam "
+        "elasticity; contacts exert forces only with couple=1; no plasticity, no contact of a beam "
         "with "
         "itself",
-        {{"segments", "4", "rows of beams on each other"},
+        {{"segments", "4", "stacked rows of beams"},
          {"slices", "6", "beams in a row"},
-         {"radius", "2", "of the free middle, m; beams are 4 m long"},
-         {"couple", "0", "1 lets contacts push"},
+         {"radius", "2", "radius of the free middle, m; beams are 4 m long"},
+         {"couple", "0", "1: contacts exert forces"},
          refine_parameter()},
         make};
 }
