@@ -6,8 +6,8 @@
 
 namespace tandem::simulate {
 
-// Sums in a fixed order: Eigen's reductions and products may add in another order from one version, compiler
-// or vector width to the next. Element by element operations of Eigen are fixed as they are.
+// Sums in a fixed order. The order in Eigen's reductions and products can depend on version, compiler and
+// vector width; only Eigen's elementwise operations are reproducible.
 
 inline double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return (a.x() * b.x() + a.y() * b.y()) + a.z() * b.z();

@@ -9,7 +9,8 @@ namespace tandem::simulate {
 
 namespace {
 
-/// Nodes: one a body, then the vertices of deformable bodies in the order of bodies.
+/// First vertex node of each body. Nodes are one a body, then the vertices of deformable bodies in body
+/// order.
 std::vector<std::size_t> first_vertices(const Model& model) {
     std::vector<std::size_t> first;
     auto next = model.bodies.size();
@@ -20,8 +21,7 @@ std::vector<std::size_t> first_vertices(const Model& model) {
     return first;
 }
 
-/// A body that is fixed or deformable keeps a node that no impulse moves, so that numbers of bodies are
-/// numbers of nodes.
+/// A fixed or deformable body has a node that no impulse moves, so that body numbers are node numbers.
 std::vector<Node> make_nodes(const Model& model, const Motion& motion) {
     std::vector<Node> nodes(model.bodies.size());
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
@@ -37,13 +37,12 @@ std::vector<Node> make_nodes(const Model& model, const Motion& motion) {
     return nodes;
 }
 
-/// Barycentric coordinates, moved into the tetrahedron where the point lies outside; those of the middle when
-/// the tetrahedron is flat.
+/// Barycentric coordinates, clamped into the tetrahedron; those of the centre when the tetrahedron is flat.
 std::array<double, 4> weights_of(const std::array<Eigen::Vector3d, 4>& corners,
                                  const Eigen::Vector3d& point) {
     Eigen::Matrix3d edges;
     for (int i = 0; i < 3; ++i) edges.col(i) = corners[static_cast<std::size_t>(i) + 1] - corners[0];
-    // A flat tetrahedron gives infinities here, which are noticed below.
+    // A flat tetrahedron gives infinities, which are handled below.
     const double det = determinant(edges);
     const Eigen::Vector3d local = apply(adjugate(edges), point - corners[0]) / det;
     std::array<double, 4> weights = {1 - ((local.x() + local.y()) + local.z()), local.x(), local.y(),
@@ -69,13 +68,13 @@ public:
     Problem run(std::span<const ContactPoint> contacts) {
         problem_.rows.reserve(contacts.size());
         for (std::size_t i = 0; i < contacts.size(); ++i)
-            if (takes(contacts[i].pair)) add(contacts[i], static_cast<std::uint32_t>(i));
+            if (is_relevant(contacts[i].pair)) add(contacts[i], static_cast<std::uint32_t>(i));
         problem_.nodes = std::move(free_);
         return std::move(problem_);
     }
 
 private:
-    bool takes(const Pair& pair) const {
+    bool is_relevant(const Pair& pair) const {
         const auto a = model_.bodies[pair.body_a].kind, b = model_.bodies[pair.body_b].kind;
         if (!model_.dynamics->stepping.couple_contacts && (a == Kind::soft || b == Kind::soft)) return false;
         // A rigid body cannot push itself.
@@ -86,9 +85,9 @@ private:
         const Eigen::Vector3d point(contact.point[0], contact.point[1], contact.point[2]);
         ContactRow row;
         row.normal = {contact.normal[0], contact.normal[1], contact.normal[2]};
-        const auto across = tangents(row.normal);
-        row.tangent = across[0];
-        row.binormal = across[1];
+        const auto basis = tangents(row.normal);
+        row.tangent = basis[0];
+        row.binormal = basis[1];
         attach(contact.pair.body_a, contact.pair.tet_a, point, row.a, row.arm_a);
         attach(contact.pair.body_b, contact.pair.tet_b, point, row.b, row.arm_b);
         if (!movable(row.a) && !movable(row.b)) return;
@@ -118,7 +117,7 @@ private:
         problem_.attachments.push_back(attachment);
     }
 
-    /// Whether an impulse changes anything there: not on fixed bodies, nor where all corners with weight are
+    /// True when an impulse moves the side: not for fixed bodies, nor when all corners with weight are
     /// pinned.
     bool movable(const Side& side) const {
         bool result = false;

@@ -10,12 +10,12 @@ namespace tandem::simulate {
 
 namespace {
 
-/// Normals of a plane's faces differ by rounding.
+/// Normals of faces in one plane differ only by rounding.
 constexpr double equal_normals = 1 - 1e-14;
 
 double squared(const Eigen::Vector3d& v) { return dot(v, v); }
 
-/// Of the triangle, away from `inside`; zero where it has no area.
+/// Unit normal of the triangle, away from `inside`; zero when it has no area.
 Eigen::Vector3d outward(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                         const Eigen::Vector3d& inside) {
     const Eigen::Vector3d area = cross(b - a, c - a);
@@ -65,7 +65,7 @@ Boundary::Boundary(const Mesh& mesh) : first_(mesh.vertices.size() + 1, 0) {
             const auto& [a, b, c] = face.vertices;
             face.normal = outward(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c],
                                   mesh.vertices[mesh.tetrahedra[t][corner]]);
-            // A face of no area bounds nothing.
+            // A face without area is not part of the boundary.
             if (face.normal != Eigen::Vector3d::Zero()) faces_.push_back(face);
         }
     for (const auto& face : faces_)
@@ -81,7 +81,7 @@ void Boundary::near(const Mesh& mesh, std::uint32_t tetrahedron, const Eigen::Ve
                     std::vector<NearFace>& faces) const {
     faces.clear();
     double nearest = std::numeric_limits<double>::max();
-    // Twice: the first time for the nearest alone.
+    // The first pass finds the smallest distance, the second one collects the faces.
     for (const bool only_nearest : {true, false})
         for (const auto v : mesh.tetrahedra[tetrahedron])
             for (auto i = first_[v]; i < first_[v + 1]; ++i) {

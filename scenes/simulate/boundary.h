@@ -5,19 +5,19 @@
 
 namespace tandem::simulate {
 
-/// A face that bounds a mesh, seen from a point.
+/// A boundary face of a mesh relative to a point.
 struct NearFace {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero(); ///< outward, of length 1
-    double height = 0;                                ///< m, of the face's plane over the point
+    double height = 0;                                ///< m, height of the face's plane above the point
 };
 
-/// The boundary of a mesh, in its own axes, by the tetrahedra that touch it.
+/// The boundary of a mesh in mesh axes, indexed by vertices.
 class Boundary {
 public:
     explicit Boundary(const Mesh& mesh);
 
-    /// Of the boundary faces that share a vertex with `tetrahedron` those no farther from `point` than the
-    /// nearest of them and `slack` (m) more; of those with equal normals the lowest. None inside of a body.
+    /// Finds boundary faces that share a vertex with `tetrahedron` and are at most `slack` (m) farther from
+    /// `point` than the nearest such face. Keeps only the lowest of faces with equal normals.
     void near(const Mesh& mesh, std::uint32_t tetrahedron, const Eigen::Vector3d& point, double slack,
               std::vector<NearFace>& faces) const;
 
@@ -28,11 +28,11 @@ private:
     };
 
     std::vector<Face> faces_;
-    /// Faces at vertex v: at_[first_[v]] until at_[first_[v + 1]].
+    /// Faces at vertex v: at_[first_[v]] up to, not including, at_[first_[v + 1]].
     std::vector<std::uint32_t> first_, at_;
 };
 
-/// Of `point` from a triangle (Ericson, "Real-time collision detection", 2005, 5.1.5).
+/// Squared distance (m^2) of `point` from a triangle (Ericson, "Real-time collision detection", 2005, 5.1.5).
 double squared_distance(const Eigen::Vector3d& point, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                         const Eigen::Vector3d& c);
 

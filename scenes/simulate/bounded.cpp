@@ -9,7 +9,7 @@ namespace tandem::simulate {
 
 namespace {
 
-/// Of what the impulses move about: less than this gained is the solver's tolerance.
+/// Fraction of the work at the initial velocities; a smaller energy gain is within the solver's tolerance.
 constexpr double negligible = 1e-3;
 
 std::vector<Eigen::Vector3d> velocities(const Problem& problem) {
@@ -19,8 +19,9 @@ std::vector<Eigen::Vector3d> velocities(const Problem& problem) {
     return result;
 }
 
-/// An impulse works at the mean of the velocities before and after it.
-bool gains(const Problem& problem, std::span<const Eigen::Vector3d> before) {
+/// True when the impulses add energy. The work of an impulse is at the mean of velocities before and after
+/// it.
+bool adds_energy(const Problem& problem, std::span<const Eigen::Vector3d> before) {
     double gained = 0, moved = 0;
     for (std::size_t i = 0; i < problem.rows.size(); ++i) {
         const auto& row = problem.rows[i];
@@ -38,11 +39,11 @@ SolveReport solve_bounded(Problem& problem, const SolverSettings& settings, unsi
                                      [](const ContactRow& row) { return row.bounce != 0; });
     if (!bounces) return solve(problem, settings, threads);
     const auto before = velocities(problem);
-    auto dull = problem;
+    auto without_bounce = problem;
     const auto first = solve(problem, settings, threads);
-    if (!gains(problem, before)) return first;
-    for (auto& row : dull.rows) row.bias -= row.bounce;
-    problem = std::move(dull);
+    if (!adds_energy(problem, before)) return first;
+    for (auto& row : without_bounce.rows) row.bias -= row.bounce;
+    problem = std::move(without_bounce);
     auto second = solve(problem, settings, threads);
     second.iterations += first.iterations;
     return second;

@@ -10,16 +10,16 @@ namespace tandem::simulate {
 
 namespace {
 
-constexpr std::uint64_t version = 0x74616e64656d0001; ///< "tandem", 1; tells the byte order as well
+constexpr std::uint64_t version = 0x74616e64656d0001; ///< "tandem", 1; also identifies the byte order
 
 class Writer {
 public:
     template<class Value>
     void operator()(const Value& value) {
         static_assert(std::is_arithmetic_v<Value>);
-        const auto at = bytes_.size();
-        bytes_.resize(at + sizeof value);
-        std::memcpy(bytes_.data() + at, &value, sizeof value);
+        const auto offset = bytes_.size();
+        bytes_.resize(offset + sizeof value);
+        std::memcpy(bytes_.data() + offset, &value, sizeof value);
     }
 
     std::vector<std::byte> take() { return std::move(bytes_); }
@@ -35,21 +35,22 @@ public:
     template<class Value>
     void operator()(Value& value) {
         static_assert(std::is_arithmetic_v<Value>);
-        need(sizeof value);
+        require(sizeof value);
         std::memcpy(&value, bytes_.data(), sizeof value);
         bytes_ = bytes_.subspan(sizeof value);
     }
 
-    void need(std::size_t count) const {
+    void require(std::size_t count) const {
         if (bytes_.size() < count) throw InputError("the saved state of the simulation ends too early");
     }
-    std::size_t left() const { return bytes_.size(); }
+    std::size_t remaining() const { return bytes_.size(); }
 
 private:
     std::span<const std::byte> bytes_;
 };
 
-// One list of fields serves both directions: Visitor is a Writer over const or a Reader over mutable state.
+// One list of fields defines both directions: Visitor is a Writer of const state or a Reader of mutable
+// state.
 
 template<class Visitor, class Vector>
 void vector3(Visitor& visit, Vector& v) {
@@ -90,7 +91,8 @@ void clock_state(Visitor& visit, Time& clock) {
     visit(clock.passes);
 }
 
-/// Fixed bodies have no state; what the others have is known from the model, so that no lengths are stored.
+/// Fixed bodies have no state. The model defines the sizes of all other states, so that no lengths are
+/// stored.
 template<class Visitor, class Moving>
 void bodies(Visitor& visit, const Model& model, Moving& motion) {
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
@@ -123,14 +125,14 @@ void from_bytes(const Model& model, std::span<const std::byte> bytes, Motion& mo
         throw InputError(
             fmt::format("the saved state belongs to a scene of digest {:016x}, not to '{}' ({:016x})", digest,
                         model.scene->name, model.scene->digest));
-    // For its sizes; nothing is taken over unless all can be read.
+    // Allocates the states. The arguments change only when everything was read.
     Motion result = starting_motion(model);
     Clock time;
     clock_state(read, time);
     bodies(read, model, result);
     read(impulses);
-    if (read.left() % impulse_bytes != 0 || read.left() / impulse_bytes != impulses)
-        throw InputError(fmt::format("the saved state has {} bytes for {} impulses of {}", read.left(),
+    if (read.remaining() % impulse_bytes != 0 || read.remaining() / impulse_bytes != impulses)
+        throw InputError(fmt::format("the saved state has {} bytes for {} impulses of {}", read.remaining(),
                                      impulses, impulse_bytes));
     result.impulses.resize(impulses);
     for (auto& kept : result.impulses) impulse(read, kept);

@@ -8,19 +8,19 @@
 
 namespace tandem::simulate {
 
-/// Where a run is in time.
+/// Progress of a run in time.
 struct Clock {
-    std::uint64_t steps = 0;  ///< done
+    std::uint64_t steps = 0;  ///< completed steps
     double time = 0;          ///< s
-    double length = 0;        ///< s, of the next step
-    std::uint64_t passes = 0; ///< steps in a row whose length passed at once
+    double length = 0;        ///< s, length of the next step
+    std::uint64_t passes = 0; ///< consecutive steps that passed at their first length
 };
 
-/// Motion and clock as bytes in the machine's own byte order, headed by a version and the scene's digest.
+/// Serialises motion and clock in the machine's byte order, after a version and the scene's digest.
 std::vector<std::byte> to_bytes(const Model& model, const Motion& motion, const Clock& clock);
 
-/// Back again. Throws InputError when the bytes are of another version, byte order or scene, or their number
-/// is not what the scene needs.
+/// Reads the output of to_bytes. Throws InputError when version, byte order, scene or size differ; `motion`
+/// and `clock` are then unchanged.
 void from_bytes(const Model& model, std::span<const std::byte> bytes, Motion& motion, Clock& clock);
 
 } // namespace tandem::simulate

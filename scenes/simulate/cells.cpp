@@ -9,9 +9,9 @@ namespace tandem::simulate {
 
 namespace {
 
-/// PointGrid are wider than the radius, so that most points reach into one cell only.
+/// Cells are wider than the radius, so that the neighbourhood of most points lies in one cell.
 constexpr double radii_per_cell = 8;
-/// Points often lie on round coordinates, whose cell walls a point would always be near to.
+/// Offset of the grid in cell widths. Points often have round coordinates, which must not be near cell walls.
 constexpr double shift = 0.381966;
 
 } // namespace
@@ -34,8 +34,8 @@ PointGrid::GridCell PointGrid::cell(const Eigen::Vector3d& point, double offset)
     constexpr double most = 0x1p60;
     GridCell result;
     for (int axis = 0; axis < 3; ++axis) {
-        const double place = std::floor((point[axis] - origin_[axis] + offset) / width_);
-        result[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::clamp(place, -most, most));
+        const double index = std::floor((point[axis] - origin_[axis] + offset) / width_);
+        result[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::clamp(index, -most, most));
     }
     return result;
 }

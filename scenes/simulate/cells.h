@@ -8,15 +8,14 @@
 
 namespace tandem::simulate {
 
-/// Points of one body pair in a hashed grid, for neighbours within `radius`.
+/// A hashed grid of the points of one body pair, to find neighbours within `radius`.
 class PointGrid {
 public:
-    /// Empties the grid; room for `count` points.
+    /// Empties the grid and sets its capacity to `count` points.
     void reset(const Eigen::Vector3d& origin, double radius, std::size_t count);
     void insert(const Eigen::Vector3d& point, std::uint32_t value);
 
-    /// The smallest inserted value for which accept(value) holds among those in cells within reach of
-    /// `point`, or `none`.
+    /// The smallest value in cells within `radius` of `point` for which accept(value) is true, or `none`.
     template<class Accept>
     std::uint32_t least(const Eigen::Vector3d& point, Accept accept) const {
         const auto low = cell(point, -radius_), high = cell(point, radius_);
@@ -38,7 +37,7 @@ private:
     };
 
     GridCell cell(const Eigen::Vector3d& point, double offset) const;
-    /// PointGrid may share a slot: callers judge by distance, so that a stranger costs time only.
+    /// Different cells may share a slot. Callers compare distances, so that a collision costs only time.
     std::size_t slot(const GridCell& cell) const;
 
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();

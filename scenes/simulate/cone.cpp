@@ -11,15 +11,15 @@ namespace {
 
 using Rays = std::span<const Eigen::Vector3d>;
 
-constexpr double rounding = 1e-8; ///< of directions that sums of rays some 1e-7 apart are taken from
-constexpr int most_turns = 64;    ///< of projections; those onto planes that cross need one or two
+constexpr double rounding = 1e-8;    ///< error of directions from sums of rays about 1e-7 apart
+constexpr int most_projections = 64; ///< pairs of projections; planes that cross need one or two
 
-/// Keeps of two points that x is projected to the nearer one: the longer, which distances near 1 cannot tell.
+/// Keeps the projection of x that is nearer to x. It is the longer one; distances near 1 are too inexact.
 void keep_nearer(const Eigen::Vector3d& candidate, Eigen::Vector3d& best) {
     if (dot(candidate, candidate) > dot(best, best)) best = candidate;
 }
 
-/// Of the part of the plane through rays g and h that lies between them, where x is above it.
+/// Tries the projection of x onto the plane through rays g and h when it lies between them.
 void try_between(const Eigen::Vector3d& g, const Eigen::Vector3d& h, const Eigen::Vector3d& x,
                  Eigen::Vector3d& best) {
     const double gh = dot(g, h), gx = dot(g, x), hx = dot(h, x);
@@ -29,32 +29,32 @@ void try_between(const Eigen::Vector3d& g, const Eigen::Vector3d& h, const Eigen
     if (along_g > 0 && along_h > 0) keep_nearer(along_g * g + along_h * h, best);
 }
 
-/// The ray that turns away least.
+/// The ray with the smallest angle to x.
 Eigen::Vector3d closest_ray(Rays rays, const Eigen::Vector3d& x) {
     return *std::max_element(rays.begin(), rays.end(),
                              [&](const auto& a, const auto& b) { return dot(a, x) < dot(b, x); });
 }
 
-/// Projected and of length 1 again; onto a ray where the cone lies all behind x.
-Eigen::Vector3d turned_into(Rays rays, const Eigen::Vector3d& x) {
+/// The projection of x onto the cone with length 1; the closest ray when the whole cone lies behind x.
+Eigen::Vector3d project(Rays rays, const Eigen::Vector3d& x) {
     if (rays.empty()) return x;
     const auto nearest = nearest_in_cone(rays, x);
     const double size = length(nearest);
     return size > 1e-6 ? Eigen::Vector3d(nearest / size) : closest_ray(rays, x);
 }
 
-Eigen::Vector3d in_turn(Rays one, Rays other, const Eigen::Vector3d& start) {
+Eigen::Vector3d project_alternately(Rays one, Rays other, const Eigen::Vector3d& start) {
     Eigen::Vector3d x = start;
-    for (int turn = 0; turn < most_turns; ++turn) {
+    for (int i = 0; i < most_projections; ++i) {
         const Eigen::Vector3d before = x;
-        x = turned_into(other, turned_into(one, x));
+        x = project(other, project(one, x));
         if (length(x - before) < 1e-12) break;
     }
     return x;
 }
 
-/// The sum of all rays: of two cones that oppose each other what they have in common is left.
-Eigen::Vector3d middle_of(Rays one, Rays other) {
+/// The sum of all rays. For cones with opposite rays, only their common direction remains.
+Eigen::Vector3d sum_of(Rays one, Rays other) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const auto& ray : one) sum += ray;
     for (const auto& ray : other) sum += ray;
@@ -64,8 +64,8 @@ Eigen::Vector3d middle_of(Rays one, Rays other) {
 } // namespace
 
 Eigen::Vector3d nearest_in_cone(Rays rays, const Eigen::Vector3d& direction) {
-    // The nearest point of the cone's edges and sides is the answer unless some ray leads from it nearer to
-    // x: then x lies inside.
+    // The nearest point on the cone's edges and sides is the result, unless a ray leads from it closer to
+    // `direction`, which then lies inside.
     Eigen::Vector3d best = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const double along = dot(rays[i], direction);
@@ -87,13 +87,13 @@ double outside(Rays one, Rays other, const Eigen::Vector3d& direction) {
 }
 
 Eigen::Vector3d brought_into(Rays one, Rays other, const Eigen::Vector3d& direction) {
-    auto nearest = in_turn(one, other, direction);
-    const double off = outside(one, other, nearest);
-    const auto middle = middle_of(one, other);
-    if (off < rounding || !(length(middle) > rounding)) return nearest;
-    // Between sides that oppose each other, those of bodies that stand flush, projections go to and fro.
-    const auto second = in_turn(one, other, middle / length(middle));
-    return outside(one, other, second) < off ? second : nearest;
+    auto nearest = project_alternately(one, other, direction);
+    const double distance = outside(one, other, nearest);
+    const auto middle = sum_of(one, other);
+    if (distance < rounding || !(length(middle) > rounding)) return nearest;
+    // Opposite sides of flush bodies make the projections oscillate, so start again from the middle.
+    const auto second = project_alternately(one, other, middle / length(middle));
+    return outside(one, other, second) < distance ? second : nearest;
 }
 
 } // namespace tandem::simulate

@@ -11,7 +11,8 @@ namespace tandem::simulate {
 
 namespace {
 
-/// Columns: the edges from corner 0, at rest Dm and deformed Ds of Sifakis and Barbic; F = Ds Dm^-1.
+/// Matrix whose columns are the edges from corner 0: Dm at rest and Ds deformed in Sifakis and Barbic, with
+/// F = Ds Dm^-1.
 Eigen::Matrix3d edges(const Tetrahedron& t, std::span<const Eigen::Vector3d> positions) {
     Eigen::Matrix3d result;
     for (int i = 0; i < 3; ++i)
@@ -19,7 +20,8 @@ Eigen::Matrix3d edges(const Tetrahedron& t, std::span<const Eigen::Vector3d> pos
     return result;
 }
 
-/// tr(R'F) - 3 = tr(S - 1): the stretch without the rotation. P = 2 mu (F - R) + lambda tr(R'F - 1) R.
+/// P = 2 mu (F - R) + lambda tr(R'F - 1) R, where tr(R'F) - 3 = tr(S - 1) is the stretch without the
+/// rotation.
 Response corotational(const ElasticMesh& mesh, const Eigen::Matrix3d& f) {
     const Eigen::Matrix3d r = closest_rotation(f);
     const double stretch = trace(multiply(r.transpose(), f)) - 3;
@@ -27,7 +29,7 @@ Response corotational(const ElasticMesh& mesh, const Eigen::Matrix3d& f) {
             2 * mesh.mu * (f - r) + mesh.lambda * stretch * r};
 }
 
-/// Of Green's strain, which no rotation changes: P = F (2 mu E + lambda tr(E) 1).
+/// P = F (2 mu E + lambda tr(E) 1) with Green's strain E, which is invariant under rotations.
 Response saint_venant_kirchhoff(const ElasticMesh& mesh, const Eigen::Matrix3d& f) {
     const Eigen::Matrix3d green = 0.5 * (multiply(f.transpose(), f) - Eigen::Matrix3d::Identity());
     const double volumetric = trace(green);
@@ -41,7 +43,7 @@ void add_masses(ElasticMesh& result, double density) {
         for (const auto corner : element.corners) result.masses[corner] += density * element.volume / 4;
 }
 
-/// Inverse masses; a vertex without any would be moved by no force and every impulse.
+/// Sets inverse masses and pins vertices. Throws InputError for a vertex without mass, which has no inverse.
 void pin(ElasticMesh& result, const Mesh& mesh, const Elastic& elastic) {
     for (std::size_t i = 0; i < result.masses.size(); ++i) {
         if (!(result.masses[i] > 0))
@@ -69,7 +71,7 @@ ElasticMesh make_elastic_mesh(const Mesh& mesh, const Elastic& elastic, double d
     for (const auto& t : mesh.tetrahedra) {
         const Eigen::Matrix3d rest = edges(t, mesh.vertices);
         const double det = determinant(rest);
-        // A flat element has no deformation gradient and no volume to hold energy in.
+        // A flat element has no deformation gradient and no volume, hence no energy.
         if (det != 0) result.elements.push_back({t, adjugate(rest) / det, std::fabs(det) / 6});
     }
     result.masses.resize(mesh.vertices.size());
@@ -90,7 +92,7 @@ void add_elastic_forces(const ElasticMesh& mesh, std::span<const Eigen::Vector3d
                         std::span<Eigen::Vector3d> forces) {
     for (const auto& element : mesh.elements) {
         const auto stress = response(mesh, gradient(element, positions)).stress;
-        // The force at corner i + 1 is minus column i of V P Dm^-T, that at corner 0 what makes the sum zero
+        // The force at corner i + 1 is minus column i of V P Dm^-T; the force at corner 0 makes the sum zero
         // (Sifakis and Barbic, 4.2).
         const Eigen::Matrix3d pulls = multiply(stress, element.inverse_rest.transpose()) * element.volume;
         const auto& corners = element.corners;
@@ -105,7 +107,7 @@ void add_damping_forces(const ElasticMesh& mesh, std::span<const Eigen::Vector3d
                         std::span<Eigen::Vector3d> forces) {
     if (mesh.damping == 0) return;
     for (const auto& element : mesh.elements) {
-        // (1 + delta_ij) times the velocities: the sum over all corners and the own one once more.
+        // (1 + delta_ij) times the velocities is the sum over all corners plus the corner's own velocity.
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
         for (const auto corner : element.corners) sum += velocities[corner];
         const double factor = mesh.damping * element.volume / 20;

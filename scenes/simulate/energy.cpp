@@ -11,7 +11,7 @@ namespace tandem::simulate {
 
 namespace {
 
-/// 0.5 m v.v + 0.5 L.w with the momentum L and the spin w = I^-1 L.
+/// Kinetic energy 0.5 m v.v + 0.5 L.w with the momentum L and the spin w = I^-1 L.
 Energies rigid_energies(const Model& model, const RigidState& state, const BodyModel& body) {
     return {.kinetic = 0.5 * body.mass.mass * dot(state.velocity, state.velocity)
                        + 0.5 * dot(state.angular, spin(body, state)),
@@ -44,7 +44,7 @@ void add(Energies& sum, const Energies& part) {
                     model.scene->name, step, body, part.kinetic, part.elastic, part.potential, what));
 }
 
-/// Diagonal of the box round all bodies that move, m.
+/// Diagonal (m) of the box around all moving bodies.
 double extent(const Model& model, const Motion& motion) {
     Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
@@ -57,7 +57,7 @@ double extent(const Model& model, const Motion& motion) {
     return box.isEmpty() ? 0 : length(box.diagonal());
 }
 
-/// kg; one of the two terms is zero.
+/// Mass in kg. One of the two terms is zero.
 double mass_of(const BodyModel& body) {
     double mass = body.mass.mass;
     for (const double part : body.elastic.masses) mass += part;
@@ -93,10 +93,10 @@ Energies checked_energies(const Model& model, const Motion& motion, std::size_t 
         add(sum, part);
     }
     if (sum.total() > model.highest_energy)
-        diverged(
-            model, step, fastest, most,
-            fmt::format("and all bodies together {:.3g} J, which the start cannot become (at most {:.3g} J)",
-                        sum.total(), model.highest_energy));
+        diverged(model, step, fastest, most,
+                 fmt::format(
+                     "and all bodies together {:.3g} J, above the limit of {:.3g} J from the initial state",
+                     sum.total(), model.highest_energy));
     return sum;
 }
 
@@ -109,7 +109,7 @@ double highest_energy(const Model& model, const Motion& start) {
         const auto& body = model.bodies[i];
         if (body.kind == Kind::fixed) continue;
         const auto part = energies_of(model, start, i);
-        // The velocity of the largest correction that one step makes of a penetration.
+        // Velocity of the largest correction of a penetration in one step.
         const double correction = greatest_correction * body.size / dynamics.stepping.step;
         total += part.total();
         reach += part.kinetic + part.elastic + mass_of(body) * (fall + correction * correction);

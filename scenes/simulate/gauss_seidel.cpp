@@ -5,7 +5,7 @@ namespace tandem::simulate {
 
 namespace {
 
-/// One pass over all rows in order; the largest change of an impulse.
+/// Updates all rows in order. Returns the largest change of an impulse, N s.
 double sweep(Problem& problem, double scale) {
     double most = 0;
     for (auto& row : problem.rows) {

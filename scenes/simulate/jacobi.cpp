@@ -13,17 +13,17 @@ namespace {
 /// One end of a contact at a node.
 struct Touch {
     std::uint32_t row = 0;
-    double weight = 0; ///< below 0 on side a
+    double weight = 0; ///< negative on side a
     Eigen::Vector3d arm;
 };
 
-/// Touches by node, in the order of rows: the order in which a node's impulses are added.
+/// Touches by node, in the order of rows, which fixes the order in which a node's impulses are added.
 struct Touches {
-    std::vector<std::size_t> first; ///< nodes + 1
+    std::vector<std::size_t> first; ///< nodes + 1 elements
     std::vector<Touch> all;
 };
 
-/// Both ends of every contact; impulses act on b, and the other way on a.
+/// Visits both ends of every contact. Impulses act on b, and in the opposite direction on a.
 template<class Visit>
 void for_each_touch(const Problem& problem, Visit visit) {
     for (std::uint32_t i = 0; i < problem.rows.size(); ++i) {
@@ -39,25 +39,24 @@ void for_each_touch(const Problem& problem, Visit visit) {
     }
 }
 
-/// By counting: how many of each node, where each begins, then the touches themselves. Nodes that nothing
-/// moves have none.
+/// Counting sort of touches by node. Nodes that no impulse moves have none.
 Touches gather(const Problem& problem) {
     Touches touches;
     touches.first.assign(problem.nodes.size() + 1, 0);
-    const auto moves = [&](std::uint32_t node) { return problem.nodes[node].inverse_mass > 0; };
+    const auto is_movable = [&](std::uint32_t node) { return problem.nodes[node].inverse_mass > 0; };
     for_each_touch(problem, [&](std::uint32_t node, const Touch&) {
-        if (moves(node)) ++touches.first[node + 1];
+        if (is_movable(node)) ++touches.first[node + 1];
     });
     for (std::size_t i = 1; i < touches.first.size(); ++i) touches.first[i] += touches.first[i - 1];
     touches.all.resize(touches.first.back());
     auto next = touches.first;
     for_each_touch(problem, [&](std::uint32_t node, const Touch& touch) {
-        if (moves(node)) touches.all[next[node]++] = touch;
+        if (is_movable(node)) touches.all[next[node]++] = touch;
     });
     return touches;
 }
 
-/// A solve shared by threads that meet at barriers; each phase writes only what its own part owns.
+/// A solve on several threads with barriers between phases. In a phase each thread writes only its own range.
 class Jacobi {
 public:
     Jacobi(Problem& problem, const SolverSettings& settings, unsigned threads)
@@ -70,25 +69,25 @@ public:
           barrier_(threads) {}
 
     SolveReport run() {
-        std::vector<std::thread> others;
-        for (std::size_t i = 1; i < changes_.size(); ++i) others.emplace_back([this, i] { work(i); });
+        std::vector<std::thread> workers;
+        for (std::size_t i = 1; i < changes_.size(); ++i) workers.emplace_back([this, i] { work(i); });
         work(0);
-        for (auto& thread : others) thread.join();
+        for (auto& thread : workers) thread.join();
         return report_;
     }
 
 private:
-    struct BodyBlock {
+    struct IndexRange {
         std::size_t begin, end;
     };
 
-    /// An equal share, by position alone: results do not depend on which thread takes it.
-    BodyBlock part(std::size_t count, std::size_t thread) const {
+    /// Equal ranges by index, so that results do not depend on the schedule of threads.
+    IndexRange range_of(std::size_t count, std::size_t thread) const {
         return {count * thread / changes_.size(), count * (thread + 1) / changes_.size()};
     }
 
-    /// What every thread does. Between two barriers rows are written and nodes read, or the other way round;
-    /// one thread judges for all.
+    /// Main loop of every thread. A phase writes rows and reads nodes, or the reverse. Thread 0 tests
+    /// convergence.
     void work(std::size_t thread) {
         move_nodes(thread);
         barrier_.arrive_and_wait();
@@ -105,9 +104,9 @@ private:
     }
 
     double update_rows(std::size_t thread) {
-        const auto mine = part(problem_.rows.size(), thread);
+        const auto range = range_of(problem_.rows.size(), thread);
         double change = 0;
-        for (auto i = mine.begin; i < mine.end; ++i) {
+        for (auto i = range.begin; i < range.end; ++i) {
             auto& row = problem_.rows[i];
             row.previous = row.impulse;
             row.impulse = proximal(row, problem_.velocity(row), convergence_.scale());
@@ -125,14 +124,14 @@ private:
     }
 
     void undo(std::size_t thread) {
-        const auto mine = part(problem_.rows.size(), thread);
-        for (auto i = mine.begin; i < mine.end; ++i) problem_.rows[i].impulse = problem_.rows[i].previous;
+        const auto range = range_of(problem_.rows.size(), thread);
+        for (auto i = range.begin; i < range.end; ++i) problem_.rows[i].impulse = problem_.rows[i].previous;
     }
 
-    /// Velocities from the free ones and all impulses at once, so that no error builds up from pass to pass.
+    /// Computes velocities from the free velocities and all impulses, so that errors do not accumulate.
     void move_nodes(std::size_t thread) {
-        const auto mine = part(problem_.nodes.size(), thread);
-        for (auto i = mine.begin; i < mine.end; ++i) {
+        const auto range = range_of(problem_.nodes.size(), thread);
+        for (auto i = range.begin; i < range.end; ++i) {
             Eigen::Vector3d linear = Eigen::Vector3d::Zero();
             Eigen::Vector3d angular = Eigen::Vector3d::Zero();
             for (auto t = touches_.first[i]; t < touches_.first[i + 1]; ++t) {

@@ -32,7 +32,7 @@ Eigen::Matrix3d second_moment(const std::array<Eigen::Vector3d, 4>& p, double vo
     return result;
 }
 
-/// Positive definite, told by Sylvester's criterion.
+/// True when the matrix is positive definite (Sylvester's criterion).
 bool definite(const Eigen::Matrix3d& m) {
     const double minor = m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0);
     return m(0, 0) > 0 && minor > 0 && determinant(m) > 0 && std::isfinite(determinant(m));
@@ -52,7 +52,7 @@ MassProperties mass_properties(const Mesh& mesh, double density) {
         throw InputError("mesh '" + mesh.name + "' at density " + std::to_string(density) + " has mass "
                          + std::to_string(result.mass) + ": give it volume and a positive density");
     result.centre = first / result.mass;
-    // About the centre from the start, so that nothing cancels for meshes far from their origin.
+    // Integrates about the centre of mass, which avoids cancellation for meshes far from their origin.
     Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
     for (const auto& t : mesh.tetrahedra) {
         std::array<Eigen::Vector3d, 4> corners;

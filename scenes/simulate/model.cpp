@@ -13,7 +13,7 @@ namespace tandem::simulate {
 
 namespace {
 
-/// Every message names the scene: a description may be one of many.
+/// Throws InputError. Every message names the scene, since a run can have several.
 [[noreturn]] void refuse(const Scene& scene, const std::string& what) {
     throw InputError(fmt::format("scene '{}': {}", scene.name, what));
 }
@@ -22,10 +22,10 @@ bool finite(const Eigen::Vector3d& v) {
     return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
 }
 
-/// False for NaN, as every check here is written.
+/// False for NaN, as every check in this file.
 bool within(double value, double low, double high) { return value >= low && value <= high; }
 
-/// One density a material, kg/m^3.
+/// Checks that each material has one density (kg/m^3) and that surfaces are valid.
 void check_materials(const Scene& scene, const Materials& materials) {
     const auto count = materials.names.size();
     if (materials.densities.size() != count)
@@ -58,8 +58,8 @@ void check_stepping(const Scene& scene, const Dynamics& dynamics) {
     if (!finite(dynamics.gravity)) refuse(scene, "gravity is not finite");
 }
 
-/// The limits of an isotropic material that is stable: Young's modulus above 0, Poisson's ratio within
-/// -1..0.5, both open, since Lame's lambda is infinite at 0.5.
+/// Limits of a stable isotropic material: Young's modulus above 0, Poisson's ratio within -1..0.5. Both
+/// limits of the ratio are open, since Lame's lambda is infinite at 0.5.
 void check_elastic(const Scene& scene, const Elastic& elastic) {
     if (!(elastic.young > 0) || !std::isfinite(elastic.young) || !(elastic.poisson > -1)
         || !(elastic.poisson < 0.5) || !within(elastic.damping, 0, 1e300))
@@ -76,35 +76,37 @@ void check_sizes(const Scene& scene, const Dynamics& dynamics, const Frame& star
                                   bodies, dynamics.bodies.size(), start.poses.size(), start.deformed.size()));
 }
 
-/// Indices first, then numbers: what comes later may use what was checked before.
+/// Checks indices before numbers, since later checks use the indices.
 void check_body(const Model& model, std::size_t i) {
     const auto& body = model.scene->bodies[i];
-    const auto& moves = model.dynamics->bodies[i];
+    const auto& dynamics = model.dynamics->bodies[i];
     const auto refuse_body = [&](const std::string& what) {
         refuse(*model.scene, fmt::format("body {} {}", i, what));
     };
     if (body.mesh >= model.scene->meshes.size()) refuse_body("has a mesh that does not exist");
-    if (moves.material >= model.dynamics->materials.names.size())
-        refuse_body(fmt::format("has material {}, there are {}", moves.material,
+    if (dynamics.material >= model.dynamics->materials.names.size())
+        refuse_body(fmt::format("has material {}, there are {}", dynamics.material,
                                 model.dynamics->materials.names.size()));
-    if (body.deformable != (moves.elastic >= 0)
-        || moves.elastic >= static_cast<std::int64_t>(model.dynamics->elastics.size()))
-        refuse_body(
-            fmt::format("has elastic {}: deformable bodies need one that exists, others -1", moves.elastic));
-    if (!finite(moves.velocity) || !finite(moves.spin)) refuse_body("has a velocity that is not finite");
-    if (body.fixed && (moves.velocity != Eigen::Vector3d::Zero() || moves.spin != Eigen::Vector3d::Zero()))
+    if (body.deformable != (dynamics.elastic >= 0)
+        || dynamics.elastic >= static_cast<std::int64_t>(model.dynamics->elastics.size()))
+        refuse_body(fmt::format("has elastic {}: deformable bodies need one that exists, others -1",
+                                dynamics.elastic));
+    if (!finite(dynamics.velocity) || !finite(dynamics.spin))
+        refuse_body("has a velocity that is not finite");
+    if (body.fixed
+        && (dynamics.velocity != Eigen::Vector3d::Zero() || dynamics.spin != Eigen::Vector3d::Zero()))
         refuse_body("is fixed, but has a velocity: leave one out");
     const auto& q = model.start.poses[i].rotation;
     const double norm = (q.w() * q.w() + q.x() * q.x()) + (q.y() * q.y() + q.z() * q.z());
     if (!(std::fabs(norm - 1) < 1e-6) || !finite(model.start.poses[i].translation))
-        refuse_body("starts in a pose that is no rotation and translation");
+        refuse_body("has an initial pose that is not a rotation and a translation");
     const auto vertices = model.scene->meshes[body.mesh].vertices.size();
     if (body.deformable && (model.start.deformed.empty() || model.start.deformed[i].size() != vertices))
         refuse_body(
-            fmt::format("is deformable, but its start has not the {} vertices of its mesh", vertices));
+            fmt::format("is deformable, but its start does not have the {} vertices of its mesh", vertices));
 }
 
-/// Of the box around the mesh, m: the length by which distances at the body are measured.
+/// Longest edge (m) of the mesh's box, which is the reference length of distances at the body.
 double longest_edge(const Mesh& mesh) {
     if (mesh.vertices.empty()) return 0;
     Eigen::Vector3d low = mesh.vertices.front(), high = low;
@@ -115,20 +117,20 @@ double longest_edge(const Mesh& mesh) {
     return (high - low).maxCoeff();
 }
 
-/// A fixed body has a size and a material only: no impulse changes it.
+/// A fixed body has only a size and a material, since no impulse moves it.
 BodyModel make_body(const Model& model, std::size_t i) {
     const auto& body = model.scene->bodies[i];
     const auto& mesh = model.scene->meshes[body.mesh];
-    const auto& moves = model.dynamics->bodies[i];
-    const double density = model.dynamics->materials.densities[moves.material];
+    const auto& dynamics = model.dynamics->bodies[i];
+    const double density = model.dynamics->materials.densities[dynamics.material];
     BodyModel result;
-    result.material = moves.material;
+    result.material = dynamics.material;
     result.size = longest_edge(mesh);
     if (body.fixed) return result;
     if (body.deformable) {
         result.kind = Kind::soft;
         result.elastic = make_elastic_mesh(
-            mesh, model.dynamics->elastics[static_cast<std::size_t>(moves.elastic)], density);
+            mesh, model.dynamics->elastics[static_cast<std::size_t>(dynamics.elastic)], density);
         return result;
     }
     result.kind = Kind::rigid;
@@ -137,25 +139,25 @@ BodyModel make_body(const Model& model, std::size_t i) {
     return result;
 }
 
-/// kg, the least that is above 0: pinned vertices have the mass of others.
+/// Smallest mass in kg of the body or its vertices. Pinned vertices count too.
 double least_mass(const BodyModel& body) {
     return body.kind == Kind::rigid
                ? body.mass.mass
                : *std::min_element(body.elastic.masses.begin(), body.elastic.masses.end());
 }
 
-/// What solver_of() measures by.
+/// Sets the scales that solver_of() uses.
 void set_scales(Model& model) {
     constexpr double none = std::numeric_limits<double>::max();
     model.lightest = model.smallest = none;
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const auto& body = model.bodies[i];
         if (body.kind == Kind::fixed) continue;
-        const auto& moves = model.dynamics->bodies[i];
+        const auto& dynamics = model.dynamics->bodies[i];
         model.lightest = std::min(model.lightest, least_mass(body));
         model.smallest = std::min(model.smallest, body.size);
         model.fastest =
-            std::max(model.fastest, length(moves.velocity) + 0.5 * body.size * length(moves.spin));
+            std::max(model.fastest, length(dynamics.velocity) + 0.5 * body.size * length(dynamics.spin));
     }
     if (model.lightest == none) model.lightest = model.smallest = 0;
 }
@@ -181,7 +183,7 @@ Model make_model(const Scene& scene) {
     }
     const auto& materials = model.dynamics->materials;
     if (const auto missing = missing_surface(materials, scene.bodies, model.dynamics->bodies))
-        refuse(scene, fmt::format("has no surface for materials {} and {}, which can meet",
+        refuse(scene, fmt::format("has no surface for materials {} and {}, whose bodies can touch",
                                   materials.names[missing->first], materials.names[missing->second]));
     set_scales(model);
     if (model.dynamics->stepping.surface_normals)

@@ -10,14 +10,14 @@ namespace tandem::simulate {
 
 enum class Kind { fixed, rigid, soft };
 
-/// What never changes about a body.
+/// Constant properties of a body.
 struct BodyModel {
     Kind kind = Kind::fixed;
     std::uint32_t material = 0;
     double size = 0;                                           ///< m, longest edge of the mesh's box
-    MassProperties mass;                                       ///< rigid
-    Eigen::Matrix3d inverse_inertia = Eigen::Matrix3d::Zero(); ///< rigid, in mesh axes
-    ElasticMesh elastic;                                       ///< soft
+    MassProperties mass;                                       ///< rigid bodies only
+    Eigen::Matrix3d inverse_inertia = Eigen::Matrix3d::Zero(); ///< rigid bodies only, in mesh axes
+    ElasticMesh elastic;                                       ///< soft bodies only
 };
 
 /// A scene with dynamics, checked and prepared.
@@ -25,19 +25,19 @@ struct Model {
     const Scene* scene = nullptr;
     const Dynamics* dynamics = nullptr;
     std::vector<BodyModel> bodies;
-    std::vector<Boundary> boundaries; ///< one a mesh; none without surface_normals
+    std::vector<Boundary> boundaries; ///< one a mesh; empty without surface_normals
     Frame start;
-    /// Of what impulses move, rigid bodies and vertices of deformable ones: kg, m, m/s at the start.
+    /// Extremes over rigid bodies and vertices of deformable bodies: kg, m, and m/s at the start.
     double lightest = 0, smallest = 0, fastest = 0;
-    double highest_energy = 0; ///< J; the motion has diverged when kinetic + potential + elastic exceed it
+    double highest_energy = 0; ///< J; the motion diverges when kinetic + potential + elastic exceed it
 
     const Surface& surface(std::uint32_t a, std::uint32_t b) const {
         return dynamics->materials.surface(bodies[a].material, bodies[b].material);
     }
 };
 
-/// Throws InputError when the scene's dynamics are impossible; names what and which body. `highest_energy` is
-/// left to the caller.
+/// Throws InputError with the fault and the body when the scene's dynamics are impossible. The caller sets
+/// `highest_energy`.
 Model make_model(const Scene& scene);
 
 } // namespace tandem::simulate

@@ -7,19 +7,19 @@ namespace tandem::simulate {
 
 namespace {
 
-/// The spin (rad/s, world) becomes the momentum R I R' w, which is the state.
-RigidState starting_rigid(const BodyModel& body, const BodyDynamics& moves, const Pose& pose) {
+/// Converts the spin w (rad/s, world axes) to the momentum R I R' w.
+RigidState starting_rigid(const BodyModel& body, const BodyDynamics& dynamics, const Pose& pose) {
     RigidState state;
     state.rotation = unit(pose.rotation);
     state.centre = pose.translation + rotated(state.rotation, body.mass.centre);
-    state.velocity = moves.velocity;
+    state.velocity = dynamics.velocity;
     const Eigen::Matrix3d r = rotation_matrix(state.rotation);
-    state.angular = apply(r, apply(body.mass.inertia, apply(r.transpose(), moves.spin)));
+    state.angular = apply(r, apply(body.mass.inertia, apply(r.transpose(), dynamics.spin)));
     return state;
 }
 
-/// Velocity and spin about the centre of mass of all vertices; pinned ones stand still.
-SoftState starting_soft(const ElasticMesh& mesh, const BodyDynamics& moves,
+/// Applies velocity and spin about the centre of mass to all vertices except pinned vertices.
+SoftState starting_soft(const ElasticMesh& mesh, const BodyDynamics& dynamics,
                         const std::vector<Eigen::Vector3d>& vertices) {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     double mass = 0;
@@ -30,21 +30,21 @@ SoftState starting_soft(const ElasticMesh& mesh, const BodyDynamics& moves,
     centre /= mass;
     SoftState state{vertices, {}};
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const Eigen::Vector3d velocity = moves.velocity + cross(moves.spin, vertices[i] - centre);
+        const Eigen::Vector3d velocity = dynamics.velocity + cross(dynamics.spin, vertices[i] - centre);
         state.velocities.push_back(mesh.inverse_masses[i] > 0 ? velocity : Eigen::Vector3d::Zero());
     }
     return state;
 }
 
-/// Free rotation by the midpoint rule: the spin of a constant momentum changes with the attitude, and taken
-/// at the start it would add energy in every step.
+/// Free rotation by the midpoint rule. The spin of a constant momentum changes with the rotation; the spin at
+/// the start of the step would add energy in every step.
 void turn_on(const BodyModel& body, RigidState& state, double time) {
     const auto start = state.rotation;
     state.rotation = turned(start, time / 2 * spin(body, state));
     state.rotation = turned(start, time * spin(body, state));
 }
 
-/// Explicit: forces at the present positions, which limits the step by the stiffest element.
+/// Explicit integration with forces at the present positions. The stiffest element limits the step.
 void kick_soft(const ElasticMesh& mesh, SoftState& state, const Eigen::Vector3d& gravity, double time) {
     std::vector<Eigen::Vector3d> forces(state.positions.size(), Eigen::Vector3d::Zero());
     add_elastic_forces(mesh, state.positions, forces);
@@ -62,10 +62,10 @@ Motion starting_motion(const Model& model) {
     motion.soft.resize(model.bodies.size());
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
         const auto& body = model.bodies[i];
-        const auto& moves = model.dynamics->bodies[i];
-        if (body.kind == Kind::rigid) motion.rigid[i] = starting_rigid(body, moves, model.start.poses[i]);
+        const auto& dynamics = model.dynamics->bodies[i];
+        if (body.kind == Kind::rigid) motion.rigid[i] = starting_rigid(body, dynamics, model.start.poses[i]);
         if (body.kind == Kind::soft)
-            motion.soft[i] = starting_soft(body.elastic, moves, model.start.deformed[i]);
+            motion.soft[i] = starting_soft(body.elastic, dynamics, model.start.deformed[i]);
     }
     return motion;
 }
@@ -84,7 +84,7 @@ void drift(const Model& model, Motion& motion, double time) {
 
 void kick(const Model& model, Motion& motion, double time) {
     const auto& dynamics = *model.dynamics;
-    // Implicit in the damping, so that no coefficient turns a velocity round.
+    // Damping is implicit, so that no coefficient reverses a velocity.
     const double linear = 1 / (1 + time * dynamics.stepping.linear_damping);
     const double angular = 1 / (1 + time * dynamics.stepping.angular_damping);
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {

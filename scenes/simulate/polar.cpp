@@ -12,7 +12,8 @@ namespace {
 
 using Symmetric = Eigen::Matrix4d;
 
-/// R <- (R + R^-T) / 2; quadratic once R is near a rotation. False when it has not settled.
+/// Iterates R <- (R + R^-T) / 2, which converges quadratically near a rotation. False when it does not
+/// converge.
 bool newton(Eigen::Matrix3d& r) {
     for (int iteration = 0; iteration < 12; ++iteration) {
         const double det = determinant(r);
@@ -65,7 +66,7 @@ void rotate(Symmetric& a, Symmetric& v, int p, int q) {
 
 Eigen::Quaterniond dominant(Symmetric a) {
     Symmetric v = Symmetric::Identity();
-    // Quadratic convergence: a 4x4 matrix is diagonal to rounding after six sweeps.
+    // Convergence is quadratic: a 4x4 matrix is diagonal up to rounding after six sweeps.
     for (int sweep = 0; sweep < 8; ++sweep)
         for (int p = 0; p < 3; ++p)
             for (int q = p + 1; q < 4; ++q) rotate(a, v, p, q);

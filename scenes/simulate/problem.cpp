@@ -37,32 +37,32 @@ std::array<Eigen::Vector3d, 2> tangents(const Eigen::Vector3d& normal) {
 
 namespace {
 
-/// What unit impulses at one side do to the velocity of its point, each node's share times its weight in
-/// `shares`: the 3x3 block of Delassus' operator.
+/// Change of a point's velocity by unit impulses at one side: the 3x3 block of Delassus' operator. `counts`,
+/// when not empty, divides each node's mass.
 Eigen::Matrix3d mobility(const Problem& problem, const Side& side, const Eigen::Vector3d& arm,
-                         std::span<const double> shares) {
+                         std::span<const double> counts) {
     Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
     for_each_node(problem, side, arm, [&](std::uint32_t index, double weight, const Eigen::Vector3d& lever) {
         const auto& node = problem.nodes[index];
-        const double share = shares.empty() ? 1 : shares[index];
+        const double count = counts.empty() ? 1 : counts[index];
         const double linear = weight * weight * node.inverse_mass;
         for (int axis = 0; axis < 3; ++axis) {
             const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis);
             const Eigen::Vector3d spin = apply(node.inverse_inertia, cross(lever, unit));
-            result.col(axis) += share * (linear * unit + cross(spin, lever));
+            result.col(axis) += count * (linear * unit + cross(spin, lever));
         }
     });
     return result;
 }
 
-/// r-factors of one row from its 3x3 block `k`: 1 / A_nn for the normal, one for both tangents.
+/// Sets the r-factors of a row from its 3x3 block `k`: 1 / A_nn for the normal, one factor for both tangents.
 void set_row_factors(ContactRow& row, const Eigen::Matrix3d& k) {
     const Eigen::Vector3d along = apply(k, row.normal);
     const Eigen::Vector3d across = apply(k, row.tangent);
     const double tt = dot(row.tangent, across);
     const double bb = dot(row.binormal, apply(k, row.binormal));
-    // The disk needs one factor for both tangents: the sum of magnitudes of a row bounds the block's largest
-    // eigenvalue.
+    // The friction disk needs one factor for both tangents. The sum of magnitudes in a row bounds the largest
+    // eigenvalue of the block.
     const double greatest = std::max(tt, bb) + std::fabs(dot(row.binormal, across));
     row.factor_normal = 1 / dot(row.normal, along);
     row.factor_tangent = 1 / greatest;
@@ -70,7 +70,7 @@ void set_row_factors(ContactRow& row, const Eigen::Matrix3d& k) {
     row.mixed_binormal = dot(row.binormal, along);
 }
 
-/// By how many sides each node is touched: into so many parts its mass is split.
+/// Number of contact sides at each node, which is the number of parts of its mass.
 std::vector<double> contacts_per_node(const Problem& problem) {
     std::vector<double> counts(problem.nodes.size(), 0);
     const auto count = [&](std::uint32_t node, double, const Eigen::Vector3d&) { counts[node] += 1; };
@@ -84,10 +84,10 @@ std::vector<double> contacts_per_node(const Problem& problem) {
 } // namespace
 
 void set_factors(Problem& problem, bool split) {
-    const auto shares = split ? contacts_per_node(problem) : std::vector<double>{};
+    const auto counts = split ? contacts_per_node(problem) : std::vector<double>{};
     for (auto& row : problem.rows)
-        set_row_factors(row, mobility(problem, row.a, row.arm_a, shares)
-                                 + mobility(problem, row.b, row.arm_b, shares));
+        set_row_factors(row, mobility(problem, row.a, row.arm_a, counts)
+                                 + mobility(problem, row.b, row.arm_b, counts));
 }
 
 void add_impulses(const Model& model, const Problem& problem, Motion& motion) {

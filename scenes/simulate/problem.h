@@ -8,16 +8,16 @@
 
 namespace tandem::simulate {
 
-/// What impulses move: a rigid body, or a vertex of a deformable one (which has no inertia and no spin).
-/// Bodies that do not move have inverse masses of 0.
+/// An object that impulses move: a rigid body, or a vertex of a deformable body, which has no inertia and no
+/// spin. Objects that do not move have an inverse mass of 0.
 struct Node {
-    Eigen::Vector3d velocity = Eigen::Vector3d::Zero(); ///< m/s, with the impulses so far
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero(); ///< m/s, including the present impulses
     Eigen::Vector3d spin = Eigen::Vector3d::Zero();     ///< rad/s
     double inverse_mass = 0;
     Eigen::Matrix3d inverse_inertia = Eigen::Matrix3d::Zero(); ///< world axes
 };
 
-/// A point held by the four corners of its tetrahedron; weights are at least 0 and add up to 1.
+/// A point of a tetrahedron by its barycentric weights, which are >= 0 and have the sum 1.
 struct Attachment {
     std::array<std::uint32_t, 4> nodes{};
     std::array<double, 4> weights{};
@@ -29,27 +29,27 @@ struct Side {
     bool attached = false;
 };
 
-/// A contact with friction: the velocity of b against a along normal, tangents (orthonormal) is made to obey
-/// 0 <= velocity + bias, impulse >= 0, their product 0 in the normal and Coulomb's law in the tangents.
+/// A contact with friction in an orthonormal basis. With the velocity of b relative to a, the normal
+/// component satisfies velocity + bias >= 0, impulse >= 0 and product 0. The tangents satisfy Coulomb's law.
 struct ContactRow {
     Eigen::Vector3d normal, tangent, binormal;
     Eigen::Vector3d arm_a, arm_b;                       ///< m, from the node to the point
     Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  ///< N s on b: normal, tangent, binormal
-    Eigen::Vector3d previous = Eigen::Vector3d::Zero(); ///< of the last accepted pass
+    Eigen::Vector3d previous = Eigen::Vector3d::Zero(); ///< impulse of the last accepted pass
     double bias = 0;                                    ///< m/s
-    double bounce = 0;                                  ///< m/s, what restitution adds to it
+    double bounce = 0;                                  ///< m/s, part of the bias from restitution
     double friction = 0;
     double factor_normal = 0, factor_tangent = 0; ///< r-factors, kg
-    double mixed_tangent = 0, mixed_binormal = 0; ///< 1/kg: what a normal impulse does along the tangents
+    double mixed_tangent = 0, mixed_binormal = 0; ///< 1/kg, effect of a normal impulse along the tangents
     Side a, b;
 };
 
-/// All contacts of a step as the solvers take them.
+/// All contacts of a step in the form that the solvers use.
 struct Problem {
     std::vector<Node> nodes;
     std::vector<Attachment> attachments;
     std::vector<ContactRow> rows;
-    std::vector<std::uint32_t> sources; ///< per row the index of its contact
+    std::vector<std::uint32_t> sources; ///< one a row: the index of its contact
 
     /// Velocity of the point of a side.
     Eigen::Vector3d velocity(const Side& side, const Eigen::Vector3d& arm) const {
@@ -59,11 +59,11 @@ struct Problem {
                 node.velocity.y() + (node.spin.z() * arm.x() - node.spin.x() * arm.z()),
                 node.velocity.z() + (node.spin.x() * arm.y() - node.spin.y() * arm.x())};
     }
-    /// Of b against a.
+    /// Velocity of b relative to a.
     Eigen::Vector3d velocity(const ContactRow& row) const {
         return velocity(row.b, row.arm_b) - velocity(row.a, row.arm_a);
     }
-    /// Pushes one side of a contact.
+    /// Applies an impulse (N s) to one side of a contact.
     void push(const Side& side, const Eigen::Vector3d& arm, const Eigen::Vector3d& impulse);
     void push(const ContactRow& row, const Eigen::Vector3d& impulse) {
         push(row.a, row.arm_a, -impulse);
@@ -88,14 +88,14 @@ void for_each_node(const Problem& problem, const Side& side, const Eigen::Vector
         visit(attachment.nodes[i], attachment.weights[i], Eigen::Vector3d(Eigen::Vector3d::Zero()));
 }
 
-/// Contacts of `contacts` at the positions of `before`, whose velocities give the bounce; nodes get the
-/// velocities of `free`. Contacts that no impulse can change are left out, and so are those of deformable
-/// bodies unless couple_contacts.
+/// Rows of `contacts` at the positions of `before`. The velocities of `before` define the bounce; nodes get
+/// the velocities of `free`. Leaves out contacts that no impulse can change, and those of deformable bodies
+/// unless couple_contacts is set.
 Problem make_problem(const Model& model, const Motion& before, const Motion& free,
                      std::span<const ContactPoint> contacts);
 
-/// Sets the r-factors, 1 / A_ii (Erleben 2017, local strategy). With `split` each node's mass is divided
-/// among its contacts (Tonge, Benevolenski and Voroshilov, "Mass splitting for jitter-free parallel rigid
+/// Sets the r-factors, 1 / A_ii (Erleben 2017, local strategy). `split` divides each node's mass among its
+/// contacts (Tonge, Benevolenski and Voroshilov, "Mass splitting for jitter-free parallel rigid
 /// body simulation", ACM Trans. Graph. 31(4), 2012), so that simultaneous updates converge.
 void set_factors(Problem& problem, bool split);
 

@@ -56,7 +56,7 @@ double squared_diagonal(std::span<const ContactPoint> group) {
     return squared(high - low);
 }
 
-/// Keeps `count` of one body pair's contacts.
+/// Appends `count` of one body pair's contacts to `kept`.
 void choose(std::span<const ContactPoint> group, std::size_t count, std::vector<ContactPoint>& kept) {
     const double diagonal = squared_diagonal(group);
     const double per_length = diagonal > 0 ? 1 / diagonal : 0;
@@ -80,7 +80,7 @@ void choose(std::span<const ContactPoint> group, std::size_t count, std::vector<
     for (const auto i : chosen) kept.push_back(group[i]);
 }
 
-/// Merges one body pair's contacts and keeps some of them.
+/// Merges one body pair's contacts and selects some of them.
 void reduce_group(std::span<const ContactPoint> group, double radius, std::size_t per_pair, PointGrid& cells,
                   std::vector<ContactPoint>& kept) {
     if (per_pair == 0) return merge(group, radius, cells, kept);
@@ -102,8 +102,8 @@ std::vector<std::span<const ContactPoint>> groups_of(std::span<const ContactPoin
     return groups;
 }
 
-/// Pairs are ordered by body_a, tet_a, body_b, tet_b: those of two bodies are brought together, their order
-/// among themselves kept.
+/// Groups contacts by body pair. The input is ordered by body_a, tet_a, body_b, tet_b; the order within a
+/// body pair is kept.
 std::vector<ContactPoint> by_bodies(std::span<const ContactPoint> contacts) {
     std::vector<std::pair<std::uint64_t, std::size_t>> order;
     order.reserve(contacts.size());
@@ -122,7 +122,7 @@ std::vector<ContactPoint> reduce_contacts(std::span<const ContactPoint> contacts
                                           std::span<const double> sizes, const ReductionSettings& settings) {
     const auto grouped = by_bodies(contacts);
     const auto groups = groups_of(grouped);
-    constexpr std::size_t block = 16; // groups a core takes at a time
+    constexpr std::size_t block = 16; // groups a task
     std::vector<std::vector<ContactPoint>> parts((groups.size() + block - 1) / block);
     parallel_for(parts.size(), [&](std::size_t part) {
         PointGrid cells;

@@ -6,7 +6,7 @@
 
 namespace tandem::simulate {
 
-/// Of a unit quaternion, in a fixed order of operations.
+/// Rotation matrix of a unit quaternion, in a fixed order of operations.
 inline Eigen::Matrix3d rotation_matrix(const Eigen::Quaterniond& q) {
     const double xx = q.x() * q.x(), yy = q.y() * q.y(), zz = q.z() * q.z();
     const double xy = q.x() * q.y(), xz = q.x() * q.z(), yz = q.y() * q.z();
@@ -18,7 +18,7 @@ inline Eigen::Matrix3d rotation_matrix(const Eigen::Quaterniond& q) {
     return m;
 }
 
-/// `q` turned further by the rotation vector `angle` (radians, world axes).
+/// `q` rotated by the rotation vector `angle` (radians, world axes).
 inline Eigen::Quaterniond turned(const Eigen::Quaterniond& q, const Eigen::Vector3d& angle) {
     const double magnitude = length(angle);
     if (!(magnitude > 0)) return q;

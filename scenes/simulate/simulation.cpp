@@ -15,14 +15,14 @@ using namespace simulate;
 
 constexpr std::uint64_t passes_before_doubling = 10;
 
-/// Only elastic forces, which are explicit, ask for shorter steps; rigid bodies have none.
+/// True when steps are adaptive. Only elastic forces, which are explicit, need shorter steps.
 bool adapts(const Model& model) {
     return model.dynamics->stepping.adaptive_tolerance > 0
            && std::any_of(model.bodies.begin(), model.bodies.end(),
                           [](const BodyModel& body) { return body.kind == Kind::soft; });
 }
 
-/// m, over the vertices of deformable bodies.
+/// Largest distance (m) between equal vertices of deformable bodies.
 double largest_difference(const Motion& a, const Motion& b) {
     double most = 0;
     for (std::size_t i = 0; i < a.soft.size(); ++i)
@@ -31,7 +31,7 @@ double largest_difference(const Motion& a, const Motion& b) {
     return most;
 }
 
-/// `before`: the sum at the start of the step, J.
+/// Adds energies to the report. `before` is the total energy (J) at the start of the step.
 void add_energies(const Model& model, const Motion& motion, double before, std::size_t step,
                   StepReport& report) {
     const auto energies = checked_energies(model, motion, step);
@@ -64,11 +64,11 @@ struct Simulation::State {
         clock.length = model.dynamics->stepping.step;
     }
 
-    /// The longest step whose end differs from that of two half steps by no more than the tolerance.
+    /// Halves the step until its end differs from that of two half steps by at most the tolerance.
     Outcome adapted(const Detect& detect) {
         const auto& stepping = model.dynamics->stepping;
         auto full = advance(model, motion, clock.length, clock.steps, detect);
-        bool at_once = true;
+        bool first_try = true;
         while (true) {
             const double half = clock.length / 2;
             auto first = advance(model, motion, half, clock.steps, detect);
@@ -79,19 +79,19 @@ struct Simulation::State {
                 add_times(full.report, first.report);
                 break;
             }
-            // The first half is the next full step to try.
+            // The first half step is the next full step to try.
             add_times(first.report, full.report);
             full = std::move(first);
             clock.length = half;
-            at_once = false;
+            first_try = false;
         }
-        lengthen(at_once);
+        lengthen(first_try);
         return full;
     }
 
-    /// Doubled after ten steps in a row that passed at once, never beyond the step asked for.
-    void lengthen(bool at_once) {
-        clock.passes = at_once ? clock.passes + 1 : 0;
+    /// Doubles the step after ten consecutive steps that passed at the first try, up to the setting `step`.
+    void lengthen(bool first_try) {
+        clock.passes = first_try ? clock.passes + 1 : 0;
         if (clock.passes < passes_before_doubling) return;
         clock.passes = 0;
         clock.length = std::min(2 * clock.length, model.dynamics->stepping.step);
@@ -107,7 +107,7 @@ StepReport Simulation::step(const Detect& detect) {
     auto& s = *state_;
     auto outcome = adapts(s.model) ? s.adapted(detect)
                                    : advance(s.model, s.motion, s.clock.length, s.clock.steps, detect);
-    // Only of a step that is kept: one that is too long for its scene may be repeated.
+    // Energies are checked only for the accepted step; a longer step that was tried may diverge.
     add_energies(s.model, outcome.end, total_energy(s.model, s.motion), s.clock.steps, outcome.report);
     s.motion = std::move(outcome.end);
     s.midway = std::move(outcome.midway);

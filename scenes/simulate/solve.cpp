@@ -7,7 +7,7 @@ namespace tandem::simulate {
 
 namespace {
 
-constexpr double reduction = 0.9; ///< of the r-factors when a pass diverges
+constexpr double reduction = 0.9; ///< factor for the r-factors when a pass diverges
 constexpr double part_of_weight = 1e-5;
 
 } // namespace
@@ -17,7 +17,7 @@ SolverSettings solver_of(const Model& model, double time) {
     if (settings.absolute_tolerance > 0) return settings;
     double speed = length(model.dynamics->gravity) * time;
     if (!(speed > 0)) speed = 0.01 * model.fastest;
-    // Nothing moves by itself then; what elastic forces or corrections do is measured by sizes.
+    // Without gravity and initial motion, the smallest size sets the scale of speeds.
     if (!(speed > 0)) speed = 0.01 * model.smallest;
     settings.absolute_tolerance = part_of_weight * model.lightest * speed;
     return settings;
@@ -27,7 +27,7 @@ Eigen::Vector3d proximal(const ContactRow& row, const Eigen::Vector3d& velocity,
     Eigen::Vector3d result;
     const double normal_velocity = dot(row.normal, velocity) + row.bias;
     result.x() = std::max(0.0, row.impulse.x() - scale * row.factor_normal * normal_velocity);
-    // The tangents see what the new normal impulse does to them: rows are solved as blocks, normal first.
+    // Rows are solved as blocks, normal first: the tangential velocities include the new normal impulse.
     const double change = result.x() - row.impulse.x();
     const double slide = dot(row.tangent, velocity) + row.mixed_tangent * change;
     const double slip = dot(row.binormal, velocity) + row.mixed_binormal * change;
@@ -44,13 +44,13 @@ Eigen::Vector3d proximal(const ContactRow& row, const Eigen::Vector3d& velocity,
 }
 
 Convergence::Verdict Convergence::judge(double change) {
-    // The change over the reduction, as at full r-factors.
+    // The change is divided by the scale to compare passes at full r-factors.
     const double before = residual_;
     residual_ = change / scale_;
     if (residual_ <= settings_.absolute_tolerance
         || std::fabs(residual_ - before) < settings_.relative_tolerance * before)
         return Verdict::converged;
-    // As the caller undoes the pass, the residual of the one before stands.
+    // The caller undoes the pass, so that the previous residual remains valid.
     if (change > allowed_) {
         scale_ *= reduction;
         residual_ = before;

@@ -7,48 +7,47 @@
 
 namespace tandem::simulate {
 
-/// The settings of a step of `time` s, with a tolerance in place of one of 0: 1e-5 of the impulse that holds
-/// the scene's lightest body against gravity for the step, and without gravity of one that takes a hundredth
-/// of the greatest speed at the start from it.
+/// Solver settings of a step of `time` s. An absolute_tolerance of 0 is replaced by 1e-5 of the lightest
+/// body's weight times `time`. Without gravity it is 1e-5 of its mass times a hundredth of the greatest
+/// initial speed.
 SolverSettings solver_of(const Model& model, double time);
 
-/// How a solver ended.
+/// Result of a solver.
 struct SolveReport {
     std::size_t iterations = 0;
     double residual = 0;   ///< N s: largest change of an impulse in the last pass at full r-factors
-    bool converged = true; ///< it ended by a tolerance, or there was nothing to solve
+    bool converged = true; ///< stopped by a tolerance, or there was nothing to solve
 };
 
-/// Solves for the rows' impulses from those they have, and brings nodes' velocities to match. The proximal
-/// point method of Erleben, "Rigid body contact problems using proximal operators", SCA 2017: with
-/// z = impulse - R w, the normal impulse becomes max(0, z_n) and the tangential one z_t projected onto the
-/// disk of radius friction * normal impulse. Ends when the residual is below absolute_tolerance, when it
-/// differs from the one before by less than relative_tolerance of it, or after `iterations`. A pass that
-/// raises the residual is undone and the r-factors are reduced by 0.9. The result is the same for any number
-/// of `threads`; Gauss-Seidel uses one.
+/// Solves for the rows' impulses, starting from their values, and updates the nodes' velocities. Proximal
+/// point method of Erleben, "Rigid body contact problems using proximal operators", SCA 2017. Let
+/// z = impulse - R w. The normal impulse becomes max(0, z_n); the tangential impulse becomes z_t projected
+/// onto the disk of radius friction * normal impulse. Stops when the residual is at most absolute_tolerance,
+/// changes by less than relative_tolerance of the previous residual, or after `iterations`. A pass that
+/// raises the residual is undone and multiplies the r-factors by 0.9. The result does not depend on
+/// `threads`; Gauss-Seidel uses one.
 SolveReport solve(Problem& problem, const SolverSettings& settings, unsigned threads);
 
-/// The same for a step: where the impulses would give the bodies energy, which Newton's restitution and
-/// friction at several contacts together can (Kane and Levinson, "Dynamics: theory and applications", 1985),
-/// solves again without restitution; so that what is left to add energy is forces. Iterations are of both.
+/// As solve(), but solves again without restitution when the impulses add energy; then only forces can add
+/// energy. Newton's restitution with friction at several contacts can add energy (Kane and Levinson,
+/// "Dynamics: theory and applications", 1985). `iterations` in the report counts both solves.
 SolveReport solve_bounded(Problem& problem, const SolverSettings& settings, unsigned threads);
 
-/// Proximal point of one row: its new impulse where `velocity` is that of b against a, at r-factors times
-/// `scale`.
+/// New impulse of one row. `velocity` is that of b relative to a; r-factors are multiplied by `scale`.
 Eigen::Vector3d proximal(const ContactRow& row, const Eigen::Vector3d& velocity, double scale);
 
-/// Says after every pass what to do next. A pass that changes impulses by more than the one before diverges:
-/// r-factors are reduced, and grow back with every pass that does not (waiting longer was measured: stacks
-/// converge slower). The residual is the change divided by the reduction, so that small steps are not taken
-/// for convergence.
+/// Stopping criterion and scale of the r-factors. A pass diverges when it changes impulses by more than the
+/// previous pass, which reduces the r-factors. Every other pass raises them again, since a longer wait makes
+/// stacks converge slower. The residual is the change divided by the scale, so that short steps do not look
+/// like convergence.
 class Convergence {
 public:
     enum class Verdict { go_on, converged, diverged };
 
     explicit Convergence(const SolverSettings& settings) : settings_(settings) {}
-    /// `change`: the largest of an impulse in this pass.
+    /// Decides how to continue. `change` is the largest change of an impulse in this pass, N s.
     Verdict judge(double change);
-    double scale() const { return scale_; } ///< of the r-factors in the next pass
+    double scale() const { return scale_; } ///< scale of the r-factors in the next pass
     double residual() const { return residual_; }
 
 private:
@@ -58,7 +57,7 @@ private:
     double scale_ = 1;
 };
 
-/// The two methods; `problem` has its r-factors.
+/// The two methods. The r-factors of `problem` must be set.
 SolveReport gauss_seidel(Problem& problem, const SolverSettings& settings);
 SolveReport jacobi(Problem& problem, const SolverSettings& settings, unsigned threads);
 

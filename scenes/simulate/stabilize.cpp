@@ -22,7 +22,7 @@ void move_by(const Model& model, const Problem& problem, double time, Motion& mo
     }
 }
 
-/// J, of bodies and vertices moved by their nodes' velocities for `time`.
+/// Potential energy (J) added when bodies and vertices move at their nodes' velocities for `time` s.
 double lifted(const Model& model, const Problem& problem, double time) {
     double sum = 0;
     for (const auto& node : problem.nodes)
@@ -31,7 +31,7 @@ double lifted(const Model& model, const Problem& problem, double time) {
     return sum;
 }
 
-/// A tolerance that is left to the scene is a tenth of the penetration that stays anyway.
+/// An absolute_tolerance of 0 is replaced by a tenth of the tolerated penetration.
 SolverSettings position_solver(const Model& model, double time) {
     auto settings = model.dynamics->solver;
     if (!(settings.absolute_tolerance > 0))
@@ -55,20 +55,20 @@ double separation_bias(double depth, double size, double time) {
 }
 
 double layer_of(const Model& model, const Pair& pair, double time) {
-    const double share = model.dynamics->stepping.contact_layer;
-    if (!(share > 0)) return 0;
-    // A solver moves a load from one contact to another by what their velocities differ: where that is less
-    // than a hundredth of what weight gives in a step, it takes hundreds of passes.
+    const double relative_layer = model.dynamics->stepping.contact_layer;
+    if (!(relative_layer > 0)) return 0;
+    // The solver shifts load between contacts by the difference of their velocities. It needs hundreds of
+    // passes when this is less than a hundredth of what gravity adds in a step.
     constexpr double part_of_fall = 0.01;
     const double size = pair_size(model, pair);
     const double fall = length(model.dynamics->gravity) * time * time;
-    return std::max(share * size, std::min(part_of_fall * fall, 0.5 * tolerated_gap * size));
+    return std::max(relative_layer * size, std::min(part_of_fall * fall, 0.5 * tolerated_gap * size));
 }
 
 double settling(double depth, double layer, double time) {
-    // The same for all contacts: speeds that differ by what their depths are rounded by ask a flat face for
-    // what it cannot do. Two steps from a touch, and beyond: no whole number of them ends where rounding
-    // decides.
+    // The speed is equal for all contacts: speeds from rounded depths would differ, which a flat face cannot
+    // follow. Two steps at 0.6 pass the layer, so that no step ends at its limit, where rounding would
+    // decide.
     constexpr double part = 0.6;
     return depth > -layer ? part * layer / time : 0;
 }
@@ -79,9 +79,9 @@ double correct_positions(const Model& model, Problem problem, std::span<const Co
         auto& row = problem.rows[i];
         const auto& contact = contacts[problem.sources[i]];
         const double depth = contact.depth + half * dot(row.normal, problem.velocity(row));
-        // Vertices that are put elsewhere strain their body, which then shakes.
-        const bool strains = row.a.attached || row.b.attached;
-        row.bias = strains ? 0 : separation_bias(depth, pair_size(model, contact.pair), 2 * half);
+        // Corrected vertices would strain their body, which then oscillates.
+        const bool deformable = row.a.attached || row.b.attached;
+        row.bias = deformable ? 0 : separation_bias(depth, pair_size(model, contact.pair), 2 * half);
         row.friction = 0;
         row.impulse.setZero();
     }

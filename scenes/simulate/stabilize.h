@@ -5,32 +5,30 @@
 
 namespace tandem::simulate {
 
-// Fractions of the smaller body's size, in place of the 0.5, 0.001 and 0.01 m of the paper's configurations,
-// so that a scene in other units behaves the same. A fixed body has no say.
-constexpr double gap_reduction = 0.5;        ///< part of a penetration that one step takes away
-constexpr double tolerated_gap = 0.001;      ///< a penetration below this stays
-constexpr double greatest_correction = 0.01; ///< of one step
+// Fractions of pair_size(). The paper's configurations have 0.5, 0.001 m and 0.01 m; fractions give the same
+// behaviour in other units.
+constexpr double gap_reduction = 0.5;        ///< part of a penetration that one step removes
+constexpr double tolerated_gap = 0.001;      ///< smaller penetrations are not corrected
+constexpr double greatest_correction = 0.01; ///< largest correction in one step
 
-/// Size that penetrations of a pair are measured by, m: of the smaller body that moves.
+/// Reference length (m) of a pair's penetrations: the size of the smaller body that moves.
 double pair_size(const Model& model, const Pair& pair);
 
-/// Velocity (m/s, <= 0) added to a normal row so that a step of `time` lessens the penetration.
+/// Velocity (m/s, <= 0) that a normal row adds to reduce the penetration in a step of `time` s.
 double separation_bias(double depth, double size, double time);
 
-/// m, how deep bodies that rest are to lie in each other: contact_layer of the smaller body's size, more of
-/// small ones; 0 without.
+/// Target penetration (m) of resting bodies: contact_layer times pair_size(), relatively more for small
+/// bodies. It is 0 when contact_layer is 0.
 double layer_of(const Model& model, const Pair& pair, double time);
 
-/// Velocity (m/s, >= 0) at which a contact less deep than `layer` (m) may still close: bodies that touch
-/// exactly would lose some of their contacts by rounding from step to step, and fall over the others; those
-/// that lie in each other by more than rounding keep them (Smith, "Open Dynamics Engine user guide", 2006,
-/// contact surface layer).
+/// Velocity (m/s, >= 0) at which a contact shallower than `layer` (m) may close. Bodies that touch exactly
+/// lose some contacts by rounding and tip over the rest; bodies that penetrate by more than rounding keep all
+/// (Smith, "Open Dynamics Engine user guide", 2006, contact surface layer).
 double settling(double depth, double layer, double time);
 
-/// Moves positions so that penetrations of rigid bodies left after the step lessen; no velocity changes. The
-/// same contacts without friction, solved for displacements. `motion` is at the end of the step, `half` its
-/// second part (s).
-/// Returns what it adds to the potential energy, J.
+/// Moves rigid bodies to reduce penetrations that remain after the step; velocities do not change. Solves the
+/// same contacts without friction for displacements. `motion` is at the end of the step, `half` is half its
+/// length (s). Returns the added potential energy, J.
 double correct_positions(const Model& model, Problem problem, std::span<const ContactPoint> contacts,
                          double half, Motion& motion);
 

@@ -19,7 +19,7 @@ namespace {
 
 class Stopwatch {
 public:
-    /// Nanoseconds since the last lap, added to `total`.
+    /// Adds the nanoseconds since the last lap to `total`.
     void lap(std::int64_t& total) {
         const auto now = std::chrono::steady_clock::now();
         total += std::chrono::duration_cast<std::chrono::nanoseconds>(now - last_).count();
@@ -30,8 +30,8 @@ private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// What a search must keep to; a normal is off unit length by the rounding of single precision at most.
-bool sound(const Model& model, const ContactPoint& contact) {
+/// Checks a contact from `detect`. The length of a normal may differ from 1 by rounding in single precision.
+bool is_valid(const Model& model, const ContactPoint& contact) {
     const auto exists = [&](std::uint32_t body, std::uint32_t tet) {
         return body < model.bodies.size()
                && tet < model.scene->meshes[model.scene->bodies[body].mesh].tetrahedra.size();
@@ -52,15 +52,15 @@ std::vector<ContactPoint> reduce(const Model& model, std::span<const ContactPoin
     return reduce_contacts(contacts, sizes, model.dynamics->reduction);
 }
 
-/// m, at least 0: depths are negative inside.
+/// Largest penetration in m, >= 0; depths are negative inside.
 double deepest(std::span<const ContactPoint> contacts) {
     double depth = 0;
     for (const auto& contact : contacts) depth = std::max(depth, -contact.depth);
     return depth;
 }
 
-/// Rows of rigid bodies that are not yet as deep as they are to lie; a bounce that is faster stays one.
-void let_settle(const Model& model, std::span<const ContactPoint> kept, double length, Problem& problem) {
+/// Lets contacts of rigid bodies close that are shallower than their layer. A faster bounce has precedence.
+void allow_settling(const Model& model, std::span<const ContactPoint> kept, double length, Problem& problem) {
     for (std::size_t i = 0; i < problem.rows.size(); ++i) {
         auto& row = problem.rows[i];
         const auto& contact = kept[problem.sources[i]];
@@ -72,7 +72,7 @@ void let_settle(const Model& model, std::span<const ContactPoint> kept, double l
     }
 }
 
-/// Rows with everything that the solver starts from; `motion` gets the velocities without contacts.
+/// The complete input of the solver. Sets `motion` to the velocities without contacts.
 Problem assemble(const Model& model, const Motion& from, std::span<const ContactPoint> kept, double length,
                  Motion& motion) {
     const auto before = motion;
@@ -83,7 +83,7 @@ Problem assemble(const Model& model, const Motion& from, std::span<const Contact
             const auto& contact = kept[problem.sources[i]];
             problem.rows[i].bias += separation_bias(contact.depth, pair_size(model, contact.pair), length);
         }
-    let_settle(model, kept, length, problem);
+    allow_settling(model, kept, length, problem);
     if (model.dynamics->solver.warm_start && from.length > 0)
         reuse_impulses(from.impulses, length / from.length, kept, problem);
     return problem;
@@ -94,7 +94,7 @@ Problem assemble(const Model& model, const Motion& from, std::span<const Contact
 void check_contacts(const Model& model, std::span<const ContactPoint> contacts, std::size_t step) {
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         const auto& c = contacts[i];
-        if (!sound(model, c))
+        if (!is_valid(model, c))
             throw InputError(fmt::format(
                 "step {}: contact {} (body {} tetrahedron {}, body {} tetrahedron {}) is impossible: bodies "
                 "and "
@@ -109,7 +109,7 @@ void check_contacts(const Model& model, std::span<const ContactPoint> contacts, 
 Outcome advance(const Model& model, const Motion& from, double length, std::size_t step,
                 const Detect& detect) {
     Outcome outcome{from, {}, {}};
-    // Half a step of motion, then the contacts there.
+    // Half a step of motion, then the contacts at midway.
     auto& [motion, midway, report] = outcome;
     report.length = length;
     Stopwatch watch;
@@ -128,7 +128,7 @@ Outcome advance(const Model& model, const Motion& from, double length, std::size
     report.deepest = deepest(kept);
     watch.lap(report.reduce_ns);
 
-    // Velocities of the whole step: forces first, then the impulses that contacts need.
+    // Velocities of the whole step: forces first, then the impulses of contacts.
     auto problem = assemble(model, from, kept, length, motion);
     watch.lap(report.assemble_ns);
     const auto settings = solver_of(model, length);

@@ -14,13 +14,14 @@ namespace tandem::simulate {
 
 namespace {
 
-constexpr double nearness = 1e-3;        ///< of faces to a contact, times the smaller body's size
-constexpr double normal_rounding = 1e-6; ///< of a normal in single precision
-constexpr double tilt = 0.1;             ///< radians, of faces that lie on each other
-constexpr double in_parallel = 0.1; ///< cosine; a face nearer to parallel gives no depth along a direction
+constexpr double nearness = 1e-3;        ///< distance of nearby faces, times the smaller body's size
+constexpr double normal_rounding = 1e-6; ///< rounding error of a normal in single precision
+constexpr double tilt = 0.1;             ///< radians, largest tilt of faces that rest on each other
+constexpr double least_cosine = 0.1;     ///< a face more parallel to a direction gives no depth along it
 
-/// What bounds one body of a contact there, in world axes and pointing out of body a.
-struct Surroundings {
+/// Boundary faces of one body near a contact, in world axes; `rays` are their normals, directed out of body
+/// a.
+struct NearBoundary {
     std::vector<NearFace> faces;
     std::vector<Eigen::Vector3d> rays;
 
@@ -38,15 +39,16 @@ struct Surroundings {
         }
     }
 
-    /// m, from the contact's point out of the body along `direction`; 0 where no face lies across it.
-    double way_out(const Eigen::Vector3d& direction) const {
+    /// Distance (m) from the contact's point out of the body along `direction`; 0 when no face lies across
+    /// it.
+    double exit_distance(const Eigen::Vector3d& direction) const {
         double least = 0;
         bool found = false;
         for (std::size_t i = 0; i < faces.size(); ++i) {
             const double across = dot(rays[i], direction);
-            if (across < in_parallel) continue;
-            const double way = faces[i].height / across;
-            least = found ? std::min(least, way) : way;
+            if (across < least_cosine) continue;
+            const double distance = faces[i].height / across;
+            least = found ? std::min(least, distance) : distance;
             found = true;
         }
         return least;
@@ -55,7 +57,7 @@ struct Surroundings {
 
 std::uint64_t bodies_of(const Pair& pair) { return std::uint64_t{pair.body_a} << 32 | pair.body_b; }
 
-/// m, of every two bodies: the greatest of their contacts' depths.
+/// Greatest penetration (m) of each body pair, by bodies_of().
 using Depths = std::unordered_map<std::uint64_t, double>;
 
 Depths deepest_of(std::span<const ContactPoint> contacts) {
@@ -67,47 +69,47 @@ Depths deepest_of(std::span<const ContactPoint> contacts) {
     return depths;
 }
 
-/// Of one thread.
-struct Mender {
+/// Corrects normals; each thread has its own.
+struct NormalCorrector {
     const Model& model;
     const Frame& frame;
     const Depths& depths;
-    Surroundings a, b;
+    NearBoundary a, b;
 
-    void mend(ContactPoint& contact) {
+    void correct(ContactPoint& contact) {
         const auto& pair = contact.pair;
         const Eigen::Vector3d point(contact.point[0], contact.point[1], contact.point[2]);
-        const Eigen::Vector3d given(contact.normal[0], contact.normal[1], contact.normal[2]);
-        // A point on the surface of one is as far below the other's as the bodies are in each other.
+        const Eigen::Vector3d original(contact.normal[0], contact.normal[1], contact.normal[2]);
+        // A point on the surface of one body lies below the other's surface by the penetration.
         const double slack = nearness * pair_size(model, pair) + depths.at(bodies_of(pair));
         a.find(model, frame, pair.body_a, pair.tet_a, point, slack, 1);
         b.find(model, frame, pair.body_b, pair.tet_b, point, slack, -1);
-        const double off = outside(a.rays, b.rays, given);
-        if (off <= normal_rounding) return;
-        auto normal = brought_into(a.rays, b.rays, given);
-        const double left = outside(a.rays, b.rays, normal);
-        // Nothing in common: bodies that are in each other and tilted, or curved. Where that is by little a
-        // face decides for the corner or edge that is in it, as where they just touch; otherwise the point
-        // may be off the edge that carries, whose normal no face has.
-        if (left > normal_rounding && off < tilt && (a.rays.size() == 1) != (b.rays.size() == 1))
+        const double deviation = outside(a.rays, b.rays, original);
+        if (deviation <= normal_rounding) return;
+        auto normal = brought_into(a.rays, b.rays, original);
+        const double remaining = outside(a.rays, b.rays, normal);
+        // Penetrating bodies that are tilted or curved have no common direction. With a small deviation, the
+        // face defines the normal for the corner or edge inside it, as for bodies that just touch. Otherwise
+        // the point may be off the loaded edge, whose normal no face has.
+        if (remaining > normal_rounding && deviation < tilt && (a.rays.size() == 1) != (b.rays.size() == 1))
             normal = a.rays.size() == 1 ? a.rays[0] : b.rays[0];
-        else if (off <= 2 * left + normal_rounding)
+        else if (deviation <= 2 * remaining + normal_rounding)
             return;
         for (int i = 0; i < 3; ++i) contact.normal[static_cast<std::size_t>(i)] = normal[i];
-        contact.depth = -(a.way_out(normal) + b.way_out(normal));
+        contact.depth = -(a.exit_distance(normal) + b.exit_distance(normal));
     }
 };
 
 } // namespace
 
 void set_surface_normals(const Model& model, const Frame& frame, std::span<ContactPoint> contacts) {
-    constexpr std::size_t part = 256; // contacts a core takes at a time
+    constexpr std::size_t part = 256; // contacts a task
     const auto deforms = [&](std::uint32_t body) { return model.bodies[body].kind == Kind::soft; };
     const auto depths = deepest_of(contacts);
     parallel_for((contacts.size() + part - 1) / part, [&](std::size_t i) {
-        Mender mender{model, frame, depths, {}, {}};
+        NormalCorrector corrector{model, frame, depths, {}, {}};
         for (auto& contact : contacts.subspan(i * part, std::min(part, contacts.size() - i * part)))
-            if (!deforms(contact.pair.body_a) && !deforms(contact.pair.body_b)) mender.mend(contact);
+            if (!deforms(contact.pair.body_a) && !deforms(contact.pair.body_b)) corrector.correct(contact);
     });
 }
 

@@ -8,15 +8,15 @@
 
 namespace tandem::simulate {
 
-/// Contacts are made of two tetrahedra, which have faces inside of their bodies and edges that overlap by
-/// rounding alone: the way of the least translation may be one that no surface there has, as sideways on a
-/// level ground. A normal must be a sum, with weights of at least 0, of normals of boundary faces of body a
-/// near the contact, and backwards one of body b: of a face itself, of what lies between an edge's two faces,
-/// of what a corner's faces span. Normals that are not are turned into the nearest such, and the depth
-/// becomes that of the two surfaces along it through the contact's point. Where bodies in each other, tilted
-/// or curved, have no direction in common there, a normal stays unless it is far from both, or a little off
-/// the single face that one of them has there. Contacts of deformable bodies, and of tetrahedra that touch no
-/// boundary on either side, stay as they are.
+/// Replaces contact normals that no nearby surface has, such as sideways on level ground. They occur because
+/// a contact of two tetrahedra also depends on inner faces and on edges that overlap by rounding. A valid
+/// normal is a sum, with weights >= 0, of normals of boundary faces of body a near the contact; its opposite
+/// is such a sum of body b. These sums form a cone: the normal of a face, between those of an edge's faces,
+/// or between those of a corner's faces. An invalid normal is replaced by the nearest valid one. The new
+/// depth is that of the two surfaces along it through the contact's point. Tilted or curved bodies that
+/// penetrate can have disjoint cones. Then a normal is kept unless it is far from both cones, or slightly off
+/// the only nearby face of one body. Contacts of deformable bodies, and of tetrahedra off the boundary, are
+/// unchanged.
 void set_surface_normals(const Model& model, const Frame& frame, std::span<ContactPoint> contacts);
 
 } // namespace tandem::simulate

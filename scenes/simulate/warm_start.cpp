@@ -13,8 +13,9 @@ auto key(const Pair& pair, std::uint32_t feature) {
     return std::tuple(pair.body_a, pair.body_b, pair.tet_a, pair.tet_b, feature);
 }
 
-/// A world impulse seen from a row whose normal may have turned: no pull, no more friction than Coulomb's.
-Eigen::Vector3d seen_from(const ContactRow& row, const Eigen::Vector3d& value) {
+/// A world impulse in the axes of a row, whose normal may differ from the last step's. Limits it to no pull
+/// and to Coulomb friction.
+Eigen::Vector3d in_row_axes(const ContactRow& row, const Eigen::Vector3d& value) {
     Eigen::Vector3d result(std::max(0.0, dot(row.normal, value)), dot(row.tangent, value),
                            dot(row.binormal, value));
     const double radius = row.friction * result.x();
@@ -47,7 +48,7 @@ void reuse_impulses(std::span<const Impulse> impulses, double ratio, std::span<c
         while (next != impulses.end() && key(next->pair, next->feature) < wanted) ++next;
         if (next == impulses.end()) return;
         if (key(next->pair, next->feature) == wanted)
-            problem.rows[i].impulse = seen_from(problem.rows[i], ratio * next->value);
+            problem.rows[i].impulse = in_row_axes(problem.rows[i], ratio * next->value);
     }
 }
 
