@@ -13,20 +13,20 @@
 
 namespace tandem::read {
 
-/// Walks over binary data, little endian unless told otherwise. Shares get, room and fail with Scanner.
+/// Reads binary data value by value. Scanner has the same functions get, check_count and fail.
 class Cursor {
 public:
-    /// `where` opens every error: a file, or a place in one.
-    Cursor(std::string_view bytes, std::string where, std::size_t at = 0,
+    /// Every error begins with `location`: a file, or a location in one.
+    Cursor(std::string_view bytes, std::string location, std::size_t at = 0,
            std::endian order = std::endian::little)
-        : bytes_(bytes), where_(std::move(where)), order_(order), at_(at), value_(at) {}
+        : bytes_(bytes), location_(std::move(location)), order_(order), at_(at), value_(at) {}
 
-    /// The next T; fails at the end of the data and on a T that is not finite.
+    /// Reads the next T. Fails at the end of the data and when T is not finite.
     template<class T>
     T get(std::string_view what);
-    /// Fails unless n items of `bytes` bytes each can still follow.
-    void room(std::uint64_t n, std::size_t values, std::size_t bytes, std::string_view what) const;
-    /// Throws InputError that points at the last value.
+    /// Fails unless the rest of the data can contain n items of `bytes` bytes each.
+    void check_count(std::uint64_t n, std::size_t values, std::size_t bytes, std::string_view what) const;
+    /// Throws InputError with the position of the last value.
     [[noreturn]] void fail(std::string_view what, std::string_view remedy) const;
 
     std::size_t at() const { return at_; }
@@ -37,10 +37,10 @@ private:
     [[noreturn]] void fail_finite(std::string_view what) const;
 
     std::string_view bytes_;
-    std::string where_;
+    std::string location_;
     std::endian order_;
     std::size_t at_;
-    std::size_t value_; ///< where the last value starts
+    std::size_t value_; ///< position of the last value
 };
 
 template<class T>

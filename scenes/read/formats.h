@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-/// One parser per format; each throws InputError and leaves the check for an empty mesh to its caller.
+/// One parser per format. Each throws InputError; the caller checks for an empty mesh.
 namespace tandem::read {
 
 Mesh parse_gmsh(std::string_view bytes, const std::string& source);
@@ -15,7 +15,7 @@ Mesh parse_veg(std::string_view bytes, const std::string& source);
 Mesh parse_vtk(std::string_view bytes, const std::string& source);
 Mesh parse_vtu(std::string_view bytes, const std::string& source);
 
-/// Throws when there is no tetrahedron.
+/// Throws InputError when there is no tetrahedron.
 void require_tetrahedra(const Mesh& mesh, const std::string& source);
 
 } // namespace tandem::read

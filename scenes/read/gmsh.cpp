@@ -14,14 +14,14 @@ namespace {
 bool read_version(GmshFile& file) {
     auto& in = file.in;
     const auto version = in.token("the MSH version");
-    const bool two = version == "2.2" || version == "2.1" || version == "2" || version == "2.0";
-    if (!two && version != "4.1")
-        in.fail(fmt::format("MSH version {} is not read", in_quotes(version)), "save as MSH 2.2 or 4.1");
+    const bool is_version_2 = version == "2.2" || version == "2.1" || version == "2" || version == "2.0";
+    if (!is_version_2 && version != "4.1")
+        in.fail(fmt::format("MSH version {} is not supported", in_quotes(version)), "save as MSH 2.2 or 4.1");
     const int encoding = in.get<int>("the file type");
     if (encoding != 0 && encoding != 1)
         in.fail("the file type is neither 0 (ASCII) nor 1 (binary)", "export the file again");
     if (in.get<int>("the data size") != 8) in.fail("the data size is not 8", "save with doubles");
-    if (encoding == 0) return !two;
+    if (encoding == 0) return !is_version_2;
     file.binary = true;
     in.count_bytes();
     in.line();
@@ -30,10 +30,10 @@ bool read_version(GmshFile& file) {
         cursor.fail("the byte-order mark is not 1: the file is big endian",
                     "save on a little-endian machine");
     in.seek(cursor.at());
-    return !two;
+    return !is_version_2;
 }
 
-/// Found by its end: what is in between may be binary.
+/// Searches for the section's end, since its content can be binary.
 void skip_section(Scanner& in, std::string_view name) {
     const auto end = in.text().find(fmt::format("$End{}", name.substr(1)), in.at());
     if (end == std::string_view::npos)
@@ -42,7 +42,7 @@ void skip_section(Scanner& in, std::string_view name) {
     in.seek(end);
 }
 
-/// A count that is too small leaves numbers where the end should be.
+/// Reads the end of a section. Numbers in its place mean that the section's count is too small.
 void end_section(Scanner& in, std::string_view name) {
     const auto wanted = fmt::format("$End{}", name.substr(1));
     const auto word = in.token(wanted);
@@ -53,38 +53,39 @@ void end_section(Scanner& in, std::string_view name) {
 
 std::string_view section_name(Scanner& in) {
     const auto name = in.token("a section");
-    if (name == "$NOD") in.fail("MSH version 1 is not read", "save as MSH 2.2 or 4.1");
+    if (name == "$NOD") in.fail("MSH version 1 is not supported", "save as MSH 2.2 or 4.1");
     if (name == "$ParametricNodes")
-        in.fail("section $ParametricNodes is not read", "save without Mesh.SaveParametric, or as MSH 4.1");
+        in.fail("section $ParametricNodes is not supported",
+                "save without Mesh.SaveParametric, or as MSH 4.1");
     if (name[0] != '$' || name.size() < 2)
         in.fail(fmt::format("expected a section such as $Nodes, found {}", in_quotes(name)),
                 "correct the file or export it again");
     return name;
 }
 
-void read_nodes(GmshFile& file, bool four) {
+void read_nodes(GmshFile& file, bool is_version_4) {
     if (file.tags.size() > 0) file.in.fail("a second section $Nodes", "merge the two");
-    four ? read_nodes_4(file) : read_nodes_2(file);
-    if (const auto twice = file.tags.index())
-        file.in.fail(fmt::format("node {} occurs twice", *twice), "repair the mesh");
+    is_version_4 ? read_nodes_4(file) : read_nodes_2(file);
+    if (const auto duplicate = file.tags.index())
+        file.in.fail(fmt::format("node {} occurs twice", *duplicate), "repair the mesh");
 }
 
 } // namespace
 
 Mesh parse_gmsh(std::string_view bytes, const std::string& source) {
     GmshFile file{Scanner(bytes, source)};
-    std::optional<bool> four;
+    std::optional<bool> is_version_4;
     while (!file.in.done()) {
         const auto name = section_name(file.in);
         const bool nodes = name == "$Nodes", elements = name == "$Elements";
-        if ((nodes || elements) && !four)
+        if ((nodes || elements) && !is_version_4)
             file.in.fail(fmt::format("{} comes before $MeshFormat", name), "export the file again");
         if (name == "$MeshFormat")
-            four = read_version(file);
+            is_version_4 = read_version(file);
         else if (nodes)
-            read_nodes(file, *four);
+            read_nodes(file, *is_version_4);
         else if (elements)
-            *four ? read_elements_4(file) : read_elements_2(file);
+            *is_version_4 ? read_elements_4(file) : read_elements_2(file);
         else
             skip_section(file.in, name);
         end_section(file.in, name);

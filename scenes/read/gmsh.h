@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-/// What the two versions of Gmsh's MSH format share.
+/// Common parts of the two versions of Gmsh's MSH format.
 namespace tandem::read {
 
 /// Maps node tags, which may have gaps and any order, to indices in the order of the file.
@@ -19,14 +19,14 @@ class NodeTags {
 public:
     void reserve(std::size_t n) { tags_.reserve(n); }
     void add(std::uint64_t tag);
-    /// Call once after the last add; returns a tag that occurs twice, if any.
+    /// Call once after the last add. Returns a duplicate tag, or none.
     std::optional<std::uint64_t> index();
     std::optional<std::uint32_t> find(std::uint64_t tag) const;
     std::size_t size() const { return tags_.size(); }
 
 private:
     std::vector<std::uint64_t> tags_;
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted_; ///< empty while tags count up by one
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted_; ///< empty when tags are consecutive
     bool consecutive_ = true;
 };
 
@@ -49,13 +49,13 @@ constexpr int gmsh_tetrahedron = 4;
 /// The type with this id, or none.
 std::optional<ElementType> element_type(int id);
 
-/// The sections $Nodes and $Elements, from behind their name to before their end.
+/// Read the contents of sections $Nodes and $Elements, without name and end.
 void read_nodes_2(GmshFile& file);
 void read_elements_2(GmshFile& file);
 void read_nodes_4(GmshFile& file);
 void read_elements_4(GmshFile& file);
 
-/// The type of elements to read (a tetrahedron) or to skip (lower dimension); fails on all others.
+/// The type of elements to read (tetrahedra) or to skip (lower dimension). Fails for all other types.
 template<class In>
 ElementType require_type(const In& in, int id) {
     const auto type = element_type(id);
@@ -69,7 +69,7 @@ ElementType require_type(const In& in, int id) {
     return *type;
 }
 
-/// Reads the nodes of one element, each a Tag; keeps tetrahedra.
+/// Reads the nodes of one element, each of type Tag. Adds tetrahedra to the mesh.
 template<class Tag, class In>
 void read_corners(In& in, const ElementType& type, const NodeTags& tags, Mesh& mesh) {
     if (type.id != gmsh_tetrahedron) {
@@ -86,7 +86,7 @@ void read_corners(In& in, const ElementType& type, const NodeTags& tags, Mesh& m
     mesh.tetrahedra.push_back(corners);
 }
 
-/// Runs `body` on the section's text or on its binary data, which start on the next line.
+/// Runs `body` on the section's text, or on its binary data, which start on the next line.
 template<class Body>
 void in_encoding(GmshFile& file, Body body) {
     if (!file.binary) return body(file.in);

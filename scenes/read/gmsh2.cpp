@@ -8,7 +8,7 @@ namespace {
 
 template<class In>
 void read_nodes(In& in, std::uint64_t n, GmshFile& file) {
-    in.room(n, 4, 28, "nodes");
+    in.check_count(n, 4, 28, "nodes");
     file.tags.reserve(n);
     file.mesh.vertices.reserve(n);
     for (std::uint64_t i = 0; i < n; ++i) {
@@ -24,7 +24,7 @@ void read_element(In& in, const ElementType& type, std::int32_t tags, GmshFile& 
 }
 
 void read_elements(Scanner& in, std::uint64_t n, GmshFile& file) {
-    in.room(n, 4, 0, "elements");
+    in.check_count(n, 4, 0, "elements");
     for (std::uint64_t i = 0; i < n; ++i) {
         in.get<std::int32_t>("the number of an element");
         const auto type = require_type(in, in.get<std::int32_t>("the type of an element"));
@@ -32,9 +32,9 @@ void read_elements(Scanner& in, std::uint64_t n, GmshFile& file) {
     }
 }
 
-/// Elements come in runs that share their type and number of tags.
+/// Elements are stored in runs of equal type and number of tags.
 void read_elements(Cursor& in, std::uint64_t n, GmshFile& file) {
-    in.room(n, 0, 8, "elements");
+    in.check_count(n, 0, 8, "elements");
     for (std::uint64_t done = 0; done < n;) {
         const auto type = require_type(in, in.get<std::int32_t>("the type of elements"));
         const auto run = in.get<std::int32_t>("the number of elements of a type");

@@ -6,7 +6,7 @@ namespace tandem::read {
 
 namespace {
 
-/// A section's first line: blocks, entities, and the range of their tags, which nobody needs.
+/// Counts of a section's first line. The range of tags in this line is not used.
 struct Totals {
     std::uint64_t blocks;
     std::uint64_t entities;
@@ -25,14 +25,14 @@ Totals read_totals(In& in) {
 template<class In>
 void check_total(const In& in, std::uint64_t sum, std::uint64_t total, std::string_view what) {
     if (sum != total)
-        in.fail(fmt::format("the blocks hold {} {}, the first line says {}", sum, what, total),
+        in.fail(fmt::format("the blocks have {} {}, the first line announces {}", sum, what, total),
                 "export the file again");
 }
 
 template<class In>
 void read_nodes(In& in, GmshFile& file) {
     const auto totals = read_totals(in);
-    in.room(totals.entities, 4, 32, "nodes");
+    in.check_count(totals.entities, 4, 32, "nodes");
     file.tags.reserve(totals.entities);
     file.mesh.vertices.reserve(totals.entities);
     for (std::uint64_t block = 0; block < totals.blocks; ++block) {
@@ -40,7 +40,7 @@ void read_nodes(In& in, GmshFile& file) {
         in.template get<std::int32_t>("the tag of an entity");
         const bool parametric = in.template get<std::int32_t>("the parametric flag") != 0;
         const auto n = in.template get<std::uint64_t>("the number of nodes in a block");
-        in.room(n, 4, 32, "nodes");
+        in.check_count(n, 4, 32, "nodes");
         for (std::uint64_t i = 0; i < n; ++i)
             file.tags.add(in.template get<std::uint64_t>("the tag of a node"));
         for (std::uint64_t i = 0; i < n; ++i) {
@@ -56,7 +56,7 @@ void read_nodes(In& in, GmshFile& file) {
 template<class In>
 void read_elements(In& in, GmshFile& file) {
     const auto totals = read_totals(in);
-    in.room(totals.entities, 2, 16, "elements");
+    in.check_count(totals.entities, 2, 16, "elements");
     std::uint64_t sum = 0;
     for (std::uint64_t block = 0; block < totals.blocks; ++block) {
         in.template get<std::int32_t>("the dimension of an entity");
@@ -64,7 +64,7 @@ void read_elements(In& in, GmshFile& file) {
         const auto type = require_type(in, in.template get<std::int32_t>("the type of elements"));
         const auto n = in.template get<std::uint64_t>("the number of elements in a block");
         const auto columns = 1 + static_cast<std::size_t>(type.nodes);
-        in.room(n, columns, 8 * columns, "elements");
+        in.check_count(n, columns, 8 * columns, "elements");
         for (std::uint64_t i = 0; i < n; ++i) {
             in.template get<std::uint64_t>("the tag of an element");
             read_corners<std::uint64_t>(in, type, file.tags, file.mesh);

@@ -58,15 +58,16 @@ void NodeTags::add(std::uint64_t tag) {
     tags_.push_back(tag);
 }
 
-/// Most files number nodes in a row, which needs no table; the first tag that occurs twice otherwise.
+/// Builds the sorted table of tags and returns the first duplicate. Consecutive tags, as in most files, need
+/// no table.
 std::optional<std::uint64_t> NodeTags::index() {
     if (consecutive_) return std::nullopt;
     sorted_.reserve(tags_.size());
     for (std::uint32_t i = 0; i < tags_.size(); ++i) sorted_.emplace_back(tags_[i], i);
     std::sort(sorted_.begin(), sorted_.end());
-    const auto twice = std::adjacent_find(sorted_.begin(), sorted_.end(),
-                                          [](const auto& a, const auto& b) { return a.first == b.first; });
-    return twice == sorted_.end() ? std::nullopt : std::optional(twice->first);
+    const auto duplicate = std::adjacent_find(
+        sorted_.begin(), sorted_.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
+    return duplicate == sorted_.end() ? std::nullopt : std::optional(duplicate->first);
 }
 
 std::optional<std::uint32_t> NodeTags::find(std::uint64_t tag) const {

@@ -10,7 +10,7 @@ namespace tandem::read {
 
 namespace {
 
-/// Volume cells other than Tetrahedra; their second-order names start the same way.
+/// Prefixes of unsupported volume cells, including second-order tetrahedra.
 constexpr std::array<std::string_view, 6> foreign = {"Tetrahedra", "Hexahedra", "Hexaedra",
                                                      "Prisms",     "Wedges",    "Pyramids"};
 
@@ -18,12 +18,12 @@ bool is_foreign(std::string_view keyword) {
     return std::any_of(foreign.begin(), foreign.end(), [&](auto name) { return keyword.starts_with(name); });
 }
 
-/// Keywords begin with a letter, numbers never do.
+/// Keywords begin with a letter; numbers do not.
 bool is_keyword(std::string_view token) {
     return (token[0] >= 'A' && token[0] <= 'Z') || (token[0] >= 'a' && token[0] <= 'z');
 }
 
-/// Passes the numbers of a section that holds no tetrahedra.
+/// Skips the numbers of a section.
 void skip_numbers(Scanner& in) {
     while (!in.done()) {
         const auto start = in.at();
@@ -35,7 +35,7 @@ void skip_numbers(Scanner& in) {
 
 void read_vertices(Scanner& in, Mesh& mesh) {
     const auto n = in.get<std::uint64_t>("the number of vertices");
-    in.room(n, 4, 0, "vertices");
+    in.check_count(n, 4, 0, "vertices");
     mesh.vertices.reserve(n);
     for (std::uint64_t i = 0; i < n; ++i) {
         mesh.vertices.push_back(get_point(in));
@@ -47,7 +47,7 @@ void read_tetrahedra(Scanner& in, Mesh& mesh) {
     if (mesh.vertices.empty())
         in.fail("Tetrahedra come before Vertices", "write Vertices first, or export the file again");
     const auto n = in.get<std::uint64_t>("the number of tetrahedra");
-    in.room(n, 5, 0, "tetrahedra");
+    in.check_count(n, 5, 0, "tetrahedra");
     mesh.tetrahedra.reserve(mesh.tetrahedra.size() + n);
     for (std::uint64_t i = 0; i < n; ++i) {
         mesh.tetrahedra.push_back(get_tetrahedron(in, 1, mesh.vertices.size()));

@@ -24,7 +24,7 @@ using Parser = Mesh (*)(std::string_view, const std::string&);
 
 struct Format {
     std::string_view suffix;
-    std::array<std::string_view, 3> openings; ///< what the first token of the file starts with
+    std::array<std::string_view, 3> openings; ///< possible first characters of the file
     Parser parse;
 };
 
@@ -48,9 +48,9 @@ bool opens(std::string_view text, const Format& format) {
                        [&](auto opening) { return !opening.empty() && text.starts_with(opening); });
 }
 
-/// A file is what it begins with; its name counts only where that says nothing.
+/// The format by the file's first characters; null when they are unknown.
 const Format* by_content(std::string_view bytes) {
-    // The signature of legacy VTK looks like a comment of the other text formats.
+    // The signature of legacy VTK has the syntax of a comment in the other text formats.
     if (opens(bytes, formats[3])) return &formats[3];
     read::Scanner in(bytes, "", '#');
     in.done();
@@ -79,7 +79,7 @@ std::string load(const fs::path& path) {
     return bytes;
 }
 
-/// `path` is one half of a TetGen mesh, `is_node` tells which.
+/// Reads a TetGen mesh. `path` is its .node file when `is_node` is true, else its .ele file.
 Mesh read_pair(const fs::path& path, bool is_node) {
     const auto partner = fs::path(path).replace_extension(is_node ? ".ele" : ".node");
     const auto bytes = load(path);

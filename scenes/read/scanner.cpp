@@ -20,7 +20,7 @@ std::size_t line_of(std::string_view text, std::size_t at) {
     return 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
 }
 
-/// For messages, which are one line of printable text whatever the file holds.
+/// Messages are one line of printable text for any content of the file.
 std::string in_quotes(std::string_view token) {
     constexpr std::size_t longest = 40;
     std::string shown(token.substr(0, longest));
@@ -29,7 +29,6 @@ std::string in_quotes(std::string_view token) {
     return "'" + shown + (token.size() > longest ? "...'" : "'");
 }
 
-/// Passes blanks and comments.
 bool Scanner::done() {
     while (at_ < text_.size()) {
         if (comment_ != '\0' && text_[at_] == comment_)
@@ -58,11 +57,11 @@ std::string_view Scanner::line() {
     return text_.substr(token_, end - token_ - (windows ? 1 : 0));
 }
 
-void Scanner::room(std::uint64_t n, std::size_t values, std::size_t, std::string_view what) const {
-    // A number takes a digit and a separator, which the last one may lack.
+void Scanner::check_count(std::uint64_t n, std::size_t values, std::size_t, std::string_view what) const {
+    // A number has at least one digit and a separator; the last one may have no separator.
     const std::uint64_t left = (text_.size() - at_ + 1) / (2 * values);
     if (n > left || n > std::numeric_limits<std::uint32_t>::max())
-        fail(fmt::format("{} {} announced, but the rest of the file has room for {} at most", n, what, left),
+        fail(fmt::format("{} {} announced, but the rest of the file can contain at most {}", n, what, left),
              "correct the count or export the file again");
 }
 

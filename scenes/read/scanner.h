@@ -11,39 +11,39 @@
 
 namespace tandem::read {
 
-/// The line, from 1, of byte `at`. Counted only for errors, so that scanning needs no counter.
+/// The line, from 1, of byte `at`. Only errors call it, so that scanning needs no counter.
 std::size_t line_of(std::string_view text, std::size_t at);
 
-/// `token` between quotes, shortened and printable.
+/// `token` in quotes, for messages: at most 40 characters, '?' for others than printable ASCII.
 std::string in_quotes(std::string_view token);
 
-/// Walks over text token by token. Shares get, room and fail with Cursor, so that one template reads a layout
-/// in both encodings.
+/// Reads text token by token. Cursor has the same functions get, check_count and fail, so that one template
+/// reads a layout in both encodings.
 class Scanner {
 public:
-    /// `comment` starts a comment that ends with its line; '\0' for none.
+    /// `comment` starts a comment up to the end of the line; '\0': no comments.
     Scanner(std::string_view text, const std::string& source, char comment = '\0', std::size_t at = 0)
         : text_(text), source_(source), comment_(comment), at_(at), token_(at) {}
 
     /// Skips blanks and comments; true at the end of the text.
     bool done();
-    /// The next token; `what` names it when the text ends before it.
+    /// The next token. Fails at the end of the text; the message calls the token `what`.
     std::string_view token(std::string_view what);
-    /// The rest of the current line, which it passes.
+    /// Returns and skips the rest of the current line.
     std::string_view line();
-    /// The next number, whole or finite by T.
+    /// The next number: an integer, or a finite floating-point number.
     template<class T>
     T get(std::string_view what);
-    /// Fails unless n items of `values` numbers each can still follow.
-    void room(std::uint64_t n, std::size_t values, std::size_t bytes, std::string_view what) const;
-    /// Throws InputError that points at the last token.
+    /// Fails unless the rest of the text can contain n items of `values` numbers each.
+    void check_count(std::uint64_t n, std::size_t values, std::size_t bytes, std::string_view what) const;
+    /// Throws InputError with the position of the last token.
     [[noreturn]] void fail(std::string_view what, std::string_view remedy) const;
 
     std::string_view text() const { return text_; }
     const std::string& source() const { return source_; }
     std::size_t at() const { return at_; }
     void seek(std::size_t at) { at_ = token_ = at; }
-    /// Errors name a byte from here on: the file mixes text with binary data.
+    /// Later errors give a byte instead of a line, for files with text and binary data.
     void count_bytes() { bytes_ = true; }
 
 private:
@@ -55,7 +55,7 @@ private:
     char comment_;
     bool bytes_ = false;
     std::size_t at_;
-    std::size_t token_; ///< where the last token starts
+    std::size_t token_; ///< position of the last token
 };
 
 template<class T>

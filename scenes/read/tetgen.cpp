@@ -10,7 +10,7 @@ namespace {
 
 using read::Scanner;
 
-/// The numbers of the first line; columns that it lacks are 0.
+/// The numbers of the first line; missing columns are 0.
 struct Header {
     std::uint64_t count = 0;
     std::uint64_t width = 0; ///< .node: dimension; .ele: vertices per tetrahedron
@@ -29,7 +29,7 @@ Header read_header(Scanner& in) {
     return header;
 }
 
-/// Rows are numbered without gaps; anything else means that the columns are not what the header says.
+/// Rows are numbered without gaps. Another number means that the columns do not match the header.
 void check_row(Scanner& in, std::uint64_t wanted) {
     if (in.get<std::uint64_t>("the number of a row") != wanted)
         in.fail(fmt::format("expected the row with number {}", wanted),
@@ -44,7 +44,7 @@ void skip_columns(Scanner& in, std::uint64_t n) {
 std::uint64_t read_nodes(Scanner& in, Mesh& mesh) {
     const auto header = read_header(in);
     if (header.width != 3) in.fail("the dimension is not 3", "give a volume mesh");
-    in.room(header.count, 4, 0, "vertices");
+    in.check_count(header.count, 4, 0, "vertices");
     mesh.vertices.reserve(header.count);
     std::uint64_t first = 0;
     for (std::uint64_t i = 0; i < header.count; ++i) {
@@ -68,7 +68,7 @@ void read_elements(Scanner& in, std::uint64_t first, Mesh& mesh) {
     if (header.width != 4)
         in.fail(fmt::format("cells of {} vertices are not tetrahedra", header.width),
                 "give 4 vertices a cell");
-    in.room(header.count, 5, 0, "tetrahedra");
+    in.check_count(header.count, 5, 0, "tetrahedra");
     mesh.tetrahedra.reserve(header.count);
     for (std::uint64_t i = 0; i < header.count; ++i) {
         check_row(in, first + i);
@@ -80,9 +80,9 @@ void read_elements(Scanner& in, std::uint64_t first, Mesh& mesh) {
 
 void check_end(Scanner& in) {
     if (!in.done())
-        in.fail(
-            fmt::format("more rows than the first line says, found {}", read::in_quotes(in.token("a row"))),
-            "correct the count");
+        in.fail(fmt::format("more rows than the first line announces, found {}",
+                            read::in_quotes(in.token("a row"))),
+                "correct the count");
 }
 
 } // namespace

@@ -11,7 +11,7 @@ namespace {
 std::int64_t read_vertices(Scanner& in, Mesh& mesh) {
     const auto n = in.get<std::uint64_t>("the number of vertices");
     in.line(); // dimension and two zeros
-    in.room(n, 4, 0, "vertices");
+    in.check_count(n, 4, 0, "vertices");
     mesh.vertices.reserve(n);
     std::int64_t first = 1;
     for (std::uint64_t i = 0; i < n; ++i) {
@@ -32,7 +32,7 @@ void read_elements(Scanner& in, std::int64_t first, Mesh& mesh) {
                 "split them into linear tetrahedra");
     const auto n = in.get<std::uint64_t>("the number of elements");
     in.line(); // vertices per element and a zero
-    in.room(n, 5, 0, "tetrahedra");
+    in.check_count(n, 5, 0, "tetrahedra");
     mesh.tetrahedra.reserve(n);
     for (std::uint64_t i = 0; i < n; ++i) {
         in.get<std::int64_t>("the number of an element");
@@ -53,7 +53,7 @@ Mesh parse_veg(std::string_view bytes, const std::string& source) {
         else if (word == "*ELEMENTS")
             read_elements(in, first, mesh);
         else if (word == "*INCLUDE")
-            in.fail("*INCLUDE is not read", "put the vertices and elements into this file");
+            in.fail("*INCLUDE is not supported", "put the vertices and elements into this file");
         else
             in.line(); // materials, sets and regions
     }

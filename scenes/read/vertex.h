@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
-/// Pieces that every format has; In is Scanner or Cursor.
+/// Common parts of all formats. In is Scanner or Cursor.
 namespace tandem::read {
 
 template<class In>
@@ -17,7 +17,7 @@ Eigen::Vector3d get_point(In& in) {
     return {x, y, z};
 }
 
-/// `index`, counted from `first`, as an index from 0 into `count` vertices.
+/// Converts `index`, counted from `first`, to an index from 0 into `count` vertices. Fails when out of range.
 template<class In>
 std::uint32_t check_index(const In& in, std::int64_t index, std::int64_t first, std::size_t count) {
     const auto last = first + static_cast<std::int64_t>(count) - 1;

@@ -13,7 +13,7 @@ struct File {
     VtkCells cells = {};
 };
 
-/// Runs `body` on text or on binary data, big endian, which start on the next line.
+/// Runs `body` on text, or on big-endian binary data, which start on the next line.
 template<class Body>
 void in_encoding(File& file, Body body) {
     if (!file.binary) return body(file.in);
@@ -33,7 +33,7 @@ Number get_type(Scanner& in) {
     const auto name = in.token("a number type");
     const auto type = number_type(name);
     if (!type)
-        in.fail(fmt::format("number type {} is not read", in_quotes(name)),
+        in.fail(fmt::format("number type {} is not supported", in_quotes(name)),
                 "save as float or double, and int");
     return *type;
 }
@@ -53,10 +53,10 @@ void read_header(File& file) {
     expect(in, "UNSTRUCTURED_GRID");
 }
 
-/// Each cell is its number of vertices, then these.
+/// Reads cells, each stored as its number of vertices followed by the vertices.
 template<class In>
 void read_rows(In& in, std::uint64_t n, std::uint64_t size, File& file) {
-    in.room(size, 1, 4, "numbers of cells");
+    in.check_count(size, 1, 4, "numbers of cells");
     if (n > size) in.fail(fmt::format("{} cells in {} numbers", n, size), "correct the counts of CELLS");
     file.cells.ends.reserve(n);
     std::uint64_t left = size;
@@ -74,7 +74,7 @@ void read_rows(In& in, std::uint64_t n, std::uint64_t size, File& file) {
     if (left > 0) in.fail(fmt::format("{} numbers are left over", left), "correct the counts of CELLS");
 }
 
-/// Version 5: the offsets of all cells and one more, then the vertices of all.
+/// Reads cells of version 5: the offsets of all cells plus one, then the vertices of all cells.
 void read_offsets(File& file, std::uint64_t n, std::uint64_t size) {
     auto& in = file.in;
     expect(in, "OFFSETS");
@@ -121,7 +121,7 @@ void skip_value(Cursor& in, Number type) {
     for (std::size_t byte = 0; byte < size_of(type); ++byte) in.get<char>("a value of a field");
 }
 
-/// FIELD holds arrays of no use here: name, components, tuples, type, data.
+/// Skips the arrays of FIELD: name, components, tuples, type, data.
 void skip_field(File& file) {
     auto& in = file.in;
     in.token("the name of a field");
@@ -138,7 +138,7 @@ void skip_field(File& file) {
     }
 }
 
-/// METADATA ends with an empty line.
+/// Skips METADATA, which ends with an empty line.
 void skip_metadata(Scanner& in) {
     in.line();
     while (!in.line().empty()) {}

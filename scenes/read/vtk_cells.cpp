@@ -33,7 +33,7 @@ struct VtkCell {
     std::string_view name;
 };
 
-/// VTK's vtkCellType.h: the cells of dimension 3 ...
+/// Cells of dimension 3, from VTK's vtkCellType.h.
 constexpr std::array volume_cells = {
     VtkCell{11, "voxel"},
     VtkCell{12, "hexahedron"},
@@ -61,7 +61,7 @@ constexpr std::array volume_cells = {
     VtkCell{81, "Bezier pyramid"},
 };
 
-/// ... and those below.
+/// Cells of lower dimension.
 constexpr std::array<std::int64_t, 27> flat_cells = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  21, 22, 23, 28,
                                                      30, 34, 35, 36, 51, 68, 69, 70, 75, 76, 77, 60, 61};
 

@@ -11,13 +11,13 @@
 #include <string_view>
 #include <vector>
 
-/// What the legacy and the XML format of VTK share.
+/// Common parts of VTK's legacy and XML formats.
 namespace tandem::read {
 
-/// The type of the numbers in an array; text ignores it.
+/// The type of the numbers in an array. Text encodings ignore it.
 enum class Number { f32, f64, i8, u8, i16, u16, i32, u32, i64, u64 };
 
-/// The type by either format's name: float, Float32, vtktypeint64, ...
+/// The type by its name in either format: float, Float32, vtktypeint64, ...
 std::optional<Number> number_type(std::string_view name);
 std::size_t size_of(Number type);
 
@@ -26,20 +26,20 @@ double get_real(Cursor& in, Number type, std::string_view what);
 std::int64_t get_whole(Scanner& in, Number type, std::string_view what);
 std::int64_t get_whole(Cursor& in, Number type, std::string_view what);
 
-/// All cells of a file: cell i has the vertices from ends[i-1] (or 0) to ends[i].
+/// All cells of a file. Cell i has the vertices from ends[i-1] (or 0) to ends[i].
 struct VtkCells {
     std::vector<std::uint32_t> vertices;
     std::vector<std::uint64_t> ends;
 };
 
-/// "" for a cell of lower dimension, which is skipped; else the name of a volume cell or of an unknown one.
+/// The name of a volume cell, or "unknown". Returns "" for a cell of lower dimension, which is skipped.
 std::string_view volume_cell(std::int64_t type);
 
 constexpr std::int64_t vtk_tetrahedron = 10;
 
 template<class In>
 void read_points(In& in, Number type, std::uint64_t n, Mesh& mesh) {
-    in.room(n, 3, 3 * size_of(type), "points");
+    in.check_count(n, 3, 3 * size_of(type), "points");
     mesh.vertices.reserve(mesh.vertices.size() + n);
     for (std::uint64_t i = 0; i < n; ++i) {
         const double x = get_real(in, type, "coordinate x");
@@ -52,22 +52,22 @@ void read_points(In& in, Number type, std::uint64_t n, Mesh& mesh) {
 /// Reads n vertex numbers into `cells`, each below `points`.
 template<class In>
 void read_connectivity(In& in, Number type, std::uint64_t n, std::size_t points, VtkCells& cells) {
-    in.room(n, 1, size_of(type), "vertex numbers");
+    in.check_count(n, 1, size_of(type), "vertex numbers");
     cells.vertices.reserve(cells.vertices.size() + n);
     for (std::uint64_t i = 0; i < n; ++i)
         cells.vertices.push_back(check_index(in, get_whole(in, type, "a vertex number"), 0, points));
 }
 
-/// Reads the ends of n cells; the connectivity may still be to come.
+/// Reads the ends of n cells. The connectivity can follow later in the file.
 template<class In>
 void read_ends(In& in, Number type, std::uint64_t n, VtkCells& cells) {
-    in.room(n, 1, size_of(type), "offsets");
+    in.check_count(n, 1, size_of(type), "offsets");
     cells.ends.reserve(n);
     std::uint64_t last = 0;
     for (std::uint64_t i = 0; i < n; ++i) {
         const auto end = get_whole(in, type, "an offset");
         if (end < 0 || static_cast<std::uint64_t>(end) < last)
-            in.fail(fmt::format("offset {} is below the one before", end), "export the file again");
+            in.fail(fmt::format("offset {} is below the previous offset", end), "export the file again");
         last = static_cast<std::uint64_t>(end);
         cells.ends.push_back(last);
     }
@@ -76,7 +76,7 @@ void read_ends(In& in, Number type, std::uint64_t n, VtkCells& cells) {
 /// Reads the types of all cells and keeps the tetrahedra, whose vertex numbers count from `base`.
 template<class In>
 void read_types(In& in, Number type, const VtkCells& cells, std::size_t base, Mesh& mesh) {
-    in.room(cells.ends.size(), 1, size_of(type), "cell types");
+    in.check_count(cells.ends.size(), 1, size_of(type), "cell types");
     std::uint64_t begin = 0;
     for (const auto end : cells.ends) {
         const auto kind = get_whole(in, type, "a cell type");

@@ -10,7 +10,7 @@ namespace tandem::read {
 
 namespace {
 
-/// One part of the grid; its vertex numbers count from its own first point.
+/// One part of the grid. Its vertex numbers are relative to its first point.
 struct Piece {
     Tag tag = {};
     std::optional<Tag> points = {};
@@ -23,7 +23,7 @@ Tag read_root(Xml& xml) {
     const auto root = xml.next();
     if (!root || root->name != "VTKFile") xml.fail(0, "expected the tag VTKFile", "give a .vtu file");
     if (root->get("type") != "UnstructuredGrid")
-        xml.fail(root->at, fmt::format("VTKFile of type {} is not read", in_quotes(root->get("type"))),
+        xml.fail(root->at, fmt::format("VTKFile of type {} is not supported", in_quotes(root->get("type"))),
                  "give an UnstructuredGrid");
     return *root;
 }
@@ -53,7 +53,7 @@ std::vector<Piece> read_structure(Xml& xml, VtuData& data) {
             add_array(pieces.back(), section, *tag);
         } else if (tag->name == "AppendedData") {
             data.set_appended(*tag);
-            return pieces; // what follows need not be XML
+            return pieces; // the rest may not be XML
         } else if (tag->name == "/VTKFile") {
             ended = true;
         }

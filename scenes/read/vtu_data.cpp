@@ -21,7 +21,7 @@ VtuData::VtuData(const Xml& xml, const Tag& file) : xml_(xml) {
     header_size_ = header == "UInt32" ? 4 : 8;
     const auto compressor = file.get("compressor");
     if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
-        xml.fail(file.at, fmt::format("compressor {} is not read", in_quotes(compressor)),
+        xml.fail(file.at, fmt::format("compressor {} is not supported", in_quotes(compressor)),
                  "save with vtkZLibDataCompressor or without compression");
     compressed_ = !compressor.empty();
 }
@@ -41,7 +41,7 @@ void VtuData::set_appended(const Tag& tag) {
 Number VtuData::type_of(const Tag& array) const {
     const auto type = number_type(array.get("type"));
     if (!type)
-        xml_.fail(array.at, fmt::format("number type {} is not read", in_quotes(array.get("type"))),
+        xml_.fail(array.at, fmt::format("number type {} is not supported", in_quotes(array.get("type"))),
                   "save as Float32 or Float64, and Int32 or Int64");
     return *type;
 }
@@ -73,7 +73,7 @@ VtuData::Block VtuData::block_of(const Tag& array) const {
 
 /// The first `bytes` bytes of a block.
 std::string VtuData::head(const Block& block, std::uint64_t bytes) const {
-    // Base64 needs more characters than it holds bytes, so this bounds the allocation in both encodings.
+    // Base64 has more characters than bytes, so that this limits the allocation in both encodings.
     const bool fits = bytes <= block.stored.size();
     if (fits && !block.base64) return std::string(block.stored.substr(0, bytes));
     auto data = fits ? decode_base64(block.stored, bytes) : std::string();
@@ -89,7 +89,7 @@ std::uint64_t VtuData::header_value(std::string_view data, std::size_t i) const 
     return header_size_ == 4 ? in.get<std::uint32_t>("a header") : in.get<std::uint64_t>("a header");
 }
 
-/// A block is a header with its number of bytes, and these.
+/// Decodes a block: a header with the number of bytes, then the bytes.
 std::string VtuData::decode(const Block& block) const {
     if (compressed_) return inflate(block);
     const auto bytes = header_value(head(block, header_size_), 0);
@@ -97,8 +97,8 @@ std::string VtuData::decode(const Block& block) const {
     return head(block, header_size_ + bytes).substr(header_size_);
 }
 
-/// A compressed block has the header: number of parts, size of a part, size of the last part if that is
-/// smaller, and the compressed size of each.
+/// Decompresses a block. Its header has the number of parts, the size of a part, the size of the last part if
+/// smaller, and the compressed size of each part.
 std::string VtuData::inflate(const Block& block) const {
     const auto start = head(block, header_size_);
     const auto parts = header_value(start, 0);
@@ -113,11 +113,11 @@ std::string VtuData::inflate(const Block& block) const {
     }
     const auto data = head(block, stored);
     const auto whole = header_value(header, 1), last = header_value(header, 2);
-    constexpr std::uint64_t best_ratio = 1032; // of deflate, by zlib's technical notes
+    constexpr std::uint64_t best_ratio = 1032; // largest ratio of deflate, by zlib's technical notes
     const auto most = best_ratio * data.size();
     const auto end = last != 0 ? std::min(last, whole) : whole;
     if (end > most || (parts > 1 && whole > most / (parts - 1)))
-        xml_.fail(block.tag, fmt::format("{} bytes cannot hold {} parts of {}", data.size(), parts, whole),
+        xml_.fail(block.tag, fmt::format("{} bytes cannot contain {} parts of {}", data.size(), parts, whole),
                   "copy or export the file again");
     std::string result;
     std::size_t at = header.size();

@@ -10,24 +10,24 @@
 
 namespace tandem::read {
 
-/// The data arrays of a .vtu file: text, or base64 or raw binary, inline or appended, compressed or not.
+/// The data arrays of a .vtu file: text, base64 or raw binary; inline or appended; compressed or not.
 class VtuData {
 public:
     /// `file` is the tag VTKFile.
     VtuData(const Xml& xml, const Tag& file);
 
-    /// Names the tag AppendedData, to which arrays refer by offset.
+    /// Sets the tag AppendedData, to which arrays refer by offset.
     void set_appended(const Tag& tag);
-    /// Runs body(In&, Number) on the numbers of a DataArray; fails when it leaves some.
+    /// Runs body(In&, Number) on the numbers of a DataArray. Fails when numbers remain unread.
     template<class Body>
     void with_array(const Tag& array, Body body) const;
 
 private:
-    /// A block as the file holds it: base64 or raw.
+    /// A block as stored in the file: base64 or raw.
     struct Block {
         std::string_view stored;
         bool base64;
-        std::size_t tag; ///< of the array, for errors
+        std::size_t tag; ///< position of the array's tag, for errors
     };
 
     Number type_of(const Tag& array) const;
@@ -42,7 +42,7 @@ private:
     std::endian order_ = std::endian::little;
     std::size_t header_size_ = 4;
     bool compressed_ = false;
-    std::size_t appended_ = 0; ///< of the first byte behind the '_'; 0 for none
+    std::size_t appended_ = 0; ///< position of the first byte after '_'; 0: no AppendedData
     bool appended_base64_ = false;
 };
 

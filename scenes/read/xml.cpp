@@ -15,10 +15,10 @@ constexpr std::string_view blanks = " \t\r\n";
 
 } // namespace
 
-std::string_view Tag::get(std::string_view attribute, std::string_view otherwise) const {
+std::string_view Tag::get(std::string_view attribute, std::string_view fallback) const {
     const auto found = std::find_if(attributes.begin(), attributes.end(),
                                     [&](const auto& entry) { return entry.first == attribute; });
-    return found == attributes.end() ? otherwise : found->second;
+    return found == attributes.end() ? fallback : found->second;
 }
 
 void Xml::fail(std::size_t at, std::string_view what, std::string_view remedy) const {
@@ -32,7 +32,7 @@ std::size_t Xml::find(std::string_view end, std::size_t from, std::size_t tag) c
     return at;
 }
 
-/// Comments, declarations and processing instructions are passed over.
+/// Skips comments, declarations and processing instructions.
 std::optional<Tag> Xml::next() {
     while (true) {
         const auto open = text_.find('<', at_);
@@ -52,7 +52,8 @@ std::optional<Tag> Xml::next() {
     }
 }
 
-/// Either quote; entities are left as they are, since no name or number of the format needs one.
+/// Accepts single and double quotes. Entities are not decoded, since names and numbers of the format have
+/// none.
 void Xml::read_attributes(Tag& tag, std::string_view inside) const {
     auto at = std::min(inside.find_first_of(blanks), inside.size());
     tag.name = inside.substr(0, at);

@@ -12,23 +12,23 @@ namespace tandem::read {
 /// A start tag, or an end tag, whose name begins with '/'. Views into the file.
 struct Tag {
     std::string_view name;
-    std::size_t at = 0;      ///< of its '<'
-    std::size_t content = 0; ///< behind its '>'
+    std::size_t at = 0;      ///< position of '<'
+    std::size_t content = 0; ///< position after '>'
     bool closed = false;     ///< <name/>: no content, no end tag
     std::vector<std::pair<std::string_view, std::string_view>> attributes = {};
 
-    /// The value of an attribute; `otherwise` when there is none.
-    std::string_view get(std::string_view attribute, std::string_view otherwise = "") const;
+    /// The value of an attribute; `fallback` when there is none.
+    std::string_view get(std::string_view attribute, std::string_view fallback = "") const;
 };
 
-/// Walks over the tags of an XML file as far as VTK writes XML: no entities, no CDATA.
+/// Reads the tags of an XML file written by VTK, without entities and CDATA.
 class Xml {
 public:
     Xml(std::string_view text, const std::string& source) : text_(text), source_(source) {}
 
-    /// The next tag; passes text, comments and declarations.
+    /// The next tag; skips text, comments and declarations.
     std::optional<Tag> next();
-    /// Throws InputError that points at byte `at`.
+    /// Throws InputError with the line of byte `at`.
     [[noreturn]] void fail(std::size_t at, std::string_view what, std::string_view remedy) const;
 
     std::string_view text() const { return text_; }

@@ -80,7 +80,7 @@ TEST(GmshBinary, BadCounts) {
     expect_failure("cells4.msh", replaced(version4(), sizes(2, 2, 30), sizes(1ull << 40, 2, 30)), ": byte ",
                    "elements announced");
     expect_failure("sum4.msh", replaced(version4(), sizes(2, 6), sizes(2, 5)), ": byte ",
-                   "the blocks hold 6 nodes, the first line says 5");
+                   "the blocks have 6 nodes, the first line announces 5");
 }
 
 TEST(GmshBinary, BadStructure) {

@@ -41,7 +41,7 @@ TEST(Tetgen, BadNodes) {
     fails("6 3", "6 3 1 0", ":6", "expected the row with number 2");
     fails("0 0 0 0", "2 0 0 0", ":4", "neither 0 nor 1");
     fails("6 3", "9999999 3", ":2", "9999999 vertices announced");
-    fails("6 3", "5 3", ":9", "more rows than the first line says");
+    fails("6 3", "5 3", ":9", "more rows than the first line announces");
     fails("5 0.1 0.2 -3e-7\n", "", ":9", "the file ends before");
 }
 
