@@ -96,18 +96,18 @@ class Recordings(Case):
         self.bad(f"{file}: frame 2 does not match its checksum", "export", file, "--glb", self.work / "f.glb")
         self.assertEqual(tandem("run", file, "--frames", "3:9", "--profile", 1, "--device", "host", "--algorithm", "chunked")[0], 0)
         for name, data, said in (("version", recording(self.key, self.digest, [0] * 4, [], 2), "has version 2 of the format, this program reads version 1"),
-                                 ("digest", recording(self.key, self.digest ^ 1, [0] * 4, self.frames), "was recorded of a scene with digest"),
-                                 ("kinds", recording(self.key, self.digest, [0, 0, 1, 0], self.frames), "was recorded of a scene with digest"),
+                                 ("digest", recording(self.key, self.digest ^ 1, [0] * 4, self.frames), "was recorded from a scene with digest"),
+                                 ("kinds", recording(self.key, self.digest, [0, 0, 1, 0], self.frames), "was recorded from a scene with digest"),
                                  ("text", recording("pyle", self.digest, [0] * 4, self.frames), "cannot be made again: unknown scene 'pyle'"),
                                  ("gone", recording("gone.json", self.digest, [0] * 4, self.frames), "gone.json: cannot be read"),
                                  ("itself", recording("x.frames", self.digest, [0] * 4, self.frames), "is a recording itself"),
-                                 ("elsewhere", recording("/dev/zero.json", self.digest, [0] * 4, self.frames), "opens only those of its own folder"),
-                                 ("above", recording("../x.json", self.digest, [0] * 4, self.frames), "opens only those of its own folder"),
+                                 ("elsewhere", recording("/dev/zero.json", self.digest, [0] * 4, self.frames), "opens only files in its own folder"),
+                                 ("above", recording("../x.json", self.digest, [0] * 4, self.frames), "opens only files in its own folder"),
                                  ("mesh", recording("pile:bodies=4,mesh=/dev/zero", self.digest, [0] * 4, self.frames), "is of the file /dev/zero"),
-                                 ("large", recording("pile:bodies=10000000", self.digest, [0] * 4, self.frames), "holds 4 bodies of a scene with 10000000"),
+                                 ("large", recording("pile:bodies=10000000", self.digest, [0] * 4, self.frames), "has 4 bodies, but its scene has 10000000"),
                                  ("none", recording(self.key, self.digest, [0] * 4, []), "no frame is whole"),
                                  ("header", self.whole[:50], "is cut off in its header"),
-                                 ("noise", b"frame,body_a\n0,1\n", "is no recording of frames")):
+                                 ("noise", b"frame,body_a\n0,1\n", "is not a recording of frames")):
             file = self.file(f"{name}.frames", data)
             self.bad([f"tandem: {file}: ", said], "run", file)
         self.bad("absent.frames: cannot be read (No such file", "run", self.work / "absent.frames")
@@ -171,7 +171,7 @@ class Recordings(Case):
             self.assertEqual((len(numbers(contacts["points"])), len(normals)), (9000, 9000))  # no more are drawn of a frame
             for i in range(0, 9000, 300):
                 self.assertAlmostEqual(math.hypot(*normals[i:i + 3]) / 127, 1, delta=0.02)
-        self.assertEqual(made["notes"], [f"9000 of {found} contacts are shown, evenly taken"])
+        self.assertEqual(made["notes"], [f"9000 of {found} contacts are shown, evenly spaced"])
 
     def test_bad_geometry(self):
         file = self.work / "bad.json"

@@ -25,16 +25,17 @@ std::string base64_of(const std::vector<Number>& numbers) {
     return read::encode_base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-/// Six digits, which no screen shows more of.
+/// Rounds to six digits, which is enough for a screen.
 double six_digits(double value) { return std::stod(fmt::format("{:.6g}", value)); }
 
 OrderedJson json_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-/// The points as they are drawn, in a box of their own.
-OrderedJson points_json(const Points& points, const Quantised& in) {
+/// Points quantised in a box, with the box.
+OrderedJson points_json(const Points& points, const Quantised& box) {
     std::vector<std::uint16_t> coordinates;
-    for (const auto& point : points) in.add(point, coordinates);
-    return {{"lower", json_of(in.lower())}, {"size", json_of(in.size())}, {"points", base64_of(coordinates)}};
+    for (const auto& point : points) box.add(point, coordinates);
+    return {
+        {"lower", json_of(box.lower())}, {"size", json_of(box.size())}, {"points", base64_of(coordinates)}};
 }
 
 Eigen::AlignedBox3d box_of(const Points& points) {
@@ -51,7 +52,7 @@ Points corners_of(const Eigen::AlignedBox3d& box) {
     return corners;
 }
 
-/// Sides of the box with these corners, counterclockwise from outside.
+/// Triangles of the box with these corners, counterclockwise from outside.
 const std::vector<std::uint32_t> sides_of_box{0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                                               2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
 
@@ -73,7 +74,7 @@ GeometrySizes sizes_of(const Scene& scene, const std::vector<Surface>& surfaces,
     return sizes;
 }
 
-/// Makes the JSON of one scene.
+/// Builds the JSON of one scene.
 class GeometryJson {
 public:
     GeometryJson(const Scene& scene, std::span<const std::size_t> frames, const GeometryParts& parts,
@@ -85,7 +86,7 @@ public:
 
 private:
     void choose_frames(std::span<const std::size_t> wanted);
-    void note_what_is_left_out(std::size_t wanted);
+    void add_omission_notes(std::size_t wanted);
     void add_frame(const Frame& frame);
     void add_contacts(const std::vector<ContactPoint>& found);
     void write_poses();
@@ -97,7 +98,7 @@ private:
     GeometryCut cut_;
     std::vector<std::size_t> frames_;
     std::vector<std::vector<Pose>> poses_;
-    std::vector<Points> points_, normals_; ///< the contacts shown, by frame
+    std::vector<Points> points_, normals_; ///< of the contacts shown, by frame
     OrderedJson json_, notes_ = OrderedJson::array();
 };
 
@@ -109,7 +110,7 @@ GeometryJson::GeometryJson(const Scene& scene, std::span<const std::size_t> fram
     sizes.contacts = static_cast<bool>(parts.contacts);
     cut_ = cut(sizes, budget);
     choose_frames(frames);
-    note_what_is_left_out(frames.size());
+    add_omission_notes(frames.size());
     json_ = {{"name", scene.name},
              {"key", scene.key},
              {"units", scene.units},
@@ -122,13 +123,13 @@ GeometryJson::GeometryJson(const Scene& scene, std::span<const std::size_t> fram
         for (const auto frame : frames_) json_["times"].push_back(six_digits(scene.time(frame)));
 }
 
-/// As many as fit, evenly spaced, the first and the last included.
+/// Selects evenly spaced frames, including the first and the last.
 void GeometryJson::choose_frames(std::span<const std::size_t> wanted) {
     const auto last = std::max<std::size_t>(cut_.frames, 2) - 1;
     for (std::size_t i = 0; i < cut_.frames; ++i) frames_.push_back(wanted[i * (wanted.size() - 1) / last]);
 }
 
-void GeometryJson::note_what_is_left_out(std::size_t wanted) {
+void GeometryJson::add_omission_notes(std::size_t wanted) {
     const auto boxed = std::ranges::count(cut_.boxed, true);
     if (boxed > 0)
         notes_.push_back(
@@ -139,7 +140,7 @@ void GeometryJson::note_what_is_left_out(std::size_t wanted) {
         notes_.push_back(
             fmt::format("the first {} of {} bodies are shown", cut_.bodies, scene_.bodies.size()));
     if (cut_.frames < wanted)
-        notes_.push_back(fmt::format("{} of {} frames are shown, evenly taken", cut_.frames, wanted));
+        notes_.push_back(fmt::format("{} of {} frames are shown, evenly spaced", cut_.frames, wanted));
 }
 
 void GeometryJson::add_meshes() {
@@ -166,9 +167,9 @@ void GeometryJson::add_meshes() {
     std::vector<std::uint32_t> meshes;
     std::vector<std::uint8_t> kinds;
     for (std::size_t body = 0; body < cut_.bodies; ++body) {
-        const auto& of = scene_.bodies[body];
-        meshes.push_back(of.mesh);
-        kinds.push_back(static_cast<std::uint8_t>((of.fixed ? 1 : 0) + (of.deformable ? 2 : 0)));
+        const auto& source = scene_.bodies[body];
+        meshes.push_back(source.mesh);
+        kinds.push_back(static_cast<std::uint8_t>((source.fixed ? 1 : 0) + (source.deformable ? 2 : 0)));
     }
     json_["body_meshes"] = base64_of(meshes);
     json_["body_kinds"] = base64_of(kinds);
@@ -187,7 +188,7 @@ void GeometryJson::add_frame(const Frame& frame) {
     if (parts_.contacts) add_contacts(parts_.contacts(frame));
 }
 
-/// As many as fit, evenly spaced.
+/// Selects evenly spaced contacts.
 void GeometryJson::add_contacts(const std::vector<ContactPoint>& found) {
     auto& points = points_.emplace_back();
     auto& normals = normals_.emplace_back();
@@ -210,13 +211,13 @@ void GeometryJson::write_poses() {
     Eigen::AlignedBox3d box;
     for (const auto& poses : poses_)
         for (const auto& pose : poses) box.extend(pose.translation);
-    const Quantised in(box);
-    json_["lower"] = json_of(in.lower());
-    json_["size"] = json_of(in.size());
+    const Quantised quantised(box);
+    json_["lower"] = json_of(quantised.lower());
+    json_["size"] = json_of(quantised.size());
     for (const auto& poses : poses_) {
         std::vector<std::uint16_t> numbers;
         for (const auto& [rotation, translation] : poses) {
-            in.add(translation, numbers);
+            quantised.add(translation, numbers);
             for (const double x : rotation.coeffs()) // x, y, z, w
                 numbers.push_back(
                     static_cast<std::uint16_t>(std::lround(std::clamp(x, -1.0, 1.0) * 32767) + 32768));
@@ -231,19 +232,19 @@ void GeometryJson::write_contacts() {
     std::size_t shown = 0;
     for (const auto& points : points_)
         for (const auto& point : points) box.extend(point);
-    const Quantised in(box);
+    const Quantised quantised(box);
     for (std::size_t i = 0; i < points_.size(); ++i) {
         std::vector<std::int8_t> normals;
         for (const auto& normal : normals_[i])
             for (const double x : normal)
                 normals.push_back(static_cast<std::int8_t>(std::lround(std::clamp(x, -1.0, 1.0) * 127)));
         auto& contacts = json_["contacts"][i];
-        contacts.update(points_json(points_[i], in));
+        contacts.update(points_json(points_[i], quantised));
         contacts["normals"] = base64_of(normals);
         all += contacts["found"].get<std::size_t>();
         shown += points_[i].size();
     }
-    if (shown < all) notes_.push_back(fmt::format("{} of {} contacts are shown, evenly taken", shown, all));
+    if (shown < all) notes_.push_back(fmt::format("{} of {} contacts are shown, evenly spaced", shown, all));
 }
 
 std::string GeometryJson::text() {

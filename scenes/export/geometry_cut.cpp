@@ -9,16 +9,16 @@ namespace {
 
 constexpr std::size_t box_vertices = 8, box_triangles = 12;
 constexpr std::size_t pose_bytes = 14;   ///< seven numbers of 16 bits
-constexpr std::size_t vertex_bytes = 6;  ///< three
-constexpr std::size_t contact_bytes = 9; ///< and a normal of three bytes
+constexpr std::size_t vertex_bytes = 6;  ///< three numbers of 16 bits
+constexpr std::size_t contact_bytes = 9; ///< a vertex, and a normal of three bytes
 
-/// What the meshes come to, each a box or not.
+/// Sizes of all meshes after some are replaced by boxes.
 struct Costs {
     std::size_t bytes = 0, triangles = 0, drawn = 0;
-    std::size_t deformed = 0; ///< bytes of a frame's deformable bodies
+    std::size_t deformed = 0; ///< bytes of deformable bodies in a frame
 };
 
-std::size_t vertices_of(const GeometrySizes::OfMesh& mesh, bool boxed) {
+std::size_t vertices_of(const GeometrySizes::MeshSizes& mesh, bool boxed) {
     return boxed ? box_vertices : mesh.vertices;
 }
 
@@ -35,7 +35,8 @@ Costs costs_of(const GeometrySizes& sizes, const std::vector<bool>& boxed) {
     return costs;
 }
 
-/// The mesh that is no box yet and gives most of what there is too much of; none when all are.
+/// The mesh with most triangles that is not a box; with `of_all_bodies`, summed over its bodies. Returns the
+/// number of meshes when there is none.
 std::size_t largest(const GeometrySizes& sizes, const std::vector<bool>& boxed, bool of_all_bodies) {
     std::size_t found = sizes.meshes.size();
     std::size_t most = 0;
@@ -71,8 +72,8 @@ GeometryCut cut(const GeometrySizes& sizes, const GeometryBudget& budget) {
     result.bodies = std::min(sizes.bodies, budget.bytes / 4 / (pose_bytes + deformed_a_body));
     const auto frame_bytes = std::max<std::size_t>(result.bodies * (pose_bytes + deformed_a_body), 1);
     const auto for_contacts = sizes.contacts ? budget.bytes / 5 : 0;
-    const auto taken = std::min(costs.bytes, half) + for_contacts;
-    result.frames = std::clamp<std::size_t>((budget.bytes - std::min(taken, budget.bytes)) / frame_bytes, 1,
+    const auto used = std::min(costs.bytes, half) + for_contacts;
+    result.frames = std::clamp<std::size_t>((budget.bytes - std::min(used, budget.bytes)) / frame_bytes, 1,
                                             std::max<std::size_t>(sizes.frames, 1));
     result.contacts = std::min(for_contacts / result.frames / contact_bytes, budget.contacts);
     return result;

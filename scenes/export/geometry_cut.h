@@ -7,36 +7,37 @@
 
 namespace tandem::exporting {
 
-/// How much of a scene goes into one JSON document.
+/// Limits of one JSON document.
 struct GeometryBudget {
-    std::size_t bytes = 3'000'000;   ///< all meshes, poses and contacts; base64 makes four of three
-    std::size_t triangles = 400'000; ///< all distinct meshes
+    std::size_t bytes = 3'000'000;   ///< meshes, poses and contacts, before base64, which adds a third
+    std::size_t triangles = 400'000; ///< triangles of all distinct meshes
     std::size_t drawn = 4'000'000;   ///< triangles of all bodies
-    std::size_t contacts = 3000;     ///< in a frame: more hide the bodies
+    std::size_t contacts = 3000;     ///< contacts in a frame; more would hide the bodies
 };
 
-/// What a scene would take.
+/// Sizes of a complete scene.
 struct GeometrySizes {
-    struct OfMesh {
-        std::size_t vertices = 0, triangles = 0; ///< its surface
-        std::size_t bodies = 0, deformable = 0;  ///< that have it, and those of them that are deformable
+    struct MeshSizes {
+        std::size_t vertices = 0, triangles = 0; ///< of the surface
+        std::size_t bodies = 0, deformable = 0; ///< bodies with this mesh, and the deformable ones among them
     };
-    std::vector<OfMesh> meshes{};
+    std::vector<MeshSizes> meshes{};
     std::size_t bodies = 0, frames = 0;
     bool contacts = false;
 };
 
-/// Which part of it is shown.
+/// The part of a scene that fits the budget.
 struct GeometryCut {
-    std::vector<bool> boxed; ///< meshes whose bodies are drawn as boxes
+    std::vector<bool> boxed; ///< one a mesh: true when its bodies are drawn as boxes
     std::size_t bodies = 0, frames = 0;
-    std::size_t contacts = 0; ///< a frame at most
+    std::size_t contacts = 0; ///< maximum in a frame
 };
 
-/// Bytes of a mesh: 16 bits a coordinate, and the number of a chunk's colour for each triangle.
+/// Bytes of a mesh: 16 bits a coordinate, vertex indices, and one byte for the chunk of each triangle.
 std::size_t mesh_bytes(std::size_t vertices, std::size_t triangles);
 
-/// Boxes instead of the largest meshes, then the first bodies only, then fewer frames, then fewer contacts.
+/// Reduces a scene to the budget: boxes replace the largest meshes, then bodies, frames and contacts are
+/// limited, in this order.
 GeometryCut cut(const GeometrySizes& sizes, const GeometryBudget& budget);
 
 } // namespace tandem::exporting

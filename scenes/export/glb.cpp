@@ -17,8 +17,8 @@ using exporting::GlbFile;
 using exporting::Surface;
 using Json = nlohmann::json;
 
-/// Colours of bodies in turn (linear RGB), tellable apart by the colour-blind (after Okabe and Ito 2008); the
-/// last is for fixed bodies.
+/// Colours of consecutive bodies (linear RGB), distinguishable with colour blindness (after Okabe and Ito
+/// 2008). The last colour is for fixed bodies.
 constexpr std::array<std::array<double, 3>, 7> colours{{{0.79, 0.35, 0.0},
                                                         {0.09, 0.46, 0.81},
                                                         {0.0, 0.34, 0.17},
@@ -32,7 +32,7 @@ Json primitive(GlbFile& file, const Surface& surface, const std::vector<Eigen::V
     return {{"attributes", {{"POSITION", positions}}}, {"indices", file.indices(surface.triangles)}};
 }
 
-/// Makes the nodes of a scene in a file.
+/// Adds materials and nodes of a scene to a file.
 class Builder {
 public:
     Builder(GlbFile& file, const Scene& scene) : file_(file), scene_(scene) {}
@@ -61,8 +61,8 @@ void Builder::add_materials() {
               {{"baseColorFactor", {r, g, b, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}}});
 }
 
-/// Rigid bodies of one mesh share its data, and the mesh too when they have the same colour; a deformable
-/// body has data of its own.
+/// Rigid bodies of one mesh use the same data, and the same glTF mesh when their colours are equal. A
+/// deformable body has its own data.
 std::size_t Builder::mesh_of(const Frame& frame, std::size_t body) {
     const auto index = scene_.bodies[body].mesh;
     const auto& mesh = scene_.meshes[index];
@@ -101,10 +101,11 @@ void write_glb(const std::string& path, const Scene& scene, std::span<const std:
     constexpr auto most = std::numeric_limits<std::uint32_t>::max();
     const auto check = [&](std::uint64_t bytes) {
         if (bytes > most)
-            throw InputError(fmt::format("{}: would have {} bytes, glTF ends at {}; export fewer frames",
-                                         path, bytes, most));
+            throw InputError(
+                fmt::format("{}: would have {} bytes, but glTF allows at most {}; export fewer frames", path,
+                            bytes, most));
     };
-    // Before anything is made: the animation is nearly all of a large file.
+    // Checked first, since the animation is nearly all of a large file.
     check(exporting::animation_bytes(scene, frames.size()));
     GlbFile file;
     Builder builder(file, scene);

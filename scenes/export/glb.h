@@ -5,10 +5,10 @@
 
 namespace tandem {
 
-/// Writes frames of a scene as a binary glTF file: boundary surfaces, one for all rigid bodies with the same
-/// mesh, and an animation with a key for each of `frames` (ascending, one at least), at the scene's times or
-/// 25 a second. Rigid bodies move as nodes, deformable ones by a morph target a frame. Throws InputError,
-/// also when the file would pass glTF's 4 GiB.
+/// Writes frames of a scene as a binary glTF file. It has boundary surfaces, one for all rigid bodies of a
+/// mesh, and an animation with a key for each frame, at the scene's times or 25 a second. Rigid bodies move
+/// as nodes, deformable bodies by a morph target a frame. `frames` has at least one frame, in ascending
+/// order. Throws InputError, also when the file would exceed glTF's 4 GiB.
 void write_glb(const std::string& path, const Scene& scene, std::span<const std::size_t> frames);
 
 } // namespace tandem

@@ -17,7 +17,8 @@ struct Track {
     std::vector<float> translations, rotations;
     Eigen::Quaterniond last = Eigen::Quaterniond::Identity();
 
-    /// q and -q turn alike; neighbours of equal sign keep viewers from turning the long way round.
+    /// q and -q are the same rotation. Adjacent keys of equal sign make viewers interpolate the shorter
+    /// rotation.
     void add(const Pose& pose) {
         last.coeffs() =
             last.coeffs().dot(pose.rotation.coeffs()) < 0 ? -pose.rotation.coeffs() : pose.rotation.coeffs();
@@ -26,7 +27,7 @@ struct Track {
     }
 };
 
-/// The surface of one deformable body, which moves by what a target adds to each of its first points.
+/// The surface of one deformable body. A target has the displacement of each point from the first frame.
 struct Morph {
     Surface surface;
     std::vector<float> first;
@@ -43,27 +44,28 @@ struct Morph {
     }
 };
 
-/// Seconds of the frames since the first. glTF wants them to grow from key to key, which times close together
-/// may not do in float.
+/// Times (s) of the frames since the first. glTF requires strictly ascending times; close times can be equal
+/// in float, so that equal intervals replace them.
 std::vector<float> key_times(const Scene& scene, std::span<const std::size_t> frames) {
-    std::vector<float> own, even;
+    std::vector<float> scene_times, even_times;
     for (const auto i : frames) {
         constexpr float frames_per_second = 25;
-        even.push_back(static_cast<float>(even.size()) / frames_per_second);
-        if (scene.time) own.push_back(static_cast<float>(scene.time(i) - scene.time(frames[0])));
+        even_times.push_back(static_cast<float>(even_times.size()) / frames_per_second);
+        if (scene.time) scene_times.push_back(static_cast<float>(scene.time(i) - scene.time(frames[0])));
     }
-    const bool grows = std::adjacent_find(own.begin(), own.end(), std::greater_equal<>()) == own.end();
-    return scene.time && grows ? own : even;
+    const bool ascending = std::adjacent_find(scene_times.begin(), scene_times.end(), std::greater_equal<>())
+                           == scene_times.end();
+    return scene.time && ascending ? scene_times : even_times;
 }
 
-/// A row a key: the first has no target, each further one the next target alone.
+/// One row a key. The first key has no target; each later key has only its own target.
 std::vector<float> key_weights(std::size_t keys) {
     std::vector<float> weights(keys * (keys - 1));
     for (std::size_t key = 1; key < keys; ++key) weights[key * (keys - 1) + key - 1] = 1;
     return weights;
 }
 
-/// Adds channels to an animation whose keys are at the times of one accessor.
+/// An animation whose channels use the times of one accessor.
 struct Channels {
     std::size_t times;
     Json animation = {{"channels", Json::array()}, {"samplers", Json::array()}};

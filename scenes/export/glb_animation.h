@@ -6,11 +6,11 @@
 
 namespace tandem::exporting {
 
-/// The animation of a scene through `frames`. Node i of the file is body i, and the mesh of a deformable body
-/// is its own and stands as in the first frame.
+/// Adds the animation of a scene through `frames`. Node i of the file must be body i. A deformable body must
+/// have its own mesh with the vertices of the first frame.
 void add_animation(GlbFile& file, const Scene& scene, std::span<const std::size_t> frames);
 
-/// About how many bytes of numbers it takes, from below.
+/// A lower bound of the bytes of numbers in the animation.
 std::uint64_t animation_bytes(const Scene& scene, std::size_t frames);
 
 } // namespace tandem::exporting

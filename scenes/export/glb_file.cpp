@@ -16,7 +16,7 @@ constexpr int type_float = 5126, type_unsigned_int = 5125;
 constexpr int target_vertices = 34962, target_indices = 34963, no_target = 0;
 constexpr std::array<const char*, 5> type_names{"", "SCALAR", "VEC2", "VEC3", "VEC4"};
 
-/// Least or most of each component, as JSON numbers that are those floats exactly.
+/// Minimum or maximum of each component, as JSON numbers that equal the floats exactly.
 template<class Choose>
 Json bound(std::span<const float> values, std::size_t components, Choose choose) {
     std::vector<double> bounds;
@@ -28,8 +28,8 @@ Json bound(std::span<const float> values, std::size_t components, Choose choose)
     return bounds;
 }
 
-/// Chunks of a GLB are multiples of 4 bytes: text is padded by blanks, data by zeros (glTF 2.0, section
-/// 4.4.3).
+/// Appends a chunk. Sizes are multiples of 4 bytes: text is padded with blanks, data with zeros (glTF 2.0,
+/// section 4.4.3).
 void put_chunk(std::string& out, std::string_view type, std::string bytes, char padding) {
     while (bytes.size() % 4 != 0) bytes.push_back(padding);
     recording::put(out, static_cast<std::uint32_t>(bytes.size()));
@@ -46,14 +46,14 @@ std::size_t GlbFile::add(const char* array, Json object) {
     return json_[array].size() - 1;
 }
 
-/// From `offset` to the end of what has been written.
+/// Adds a view from `offset` to the present end of the data.
 std::size_t GlbFile::view(std::size_t offset, int target) {
     Json view = {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", binary_.size() - offset}};
     if (target != no_target) view["target"] = target;
     return add("bufferViews", std::move(view));
 }
 
-/// Bounds are required of positions and of times of an animation, and harm no other accessor.
+/// Bounds are required for positions and for times of an animation, and allowed for other accessors.
 std::size_t GlbFile::floats(std::span<const float> values, std::size_t components, bool vertices) {
     const auto offset = binary_.size();
     for (const float value : values) recording::put_float(binary_, value);

@@ -7,13 +7,13 @@
 
 namespace tandem::exporting {
 
-/// The two chunks of a binary glTF 2.0 file (Khronos 2017, section 4.4) while it is made.
+/// Builds the two chunks of a binary glTF 2.0 file (Khronos 2017, section 4.4).
 class GlbFile {
 public:
     GlbFile();
 
-    /// Each adds an accessor with a view of its own and returns its index. Numbers go `components` to an item
-    /// (1: SCALAR, 3: VEC3, 4: VEC4); least and most are written of every component.
+    /// Each adds an accessor with its own view and returns its index. An item has `components` numbers
+    /// (1: SCALAR, 3: VEC3, 4: VEC4). The accessor of floats has the minimum and maximum of each component.
     std::size_t floats(std::span<const float> values, std::size_t components, bool vertices = false);
     std::size_t indices(std::span<const std::uint32_t> values);
 

@@ -8,7 +8,7 @@
 
 namespace tandem::exporting {
 
-/// Points in a box, 16 bits a coordinate: a pixel of any screen is larger.
+/// Quantises points in a box to 16 bits a coordinate, which is finer than the pixels of a screen.
 class Quantised {
 public:
     explicit Quantised(const Eigen::AlignedBox3d& box)
@@ -18,10 +18,11 @@ public:
     const Eigen::Vector3d& lower() const { return lower_; }
     const Eigen::Vector3d& size() const { return size_; }
 
-    void add(const Eigen::Vector3d& point, std::vector<std::uint16_t>& to) const {
+    /// Appends the three coordinates of a point.
+    void add(const Eigen::Vector3d& point, std::vector<std::uint16_t>& numbers) const {
         for (int axis = 0; axis < 3; ++axis) {
             const double fraction = size_[axis] > 0 ? (point[axis] - lower_[axis]) / size_[axis] : 0;
-            to.push_back(static_cast<std::uint16_t>(std::lround(fraction * 65535)));
+            numbers.push_back(static_cast<std::uint16_t>(std::lround(fraction * 65535)));
         }
     }
 

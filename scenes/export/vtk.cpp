@@ -18,7 +18,7 @@ constexpr std::uint8_t vtk_tetra = 10;
 struct Grid {
     std::vector<float> points;
     std::vector<std::int64_t> corners;
-    std::vector<std::uint32_t> bodies, tetrahedra; ///< per cell
+    std::vector<std::uint32_t> bodies, tetrahedra; ///< one a cell
 };
 
 Grid grid_of(const Scene& scene, const Frame& frame) {
@@ -39,19 +39,19 @@ Grid grid_of(const Scene& scene, const Frame& frame) {
     return grid;
 }
 
-/// 4, 8, 12, ... or 1, 2, 3, ...: where each of `cells` cells ends.
+/// Ends of `cells` cells of `corners` corners each: 4, 8, 12, ... or 1, 2, 3, ...
 std::vector<std::int64_t> ends(std::size_t cells, std::int64_t corners) {
     std::vector<std::int64_t> result(cells, corners);
     std::partial_sum(result.begin(), result.end(), result.begin());
     return result;
 }
 
-/// One number a contact, by what it is of.
-template<class Number, class Of>
-std::vector<Number> each(std::span<const ContactPoint> contacts, Of of) {
+/// One number a contact: field(contact).
+template<class Number, class Field>
+std::vector<Number> each(std::span<const ContactPoint> contacts, Field field) {
     std::vector<Number> values;
     values.reserve(contacts.size());
-    for (const auto& contact : contacts) values.push_back(static_cast<Number>(of(contact)));
+    for (const auto& contact : contacts) values.push_back(static_cast<Number>(field(contact)));
     return values;
 }
 
@@ -111,9 +111,9 @@ void write_contacts_vtp(const std::string& path, std::span<const ContactPoint> c
     xml.array("Points", 3, vectors(contacts, &ContactPoint::point));
     xml.close();
     xml.open("Verts");
-    std::vector<std::int64_t> own(contacts.size());
-    std::iota(own.begin(), own.end(), std::int64_t{0});
-    xml.array("connectivity", 1, own);
+    std::vector<std::int64_t> indices(contacts.size());
+    std::iota(indices.begin(), indices.end(), std::int64_t{0});
+    xml.array("connectivity", 1, indices);
     xml.array("offsets", 1, ends(contacts.size(), 1));
     xml.close();
     add_contact_data(xml, contacts);

@@ -12,7 +12,7 @@ namespace tandem::exporting {
 
 namespace {
 
-/// As zlib stream, which is what vtkZLibDataCompressor reads.
+/// Compresses to a zlib stream, the format of vtkZLibDataCompressor.
 std::string deflated(std::string_view bytes) {
     auto size = compressBound(bytes.size());
     std::string out(size, '\0');
@@ -20,13 +20,13 @@ std::string deflated(std::string_view bytes) {
     if (compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
                   bytes.size(), fast)
         != Z_OK)
-        throw std::bad_alloc(); // the only failure of compress2 with room enough
+        throw std::bad_alloc(); // the only failure of compress2 with a sufficient buffer
     out.resize(size);
     return out;
 }
 
-/// VTK's layout: number of parts, size of a part, size of the last if that is smaller, compressed sizes;
-/// header and data are encoded each on its own.
+/// VTK's layout: number of parts, size of a part, size of the last part if smaller, compressed sizes, data.
+/// Header and data are separate base64 texts.
 std::string encoded(std::string_view bytes) {
     constexpr std::size_t part = 1 << 20;
     std::string header, data;

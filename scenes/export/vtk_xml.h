@@ -8,22 +8,22 @@
 
 namespace tandem::exporting {
 
-/// The text of one of VTK's XML files, whose arrays are compressed and in base64, so that it stays XML.
+/// Builds the text of a VTK XML file. Arrays are compressed and in base64, so that the file is valid XML.
 class VtkXml {
 public:
-    /// `type` as in the root element: UnstructuredGrid, PolyData.
+    /// `type` of the root element: UnstructuredGrid or PolyData.
     explicit VtkXml(std::string_view type);
 
-    /// An element as written: "Points", or "Piece NumberOfPoints=\"4\"".
+    /// Opens an element with its attributes: "Points", or "Piece NumberOfPoints=\"4\"".
     void open(std::string_view element);
     void close();
-    /// An array of `components` numbers an item.
+    /// Adds an array with `components` numbers an item.
     void array(std::string_view name, std::size_t components, std::span<const float> values);
     void array(std::string_view name, std::size_t components, std::span<const std::uint32_t> values);
     void array(std::string_view name, std::size_t components, std::span<const std::int64_t> values);
     void array(std::string_view name, std::size_t components, std::span<const std::uint8_t> values);
 
-    /// The whole file, every element closed.
+    /// Closes all elements and returns the complete file.
     std::string finish();
 
 private:
@@ -31,7 +31,7 @@ private:
     void add(std::string_view name, std::string_view type, std::size_t components, std::span<const T> values);
 
     std::string text_;
-    std::string open_; ///< names of open elements, outermost first, each ended by a blank
+    std::string open_; ///< names of open elements, outermost first, each followed by a blank
 };
 
 } // namespace tandem::exporting

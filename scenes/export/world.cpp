@@ -10,7 +10,7 @@ namespace tandem::exporting {
 
 namespace {
 
-/// Corners of the face opposite each corner, outward when the volume is positive.
+/// The face opposite each corner, oriented outward when the volume is positive.
 constexpr std::array<std::array<std::uint8_t, 3>, 4> faces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 bool inverted(const Mesh& mesh, const Tetrahedron& t) {
@@ -30,17 +30,17 @@ std::vector<Eigen::Vector3d> world_vertices(const Scene& scene, const Frame& fra
     return vertices;
 }
 
-/// Faces of the boundary, outward also where a tetrahedron is inverted; vertices that are on none are left
-/// out and the others numbered anew.
+/// Faces are outward also for inverted tetrahedra. Vertices off the boundary are left out, the rest
+/// renumbered.
 Surface surface_of(const Mesh& mesh) {
     Surface surface;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         const auto& corners = mesh.tetrahedra[t];
-        const bool turned = inverted(mesh, corners);
+        const bool flip = inverted(mesh, corners);
         for (std::size_t f = 0; f < faces.size(); ++f) {
             if ((mesh.boundary[t] >> f & 1u) == 0) continue;
             auto face = faces[f];
-            if (turned) std::swap(face[1], face[2]);
+            if (flip) std::swap(face[1], face[2]);
             for (const auto corner : face) surface.triangles.push_back(corners[corner]);
             surface.tetrahedra.push_back(static_cast<std::uint32_t>(t));
         }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view magic("\x89TDMCP\r\n", 8);
 constexpr std::uint32_t version = 1;
-/// Magic, version, digest, step, frames, size: 8 + 4 + 4 * 8.
+/// Size of magic, version, digest, step, frames and size: 8 + 4 + 4 * 8.
 constexpr std::size_t bytes_before_state = 44;
 
 } // namespace
@@ -39,7 +39,7 @@ std::optional<Checkpoint> read_checkpoint(const std::string& path, std::uint64_t
     if (!std::filesystem::exists(name)) return std::nullopt;
     const auto bytes = recording::read_whole(name);
     const auto fail = [&](std::string_view what) { throw InputError(fmt::format("{}: {}", name, what)); };
-    if (!bytes.starts_with(magic)) fail("is no checkpoint of a recording; record again");
+    if (!bytes.starts_with(magic)) fail("is not a checkpoint of a recording; record again");
     read::Cursor in(bytes, name, magic.size());
     if (const auto found = in.get<std::uint32_t>("version"); found != version)
         fail(fmt::format("has version {} of the format, this program reads version {}; record again", found,
@@ -56,7 +56,8 @@ std::optional<Checkpoint> read_checkpoint(const std::string& path, std::uint64_t
     checkpoint.step = in.get<std::uint64_t>("step");
     checkpoint.frames = in.get<std::uint64_t>("frames");
     const auto size = in.get<std::uint64_t>("size");
-    if (size != body.size() - bytes_before_state) fail("does not hold the state it announces; record again");
+    if (size != body.size() - bytes_before_state)
+        fail("does not contain the state it announces; record again");
     const auto* state = reinterpret_cast<const std::byte*>(body.data() + bytes_before_state);
     checkpoint.state.assign(state, state + size);
     return checkpoint;

@@ -22,27 +22,27 @@ int flags_of(File::Mode mode) {
     case File::Mode::read:
         return O_RDONLY | O_CLOEXEC;
     case File::Mode::create:
-        return O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC; // which follows no link
+        return O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC; // does not follow links
     case File::Mode::update:
         return O_RDWR | O_CLOEXEC;
     case File::Mode::replace:
         break;
     }
-    return O_RDWR | O_CREAT | O_CLOEXEC; // emptied once it is this process's own
+    return O_RDWR | O_CREAT | O_CLOEXEC; // emptied after the lock is taken
 }
 
-/// Whoever may make files in the folder must not choose what is written to.
+/// Users who can create files in the folder must not redirect the output by a link.
 void refuse_link(const std::string& path) {
     if (std::filesystem::is_symlink(std::filesystem::symlink_status(path)))
         throw InputError(fmt::format("{}: is a link, and a file has to be made there; remove it", path));
 }
 
-/// The file that takes a new content until it is renamed. What a kill has left there nobody holds.
+/// Creates the file for new content. Removes one that a killed process left; its lock ended with the process.
 File make_partial(const std::string& path) {
     refuse_link(path);
     if (std::filesystem::exists(path)) {
-        const File left(path, File::Mode::update); // refused while another process has it
-        remove_if_there(path);
+        const File lock(path, File::Mode::update); // throws while another process has the lock
+        remove_if_exists(path);
     }
     return File(path, File::Mode::create);
 }
@@ -50,22 +50,22 @@ File make_partial(const std::string& path) {
 } // namespace
 
 File::File(const std::string& path, Mode mode) : path_(path), descriptor_(-1) {
-    constexpr mode_t everyone = 0666; // less the umask
-    descriptor_ = open(path.c_str(), flags_of(mode), everyone);
+    constexpr mode_t permissions = 0666; // the umask is subtracted
+    descriptor_ = open(path.c_str(), flags_of(mode), permissions);
     if (descriptor_ < 0 && errno == EEXIST)
         throw InputError(
             fmt::format("{}: exists and is not overwritten; resume it or choose another file", path));
     if (descriptor_ < 0) fail(mode == Mode::read ? "cannot be read" : "cannot be written");
-    struct stat facts {};
-    if (fstat(descriptor_, &facts) == 0 && S_ISREG(facts.st_mode)
+    struct stat status {};
+    if (fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode)
         && (mode == Mode::read || flock(descriptor_, LOCK_EX | LOCK_NB) == 0)) {
         if (mode == Mode::replace) truncate(0);
         return;
     }
     close(std::exchange(descriptor_, -1));
     throw InputError(fmt::format("{}: {}", path,
-                                 S_ISREG(facts.st_mode) ? "another process writes it; wait for its end"
-                                                        : "is no file; choose another"));
+                                 S_ISREG(status.st_mode) ? "another process writes it; wait for its end"
+                                                         : "is not a regular file; choose another"));
 }
 
 File::~File() {
@@ -81,9 +81,9 @@ void File::fail_writing(std::string_view what) const {
 }
 
 std::uint64_t File::size() const {
-    struct stat facts {};
-    if (fstat(descriptor_, &facts) != 0) fail("cannot be read");
-    return static_cast<std::uint64_t>(facts.st_size);
+    struct stat status {};
+    if (fstat(descriptor_, &status) != 0) fail("cannot be read");
+    return static_cast<std::uint64_t>(status.st_size);
 }
 
 std::string File::read(std::uint64_t offset, std::size_t bytes) const {
@@ -133,7 +133,7 @@ void replace_whole(const std::string& path, std::string_view bytes) {
     sync_folder_of(path);
 }
 
-void remove_if_there(const std::string& path) {
+void remove_if_exists(const std::string& path) {
     if (std::remove(path.c_str()) != 0 && errno != ENOENT)
         throw InputError(fmt::format("{}: cannot be deleted ({})", path, std::strerror(errno)));
 }

@@ -8,11 +8,12 @@
 
 namespace tandem::recording {
 
-/// An open file. A failure is an InputError "PATH: what (reason)", of writing an OutputError.
+/// An open file. Throws InputError "PATH: what (reason)", or OutputError when writing fails.
 class File {
 public:
-    /// How a file is opened: an existing one to read; a new one, which must not exist; an existing one to
-    /// read and write; one that is made empty. The last three take a lock that ends with the process.
+    /// read: an existing file. create: a new file, which must not exist. update: an existing file, to read
+    /// and write. replace: an existing or new file, which is emptied. All but read lock the file until the
+    /// process ends.
     enum class Mode { read, create, update, replace };
 
     File(const std::string& path, Mode mode);
@@ -27,11 +28,11 @@ public:
 
     const std::string& path() const { return path_; }
     std::uint64_t size() const;
-    /// Exactly `bytes` bytes from `offset`. Threads may call it at once.
+    /// Reads exactly `bytes` bytes from `offset`. Thread-safe.
     std::string read(std::uint64_t offset, std::size_t bytes) const;
     void write(std::uint64_t offset, std::string_view bytes);
     void truncate(std::uint64_t size);
-    /// Returns when everything written survives a loss of power.
+    /// Makes all written data survive a loss of power before it returns.
     void sync();
 
 private:
@@ -42,15 +43,15 @@ private:
     int descriptor_;
 };
 
-/// All of a file; throws InputError.
+/// The complete content of a file; throws InputError.
 std::string read_whole(const std::string& path);
 
-/// Gives `path` the content `bytes` so that a crash at any moment leaves the old or the new content, whole:
-/// written to PATH.partial, which is made for it and no link, synced, renamed. Throws InputError when that
-/// cannot be made, OutputError when it cannot be written.
+/// Replaces the content of `path` atomically: a crash leaves the complete old or new content. Writes and
+/// syncs the new file PATH.partial, which must not be a link, then renames it. Throws InputError when that
+/// file cannot be created, OutputError when it cannot be written.
 void replace_whole(const std::string& path, std::string_view bytes);
 
-/// Deletes a file when there is one.
-void remove_if_there(const std::string& path);
+/// Deletes a file if it exists.
+void remove_if_exists(const std::string& path);
 
 } // namespace tandem::recording

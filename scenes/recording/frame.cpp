@@ -13,14 +13,14 @@ namespace tandem::recording {
 
 namespace {
 
-/// The checksum starts from the frame's number, so that a frame in another's place does not match.
+/// The checksum includes the frame's number, so that a frame at another position does not match.
 std::uint32_t frame_checksum(std::string_view bytes, std::uint64_t number) {
     std::string start;
     put(start, number);
     return checksum(bytes, checksum(start));
 }
 
-/// Appends what float keeps of the numbers; false when that is not finite.
+/// Appends numbers rounded to float; false when one is not finite.
 bool put_floats(std::string& out, std::initializer_list<double> numbers) {
     bool finite = true;
     for (const double number : numbers) {
@@ -32,11 +32,11 @@ bool put_floats(std::string& out, std::initializer_list<double> numbers) {
 }
 
 bool is_rotation(const Eigen::Quaterniond& q) {
-    constexpr double slack = 1e-3; // far above what rounding to float does to the norm
+    constexpr double slack = 1e-3; // far above the change of the norm by rounding to float
     return std::fabs((q.w() * q.w() + q.x() * q.x()) + (q.y() * q.y() + q.z() * q.z()) - 1) < slack;
 }
 
-/// False when float holds it not, or when it is no rotation.
+/// Appends a pose; false when it is not finite in float or not a rotation.
 bool put_pose(std::string& out, const Pose& pose) {
     const auto& q = pose.rotation;
     const auto& t = pose.translation;
@@ -49,7 +49,7 @@ bool put_vertices(std::string& out, const std::vector<Eigen::Vector3d>& vertices
     return finite;
 }
 
-/// Widened without rounding.
+/// Reads a float, also one that is not finite.
 double get_float(read::Cursor& in) {
     return static_cast<double>(std::bit_cast<float>(in.get<std::uint32_t>("a number")));
 }
@@ -59,7 +59,7 @@ Eigen::Vector3d get_vector(read::Cursor& in) {
     return {x, y, z};
 }
 
-/// False when the bytes are no pose.
+/// False when the pose is not finite or not a rotation.
 bool get_pose(read::Cursor& in, Pose& pose) {
     pose.translation = get_vector(in);
     const double w = get_float(in), x = get_float(in), y = get_float(in), z = get_float(in);
@@ -117,25 +117,25 @@ bool matches(std::string_view bytes, std::uint64_t number) {
 }
 
 RecordedFrame decode(const RecordingHeader& header, std::string_view bytes, const std::vector<Pose>& fixed,
-                     const std::string& where) {
-    read::Cursor in(bytes, where);
+                     const std::string& location) {
+    read::Cursor in(bytes, location);
     RecordedFrame recorded;
     recorded.step = in.get<std::uint64_t>("step");
     recorded.time = std::bit_cast<double>(in.get<std::uint64_t>("time"));
-    bool good = std::isfinite(recorded.time);
+    bool valid = std::isfinite(recorded.time);
     auto& frame = recorded.frame;
     frame.poses.resize(header.bodies.size());
     frame.deformed.resize(header.bodies.size());
     for (std::size_t i = 0; i < header.bodies.size(); ++i) {
         const auto& body = header.bodies[i];
         if (body.kind == RecordedKind::fixed) frame.poses[i] = fixed[i];
-        if (body.kind == RecordedKind::rigid) good = get_pose(in, frame.poses[i]) && good;
+        if (body.kind == RecordedKind::rigid) valid = get_pose(in, frame.poses[i]) && valid;
         if (body.kind == RecordedKind::deformable)
-            good = get_vertices(in, body.vertices, frame.deformed[i]) && good;
+            valid = get_vertices(in, body.vertices, frame.deformed[i]) && valid;
     }
-    if (!good)
+    if (!valid)
         throw InputError(fmt::format(
-            "{} has a body that is not finite or not turned by a rotation; record it again", where));
+            "{} has a body that is not finite or not turned by a rotation; record it again", location));
     return recorded;
 }
 

@@ -26,11 +26,11 @@ namespace recording {
 
 namespace {
 
-// As in PNG: the first byte is no text, and a copy that changes line ends changes these bytes.
+// As in PNG, the first byte is not text, and a copy that changes line ends changes these bytes.
 constexpr std::string_view magic("\x89TDMFR\r\n", 8);
 constexpr std::uint64_t bytes_before_specification = 40;
 
-/// The bytes of the header, told apart from those of other files and checked.
+/// The bytes of the header. Throws InputError for other files and when the checksum does not match.
 std::string checked_bytes(const File& file) {
     const auto fail = [&](std::string_view what) {
         throw InputError(fmt::format("{}: {}", file.path(), what));
@@ -38,7 +38,7 @@ std::string checked_bytes(const File& file) {
     const auto size = file.size();
     const auto start = file.read(0, std::min<std::uint64_t>(size, 16));
     if (!start.starts_with(magic.substr(0, start.size())))
-        fail("is no recording of frames; name one that 'tandem simulate' wrote");
+        fail("is not a recording of frames; name one that 'tandem simulate' wrote");
     if (start.size() < 16) fail("is cut off in its header; record it again");
     read::Cursor in(start, file.path(), magic.size());
     if (const auto found = in.get<std::uint32_t>("version"); found != version)
@@ -58,14 +58,13 @@ std::string checked_bytes(const File& file) {
 RecordedBody read_body(read::Cursor& in) {
     const auto kind = in.get<std::uint32_t>("the kind of a body");
     if (kind > static_cast<std::uint32_t>(RecordedKind::deformable))
-        in.fail(fmt::format("{} is no kind of body", kind), "record it again");
+        in.fail(fmt::format("{} is not a kind of body", kind), "record it again");
     return {static_cast<RecordedKind>(kind), in.get<std::uint32_t>("the vertices of a body")};
 }
 
 } // namespace
 
-/// Step, time and checksum; 7 floats of a rigid body, 3 of each vertex of a deformable one; fixed bodies
-/// stand in the scene.
+/// Fixed bodies have no bytes, since the scene has their poses.
 std::uint64_t frame_bytes(const RecordingHeader& header) {
     std::uint64_t bytes = 8 + 8 + 4;
     for (const auto& body : header.bodies) {
@@ -101,7 +100,7 @@ std::pair<RecordingHeader, std::uint64_t> read_header(const File& file) {
     header.scene_digest = in.get<std::uint64_t>("digest");
     header.seconds_per_frame = std::bit_cast<double>(in.get<std::uint64_t>("seconds"));
     if (!(header.seconds_per_frame >= 0 && std::isfinite(header.seconds_per_frame)))
-        in.fail("the seconds of a frame are no time", "record it again");
+        in.fail("the seconds per frame are not a valid time", "record it again");
     const auto count = in.get<std::uint32_t>("count of bodies");
     const auto length = in.get<std::uint32_t>("length of the scene's text");
     if (bytes_before_specification + length + std::uint64_t{count} * 8 != body.size())

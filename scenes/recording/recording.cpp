@@ -9,7 +9,7 @@
 
 namespace tandem {
 
-/// Frames have one size: their number is that of the file, and a rest is a frame that was cut off.
+/// Frames have equal sizes, so that the file's size gives their number. A remainder is a truncated frame.
 Recording::Recording(const std::string& path) : file_(path, recording::File::Mode::read) {
     std::tie(header_, header_bytes_) = recording::read_header(file_);
     frame_bytes_ = recording::frame_bytes(header_);
@@ -18,7 +18,6 @@ Recording::Recording(const std::string& path) : file_(path, recording::File::Mod
     cut_off_ = rest % frame_bytes_ != 0;
 }
 
-/// Why there are no more frames.
 std::string Recording::end() const {
     const auto whole =
         frames_ == 0 ? std::string("no frame is whole") : fmt::format("frames 0:{} are whole", frames_ - 1);
@@ -42,7 +41,7 @@ RecordedFrame Recording::read(std::size_t number, const std::vector<Pose>& fixed
     return recording::decode(header_, bytes, fixed, fmt::format("{}: frame {}", path(), number));
 }
 
-/// Without reading the frame: the time stands at its byte 8.
+/// Reads only the time, which is at byte 8 of the frame.
 double Recording::time(std::size_t number) const {
     check(number);
     const auto bytes = file_.read(offset(number) + 8, 8);

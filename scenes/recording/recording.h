@@ -5,7 +5,7 @@
 
 namespace tandem {
 
-/// A file of recorded frames, open to read; frames are read when asked for, by any number of threads.
+/// An open file of recorded frames. Frames are read on demand. Thread-safe.
 class Recording {
 public:
     /// Reads and checks the header; throws InputError.
@@ -13,20 +13,20 @@ public:
 
     const std::string& path() const { return file_.path(); }
     const RecordingHeader& header() const { return header_; }
-    /// Whole frames when it was opened; a cut-off one behind them does not count.
+    /// Number of complete frames when the file was opened; a truncated last frame does not count.
     std::size_t frames() const { return frames_; }
-    /// What read() says of frames from frames() on.
+    /// Message of read() for frames from frames() on.
     std::string end() const;
 
-    /// Frame `number`, fixed bodies standing as in `fixed` (one pose a body, others are not looked at).
-    /// Throws InputError when it is not there, cut off, or does not match its checksum.
+    /// Frame `number`. Fixed bodies get their poses from `fixed`, which has one pose a body. Throws
+    /// InputError when the frame does not exist, is truncated, or does not match its checksum.
     RecordedFrame read(std::size_t number, const std::vector<Pose>& fixed) const;
-    /// The time of a frame in s, and its checksum as stored; throws InputError when it is not there.
+    /// The time of a frame in s, and its stored checksum; throw InputError when the frame does not exist.
     double time(std::size_t number) const;
     std::uint32_t stored_checksum(std::size_t number) const;
     /// True when the frame's bytes match its checksum.
     bool intact(std::size_t number) const;
-    /// Where frame `number` begins in the file.
+    /// Position of frame `number` in the file.
     std::uint64_t offset(std::size_t number) const { return header_bytes_ + number * frame_bytes_; }
 
 private:
@@ -40,10 +40,9 @@ private:
     bool cut_off_ = false;
 };
 
-/// The scene of a recording with the recorded frames as its motion: meshes and bodies as make_scene() makes
-/// them of its specification, frames read when asked for. Its name is the file's without folder and suffix;
-/// its digest covers the scene's and every frame's checksum. Throws InputError, also when that scene is
-/// another than the recorded one now.
+/// The scene of a recording. make_scene() of its specification gives meshes and bodies; frames are read from
+/// the recording on demand. The name is the file's without folder and suffix; the digest covers the scene's
+/// digest and every frame's checksum. Throws InputError, also when the scene differs from the recorded one.
 Scene load_recording(const std::string& path);
 
 } // namespace tandem

@@ -13,7 +13,7 @@ namespace tandem {
 
 namespace {
 
-/// What follows "NAME=" among the parameters of a scene; empty where it is not there.
+/// The value of "NAME=" in a scene specification; empty when it has no such parameter.
 std::string_view parameter_in(std::string_view specification, std::string_view name) {
     for (auto at = specification.find(name); at != std::string_view::npos;
          at = specification.find(name, at + 1))
@@ -25,7 +25,7 @@ std::string_view parameter_in(std::string_view specification, std::string_view n
     return {};
 }
 
-/// The file that making a scene opens; empty where it opens none.
+/// The file that make_scene() opens for this specification; empty when it opens none.
 std::string_view file_of(std::string_view specification) {
     if (specification.ends_with(".json")) return specification;
     const auto mesh = parameter_in(specification, "mesh");
@@ -34,13 +34,13 @@ std::string_view file_of(std::string_view specification) {
 
 bool is_within(const std::filesystem::path& path, const std::filesystem::path& folder) {
     using std::filesystem::absolute, std::filesystem::weakly_canonical;
-    const auto below =
+    const auto relative =
         weakly_canonical(absolute(path)).lexically_relative(weakly_canonical(absolute(folder)));
-    return !below.empty() && *below.begin() != "..";
+    return !relative.empty() && *relative.begin() != "..";
 }
 
-/// A recording can come from anyone: it opens no file but those beside it or where the program was started,
-/// and has no scene made that has more bodies than itself.
+/// Recordings are untrusted files. A specification may open only files in the recording's folder or the
+/// working directory, and its scene may not have more bodies than the recording.
 void check_specification(const RecordingHeader& header, const std::filesystem::path& recording) {
     const auto fail = [&](std::string_view what) {
         throw InputError(fmt::format("{}: {}", recording.string(), what));
@@ -50,8 +50,8 @@ void check_specification(const RecordingHeader& header, const std::filesystem::p
         const auto own = recording.parent_path();
         if (!is_within(file, own.empty() ? "." : own) && !is_within(file, std::filesystem::current_path()))
             fail(fmt::format(
-                "its scene is of the file {}, and a recording opens only those of its own folder and of the "
-                "folder you are in; go there, or copy it",
+                "its scene needs the file {}, but a recording opens only files in its own folder or the "
+                "working directory; change to that folder or copy the file",
                 file.string()));
     }
     for (const auto* name : {"bodies", "count"}) {
@@ -59,13 +59,13 @@ void check_specification(const RecordingHeader& header, const std::filesystem::p
         std::uint64_t bodies = 0;
         const auto result = std::from_chars(text.data(), text.data() + text.size(), bodies);
         if (result.ec == std::errc{} && bodies > header.bodies.size())
-            fail(fmt::format("holds {} bodies of a scene with {} or more; record it again",
+            fail(fmt::format("has {} bodies, but its scene has {} or more; record it again",
                              header.bodies.size(), bodies));
     }
 }
 
-/// The scene that was recorded; what goes wrong in making it again is said of the recording.
-Scene remade(const Recording& recording) {
+/// Recreates the recorded scene. Errors name the recording.
+Scene recreate_scene(const Recording& recording) {
     const auto& header = recording.header();
     const auto fail = [&](std::string_view what) {
         throw InputError(fmt::format("{}: {}", recording.path(), what));
@@ -78,13 +78,14 @@ Scene remade(const Recording& recording) {
         fail(fmt::format("its scene cannot be made again: {}", error.what()));
     }
     if (scene.digest != header.scene_digest || recorded_bodies(scene) != header.bodies)
-        fail(fmt::format("was recorded of a scene with digest {:016x}, but {} has {:016x} now; restore that "
-                         "scene or record again",
-                         header.scene_digest, header.specification, scene.digest));
+        fail(
+            fmt::format("was recorded from a scene with digest {:016x}, but {} now has {:016x}; restore that "
+                        "scene or record again",
+                        header.scene_digest, header.specification, scene.digest));
     return scene;
 }
 
-/// Frames between the first and the last count as well: nothing but the file says what they hold.
+/// Includes the checksums of all frames, since only the file defines them.
 std::uint64_t digest_of(const Recording& recording) {
     std::string text;
     recording::put(text, recording.header().scene_digest);
@@ -97,11 +98,11 @@ std::uint64_t digest_of(const Recording& recording) {
 
 Scene load_recording(const std::string& path) {
     const auto recording = std::make_shared<const Recording>(path);
-    auto scene = remade(*recording);
+    auto scene = recreate_scene(*recording);
     if (recording->frames() == 0) throw InputError(recording->end());
     scene.name = std::filesystem::path(path).stem().string();
     scene.digest = digest_of(*recording);
-    // Of the scene's own key: the text in the header can be a path, which is no one's business.
+    // Uses the scene's key: the specification in the header can be a private path.
     scene.key = fmt::format("recording:{},frames={},digest={:016x},of={}", scene.name, recording->frames(),
                             scene.digest, scene.key);
     scene.frame_count = recording->frames();

@@ -11,7 +11,7 @@ namespace tandem {
 
 namespace {
 
-/// What tells a recording's header from the one to go on with, for a message.
+/// Text for a message: how a recording's header differs from the wanted one.
 std::string difference(const RecordingHeader& found, const RecordingHeader& wanted) {
     if (found.scene_digest != wanted.scene_digest || found.bodies != wanted.bodies)
         return fmt::format("is of scene {} with digest {:016x}, not of {} with {:016x}", found.specification,
@@ -22,12 +22,12 @@ std::string difference(const RecordingHeader& found, const RecordingHeader& want
     return fmt::format("names its scene {}, not {}", found.specification, wanted.specification);
 }
 
-/// A kill while the header was written leaves a part of it, a loss of power zeros behind that.
-bool is_part_of(const recording::File& file, const std::string& header) {
+/// True for a part of the header, which a kill leaves. A loss of power can leave zeros after the part.
+bool is_partial_header(const recording::File& file, const std::string& header) {
     if (file.size() > header.size()) return false;
     auto found = file.read(0, file.size());
     found.resize(found.find_last_not_of('\0') + 1);
-    const auto last = header.find_last_not_of('\0') + 1; // of a header that is whole
+    const auto last = header.find_last_not_of('\0') + 1; // end of the complete header
     return found.size() < last && header.starts_with(found);
 }
 
@@ -39,7 +39,7 @@ RecordingHeader recording_of(const std::string& specification, const Scene& scen
             "scene {} cannot be recorded; name a scene of 'tandem scenes' or a description", scene.name));
     if (!(seconds_per_frame >= 0 && std::isfinite(seconds_per_frame)))
         throw InputError(fmt::format("{} s a frame are impossible; give 0 or more", seconds_per_frame));
-    // A description is found by its path; the key of any other scene holds its defaults as they are today.
+    // A description needs its path; the key of any other scene has the present values of its defaults.
     const bool described = specification.ends_with(".json");
     return {described ? specification : scene.key, scene.digest, seconds_per_frame, recorded_bodies(scene)};
 }
@@ -52,8 +52,8 @@ RecordingWriter::RecordingWriter(recording::File file, const RecordingHeader& he
 
 RecordingWriter RecordingWriter::create(const std::string& path, const RecordingHeader& header) {
     RecordingWriter writer(recording::File(path, recording::File::Mode::create), header);
-    // A checkpoint of a recording that was here before must not be resumed with this one.
-    recording::remove_if_there(checkpoint_path(path));
+    // The checkpoint of an earlier recording at this path must not be resumed with the new one.
+    recording::remove_if_exists(checkpoint_path(path));
     sync_folder_of(path);
     writer.file_.write(0, recording::encode(header));
     return writer;
@@ -61,9 +61,9 @@ RecordingWriter RecordingWriter::create(const std::string& path, const Recording
 
 RecordingWriter RecordingWriter::resume(const std::string& path, const RecordingHeader& header) {
     RecordingWriter writer(recording::File(path, recording::File::Mode::update), header);
-    // A kill while the header was written; an older recording's checkpoint can be left then as well.
-    if (const auto bytes = recording::encode(header); is_part_of(writer.file_, bytes)) {
-        recording::remove_if_there(checkpoint_path(path));
+    // After a kill during the write of the header, the checkpoint can be that of an earlier recording.
+    if (const auto bytes = recording::encode(header); is_partial_header(writer.file_, bytes)) {
+        recording::remove_if_exists(checkpoint_path(path));
         writer.file_.write(0, bytes);
     }
     const auto found = recording::read_header(writer.file_).first;
@@ -73,7 +73,7 @@ RecordingWriter RecordingWriter::resume(const std::string& path, const Recording
     const auto rest = writer.file_.size() - writer.header_bytes_;
     auto& whole = writer.frames_;
     whole = rest / writer.frame_bytes_;
-    // After a crash of the machine the file can have its length before it has its bytes.
+    // After a crash of the machine the file can have its final length without all bytes.
     while (
         whole > 0
         && !recording::matches(writer.file_.read(writer.offset(whole - 1), writer.frame_bytes_), whole - 1))
@@ -84,9 +84,10 @@ RecordingWriter RecordingWriter::resume(const std::string& path, const Recording
 std::optional<Checkpoint> RecordingWriter::restore() {
     auto checkpoint = read_checkpoint(path(), header_.scene_digest);
     if (!checkpoint && frames_ > 0)
-        throw InputError(fmt::format("{}: is not there, so {} with its {} frames cannot go on; restore it or "
-                                     "record to another file",
-                                     checkpoint_path(path()), path(), frames_));
+        throw InputError(
+            fmt::format("{}: does not exist, so {} with its {} frames cannot be resumed; restore "
+                        "it or record to another file",
+                        checkpoint_path(path()), path(), frames_));
     if (!checkpoint) return std::nullopt;
     if (checkpoint->frames > frames_)
         throw InputError(
@@ -108,7 +109,7 @@ void RecordingWriter::check_frames(std::size_t count) const {
 
 void RecordingWriter::append(std::uint64_t step, double time, const Frame& frame) {
     const auto bytes = recording::encode(header_, frames_, step, time, frame, path());
-    cut_to(frames_); // a crash, or a full disk, can have left a part of a frame
+    cut_to(frames_); // removes a partial frame that a crash or a full disk left
     file_.write(offset(frames_), bytes);
     ++frames_;
 }

@@ -6,11 +6,11 @@
 
 namespace tandem {
 
-/// The header of a new recording of `scene`, which make_scene(specification) has made. Throws InputError when
-/// the scene cannot be made again from a text.
+/// The header of a new recording of `scene`, the result of make_scene(specification). Throws InputError when
+/// the scene cannot be recreated from a specification.
 RecordingHeader recording_of(const std::string& specification, const Scene& scene, double seconds_per_frame);
 
-/// Writes frames of a simulation so that it can be killed at any moment and go on:
+/// Writes frames of a simulation, which can be killed at any moment and resumed:
 ///
 ///     auto writer = resume ? RecordingWriter::resume(path, header) : RecordingWriter::create(path, header);
 ///     if (const auto checkpoint = writer.restore()) simulation.restore(checkpoint->state);
@@ -18,27 +18,27 @@ RecordingHeader recording_of(const std::string& specification, const Scene& scen
 ///     while (simulation.steps_done() < steps) {
 ///         const auto report = simulation.step(detect);
 ///         writer.append(report.step, report.midway_time(), simulation.midway());
-///         if (now and then) writer.checkpoint(simulation.steps_done(), simulation.state());
+///         if (interval_passed) writer.checkpoint(simulation.steps_done(), simulation.state());
 ///     }
 ///
-/// One process at a time writes a recording. Everything throws InputError, and OutputError when the disk
-/// takes no more.
+/// Only one process can write a recording at a time. All functions throw InputError, or OutputError when
+/// writing fails.
 class RecordingWriter {
 public:
-    /// Starts a recording; an existing file is never overwritten.
+    /// Starts a recording. Throws InputError when the file exists.
     static RecordingWriter create(const std::string& path, const RecordingHeader& header);
-    /// Opens a recording with an equal header; what a crash left behind its last whole frame does not count
-    /// and goes with the next frame.
+    /// Opens a recording with an equal header. Bytes after its last complete frame are ignored, and the next
+    /// frame overwrites them.
     static RecordingWriter resume(const std::string& path, const RecordingHeader& header);
 
-    /// The checkpoint to go on from; frames recorded after it are dropped. None when nothing is recorded yet
-    /// and there is none. Throws when frames are there and no checkpoint that goes with them.
+    /// The checkpoint to resume from; frames recorded after it are dropped. None when there are neither
+    /// frames nor a checkpoint. Throws InputError when frames have no matching checkpoint.
     std::optional<Checkpoint> restore();
-    /// Adds a frame with the time that it is of, in s; it survives the end of the process (not of the
-    /// machine).
+    /// Adds a frame with its time in s. The frame survives the end of the process, but not a crash of the
+    /// machine.
     void append(std::uint64_t step, double time, const Frame& frame);
-    /// Makes the frames so far and then the state of the simulation after `steps_done` steps survive a crash
-    /// of the machine.
+    /// Makes all frames, then the state of the simulation after `steps_done` steps, survive a crash of the
+    /// machine.
     void checkpoint(std::uint64_t steps_done, std::span<const std::byte> state);
 
     std::size_t frames() const { return frames_; }
@@ -48,7 +48,7 @@ private:
     RecordingWriter(recording::File file, const RecordingHeader& header);
     std::uint64_t offset(std::size_t number) const;
     void cut_to(std::size_t frames);
-    /// Throws InputError when one of the first `count` frames is damaged: nothing would ever say so again.
+    /// Throws InputError when one of the first `count` frames is damaged, since nothing checks them later.
     void check_frames(std::size_t count) const;
 
     recording::File file_;

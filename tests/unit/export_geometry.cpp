@@ -99,7 +99,7 @@ TEST(ExportGeometry, SaysWhatIsLeftOut) {
     EXPECT_EQ(less["frames"].front(), 0);
     EXPECT_EQ(less["frames"].back(), 199);
     EXPECT_EQ(less["poses"].size(), less["frames"].size());
-    EXPECT_THAT(less["notes"].dump(), HasSubstr("of 200 frames are shown, evenly taken"));
+    EXPECT_THAT(less["notes"].dump(), HasSubstr("of 200 frames are shown, evenly spaced"));
 }
 
 /// Every part of a frame has the form that the page reads: numbers of known sizes in base64.

@@ -211,7 +211,7 @@ TEST_F(ExportGlb, TooManyFramesAreRefusedBeforeAnyIsMade) {
     scene.frame = [](std::size_t) -> Frame { throw std::logic_error("asked for a frame"); };
     const std::vector<std::size_t> frames(40000);
     EXPECT_THAT(failure_of([&] { write_glb(path("s.glb"), scene, frames); }),
-                HasSubstr("bytes, glTF ends at 4294967295; export fewer frames"));
+                HasSubstr("bytes, but glTF allows at most 4294967295; export fewer frames"));
 }
 
 TEST_F(ExportGlb, TimesAreTheScenes) {

@@ -81,7 +81,7 @@ TEST_F(RecordingDamage, EveryChangedBitIsFound) {
                                     + " does not match its checksum; copy or record it again");
             else
                 EXPECT_THAT(said,
-                            AnyOf(HasSubstr("is no recording"), HasSubstr("of the format"),
+                            AnyOf(HasSubstr("is not a recording"), HasSubstr("of the format"),
                                   HasSubstr("cut off in its header"), HasSubstr("checksum in the header")));
         }
 }
@@ -94,7 +94,7 @@ TEST_F(RecordingDamage, FramesInEachOthersPlaceAreFound) {
 }
 
 TEST_F(RecordingDamage, OtherFilesAndVersions) {
-    EXPECT_THAT(failure("frame,body_a,tet_a,body_b,tet_b\n"), HasSubstr("is no recording of frames"));
+    EXPECT_THAT(failure("frame,body_a,tet_a,body_b,tet_b\n"), HasSubstr("is not a recording of frames"));
     EXPECT_THAT(failure(""), HasSubstr("is cut off in its header"));
     auto bytes = whole_;
     bytes[8] = 7;
@@ -119,7 +119,7 @@ TEST_F(RecordingDamage, NonsenseWithARightChecksumIsRefused) {
     EXPECT_THAT(changed(24, std::string_view("\0\0\0\0\0\0\xf8\x7f", 8)), HasSubstr("no time"));
     EXPECT_THAT(changed(32, "\xff\xff\xff\xff"), HasSubstr("do not fill the header"));
     EXPECT_THAT(changed(36, "\xff\xff\xff\xff"), HasSubstr("do not fill the header"));
-    EXPECT_THAT(changed(53, "\x03"), HasSubstr("3 is no kind of body"));
+    EXPECT_THAT(changed(53, "\x03"), HasSubstr("3 is not a kind of body"));
     EXPECT_THAT(changed(65, "\xff\xff\xff\xff"), AnyOf(EndsWith("no error"), HasSubstr("cut off")));
     auto frame = small_.frame(0);
     auto bytes = recording::encode(small_.header, 0, 0, 0, frame, "");

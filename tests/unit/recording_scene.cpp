@@ -77,10 +77,10 @@ TEST_F(RecordingScene, OfADescription) {
     EXPECT_THAT(scene.key,
                 MatchesRegex("recording:drift,frames=3,digest=[0-9a-f]+,of=two:frames=4,bodies=[0-9a-f]+"));
     description("[0, 0, 0.2]");
-    EXPECT_THAT(
-        failure_of([&] { make_scene(file_); }),
-        MatchesRegex(".*drift.frames: was recorded of a scene with digest [0-9a-f]+, but .*two.json has "
-                     "[0-9a-f]+ now; restore that scene or record again"));
+    EXPECT_THAT(failure_of([&] { make_scene(file_); }),
+                MatchesRegex(
+                    ".*drift.frames: was recorded from a scene with digest [0-9a-f]+, but .*two.json now has "
+                    "[0-9a-f]+; restore that scene or record again"));
     std::filesystem::remove(path("two.json"));
     EXPECT_THAT(failure_of([&] { make_scene(file_); }),
                 MatchesRegex(".*drift.frames: its scene cannot be made again: .*two.json: cannot be read.*"));
@@ -95,7 +95,8 @@ TEST_F(RecordingScene, NotOfARecording) {
     header.specification = "pile:bodies=3,frames=9";
     header.bodies[1].kind = RecordedKind::fixed;
     RecordingWriter::create(path("kinds.frames"), header);
-    EXPECT_THAT(failure_of([&] { make_scene(path("kinds.frames")); }), HasSubstr("was recorded of a scene"));
+    EXPECT_THAT(failure_of([&] { make_scene(path("kinds.frames")); }),
+                HasSubstr("was recorded from a scene"));
     header = Recording(file_).header();
     RecordingWriter::create(path("none.frames"), header);
     EXPECT_EQ(failure_of([&] { make_scene(path("none.frames")); }),
