@@ -150,7 +150,7 @@ class CommandLine(Case):
         self.assertIn("with rounding=safe nothing that meets is missed", out)
         self.bad("unknown family of hard cases 'tuch'; the nearest is 'touch'", "check", "hard:tuch")
         self.bad("difficulty=10 is impossible; give a number from 1 to 9", "run", "hard:touch:difficulty=10")
-        self.bad("hard:all takes seed, pairs and together", "check", "hard:all:difficulty=1")
+        self.bad("hard:all accepts seed, pairs and together", "check", "hard:all:difficulty=1")
 
     def test_bad_scenes(self):
         empty = self.work / "empty.json"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Group a: what bounding by k-DOPs may get wrong.
+// Group a: errors of bounding by k-DOPs.
 #include "scenes/hard/families.h"
 #include "scenes/hard/maker.h"
 #include "scenes/motion.h"
@@ -14,20 +14,20 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-/// Directions of k = 26, one for each pair of opposite planes.
+/// The directions of k = 26, one for each pair of opposite planes.
 const std::array<Vector, 13> directions{
     Vector{1, 0, 0},  Vector{0, 1, 0},   Vector{0, 0, 1}, Vector{1, 1, 1},  Vector{1, 1, -1},
     Vector{1, -1, 1}, Vector{1, -1, -1}, Vector{1, 1, 0}, Vector{1, -1, 0}, Vector{1, 0, 1},
     Vector{1, 0, -1}, Vector{0, 1, 1},   Vector{0, 1, -1}};
 
-/// A combination of two integer vectors in the plane, as far as `reach` each.
+/// A random integer combination of two vectors, with factors up to `reach`.
 Vector in_plane(Random& random, const Vector& u, const Vector& v, int reach) {
     const double p = whole(random, -reach, reach);
     const double q = whole(random, -reach, reach);
     return p * u + q * v;
 }
 
-/// An integer vector on the positive side of the plane across d, its components multiples of `steps`.
+/// A random integer vector with d.w > 0 whose components are multiples of `steps`.
 Vector above(Random& random, const Vector& d, int reach, const Vector& steps) {
     for (;;) {
         Vector w;
@@ -37,9 +37,9 @@ Vector above(Random& random, const Vector& d, int reach, const Vector& steps) {
     }
 }
 
-/// The face of a tetrahedron around c in the plane of u and v, its tip below; a corner of the other at c, the
-/// rest of it above. All integers. Weights other than 1 let all three corners of the face round one way, as
-/// corners that cancel out cannot.
+/// Two tetrahedra of integers that touch at c. A face of a contains c in the plane of u and v, with the tip
+/// below. b has a corner at c and the rest above. With weights other than 1 all corners of the face can round
+/// in the same direction, which corners with sum 0 cannot.
 std::pair<Corners, Corners> touching_across(Random& random, const Vector& c, const Vector& d, const Vector& u,
                                             const Vector& v, int reach, const Vector& steps) {
     for (;;) {
@@ -55,8 +55,8 @@ std::pair<Corners, Corners> touching_across(Random& random, const Vector& c, con
     }
 }
 
-/// How many units of the lattice make a tetrahedron of size about 1: some at least, and few enough to stay
-/// in the offset's binade.
+/// Size of a tetrahedron of about 1 in lattice units, at least 4, and small enough to keep the offset's
+/// binade.
 int reach_of(double unit) { return static_cast<int>(std::clamp(0.25 / unit, 4.0, 0x1p17)); }
 
 HardPair slab_touch(Random& random, double offset, std::uint64_t index) {
@@ -70,8 +70,9 @@ HardPair slab_touch(Random& random, double offset, std::uint64_t index) {
     return exact_pair(random, scaled(a, unit), scaled(b, unit), Known::touching);
 }
 
-/// Plane x + y + z = const with x and y odd and even, so that x + y needs 25 bits, and z about -(x + y): the
-/// sum's rounding error is of the size of the sum of all three. Signs then turn it to the other diagonals.
+/// The plane x + y + z = const. One of x and y is odd, the other even, so that x + y needs 25 bits. z is
+/// about
+/// -(x + y), so that the rounding error is as large as the complete sum. Signs map it to the other diagonals.
 HardPair corner_cancellation(Random& random, double offset, std::uint64_t index) {
     const double unit = float_unit(offset);
     const double x = std::round(random.uniform(1.25 * 0x1p23, 1.5 * 0x1p23));
@@ -81,11 +82,11 @@ HardPair corner_cancellation(Random& random, double offset, std::uint64_t index)
     const int reach = std::min(reach_of(unit), 1 << 16);
     const auto [a, b] = touching_across(random, c, {1, 1, 1}, {1, -1, 0}, {1, 1, -2}, reach, {1, 1, 2});
     const Vector signs = directions[3 + index % 4] * unit;
-    const auto turned = [&](Corners corners) {
+    const auto reflected = [&](Corners corners) {
         for (auto& corner : corners) corner = corner.cwiseProduct(signs);
         return corners;
     };
-    return exact_pair(random, turned(a), turned(b), Known::touching);
+    return exact_pair(random, reflected(a), reflected(b), Known::touching);
 }
 
 HardPair far_origin(Random& random, double offset, std::uint64_t) {
@@ -94,7 +95,7 @@ HardPair far_origin(Random& random, double offset, std::uint64_t) {
     return rounded_pair(random, moved(a, by), moved(b, by));
 }
 
-/// Touching in the body's own frame; what the transform makes of it is for the oracle.
+/// Touching in mesh coordinates; the oracle decides after the transform.
 HardPair touching_at_rest(Random& random, double, std::uint64_t index) {
     const auto [a, b] = touching_integers(random, 1 + static_cast<unsigned>(index % 3),
                                           1 + static_cast<unsigned>(index / 3 % 3));
@@ -112,7 +113,7 @@ Pose far_pose(Random& random, double distance) {
 
 double rounded(double x) { return static_cast<double>(static_cast<float>(x)); }
 
-/// A pose after many steps, each rounded to single precision and none corrected.
+/// A pose after many steps that are rounded to single precision and not corrected.
 Pose accumulated_pose(Random& random, double steps) {
     const auto step = turn(random.direction(), 0.01);
     const Vector by = 0.001 * random.direction();
@@ -146,7 +147,7 @@ HardPair mirrored(Random& random, double gap, std::uint64_t index) {
     return pair;
 }
 
-/// Two tetrahedra of plates `thickness` thick, one above the other, about as far apart as they are thick.
+/// Tetrahedra of two plates, one above the other, whose distance is similar to their thickness.
 HardPair thin_plates(Random& random, double thickness, std::uint64_t) {
     const Vector normal = random.direction();
     const Vector u = across(random, normal).normalized();
@@ -161,7 +162,7 @@ HardPair thin_plates(Random& random, double thickness, std::uint64_t) {
     return rounded_pair(random, plates[0], moved(plates[1], random.uniform(-2, 2) * thickness * normal));
 }
 
-/// Even pairs touch, being integers times 2^-halvings; odd ones are random and rounded.
+/// Even pairs touch: they are integers times 2^-halvings. Odd pairs are random and rounded.
 HardPair subnormal(Random& random, double halvings, std::uint64_t index) {
     const double scale = std::ldexp(1.0, -static_cast<int>(halvings));
     if (index % 2 == 0) {
@@ -190,7 +191,8 @@ constexpr HardFamily bounding_table[] = {
     {.row = 1,
      .group = 'a',
      .name = "slab-touch",
-     .summary = "a corner on a face across a k-DOP direction, on the lattice of one unit in the last place",
+     .summary =
+         "a corner on a face perpendicular to a k-DOP direction, on the lattice of units in the last place",
      .knob = {"largest coordinate", 1, 1e6, 100},
      .truth = HardTruth::construction,
      .metric = "MISS",
@@ -199,7 +201,7 @@ constexpr HardFamily bounding_table[] = {
     {.row = 2,
      .group = 'a',
      .name = "corner-cancellation",
-     .summary = "touching across a cube diagonal where x + y rounds and z cancels it",
+     .summary = "touching along a cube diagonal where x + y rounds and z cancels it",
      .knob = {"largest coordinate", 1, 1e6, 100},
      .truth = HardTruth::construction,
      .metric = "MISS",
@@ -208,7 +210,7 @@ constexpr HardFamily bounding_table[] = {
     {.row = 3,
      .group = 'a',
      .name = "far-origin",
-     .summary = "random near pairs far from the origin, rounded there",
+     .summary = "random near pairs, moved far from the origin and rounded",
      .knob = {"added to every coordinate", 1, 1e7, 1e4},
      .truth = HardTruth::oracle,
      .metric = "MISS, FPR",
@@ -217,7 +219,7 @@ constexpr HardFamily bounding_table[] = {
     {.row = 4,
      .group = 'a',
      .name = "rigid-transform",
-     .summary = "touching at rest, then turned at random and moved",
+     .summary = "touching at rest, then rotated at random and moved",
      .knob = {"distance moved", 0, 1e6, 10},
      .truth = HardTruth::oracle,
      .metric = "MISS, drift",
@@ -237,7 +239,7 @@ constexpr HardFamily bounding_table[] = {
     {.row = 6,
      .group = 'a',
      .name = "long-quaternion",
-     .summary = "touching at rest, turned by a quaternion that is not of unit length",
+     .summary = "touching at rest, rotated by a quaternion that is not of unit length",
      .knob = {"squared norm - 1", -0.5, 1, 1e-6},
      .truth = HardTruth::oracle,
      .metric = "MISS, size drift",
@@ -257,7 +259,7 @@ constexpr HardFamily bounding_table[] = {
     {.row = 8,
      .group = 'a',
      .name = "thin-plates",
-     .summary = "tetrahedra of thin plates above each other, turned at random",
+     .summary = "tetrahedra of thin plates above each other, rotated at random",
      .knob = {"thickness", 1e-6, 1, 1e-3},
      .truth = HardTruth::oracle,
      .metric = "FPR",

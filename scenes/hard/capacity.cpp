@@ -13,7 +13,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-/// Tetrahedra about the origin, each around the ball of radius 1/2, so that any two overlap.
+/// Tetrahedra that contain the ball of radius 1/2 about the origin, so that any two overlap.
 std::vector<FloatCorners> about_origin(Random& random, std::uint64_t count) {
     std::vector<FloatCorners> result;
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -29,7 +29,7 @@ std::vector<FloatCorners> about_origin(Random& random, std::uint64_t count) {
 
 std::uint64_t count_of(double x) { return static_cast<std::uint64_t>(x); }
 
-constexpr std::uint64_t stacked = 4; ///< tetrahedra of each copy
+constexpr std::uint64_t stacked = 4; ///< tetrahedra of a body
 
 Scene all_overlap(Random& random, double bodies) {
     return still({separate("stack", about_origin(random, stacked))}, std::vector<Pose>(count_of(bodies)));
@@ -40,7 +40,7 @@ std::uint64_t all_overlap_meeting(double bodies) {
     return n * (n - 1) / 2 * stacked * stacked;
 }
 
-/// Body 0 spans a row of small ones, 4 apart, of which no two meet.
+/// Body 0 contains a row of small bodies, 4 apart, which do not overlap each other.
 Scene one_huge(Random& random, double bodies) {
     const double half = 2 * bodies;
     const Corners huge{Vector{-2 * half, -half, -half}, Vector{2 * half, -half, -half},
@@ -68,8 +68,8 @@ Scene one_huge(Random& random, double bodies) {
 
 std::uint64_t one_huge_meeting(double bodies) { return count_of(bodies); }
 
-/// Bodies 0 and 1: tetrahedra of one centroid, so that all Morton codes are equal; body 2: a bar of many
-/// cells through both.
+/// Bodies 0 and 1 have tetrahedra of one centroid, so that all Morton codes are equal. Body 2 is a bar of
+/// many cells through both.
 Scene equal_codes(Random& random, double tetrahedra) {
     auto nested = about_origin(random, count_of(tetrahedra));
     for (std::size_t i = 0; i < nested.size(); ++i)
@@ -80,7 +80,7 @@ Scene equal_codes(Random& random, double tetrahedra) {
                  {at({0, 0, 0}), at({0.25, 0, 0}), at({0, 0, 0})});
 }
 
-/// One tetrahedron among many: as many pairs as wanted.
+/// One tetrahedron that overlaps `pairs` others.
 Scene exact_capacity(Random& random, double pairs) {
     return still(
         {separate("one", about_origin(random, 1)), separate("many", about_origin(random, count_of(pairs)))},
@@ -89,7 +89,7 @@ Scene exact_capacity(Random& random, double pairs) {
 
 std::uint64_t exact_capacity_meeting(double pairs) { return count_of(pairs); }
 
-/// Two bodies of 2^(e / 2) tetrahedra, the first of twice as many when e is odd.
+/// Two bodies of 2^(e / 2) tetrahedra; the first has twice as many when e is odd.
 Scene counter_wrap(Random& random, double exponent) {
     const auto e = count_of(exponent);
     return still({separate("some", about_origin(random, std::uint64_t{1} << (e + 1) / 2)),
@@ -103,7 +103,7 @@ constexpr HardFamily capacity_table[] = {
     {.row = 39,
      .group = 'f',
      .name = "all-overlap",
-     .summary = "copies of one body in one place, each tetrahedron in each",
+     .summary = "copies of one body at one position, all tetrahedra overlap",
      .knob = {"bodies", 2, 10000, 16},
      .truth = HardTruth::construction,
      .metric = "pairs, retries",
@@ -113,7 +113,7 @@ constexpr HardFamily capacity_table[] = {
     {.row = 40,
      .group = 'f',
      .name = "one-huge",
-     .summary = "one huge tetrahedron over a row of small bodies",
+     .summary = "one huge tetrahedron around a row of small bodies",
      .knob = {"small bodies", 1, 100000, 200},
      .truth = HardTruth::construction,
      .metric = "pairs, balance",
@@ -132,7 +132,7 @@ constexpr HardFamily capacity_table[] = {
     {.row = 42,
      .group = 'f',
      .name = "exact-capacity",
-     .summary = "a given number of pairs, for buffers one too small, just right and one too large",
+     .summary = "a given number of pairs, for buffers of one less, equal and one more",
      .knob = {"pairs", 1, 1e6, 1000},
      .truth = HardTruth::construction,
      .metric = "retries",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Group d: what the point, the normal and the depth of a contact may get wrong.
+// Group d: errors of the point, the normal and the depth of a contact.
 #include "scenes/hard/families.h"
 #include "scenes/hard/maker.h"
 #include "scenes/hard/solids.h"
@@ -12,7 +12,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-/// A face about the origin across `up` with its tip at -height * up.
+/// A tetrahedron with a face around the origin, perpendicular to `up`, and its tip at -height * up.
 Corners under(Random& random, const Vector& up, double height) {
     const Vector u = across(random, up).normalized();
     const Vector v = up.cross(u);
@@ -20,7 +20,7 @@ Corners under(Random& random, const Vector& up, double height) {
     return {size * u, size * (-0.5 * u + 0.8 * v), size * (-0.5 * u - 0.8 * v), -height * up};
 }
 
-/// Two such about one point, their faces at the angle `tilt`, the second `depth` within the first.
+/// Two such tetrahedra whose faces have the angle `tilt`. The second penetrates the first by `depth`.
 std::pair<Corners, Corners> facing(Random& random, double tilt, double depth) {
     const Vector up = random.direction();
     const auto a = under(random, up, 1);
@@ -34,22 +34,22 @@ HardPair opposing_faces(Random& random, double angle, std::uint64_t) {
     return rounded_pair(random, a, b, Known::overlapping);
 }
 
-/// Edges that cross at a right angle, one `depth` below the other.
+/// Edges that cross at a right angle; one is `depth` below the other.
 HardPair edge_crossing(Random& random, double depth, std::uint64_t) {
     const Vector up = random.direction();
     const Vector along = across(random, up).normalized();
     const Vector side = up.cross(along);
     const Corners a{along, -along, -up + 0.6 * side, -up - 0.6 * side};
     const Corners b{side, -side, up + 0.6 * along, up - 0.6 * along};
-    const double turned = random.uniform(0.8, 1.2);
-    return rounded_pair(random, a, moved(scaled(b, turned), -depth * up), Known::overlapping);
+    const double factor = random.uniform(0.8, 1.2);
+    return rounded_pair(random, a, moved(scaled(b, factor), -depth * up), Known::overlapping);
 }
 
-/// A corner of b goes from the middle of a's face towards the opposite corner.
-HardPair deep(Random& random, double share, std::uint64_t) {
+/// A corner of b on the line from the middle of a's face to the opposite corner.
+HardPair deep(Random& random, double fraction, std::uint64_t) {
     const auto a = random_tetrahedron(random);
     const Vector foot = (a[0] + a[1] + a[2]) / 3;
-    const Vector tip = foot + share * (a[3] - foot);
+    const Vector tip = foot + fraction * (a[3] - foot);
     const auto shape = random_tetrahedron(random);
     const Vector out = (foot - a[3]).normalized();
     Corners b{tip, tip, tip, tip};
@@ -57,7 +57,7 @@ HardPair deep(Random& random, double share, std::uint64_t) {
     return rounded_pair(random, a, b, Known::overlapping);
 }
 
-/// Regular tetrahedra, the corners of a cube, one the other's mirror image: many axes are equally deep.
+/// Regular tetrahedra from the corners of a cube, equal or mirrored, so that many axes have equal depth.
 HardPair ties(Random& random, double noise, std::uint64_t index) {
     const Corners cube{Vector{1, 1, 1}, Vector{1, -1, -1}, Vector{-1, 1, -1}, Vector{-1, -1, 1}};
     auto a = cube;
@@ -67,14 +67,14 @@ HardPair ties(Random& random, double noise, std::uint64_t index) {
     return rounded_pair(random, a, b, Known::overlapping);
 }
 
-/// Depths of at most 2^-8, so that the faces stay around a common point however slim they are.
+/// Depths of at most 2^-8, so that also very thin faces keep a common point.
 HardPair vanishing_depth(Random& random, double halvings, std::uint64_t) {
     const auto [a, b] = touching_integers(random, 3, 3);
     return exact_pair(random, a, moved(b, {-std::ldexp(1.0, -static_cast<int>(halvings)), 0, 0}),
                       Known::overlapping);
 }
 
-/// An edge of b that leaves a's face at a small angle.
+/// An edge of b crosses a's face at a small angle.
 HardPair plane_division(Random& random, double angle, std::uint64_t) {
     const Vector up = random.direction();
     const auto a = under(random, up, 1);
@@ -85,7 +85,7 @@ HardPair plane_division(Random& random, double angle, std::uint64_t) {
     return rounded_pair(random, a, b, Known::overlapping);
 }
 
-/// Shapes of Erleben's configurations, about the origin, pointing along +y.
+/// Shapes of Erleben's configurations about the origin, directed along +y.
 Mesh spike() {
     return separate("spike",
                     {{{{0, 0.5F, 0}, {-0.25F, -0.5F, -0.25F}, {0.25F, -0.5F, -0.25F}, {0, -0.5F, 0.25F}}}});
@@ -95,7 +95,7 @@ Mesh wedge() {
     return separate("wedge", {{{{-0.5F, 0.5F, 0}, {0.5F, 0.5F, 0}, {0, -0.5F, 0.5F}, {0, -0.5F, -0.5F}}}});
 }
 
-/// A flat box with a gap of a quarter in its middle: two boxes of one body.
+/// A flat box with a gap of 0.25 in its middle: two boxes in one mesh.
 Mesh cracked() {
     auto mesh = grid({2, 1, 2}, {1, 1, 2});
     const auto vertices = mesh.vertices;
@@ -114,25 +114,25 @@ Mesh cracked() {
 
 Pose upside_down(const Vector& translation) { return {Eigen::Quaterniond(0, 1, 0, 0), translation}; }
 
-/// Erleben's configurations (2018, section 5: points, edges and faces of spikes, wedges and boxes), 8 apart,
-/// each `depth` deep; bodies 2i and 2i + 1 are configuration i.
+/// Erleben's configurations (2018, section 5: points, edges and faces of spikes, wedges and boxes) with depth
+/// `depth`, 8 apart. Bodies 2i and 2i + 1 are configuration i.
 Scene configurations(Random&, double depth) {
     const auto box = grid({2, 1, 2}, {2, 1, 2});
     Scene scene = still({spike(), wedge(), box, cracked()}, {});
     std::vector<Pose> poses;
     const auto add = [&](std::uint32_t below, const Vector& offset, std::uint32_t above, Pose pose) {
-        const Vector place{4.0 * static_cast<double>(poses.size()), 0, 0};
+        const Vector position{4.0 * static_cast<double>(poses.size()), 0, 0};
         scene.bodies.push_back({.mesh = below});
-        poses.push_back(at(place));
-        pose.translation = pose.translation + offset + place;
+        poses.push_back(at(position));
+        pose.translation = pose.translation + offset + position;
         scene.bodies.push_back({.mesh = above});
         poses.push_back(pose);
     };
-    const Vector on{0, 1 - depth, 0}; // both are half a unit high
+    const Vector on{0, 1 - depth, 0}; // both extend 0.5 from their origin
     enum : std::uint32_t { s, w, b, c };
     add(s, on, s, upside_down({0, 0, 0}));       // spike on spike
     add(w, on, s, upside_down({0, 0, 0}));       // spike on wedge
-    add(w, on, w, upside_down({0, 0, 0}));       // wedge on wedge, along it
+    add(w, on, w, upside_down({0, 0, 0}));       // wedge on parallel wedge
     add(b, on, s, upside_down({0.25, 0, 0.25})); // spike on a box, on edges inside its mesh
     add(c, on, s, upside_down({0, -0.5, 0}));    // spike in a crack, between its edges
     add(b, on, b, at({1, 0, 0}));                // box over a cliff's edge
@@ -145,7 +145,7 @@ Scene configurations(Random&, double depth) {
     return scene;
 }
 
-/// A box of small cells pressed into another: its inner faces and edges are no surface, the normal is +y.
+/// A box of small cells that penetrates another. Inner faces and edges are not a surface; the normal is +y.
 Scene interior_faces(Random&, double depth) {
     const auto box = grid({4, 4, 4}, {1, 1, 1});
     return still({box}, {at({0, 0, 0}), at({0.125, 1 - depth, 0.125})});
@@ -155,7 +155,7 @@ constexpr HardFamily contact_table[] = {
     {.row = 28,
      .group = 'd',
      .name = "opposing-faces",
-     .summary = "nearly parallel faces within each other",
+     .summary = "nearly parallel faces of penetrating tetrahedra",
      .knob = {"angle", 1e-8, 0.1, 1e-6},
      .truth = HardTruth::geometry,
      .metric = "ANG, count of contacts",
@@ -174,7 +174,7 @@ constexpr HardFamily contact_table[] = {
      .group = 'd',
      .name = "deep",
      .summary = "a corner deep inside",
-     .knob = {"share of the way to the opposite corner", 0.001, 0.9, 0.5},
+     .knob = {"fraction of the distance to the opposite corner", 0.001, 0.9, 0.5},
      .truth = HardTruth::geometry,
      .metric = "DREL, ANG, VOL",
      .fails = "contacts dropped for being too deep",
@@ -182,7 +182,7 @@ constexpr HardFamily contact_table[] = {
     {.row = 31,
      .group = 'd',
      .name = "ties",
-     .summary = "regular tetrahedra in one place, and a little noise",
+     .summary = "regular tetrahedra at one position with small noise",
      .knob = {"noise", 0, 0.1, 0},
      .truth = HardTruth::geometry,
      .metric = "number of best normals",
@@ -191,7 +191,7 @@ constexpr HardFamily contact_table[] = {
     {.row = 32,
      .group = 'd',
      .name = "configurations",
-     .summary = "Erleben's spike, wedge, crack, cliff edge and sliding box, nine of two bodies",
+     .summary = "Erleben's spike, wedge, crack, cliff edge and sliding box: nine pairs of bodies",
      .knob = {"depth", 0, 0.25, 0.0625},
      .truth = HardTruth::geometry,
      .metric = "ANG, PT, count of contacts",
@@ -200,7 +200,7 @@ constexpr HardFamily contact_table[] = {
     {.row = 33,
      .group = 'd',
      .name = "vanishing-depth",
-     .summary = "faces barely within each other",
+     .summary = "faces that barely penetrate",
      .knob = {"halvings of the depth", 8, 20, 16},
      .truth = HardTruth::geometry,
      .metric = "DULP",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Group c: what decides whether two tetrahedra meet may get wrong because they touch, or nearly do.
+// Group c: errors of the overlap decision for tetrahedra that touch or nearly touch.
 #include "scenes/hard/families.h"
 #include "scenes/hard/maker.h"
 
@@ -11,7 +11,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-/// Corner, edge or face of each, by the index: nine ways.
+/// Touching corner, edge or face of each tetrahedron by the index: nine combinations.
 std::pair<Corners, Corners> by_index(Random& random, std::uint64_t index) {
     return touching_integers(random, 1 + static_cast<unsigned>(index % 3),
                              1 + static_cast<unsigned>(index / 3 % 3));
@@ -33,13 +33,13 @@ HardPair touch(Random& random, double bits, std::uint64_t index) {
     return mapped_pair(random, by_index(random, index), bits, Known::touching);
 }
 
-/// Two faces in one plane around a common point, mapped to numbers about 2^23 + 2^22, where one unit is that
-/// of the last place; b is moved by whole units along the axis nearest the normal. The map stretches so much
-/// that a unit is below 2^-10 of what it was, so that the faces stay around a common point.
+/// Two faces in one plane around a common point, mapped to coordinates near 2^23 + 2^22, where the unit in
+/// the last place is 1. b is moved by whole units along the axis nearest the normal. The map stretches so
+/// much that a unit is below 2^-10 before the map, so that the faces keep a common point.
 HardPair units_apart(Random& random, double units, std::uint64_t) {
     const auto [a, b] = touching_integers(random, 3, 3);
     const auto map = integer_map(random, 17, 0x1p45);
-    const Vector normal = map.col(1).cross(map.col(2)); // of the image of the plane x = 0
+    const Vector normal = map.col(1).cross(map.col(2)); // normal of the image of the plane x = 0
     const double outwards = normal.dot(map.col(0)) > 0 ? 1 : -1;
     int axis = 0;
     normal.cwiseAbs().maxCoeff(&axis);
@@ -52,8 +52,8 @@ HardPair units_apart(Random& random, double units, std::uint64_t) {
     return exact_pair(random, a_mapped, mapped(map, b, by), known);
 }
 
-/// A corner of b goes to a point of a's face 0 1 2, lifted by so many units of 2^-24, then rounded; the rest
-/// of b is on the far side.
+/// A corner of b is on a's face 0 1 2, lifted by `lift` units of 2^-24, then rounded. The rest of b is on the
+/// other side of the face.
 HardPair rounded_onto_face(Random& random, double lift, std::uint64_t) {
     const auto a = random_tetrahedron(random);
     Vector normal = (a[1] - a[0]).cross(a[2] - a[0]).normalized();
@@ -68,7 +68,8 @@ HardPair rounded_onto_face(Random& random, double lift, std::uint64_t) {
     return rounded_pair(random, a, b);
 }
 
-/// Faces in one plane beside each other: they share a corner (even pairs) or are a unit apart before the map.
+/// Adjacent faces in one plane. Even pairs have a common corner; odd pairs have a gap of one unit before the
+/// map.
 HardPair coplanar(Random& random, double bits, std::uint64_t index) {
     const double gap = index % 2 == 0 ? 0 : 1;
     Corners sides[2];
@@ -88,7 +89,7 @@ HardPair coplanar(Random& random, double bits, std::uint64_t index) {
     return mapped_pair(random, {sides[0], sides[1]}, bits, gap == 0 ? Known::touching : Known::disjoint);
 }
 
-/// A face, an edge or a corner in common, with equal bits.
+/// A common face, edge or corner with equal bits.
 HardPair shared(Random& random, double bits, std::uint64_t index) {
     const auto in_common = 3 - static_cast<unsigned>(index % 3);
     for (;;) {
@@ -99,7 +100,7 @@ HardPair shared(Random& random, double bits, std::uint64_t index) {
     }
 }
 
-/// b is a, shrunk about the centroid.
+/// b is a copy of a, shrunk about the centroid.
 HardPair nested(Random& random, double shrink, std::uint64_t) {
     const auto a = random_tetrahedron(random);
     const Vector middle = 0.25 * ((a[0] + a[1]) + (a[2] + a[3]));
@@ -108,7 +109,7 @@ HardPair nested(Random& random, double shrink, std::uint64_t) {
     return rounded_pair(random, a, b, Known::overlapping);
 }
 
-/// Odd pairs are the even ones with two corners of each swapped, which turns them inside out.
+/// Odd pairs are the even pairs with two corners of each tetrahedron swapped, which inverts them.
 HardPair inside_out(Random& random, double bits, std::uint64_t index) {
     auto pair = touch(random, bits, index / 2);
     if (index % 2 == 1) {
@@ -131,7 +132,7 @@ constexpr HardFamily decision_table[] = {
     {.row = 15,
      .group = 'c',
      .name = "touch-24bit",
-     .summary = "the same with coordinates of up to 24 bits",
+     .summary = "touching as in touch, with coordinates of up to 24 bits",
      .knob = {"bits of the integer map", 10, 19, 19},
      .truth = HardTruth::construction,
      .metric = "CLS",
@@ -158,7 +159,7 @@ constexpr HardFamily decision_table[] = {
     {.row = 18,
      .group = 'c',
      .name = "coplanar",
-     .summary = "faces in one plane beside each other, with a common corner or none",
+     .summary = "adjacent faces in one plane, with or without a common corner",
      .knob = {"bits of the integer map", 1, 19, 8},
      .truth = HardTruth::construction,
      .metric = "CLS",
@@ -167,7 +168,7 @@ constexpr HardFamily decision_table[] = {
     {.row = 19,
      .group = 'c',
      .name = "shared",
-     .summary = "a common face, edge or corner, as neighbours in a mesh have",
+     .summary = "a common face, edge or corner, as between neighbours in a mesh",
      .knob = {"bits of the integer map", 1, 19, 12},
      .truth = HardTruth::construction,
      .metric = "CLS",
@@ -185,7 +186,7 @@ constexpr HardFamily decision_table[] = {
     {.row = 27,
      .group = 'c',
      .name = "inverted",
-     .summary = "touching pairs and the same pairs inside out",
+     .summary = "touching pairs and the same pairs inverted",
      .knob = {"bits of the integer map", 1, 19, 12},
      .truth = HardTruth::construction,
      .metric = "PERM",

@@ -13,8 +13,8 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-/// a's last corner is pushed through the opposite face by `through` of its height: 0 no more than flat, above
-/// 0 inverted.
+/// a's last corner is moved through the opposite face by `through` times its height. a is flat at 0 and
+/// inverted above 0.
 HardPair pushed_through(Random& random, double through, std::uint64_t) {
     auto [a, b] = near_pair(random);
     const Vector normal = (a[1] - a[0]).cross(a[2] - a[0]).normalized();
@@ -22,8 +22,8 @@ HardPair pushed_through(Random& random, double through, std::uint64_t) {
     return rounded_pair(random, a, b);
 }
 
-/// An element that loses `halvings` of its height from pair to pair and has none in every 32nd; integers
-/// times powers of two.
+/// An element whose height is halved `halvings` times from pair to pair and is 0 in every 32nd pair.
+/// Coordinates are integers times powers of two.
 HardPair collapsing(Random& random, double halvings, std::uint64_t index) {
     auto [a, b] = touching_integers(random, 3, 3);
     const auto step = static_cast<int>(index % 32);
@@ -31,7 +31,7 @@ HardPair collapsing(Random& random, double halvings, std::uint64_t index) {
     return exact_pair(random, a, b, Known::touching);
 }
 
-/// A bar bent into a circle until its ends lie in each other.
+/// A bar bent into a circle until its ends overlap.
 Mesh ring(double overlap) {
     constexpr double length = 6, radius = 1;
     auto mesh = grid({24, 2, 2}, {length, 0.5, 0.5});
@@ -46,7 +46,7 @@ Mesh ring(double overlap) {
     return mesh;
 }
 
-/// Two such rings through each other: a place of one may lie in two tetrahedra of the other.
+/// Two such rings that overlap; a point of one ring can be in two tetrahedra of the other.
 Scene self_intersecting(Random& random, double overlap) {
     Pose second = at({0.25, 0.25, 0.125});
     second.rotation = turn(random.direction(), 0.5);
@@ -58,7 +58,7 @@ constexpr HardFamily deforming_table[] = {
      .group = 'e',
      .name = "inverting",
      .summary = "an element whose corner is pushed through the opposite face",
-     .knob = {"share of its height", -1, 1, 0.01},
+     .knob = {"fraction of its height", -1, 1, 0.01},
      .truth = HardTruth::oracle,
      .metric = "CLS",
      .fails = "normals and signs of volume that trust the orientation",
@@ -66,8 +66,8 @@ constexpr HardFamily deforming_table[] = {
     {.row = 37,
      .group = 'e',
      .name = "self-intersecting",
-     .summary = "two bars bent into rings whose ends lie in each other",
-     .knob = {"angle of the ends within each other", 0, 3, 0.5},
+     .summary = "two bars bent into rings whose ends overlap",
+     .knob = {"angle of overlap of the ends", 0, 3, 0.5},
      .truth = HardTruth::oracle,
      .metric = "MISS, share of pairs that overlap doubly",
      .fails = "methods that take a point to be in one element",

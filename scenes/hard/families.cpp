@@ -10,7 +10,7 @@ namespace tandem {
 
 namespace {
 
-/// The groups overlap in the catalogue: its order is that of the rows.
+/// The catalogue is sorted by row, since groups are not contiguous in it.
 std::vector<HardFamily> all_families() {
     std::vector<HardFamily> all;
     for (const auto group : {hard::bounding_families(), hard::tolerance_families(), hard::decision_families(),

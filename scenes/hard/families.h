@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The groups of the catalogue, one file and one table each.
+// The groups of the catalogue; each has its own file and table.
 #pragma once
 
 #include "scenes/hard/hard.h"
@@ -11,8 +11,8 @@ namespace tandem::hard {
 std::span<const HardFamily> bounding_families();  ///< a
 std::span<const HardFamily> tolerance_families(); ///< b
 std::span<const HardFamily> decision_families();  ///< c
-std::span<const HardFamily> shape_families();     ///< c, shapes and sizes; inside out is in decision.cpp
-std::span<const HardFamily> contact_families();   ///< d
+std::span<const HardFamily> shape_families();   ///< c, shapes and sizes; decision.cpp has inverted tetrahedra
+std::span<const HardFamily> contact_families(); ///< d
 std::span<const HardFamily> deforming_families(); ///< e
 std::span<const HardFamily> capacity_families();  ///< f
 

@@ -26,7 +26,7 @@ HardPair pair_of(Random& random, const Corners& a, const Corners& b, Known known
     return pair;
 }
 
-/// The corners of touching_integers on the side of the sign.
+/// Corners of one tetrahedron of touching_integers, on the side with this sign of x.
 Corners side(Random& random, unsigned level, int sign) {
     Corners corners;
     for (auto& c : corners)
@@ -60,7 +60,7 @@ int whole(Random& random, int low, int high) {
 float exact(double x) {
     const auto narrow = static_cast<float>(x);
     if (static_cast<double>(narrow) != x)
-        throw std::logic_error("a constructed coordinate is no single-precision number");
+        throw std::logic_error("a constructed coordinate is not exact in single precision");
     return narrow;
 }
 

@@ -38,7 +38,7 @@ Mesh pair_mesh(Vertices vertices) {
     Mesh mesh;
     mesh.name = "hard";
     for (auto& v : vertices)
-        if (!v.allFinite()) v.setZero(); // a mesh is finite; frames are what they are
+        if (!v.allFinite()) v.setZero(); // a mesh must be finite; frames need not
     mesh.vertices = std::move(vertices);
     for (std::uint32_t first = 0; first < mesh.vertices.size(); first += 4)
         mesh.tetrahedra.push_back({first, first + 1, first + 2, first + 3});
@@ -46,8 +46,8 @@ Mesh pair_mesh(Vertices vertices) {
     return mesh;
 }
 
-/// A frame is a function of its number, so that frames can be made in any order. Families outlive every
-/// scene: they are tables of the program.
+/// A frame depends only on its number, so that frames can be made in any order. Families are constant tables,
+/// which outlive every scene.
 std::function<Frame(std::size_t)> pair_frames(const HardFamily& family, std::uint64_t seed, double difficulty,
                                               std::uint64_t together) {
     if (family.pose != nullptr)
@@ -87,11 +87,11 @@ SceneKind kind_of(const HardFamily& family) {
     kind.parameters.push_back(
         {"difficulty", fmt::format("{}", family.knob.initial),
          fmt::format("{}, {}..{}", family.knob.meaning, family.knob.least, family.knob.most)});
-    kind.parameters.push_back({"seed", "1", "of everything random"});
+    kind.parameters.push_back({"seed", "1", "seed of all random numbers"});
     if (family.scene == nullptr) {
-        kind.parameters.push_back({"pairs", "64", "how many, `together` a frame"});
+        kind.parameters.push_back({"pairs", "64", "number of pairs, `together` in a frame"});
         kind.parameters.push_back(
-            {"together", "16", "pairs that share a frame and meet each other too, or 1; divides pairs"});
+            {"together", "16", "pairs in a frame, which can also overlap each other; divides pairs"});
     }
     kind.make = [&family](std::span<const SceneParameter> parameters) {
         return make_kind(family, parameters);
@@ -99,7 +99,7 @@ SceneKind kind_of(const HardFamily& family) {
     return kind;
 }
 
-/// The items of "hard:all:..." that a family takes.
+/// The items of "hard:all:..." that a family accepts.
 std::string accepted(const HardFamily& family, std::string_view items) {
     std::string result;
     while (!items.empty()) {
@@ -108,7 +108,7 @@ std::string accepted(const HardFamily& family, std::string_view items) {
         const auto name = item.substr(0, item.find('='));
         if (name != "seed" && name != "pairs" && name != "together")
             throw InputError(
-                fmt::format("hard:all takes seed, pairs and together, not '{}'; name one family", name));
+                fmt::format("hard:all accepts seed, pairs and together, not '{}'; name one family", name));
         if (name == "seed" || family.scene == nullptr)
             result += fmt::format("{}{}", result.empty() ? "" : ",", item);
     }
@@ -147,8 +147,9 @@ std::vector<std::string> expand_hard(const std::string& specification) {
     const auto items = std::string_view(specification).substr(std::min(specification.size(), all.size() + 1));
     std::vector<std::string> result;
     for (const auto& family : hard_families()) {
-        const auto own = accepted(family, items);
-        result.push_back(fmt::format("hard:{}{}{}", family.name, own.empty() ? "" : ":", own));
+        const auto family_items = accepted(family, items);
+        result.push_back(
+            fmt::format("hard:{}{}{}", family.name, family_items.empty() ? "" : ":", family_items));
     }
     return result;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Group c: shapes and sizes that arithmetic has trouble with.
+// Group c: shapes and sizes that are numerically difficult.
 #include "scenes/hard/families.h"
 #include "scenes/hard/maker.h"
 
@@ -11,7 +11,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-/// Sliver, cap, needle or wedge by the index.
+/// A sliver, cap, needle or wedge of thickness e, by the index.
 Corners thin(Random& random, double e, std::uint64_t index) {
     auto t = random_tetrahedron(random);
     const Vector off = e * t[3];
@@ -40,7 +40,7 @@ HardPair sliver(Random& random, double e, std::uint64_t index) {
     return rounded_pair(random, a, moved(b, by));
 }
 
-/// Edges that cross at the angle e, as far apart as e at most, and the rest of each behind its edge.
+/// Edges that cross at the angle e, at most e apart. The rest of each tetrahedron is behind its edge.
 HardPair parallel_edges(Random& random, double e, std::uint64_t) {
     const Vector along = random.direction();
     const Vector side = across(random, along).normalized();
@@ -54,7 +54,7 @@ HardPair parallel_edges(Random& random, double e, std::uint64_t) {
     return rounded_pair(random, a, b);
 }
 
-/// b is e times as large as a, at a place on a's face.
+/// b is e times as large as a and lies on a's face.
 HardPair scale_ratio(Random& random, double e, std::uint64_t) {
     const auto a = random_tetrahedron(random);
     const double p = random.uniform(0.1, 0.4), q = random.uniform(0.1, 0.4);
@@ -76,7 +76,7 @@ HardPair mixed_exponents(Random& random, double spread, std::uint64_t) {
     return rounded_pair(random, a, b);
 }
 
-/// The same pair at every size: touching integers (even) or any, times a power of two.
+/// The same pairs at any scale: integers times a power of two. Even pairs touch.
 HardPair any_scale(Random& random, double exponent, std::uint64_t index) {
     const double scale = std::ldexp(1.0, static_cast<int>(exponent));
     auto [a, b] = touching_integers(random, 1 + static_cast<unsigned>(index / 2 % 3),
@@ -89,7 +89,7 @@ HardPair any_scale(Random& random, double exponent, std::uint64_t index) {
                       scaled(mapped(map, b, by), scale), index % 2 == 0 ? Known::touching : Known::open);
 }
 
-/// Two corners in one place, all in a plane, all on a line, all in one place.
+/// Two equal corners, or all corners in a plane, on a line, or equal.
 HardPair zero_volume(Random& random, double range, std::uint64_t index) {
     const auto corner = [&] {
         Vector c;
@@ -156,7 +156,7 @@ constexpr HardFamily shape_table[] = {
     {.row = 25,
      .group = 'c',
      .name = "scale",
-     .summary = "the same pairs at another scale",
+     .summary = "equal pairs at another scale",
      .knob = {"binary exponent of the scale", -140, 100, -60},
      .truth = HardTruth::oracle,
      .metric = "INV, CLS",
@@ -165,7 +165,7 @@ constexpr HardFamily shape_table[] = {
     {.row = 26,
      .group = 'c',
      .name = "zero-volume",
-     .summary = "corners in one place, in a plane, on a line",
+     .summary = "corners that are equal, in a plane or on a line",
      .knob = {"largest coordinate", 1, 1000, 10},
      .truth = HardTruth::program,
      .metric = "CLS",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Group b: overlap tests with a tolerance, and hierarchies made anew.
+// Group b: overlap tests with a tolerance, and refitted hierarchies.
 #include "scenes/hard/families.h"
 #include "scenes/hard/maker.h"
 #include "scenes/hard/solids.h"
@@ -15,7 +15,7 @@ HardPair scaled_pair(Random& random, double size, std::uint64_t) {
     return rounded_pair(random, scaled(a, size), scaled(b, size));
 }
 
-/// Faces in the planes x = 0 and x = gap, one behind the other: the distance is the gap, exactly.
+/// Faces in the planes x = 0 and x = gap, one behind the other, so that their distance is exactly the gap.
 HardPair gap_near_tolerance(Random& random, double units, std::uint64_t) {
     constexpr double tolerance = 10 * 0x1p-23; // the paper's 10 FLT_EPSILON
     const double gap = tolerance + std::round(units) * float_unit(tolerance);
@@ -24,7 +24,7 @@ HardPair gap_near_tolerance(Random& random, double units, std::uint64_t) {
     return exact_pair(random, a, b, Known::disjoint);
 }
 
-/// Two boxes of tetrahedra, deformed anew in every frame.
+/// Two boxes of tetrahedra with a new random deformation in every frame.
 Scene refits(Random& random, double frames) {
     Scene scene;
     scene.meshes = {grid({3, 3, 3}, {1, 1, 1})};
@@ -59,7 +59,7 @@ constexpr HardFamily tolerance_table[] = {
      .group = 'b',
      .name = "tolerance-gap",
      .summary =
-         "parallel faces as far apart as the paper's tolerance, give or take some units in the last place",
+         "parallel faces whose distance is the paper's tolerance plus or minus units in the last place",
      .knob = {"units above the tolerance", -64, 64, 1},
      .truth = HardTruth::construction,
      .metric = "false pairs at gap > tolerance",
@@ -68,7 +68,7 @@ constexpr HardFamily tolerance_table[] = {
     {.row = 13,
      .group = 'b',
      .name = "refit-order",
-     .summary = "two boxes of tetrahedra deformed anew in every frame",
+     .summary = "two boxes of tetrahedra with a new deformation in every frame",
      .knob = {"frames", 2, 1000, 8},
      .truth = HardTruth::oracle,
      .metric = "equality with a fresh build",
