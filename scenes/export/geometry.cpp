@@ -98,7 +98,7 @@ private:
     GeometryCut cut_;
     std::vector<std::size_t> frames_;
     std::vector<std::vector<Pose>> poses_;
-    std::vector<Points> points_, normals_; ///< of the contacts shown, by frame
+    std::vector<Points> points_, normals_; ///< shown contacts, by frame
     OrderedJson json_, notes_ = OrderedJson::array();
 };
 

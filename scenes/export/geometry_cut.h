@@ -18,7 +18,7 @@ struct GeometryBudget {
 /// Sizes of a complete scene.
 struct GeometrySizes {
     struct MeshSizes {
-        std::size_t vertices = 0, triangles = 0; ///< of the surface
+        std::size_t vertices = 0, triangles = 0; ///< counts of the surface
         std::size_t bodies = 0, deformable = 0; ///< bodies with this mesh, and the deformable ones among them
     };
     std::vector<MeshSizes> meshes{};
