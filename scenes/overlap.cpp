@@ -52,7 +52,7 @@ std::vector<std::pair<Box, std::size_t>> tetrahedra_in(const Solid& solid, const
     return found;
 }
 
-/// Takes the tetrahedra of each body whose boxes intersect the other body's box and sweeps them along x.
+/// Sweeps along x the tetrahedra of each body whose boxes intersect the other body's box.
 bool bodies_overlap(const Solid& a, const Solid& b) {
     const double slack = tolerance * std::min(a.box.diagonal().norm(), b.box.diagonal().norm());
     const auto candidates_b = tetrahedra_in(b, a.box);

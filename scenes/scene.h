@@ -46,8 +46,8 @@ struct Scene {
     std::function<Frame(std::size_t)> frame;  ///< frame(i) for i < frame_count; pure
     std::shared_ptr<const Dynamics> dynamics; ///< null: the motion is scripted, all frames are defined
     std::function<double(std::size_t)> time;  ///< time of frame i in s; null: frames have no times
-    std::string end;                          ///< why a recording ends early, one line; empty: it is complete
-    std::uint64_t digest = 0;                 ///< digest of meshes, bodies and motion; equal on every machine
+    std::string end;          ///< message for frames after the last of a recording; empty in other scenes
+    std::uint64_t digest = 0; ///< digest of meshes, bodies and motion; equal on every machine
     /// In a subscene, the number of each body in the whole scene, ascending. Empty in a whole scene.
     std::vector<std::uint32_t> numbers{};
 };
