@@ -60,8 +60,8 @@ void run_together(Ranks& ranks, const std::function<void()>& work) {
     const auto first =
         std::ranges::find_if(all, [](const Failure& failure) { return failure.kind != Kind::none; });
     if (first == all.end()) return;
-    const bool is_everyones = std::ranges::count(all, *first) == std::ssize(all);
-    if (!is_everyones) first->message = fmt::format("rank {}: {}", first - all.begin(), first->message);
+    const bool is_same_on_all = std::ranges::count(all, *first) == std::ssize(all);
+    if (!is_same_on_all) first->message = fmt::format("rank {}: {}", first - all.begin(), first->message);
     throw_shared(*first);
 }
 

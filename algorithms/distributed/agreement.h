@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ranks of a job that run the same program: an error of one is an error of all, and rank 0 decides what
-// depends on clocks.
+// Agreement between ranks that run the same program: an error on one rank is thrown on all ranks, and rank 0
+// decides what depends on clocks.
 #pragma once
 
 #include "algorithms/distributed/bytes.h"
@@ -10,25 +10,25 @@
 
 namespace tandem {
 
-/// Marks an error that every rank of the job throws at once. Any other error is one rank's alone: the ranks
-/// that wait for it can only be ended.
+/// Marks an error that all ranks of the job throw together. Any other error is local to one rank, and the
+/// ranks that wait for that rank must be aborted.
 struct OfAllRanks {
     virtual ~OfAllRanks() = default;
 };
 
-/// An error of that kind, which is caught as what it is.
+/// An error of type Error that all ranks throw; handlers of Error catch it.
 template<class Error>
 struct SharedError final : Error, OfAllRanks {
     using Error::Error;
 };
 
-// All ranks call these together, in the same order.
+// Collectives: all ranks call these functions in the same order.
 
-/// Does the work on every rank. Where it throws on some, all throw the error of the first of these, which the
-/// message names unless all have the same one.
+/// Runs `work` on every rank. When it throws on some ranks, all ranks throw the error of the lowest of them.
+/// The message names that rank unless all ranks have the same error.
 void run_together(Ranks& ranks, const std::function<void()>& work);
 
-/// The value of rank 0.
+/// Returns the value of rank 0 on every rank.
 template<class Value>
 Value of_rank_0(Ranks& ranks, const Value& own) {
     static_assert(std::is_trivially_copyable_v<Value>);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Messages between ranks of one build: values as they lie in memory, one after the other.
+// Messages between ranks of one build: values in their memory representation, one after the other.
 #pragma once
 
 #include "backends/ranks.h"
@@ -24,7 +24,7 @@ Ranks::Bytes as_message(std::span<T> values) {
     return message;
 }
 
-/// Reads what append() has written, in the same order. Throws RanksError where a message is too short.
+/// Reads values in the order in which append() wrote them. Throws RanksError when the message is too short.
 class MessageReader {
 public:
     explicit MessageReader(std::span<const std::byte> message) : rest_(message) {}
@@ -33,7 +33,7 @@ public:
     void read(std::span<T> values) {
         const auto bytes = values.size_bytes();
         if (bytes > rest_.size())
-            throw RanksError("a message of another rank is too short: ranks of one build only");
+            throw RanksError("a message from another rank is too short; run the same build on all ranks");
         if (bytes > 0) std::memcpy(static_cast<void*>(values.data()), rest_.data(), bytes);
         rest_ = rest_.subspan(bytes);
     }

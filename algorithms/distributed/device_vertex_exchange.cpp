@@ -12,7 +12,7 @@ namespace tandem {
 
 namespace {
 
-/// Vertices of tetrahedra: the others have no rows.
+/// Number of vertices that a tetrahedron uses; only these have rows.
 std::size_t used_vertices(const Mesh& mesh) {
     std::vector<bool> is_used(mesh.vertices.size());
     for (const auto& tetrahedron : mesh.tetrahedra)
@@ -37,19 +37,19 @@ DeviceVertexExchange::DeviceVertexExchange(Ranks& ranks, const DeviceInfo& info,
     : ranks_(ranks), scene_(scene) {
     const auto geometry = geometry_of(settings);
     for (const auto& mesh : scene.meshes) bytes_.push_back(used_vertices(mesh) * 4 * real_bytes(geometry));
-    // With placement=exact the host bounds how far vertices drift, and has to have them.
-    const bool can = ranks.is_gpu_aware(info) && geometry.placement == Placement::rounded
-                     && std::ranges::any_of(scene.bodies, &Body::deformable);
-    const std::array own{can ? 1 : 0, static_cast<int>(geometry.precision),
+    // With placement=exact the host needs the vertices, because it bounds their drift.
+    const bool is_supported = ranks.is_gpu_aware(info) && geometry.placement == Placement::rounded
+                              && std::ranges::any_of(scene.bodies, &Body::deformable);
+    const std::array own{is_supported ? 1 : 0, static_cast<int>(geometry.precision),
                          static_cast<int>(settings[parameters::builder])};
     const auto all = ranks.gather_to_all(std::as_bytes(std::span(own)));
-    is_enabled_ = can && std::ranges::all_of(all, [&](const auto& one) {
+    is_enabled_ = is_supported && std::ranges::all_of(all, [&](const auto& one) {
                       return MessageReader(one).template read<std::array<int, 3>>() == own;
                   });
 }
 
 std::vector<Ranks::Piece> DeviceVertexExchange::pieces(const std::vector<std::vector<std::uint32_t>>& lists,
-                                                       const Bodies* bodies, const Scene* part) {
+                                                       const Bodies* bodies, const Scene* local_scene) {
     std::vector<Ranks::Piece> pieces;
     for (std::size_t rank = 0; rank < lists.size(); ++rank)
         for (const auto number : lists[rank]) {
@@ -58,28 +58,28 @@ std::vector<Ranks::Piece> DeviceVertexExchange::pieces(const std::vector<std::ve
             if (bodies != nullptr) {
                 const auto row = 4 * real_bytes(bodies->geometry());
                 memory = static_cast<std::byte*>(bodies->vertices().native())
-                         + bodies->row(local_index(*part, number)).vertices * row;
+                         + bodies->row(local_index(*local_scene, number)).vertices * row;
             }
             pieces.push_back({static_cast<int>(rank), memory, bytes});
         }
     return pieces;
 }
 
-void DeviceVertexExchange::exchange(const GhostExchange& ghosts, const Bodies* bodies, const Scene* part,
-                                    GhostExchange::Traffic& traffic) {
+void DeviceVertexExchange::exchange(const GhostExchange& ghosts, const Bodies* bodies,
+                                    const Scene* local_scene, GhostExchange::Traffic& traffic) {
     if (bodies == nullptr) scratch_.resize(*std::ranges::max_element(bytes_));
-    const auto out = pieces(ghosts.deformed_sent(), bodies, part);
-    const auto in = pieces(ghosts.deformed_received(), bodies, part);
+    const auto out = pieces(ghosts.deformed_sent(), bodies, local_scene);
+    const auto in = pieces(ghosts.deformed_received(), bodies, local_scene);
     ranks_.exchange_device(out, in);
     for (const auto& piece : out) traffic.bytes += piece.bytes;
     traffic.messages += out.size();
 }
 
 void DeviceVertexExchange::download_received(const GhostExchange& ghosts, const Bodies& bodies,
-                                             const Scene& part, Frame& frame) const {
+                                             const Scene& local_scene, Frame& frame) const {
     for (const auto& list : ghosts.deformed_received())
         for (const auto number : list) {
-            const auto body = local_index(part, number);
+            const auto body = local_index(local_scene, number);
             const auto row = 4 * real_bytes(bodies.geometry());
             std::vector<std::byte> rows(bytes_[scene_.bodies[number].mesh]);
             const StageScope scope(bodies.device(), Stage::exchange);

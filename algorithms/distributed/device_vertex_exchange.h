@@ -7,33 +7,34 @@
 
 namespace tandem {
 
-/// The way of deformable bodies' vertices from the memory of one rank's device to that of another, as rows
-/// that kernels read: no rank packs what another has packed, and none of it lies in a host's memory where the
-/// message-passing library reaches devices. Functions that are marked so are called by all ranks together.
+/// Sends vertices of deformable ghost bodies from the device memory of one rank to that of another. They
+/// travel as the rows that kernels read, so that receivers do not repack them; a GPU-aware message-passing
+/// library needs no host copy. All ranks together call the functions marked "collective".
 class DeviceVertexExchange {
 public:
-    /// By all ranks: it is taken where every device is reached and all have the same rows.
+    /// Collective. Enabled when all devices are GPU-aware and all ranks have the same format of rows.
     DeviceVertexExchange(Ranks& ranks, const DeviceInfo& info, const Scene& scene, const Settings& settings);
 
     bool is_enabled() const { return is_enabled_; }
-    /// By all ranks: vertices go the other way from now on.
+    /// Collective: from the next frame on, vertices travel through the host's memory.
     void disable() { is_enabled_ = false; }
-    /// By all ranks: passes the rows of what the halo sends and gets. `bodies` and `part`: those of this
-    /// rank's device, whose own rows have been waited for; null where it failed, and what comes is lost.
-    void exchange(const GhostExchange& ghosts, const Bodies* bodies, const Scene* part,
+    /// Collective: exchanges the rows of deformable ghost bodies. `bodies` and `local_scene` are those of
+    /// this rank's device, and the upload of its own rows is complete. Null on a rank that failed, which
+    /// discards the rows that it receives.
+    void exchange(const GhostExchange& ghosts, const Bodies* bodies, const Scene* local_scene,
                   GhostExchange::Traffic& traffic);
-    /// Rows that came back to the host, as vertices of the part's frame.
-    void download_received(const GhostExchange& ghosts, const Bodies& bodies, const Scene& part,
+    /// Downloads the received rows into the vertices of `frame`, a frame of `local_scene`.
+    void download_received(const GhostExchange& ghosts, const Bodies& bodies, const Scene& local_scene,
                            Frame& frame) const;
 
 private:
     std::vector<Ranks::Piece> pieces(const std::vector<std::vector<std::uint32_t>>& lists,
-                                     const Bodies* bodies, const Scene* part);
+                                     const Bodies* bodies, const Scene* local_scene);
 
     Ranks& ranks_;
     const Scene& scene_;
-    std::vector<std::size_t> bytes_; ///< by mesh: of the rows of a deformable body
-    Ranks::Bytes scratch_;           ///< instead of rows, where this rank has failed
+    std::vector<std::size_t> bytes_; ///< by mesh: size of the rows of a deformable body
+    Ranks::Bytes scratch_;           ///< replaces the rows on a rank that failed
     bool is_enabled_ = false;
 };
 

@@ -29,39 +29,39 @@ void DisplacementTracker::set_reference(const Frame& frame, std::span<const std:
     }
 }
 
-/// Of a rigid body: its centre's way, and the radius times the norm of the difference of the rotations, which
-/// is twice the sine of half their angle.
+/// For a rigid body: the displacement of its centre, plus the radius times the norm of the difference of the
+/// rotations. That norm is twice the sine of half the angle between them.
 double DisplacementTracker::displacement(const Frame& frame, std::uint32_t body) const {
     if (scene_.bodies[body].deformable) {
-        double squared = 0;
-        const auto& now = frame.deformed[body];
-        const auto& then = reference_.deformed[body];
-        for (std::size_t i = 0; i < now.size(); ++i) {
-            const double one = (now[i] - then[i]).squaredNorm();
-            if (!(one <= squared)) squared = one; // also what is no number
+        double largest = 0;
+        const auto& current = frame.deformed[body];
+        const auto& reference = reference_.deformed[body];
+        for (std::size_t i = 0; i < current.size(); ++i) {
+            const double squared = (current[i] - reference[i]).squaredNorm();
+            if (!(squared <= largest)) largest = squared; // also NaN
         }
-        return std::sqrt(squared);
+        return std::sqrt(largest);
     }
     const auto& ball = mesh_balls_[scene_.bodies[body].mesh];
     const auto& pose = frame.poses[body];
-    const auto now = pose.rotation.normalized();
-    const double cosine = now.dot(reference_.poses[body].rotation);
+    const auto current = pose.rotation.normalized();
+    const double cosine = current.dot(reference_.poses[body].rotation);
     const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-    const Eigen::Vector3d centre = now * ball.centre + pose.translation;
-    // More than what these few operations round, relative to what they are made of: the sine's is the root of
+    const Eigen::Vector3d centre = current * ball.centre + pose.translation;
+    // The factors exceed the rounding errors of these operations. The error of the sine is the square root of
     // the cosine's.
     return (centre - balls_[body].centre).norm() * (1 + 1e-12) + (2 * sine + 1e-7) * ball.radius;
 }
 
 bool DisplacementTracker::all_within(const Frame& frame, std::span<const std::uint32_t> bodies,
                                      double skin) const {
-    constexpr std::size_t part = 2048; // a tenth of a millisecond: several times what a thread takes to begin
+    constexpr std::size_t part = 2048; // 0.1 ms of work, several times the start-up of a thread
     const auto parts = (bodies.size() + part - 1) / part;
     std::atomic<bool> within = true;
     parallel_for(parts, [&](std::size_t i) {
         for (auto j = i * part; within && j < std::min(bodies.size(), (i + 1) * part); ++j) {
             const auto body = bodies[j];
-            // Written so that what is no number is beyond.
+            // The negation makes NaN count as beyond the skin.
             if (!scene_.bodies[body].fixed && !(displacement(frame, body) <= skin * balls_[body].radius))
                 within = false;
         }

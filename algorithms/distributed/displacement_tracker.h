@@ -8,30 +8,31 @@
 
 namespace tandem {
 
-// How skins grow, in partitions and for ghost bodies alike.
-constexpr double largest_skin = 2; ///< fraction of a radius: larger ones bring nearly all bodies of a heap
-constexpr std::size_t short_lived = 8; ///< frames: what expires sooner costs more than a larger skin does
+// Limits for the growth of skins, for partitions and ghost bodies.
+constexpr double largest_skin = 2; ///< fraction of a radius; beyond it nearly all bodies of a heap are ghosts
+constexpr std::size_t min_lifetime = 8; ///< frames; earlier expiry costs more than a larger skin
 
-/// Where bodies were in some frame, and how far they have gone since.
+/// Positions of bodies in a reference frame, and their displacements since that frame.
 class DisplacementTracker {
 public:
     /// `scene` must outlive this.
     explicit DisplacementTracker(const Scene& scene);
 
-    /// From now on ways are from where `frame` has these bodies. O(vertices) of deformable ones.
+    /// Makes `frame` the reference of these bodies. O(vertices) for deformable bodies.
     void set_reference(const Frame& frame, std::span<const std::uint32_t> bodies);
-    /// Where a body of that frame was: every vertex of it is in there.
+    /// A ball that contains all vertices of the body in the reference frame.
     const Ball& ball(std::uint32_t body) const { return balls_[body]; }
-    /// No vertex of the body is further from where it was kept. Not a number where a coordinate is none.
+    /// Upper bound on the displacement of every vertex since the reference frame. NaN if a coordinate is NaN.
     double displacement(const Frame& frame, std::uint32_t body) const;
-    /// Whether none of these, fixed ones aside, has gone further than `margin` of its ball's radius.
+    /// Whether every body of these that is not fixed is displaced by at most `skin` times the radius of its
+    /// ball.
     bool all_within(const Frame& frame, std::span<const std::uint32_t> bodies, double skin) const;
-    /// Margins of all bodies: that share of their radii.
+    /// Skins of all bodies: `fraction` of the radii of their balls.
     std::vector<double> skins(double fraction) const;
 
 private:
     const Scene& scene_;
-    std::vector<Ball> mesh_balls_; ///< in the frame of each mesh
+    std::vector<Ball> mesh_balls_; ///< by mesh, in mesh coordinates
     std::vector<Ball> balls_;      ///< by body
     Frame reference_;
 };

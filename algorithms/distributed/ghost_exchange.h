@@ -7,13 +7,13 @@
 
 namespace tandem {
 
-/// What ranks tell each other of bodies: those of a rank that come near bodies of a lower one are that one's
-/// to pair, and it is sent their poses or vertices in every frame. Who is near is found from bounds with a
-/// margin, and holds until a body has gone further. Functions that are marked so are called by all ranks
-/// together, in the same order.
+/// Finds the ghost bodies of a rank, and updates them in every frame. A pair of bodies of two ranks belongs
+/// to the lower rank, to which the other rank sends the pose or vertices of its body. Ghosts are found from
+/// bounds enlarged by a skin, and are valid until a body is displaced by more. All ranks together call the
+/// functions marked "collective", in the same order.
 class GhostExchange {
 public:
-    /// What a rank has sent.
+    /// Bytes and messages that this rank has sent.
     struct Traffic {
         std::uint64_t bytes = 0, messages = 0;
     };
@@ -21,57 +21,58 @@ public:
     /// `scene` and `ranks` must outlive this.
     GhostExchange(const Scene& scene, const Geometry& geometry, Ranks& ranks);
 
-    /// By all ranks: whether bodies of any of them have gone too far, or are others than before.
+    /// Collective: whether the ghosts are invalid. On some rank none are built, or a body is displaced by
+    /// more than its skin.
     bool is_expired(const Frame& frame, Traffic& traffic);
-    /// By all ranks: exchanges bounds, and finds who is near. `frame` has the poses or vertices of `own`, and
-    /// of fixed bodies.
+    /// Collective: exchanges bounds and rebuilds the ghosts. `frame` needs poses or vertices of `own` and
+    /// of fixed bodies only.
     void rebuild(const std::vector<std::uint32_t>& own, const Frame& frame, Traffic& traffic);
-    /// By all ranks: sends poses, vertices and skipped tetrahedra of own bodies to those that need them;
-    /// vertices unless they go another way.
+    /// Collective: sends poses, vertices and skipped tetrahedra of own bodies to the ranks where they are
+    /// ghosts. `vertices`: false when DeviceVertexExchange sends the vertices.
     void exchange_states(const Frame& frame, Traffic& traffic, bool vertices = true);
-    /// Deformable bodies whose vertices go to other ranks, or come from them: by rank, in the order in which
-    /// both have them.
+    /// Deformable bodies whose vertices this rank sends and receives, by other rank. Sender and receiver have
+    /// the same order.
     std::vector<std::vector<std::uint32_t>> deformed_sent() const { return deformable(sent_); }
     std::vector<std::vector<std::uint32_t>> deformed_received() const { return deformable(received_); }
-    /// What came of others' bodies; of all else it has nothing.
+    /// The states that this rank has received, by body; all other entries are unset.
     const Frame& ghost_frame() const { return ghost_frame_; }
-    /// Of this rank: its own bodies, and the others that it gets or that are fixed and near.
+    /// This rank's own bodies, and its ghosts: bodies that it receives, and fixed ones.
     const Subdomain& subdomain() const { return subdomain_; }
-    /// Others' bodies that are not in the share, and fixed ones, but may be after the next meet(): those
-    /// within margins more. In no order; where they are is not known.
+    /// Bodies that are not ghosts but may be after the next rebuild(), as they are within a wider skin. In no
+    /// order; this rank does not receive their states.
     const std::vector<std::uint32_t>& next_ghosts() const { return next_; }
-    /// The next is_expired() is true.
-    void forget() { is_built_ = false; }
+    /// Makes the next is_expired() return true.
+    void invalidate() { is_built_ = false; }
 
 private:
-    using Numbers = std::vector<std::uint32_t>;
+    using BodyIds = std::vector<std::uint32_t>;
 
-    std::vector<double> slabs_of(const Numbers& bodies, const Frame& frame, double skin) const;
-    Numbers near(const Numbers& bodies, const std::vector<double>& slabs,
-                 std::span<const double> boxes) const;
-    Numbers divide(const Numbers& bodies, const std::vector<double>& slabs, const std::vector<double>& narrow,
-                   const std::vector<double>& wide);
-    std::vector<Numbers> exchange_ids(const std::vector<Numbers>& lists, Traffic& traffic);
-    void keep_near(const Frame& frame, const std::vector<double>& slabs, const std::vector<double>& wide,
-                   Traffic& traffic);
-    std::vector<Ranks::Bytes> passed(const std::vector<Ranks::Bytes>& out, Traffic& traffic);
-    std::vector<Ranks::Bytes> boxes_near(const std::vector<double>& boxes, Traffic& traffic);
-    Ranks::Bytes states_message(const Numbers& bodies, const Frame& frame, bool vertices) const;
-    void read_states(const Ranks::Bytes& words, const Numbers& bodies, bool vertices);
-    std::vector<Numbers> deformable(const std::vector<Numbers>& lists) const;
+    std::vector<double> slabs_of(const BodyIds& bodies, const Frame& frame, double skin) const;
+    BodyIds overlapping_any(const BodyIds& bodies, const std::vector<double>& slabs,
+                            std::span<const double> boxes) const;
+    BodyIds select_ghosts(const BodyIds& bodies, const std::vector<double>& slabs,
+                          const std::vector<double>& narrow, const std::vector<double>& wide);
+    std::vector<BodyIds> exchange_ids(const std::vector<BodyIds>& lists, Traffic& traffic);
+    void select_received(const Frame& frame, const std::vector<double>& slabs,
+                         const std::vector<double>& wide, Traffic& traffic);
+    std::vector<Ranks::Bytes> exchange_messages(const std::vector<Ranks::Bytes>& out, Traffic& traffic);
+    std::vector<Ranks::Bytes> exchange_boxes(const std::vector<double>& boxes, Traffic& traffic);
+    Ranks::Bytes states_message(const BodyIds& bodies, const Frame& frame, bool vertices) const;
+    void read_states(const Ranks::Bytes& message, const BodyIds& bodies, bool vertices);
+    std::vector<BodyIds> deformable(const std::vector<BodyIds>& lists) const;
 
     const Scene& scene_;
     Ranks& ranks_;
     BroadSweep sweep_;
-    DisplacementTracker places_;
-    Numbers fixed_; ///< bodies
+    DisplacementTracker tracker_;
+    BodyIds fixed_;
     Subdomain subdomain_;
-    Numbers looked_at_; ///< own bodies as they lie in memory, which is half of the time that it takes to look
-    Numbers next_;
-    std::vector<Numbers> sent_, received_; ///< by rank
+    BodyIds sorted_own_; ///< own bodies in the order of memory, which halves the time of is_expired()
+    BodyIds next_;
+    std::vector<BodyIds> sent_, received_; ///< by rank
     Frame ghost_frame_;
-    double skin_ = 0.25;   ///< of a body's radius
-    std::size_t held_ = 0; ///< frames since the last meet()
+    double skin_ = 0.25;           ///< fraction of a body's radius
+    std::size_t valid_frames_ = 0; ///< since the last rebuild()
     bool is_built_ = false;
 };
 

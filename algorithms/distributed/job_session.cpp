@@ -10,7 +10,7 @@ namespace tandem {
 
 namespace {
 
-/// What adds up over the ranks.
+/// The values of a result that are summed over the ranks.
 struct Totals {
     FrameCounts counts;
     bool is_summed = false, has_pairs = false;
@@ -19,7 +19,7 @@ struct Totals {
 
 using Parts = std::vector<std::shared_ptr<const AnswerPart>>;
 
-/// The parts of all ranks, as one. Rank 0 gets what is asked for.
+/// The parts of all ranks as one part, which delivers pairs and contacts on rank 0.
 class JobPart final : public AnswerPart {
 public:
     JobPart(Ranks& ranks, Parts own, std::uint64_t count)
@@ -52,7 +52,7 @@ public:
 private:
     using Digests = std::array<Digest, 2>;
 
-    /// Pairs' and contacts', which are few bytes: exchanged once.
+    /// Digests of pairs and of contacts; exchanged once.
     const Digests& digests() const {
         if (digests_) return *digests_;
         Digests own{}, all{};
@@ -102,8 +102,8 @@ Ranks::Bytes message_of(const FrameResult& result) {
     return message;
 }
 
-/// Adds what another rank found. A rank without bodies counts no work, so that counters are those of any
-/// rank; by names of this rank, which live as long as the algorithm.
+/// Adds the result of another rank. A rank without bodies has no counters, so unknown names are skipped. Keys
+/// stay the names of this rank, whose lifetime is that of the algorithm.
 bool add(FrameResult& result, std::span<const std::byte> message) {
     MessageReader reader(message);
     const auto totals = reader.read<Totals>();

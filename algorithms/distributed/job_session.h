@@ -6,9 +6,9 @@
 
 namespace tandem {
 
-/// A session of all ranks of a job, made of the session that each of them has (RankSession). All ranks call
-/// its functions together, and those of its results. Counts and digests of a result are those of all ranks,
-/// on every rank; pairs and contacts come to rank 0 when they are downloaded, and to no other.
+/// A session on all ranks of a job, composed of the session of each rank (RankSession). All its functions and
+/// those of its results are collective. Counts and digests of a result are totals over all ranks, on every
+/// rank. A download delivers pairs and contacts on rank 0 only.
 class JobSession final : public Session {
 public:
     /// `ranks` must outlive this and its results.

@@ -9,21 +9,22 @@ namespace tandem {
 
 namespace {
 
-constexpr double bearable = 1.05; ///< imbalance that no deal is made for
-constexpr double useful = 0.8;    ///< what a deal that was worth it leaves of the rest, at most
-constexpr double sure = 4;        ///< standard errors: several devices are looked at many times
-/// Of a device's time between frames, and how many frames it takes to know better.
-constexpr double usual_scatter = 0.1, believed = 4;
-constexpr std::size_t least_patience = 4, most_patience = 256; ///< frames
-constexpr std::size_t most_sampled = 2 * most_patience;        ///< frames that are looked at together
+constexpr double tolerated_imbalance = 1.05; ///< no repartition up to this value
+constexpr double max_remaining = 0.8; ///< fraction of the excess imbalance that a useful repartition leaves
+/// A difference of speeds that is significant. Several devices are tested many times, hence a high value.
+constexpr double standard_errors = 4;
+/// Prior for the deviation of a device's speed between frames, and its weight in frames.
+constexpr double prior_deviation = 0.1, prior_frames = 4;
+constexpr std::size_t min_interval = 4, max_interval = 256; ///< frames between evaluations
+constexpr std::size_t max_sampled = 2 * max_interval;       ///< frames in one set of samples
 
 } // namespace
 
 LoadBalancer::LoadBalancer(std::size_t subdomains)
     : speeds_(subdomains, 1.0),
       samples_(subdomains),
-      patience_(least_patience),
-      next_evaluation_(least_patience) {}
+      interval_(min_interval),
+      next_evaluation_(min_interval) {}
 
 double imbalance(std::span<const DeviceWork> done) {
     std::int64_t longest = 0, sum = 0;
@@ -45,27 +46,27 @@ double LoadBalancer::expected_imbalance(std::span<const double> work) const {
     return sum > 0 ? longest * static_cast<double>(work.size()) / sum : 1;
 }
 
-/// Speeds in shares of the frame's, so that frames in which everything takes longer tell as much as others.
+/// Normalises speeds by the frame's total, so that frames that are slow as a whole have the same weight.
 void LoadBalancer::add_sample(std::span<const DeviceWork> done, std::span<const double> work) {
     if (should_repartition_) return;
-    if (std::exchange(is_first_, false)) {
-        before_ = expected_imbalance(work);
-        should_repartition_ = before_ > bearable;
+    if (std::exchange(is_first_frame_, false)) {
+        previous_imbalance_ = expected_imbalance(work);
+        should_repartition_ = previous_imbalance_ > tolerated_imbalance;
     }
-    if (std::exchange(is_new_, false)) return;
-    std::vector<double> found(samples_.size());
-    double all_found = 0, all_believed = 0; // of devices with work: others are as fast as they were
+    if (std::exchange(is_new_partition_, false)) return;
+    std::vector<double> measured(samples_.size());
+    double total_measured = 0, total_estimated = 0; // of devices with work; the rest keep their speeds
     for (std::size_t i = 0; i < samples_.size(); ++i) {
         if (!(work[i] > 0) || done[i].ns <= 0) continue;
-        found[i] = work[i] / static_cast<double>(done[i].ns);
-        all_found += found[i];
-        all_believed += speeds_[i];
+        measured[i] = work[i] / static_cast<double>(done[i].ns);
+        total_measured += measured[i];
+        total_estimated += speeds_[i];
     }
     for (std::size_t i = 0; i < samples_.size(); ++i) {
         auto& samples = samples_[i];
         samples.work += work[i];
-        if (!(found[i] > 0)) continue;
-        const double speed = found[i] / all_found * all_believed;
+        if (!(measured[i] > 0)) continue;
+        const double speed = measured[i] / total_measured * total_estimated;
         samples.sum += speed;
         samples.squares += speed * speed;
         ++samples.frames;
@@ -73,10 +74,10 @@ void LoadBalancer::add_sample(std::span<const DeviceWork> done, std::span<const 
     if (++frames_ == next_evaluation_) evaluate();
 }
 
-/// Of a device's speed from frame to frame: standard deviation over its mean, of all devices together, as few
-/// frames tell little of one; what is usual counts as some frames.
-double LoadBalancer::scatter() const {
-    double squares = believed * usual_scatter * usual_scatter, frames = believed;
+/// Standard deviation of a device's speed between frames, divided by its mean. It is pooled over all devices,
+/// because the samples of one are few, and the prior counts as `prior_frames` frames.
+double LoadBalancer::relative_deviation() const {
+    double squares = prior_frames * prior_deviation * prior_deviation, frames = prior_frames;
     for (const auto& samples : samples_) {
         if (samples.frames < 2) continue;
         const double mean = samples.sum / samples.frames;
@@ -86,15 +87,16 @@ double LoadBalancer::scatter() const {
     return std::sqrt(squares / frames);
 }
 
-/// A device keeps its speed unless its mean over the frames is surely another.
+/// Replaces the speed of a device only if its mean over the frames differs significantly.
 void LoadBalancer::estimate_speeds() {
-    const double error = sure * scatter();
+    const double error = standard_errors * relative_deviation();
     for (std::size_t i = 0; i < samples_.size(); ++i) {
         const auto& samples = samples_[i];
         if (samples.frames < 1) continue;
-        const double found = samples.sum / samples.frames;
-        if (std::abs(found - speeds_[i]) > error / std::sqrt(samples.frames) * std::max(found, speeds_[i]))
-            speeds_[i] = found;
+        const double measured = samples.sum / samples.frames;
+        if (std::abs(measured - speeds_[i])
+            > error / std::sqrt(samples.frames) * std::max(measured, speeds_[i]))
+            speeds_[i] = measured;
     }
 }
 
@@ -103,26 +105,26 @@ void LoadBalancer::evaluate() {
     std::vector<double> work;
     for (const auto& samples : samples_) work.push_back(samples.work);
     const double expected = expected_imbalance(work);
-    if (std::exchange(judges_last_partition_, false)) {
-        const bool was_useful = expected - 1 < useful * (before_ - 1);
-        patience_ = was_useful ? least_patience : std::min(2 * patience_, most_patience);
+    if (std::exchange(evaluates_repartition_, false)) {
+        const bool was_useful = expected - 1 < max_remaining * (previous_imbalance_ - 1);
+        interval_ = was_useful ? min_interval : std::min(2 * interval_, max_interval);
     }
-    should_repartition_ = expected > bearable;
-    before_ = expected;
+    should_repartition_ = expected > tolerated_imbalance;
+    previous_imbalance_ = expected;
     next_evaluation_ = 2 * frames_;
-    if (next_evaluation_ > most_sampled) begin();
+    if (next_evaluation_ > max_sampled) restart();
 }
 
-void LoadBalancer::begin() {
+void LoadBalancer::restart() {
     frames_ = 0;
-    next_evaluation_ = patience_;
+    next_evaluation_ = interval_;
     samples_.assign(samples_.size(), {});
 }
 
 void LoadBalancer::repartitioned() {
-    judges_last_partition_ = std::exchange(should_repartition_, false);
-    is_new_ = true;
-    begin();
+    evaluates_repartition_ = std::exchange(should_repartition_, false);
+    is_new_partition_ = true;
+    restart();
 }
 
 } // namespace tandem

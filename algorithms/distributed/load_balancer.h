@@ -7,51 +7,51 @@
 
 namespace tandem {
 
-/// How fast devices that share frames are, and whether a new deal would make frames shorter.
+/// Estimates the speeds of the devices of a session, and decides when a repartition would shorten frames.
 class LoadBalancer {
 public:
     explicit LoadBalancer(std::size_t subdomains);
 
-    /// A frame: what each device did, and its work as deals count it. Times of the first one, and of the
-    /// first after a deal, say nothing: some devices compile in them, or make room.
+    /// Adds a frame: what each device did, and its work as Partitioner::work_of counts it. Times of the first
+    /// frame after each partition are ignored, because devices may compile or allocate in it.
     void add_sample(std::span<const DeviceWork> done, std::span<const double> work);
-    /// Whether, at these speeds, one device's work takes so much longer than all on average that bodies had
-    /// better be dealt anew: asked of the first frame of all, and after some frames again. After a deal that
-    /// was of no use it takes twice as many.
+    /// Whether a repartition pays, because one device needs much longer than the average of all devices. The
+    /// decision is made after the first frame and again after some frames. The number of frames doubles after
+    /// a repartition that did not help.
     bool should_repartition() const { return should_repartition_; }
-    /// Bodies have been dealt anew.
+    /// Starts new samples; called after each repartition.
     void repartitioned();
-    /// Of each device, beside the others: work done in a time; equal until frames, beside their scatter, say
-    /// for sure that they are not.
+    /// Relative speed of each device, as work per time. Equal until the samples show a significant
+    /// difference.
     std::span<const double> speeds() const { return speeds_; }
 
 private:
-    /// Of one device over some frames.
+    /// Samples of one device over some frames.
     struct SpeedSamples {
         double sum = 0, squares = 0; ///< of its speeds
-        double frames = 0;           ///< with work
+        double frames = 0;           ///< in which it had work
         double work = 0;
     };
 
     double expected_imbalance(std::span<const double> work) const;
-    double scatter() const;
+    double relative_deviation() const;
     void estimate_speeds();
     void evaluate();
-    void begin();
+    void restart();
 
     std::vector<double> speeds_;
     std::vector<SpeedSamples> samples_;
-    std::size_t frames_ = 0;      ///< in samples_
-    std::size_t patience_;        ///< frames
-    std::size_t next_evaluation_; ///< at frames_
-    bool is_first_ = true;        ///< no frame at all has been seen
-    bool is_new_ = true;          ///< no frame of this deal has been seen
+    std::size_t frames_ = 0;       ///< in samples_
+    std::size_t interval_;         ///< frames
+    std::size_t next_evaluation_;  ///< value of frames_ at which evaluate() runs
+    bool is_first_frame_ = true;   ///< no frame has been added
+    bool is_new_partition_ = true; ///< no frame of this partition has been added
     bool should_repartition_ = false;
-    bool judges_last_partition_ = false; ///< the frames at hand tell what the last deal was good for
-    double before_ = 1;                  ///< the imbalance that it was made for
+    bool evaluates_repartition_ = false; ///< the current samples show whether the last repartition helped
+    double previous_imbalance_ = 1;      ///< the imbalance that caused it
 };
 
-/// The longest time over the mean of all: 1 where all devices end together.
+/// The longest time of a device divided by the mean of all: 1 when all devices finish together.
 double imbalance(std::span<const DeviceWork> done);
 
 } // namespace tandem

@@ -33,37 +33,39 @@ private:
 } // namespace
 
 std::shared_ptr<const Scene> local_subscene(const Scene& scene, const std::vector<std::uint32_t>& bodies) {
-    auto part = std::make_shared<Scene>();
-    part->name = scene.name;
-    part->key = scene.key;
-    part->units = scene.units;
-    part->frame_count = scene.frame_count;
-    part->digest = scene.digest;
-    part->numbers = bodies;
+    auto local_scene = std::make_shared<Scene>();
+    local_scene->name = scene.name;
+    local_scene->key = scene.key;
+    local_scene->units = scene.units;
+    local_scene->frame_count = scene.frame_count;
+    local_scene->digest = scene.digest;
+    local_scene->numbers = bodies;
     constexpr auto none = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> meshes(scene.meshes.size(), none); // by the scene's number of it: the part's
+    std::vector<std::uint32_t> meshes(scene.meshes.size(), none); // local number by number in the whole scene
     for (const auto number : bodies) {
         auto body = scene.bodies[number];
         auto& mesh = meshes[body.mesh];
         if (mesh == none) {
-            mesh = static_cast<std::uint32_t>(part->meshes.size());
-            part->meshes.push_back(scene.meshes[body.mesh]);
+            mesh = static_cast<std::uint32_t>(local_scene->meshes.size());
+            local_scene->meshes.push_back(scene.meshes[body.mesh]);
         }
         body.mesh = mesh;
-        part->bodies.push_back(body);
+        local_scene->bodies.push_back(body);
     }
-    return part;
+    return local_scene;
 }
 
-std::size_t local_index(const Scene& part, std::uint32_t number) {
-    return static_cast<std::size_t>(std::ranges::lower_bound(part.numbers, number) - part.numbers.begin());
+std::size_t local_index(const Scene& local_scene, std::uint32_t number) {
+    const auto& numbers = local_scene.numbers;
+    return static_cast<std::size_t>(std::ranges::lower_bound(numbers, number) - numbers.begin());
 }
 
-Subdomain to_local(const Scene& part, const Subdomain& subdomain) {
+Subdomain to_local(const Scene& local_scene, const Subdomain& subdomain) {
     const auto local_indices = [&](const std::vector<std::uint32_t>& bodies) {
         std::vector<std::uint32_t> numbers;
         numbers.reserve(bodies.size());
-        for (const auto body : bodies) numbers.push_back(static_cast<std::uint32_t>(local_index(part, body)));
+        for (const auto body : bodies)
+            numbers.push_back(static_cast<std::uint32_t>(local_index(local_scene, body)));
         return numbers;
     };
     return {local_indices(subdomain.own), local_indices(subdomain.ghosts)};

@@ -7,17 +7,17 @@
 
 namespace tandem {
 
-/// The part of a scene that has these bodies alone, which are ascending, and their meshes. Numbered anew, so
-/// that whatever is kept by body is as large as the part; answers name bodies as the whole scene does.
+/// The subscene of these bodies, given in ascending order, and their meshes. Its bodies are renumbered, so
+/// that arrays by body have the size of the subscene. Answers use the body numbers of the whole scene.
 std::shared_ptr<const Scene> local_subscene(const Scene& scene, const std::vector<std::uint32_t>& bodies);
 
-/// Where the part has a body that the whole scene numbers so; it has it.
-std::size_t local_index(const Scene& part, std::uint32_t number);
+/// The index in the subscene of the body that the whole scene numbers `number`; the subscene must have it.
+std::size_t local_index(const Scene& local_scene, std::uint32_t number);
 
-/// A share of the whole scene's bodies, all of which are in the part, as the part numbers them.
-Subdomain to_local(const Scene& part, const Subdomain& subdomain);
+/// The subdomain with body numbers of the subscene, which must have all its bodies.
+Subdomain to_local(const Scene& local_scene, const Subdomain& subdomain);
 
-/// The same part of an answer, which keeps that scene alive.
+/// The same part of an answer, which in addition keeps the scene alive.
 std::shared_ptr<const AnswerPart> owning_part(std::shared_ptr<const AnswerPart> part,
                                               std::shared_ptr<const Scene> scene);
 

@@ -16,10 +16,10 @@ namespace tandem {
 
 namespace {
 
-/// Of a candidate pair, walked and made contacts of, in tetrahedra refitted: 2,000 jacks on an H200.
+/// Work for one candidate pair, walk and contacts, in refitted tetrahedra. Measured: 2,000 jacks on an H200.
 constexpr double work_of_a_pair = 6;
 
-/// Volume of what two balls have in common.
+/// Volume of the intersection of two balls.
 double common_volume(double a, double b, double distance) {
     if (distance >= a + b) return 0;
     const double least = std::min(a, b);
@@ -34,26 +34,26 @@ double common_volume(double a, double b, double distance) {
 Partitioner::Partitioner(const Scene& scene, const Geometry& geometry, std::size_t subdomains)
     : scene_(scene),
       sweep_(scene, geometry, Broad::tight),
-      places_(scene),
-      all_(scene.bodies.size()),
+      tracker_(scene),
+      all_bodies_(scene.bodies.size()),
       subdomains_(subdomains),
       balls_(scene.bodies.size()),
       rows_(scene.bodies.size()),
       owners_(scene.bodies.size(), subdomains),
       calibration_(scene.bodies.size(), 1.0) {
-    std::iota(all_.begin(), all_.end(), 0u);
+    std::iota(all_bodies_.begin(), all_bodies_.end(), 0u);
 }
 
 bool Partitioner::is_valid(const Frame& frame) {
-    is_expired_ = !is_made_ || (!has_all_ && !places_.all_within(frame, all_, skin_));
-    held_ += is_expired_ ? 0 : 1;
+    is_expired_ = !is_partitioned_ || (!has_all_ghosts_ && !tracker_.all_within(frame, all_bodies_, skin_));
+    valid_frames_ += is_expired_ ? 0 : 1;
     return !is_expired_;
 }
 
 void Partitioner::order_bodies() {
     std::vector<Eigen::Vector3d> centres;
     std::vector<std::uint32_t> moving, fixed;
-    for (const auto body : all_) {
+    for (const auto body : all_bodies_) {
         (scene_.bodies[body].fixed ? fixed : moving).push_back(body);
         if (!scene_.bodies[body].fixed) centres.push_back(balls_[body].centre);
     }
@@ -64,8 +64,8 @@ void Partitioner::order_bodies() {
     for (std::uint32_t row = 0; row < order_.size(); ++row) rows_[order_[row]] = row;
 }
 
-/// As if tetrahedra were strewn evenly through the balls: those of one whose middle lies within the sum of
-/// both sizes of a tetrahedron of the other.
+/// Assumes that tetrahedra are distributed uniformly in the balls. Two of them form a pair when the distance
+/// of their centres is below the sum of their sizes.
 double Partitioner::estimated_pairs(BodyPair pair) const {
     const auto &a = balls_[pair.a], &b = balls_[pair.b];
     const double volume = common_volume(a.radius, b.radius, (a.centre - b.centre).norm());
@@ -78,62 +78,64 @@ double Partitioner::estimated_pairs(BodyPair pair) const {
     return volume * of_a * of_b * size * size * size;
 }
 
-/// A body brings its share its own tetrahedra and the pairs with those that follow it on the curve.
+/// The work of a body is its tetrahedra, and its pairs with bodies that follow it on the curve.
 void Partitioner::estimate_work() {
     constexpr std::size_t part = 1 << 14;
-    estimated_pairs_.resize(near_.size());
-    parallel_for((near_.size() + part - 1) / part, [&](std::size_t p) {
-        for (auto i = p * part; i < std::min(near_.size(), (p + 1) * part); ++i)
-            estimated_pairs_[i] = estimated_pairs(near_[i]);
+    estimated_pairs_.resize(pairs_.size());
+    parallel_for((pairs_.size() + part - 1) / part, [&](std::size_t p) {
+        for (auto i = p * part; i < std::min(pairs_.size(), (p + 1) * part); ++i)
+            estimated_pairs_[i] = estimated_pairs(pairs_[i]);
     });
     work_.resize(moving_);
     for (std::size_t row = 0; row < moving_; ++row) work_[row] = tetrahedra_of(order_[row]);
-    for (std::size_t i = 0; i < near_.size(); ++i) {
-        const auto [a, b] = near_[i];
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+        const auto [a, b] = pairs_[i];
         work_[std::min(rows_[a], rows_[b])] +=
             work_of_a_pair * estimated_pairs_[i] * calibration_[a] * calibration_[b];
     }
 }
 
-/// In two passes over all pairs: rows in any order, then each row's neighbours told of it in the rows' order.
+/// Two passes of a bucket sort. The first lists neighbours in any order. The second visits rows in ascending
+/// order and appends each to the lists of its neighbours.
 void Partitioner::list_neighbours() {
-    first_.assign(order_.size() + 1, 0);
-    for (const auto& pair : near_)
-        for (const auto body : {pair.a, pair.b}) ++first_[rows_[body] + 1];
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    std::vector<std::uint32_t> unsorted(2 * near_.size());
-    auto next = first_;
-    for (const auto& pair : near_) {
+    starts_.assign(order_.size() + 1, 0);
+    for (const auto& pair : pairs_)
+        for (const auto body : {pair.a, pair.b}) ++starts_[rows_[body] + 1];
+    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+    std::vector<std::uint32_t> unsorted(2 * pairs_.size());
+    auto next = starts_;
+    for (const auto& pair : pairs_) {
         unsorted[next[rows_[pair.a]]++] = rows_[pair.b];
         unsorted[next[rows_[pair.b]]++] = rows_[pair.a];
     }
     neighbours_.resize(unsorted.size());
-    std::copy(first_.begin(), first_.end(), next.begin());
+    std::copy(starts_.begin(), starts_.end(), next.begin());
     for (std::uint32_t row = 0; row < order_.size(); ++row)
-        for (auto i = first_[row]; i < first_[row + 1]; ++i) neighbours_[next[unsorted[i]]++] = row;
+        for (auto i = starts_[row]; i < starts_[row + 1]; ++i) neighbours_[next[unsorted[i]]++] = row;
 }
 
-/// Calls need(share) for each share that has a pair of the row's body and does not own it. Owners do not fall
-/// along the curve, so that a share's neighbours stand together.
-template<class Need>
-void Partitioner::for_needs(std::size_t row, const Need& need) const {
+/// Calls visit(subdomain) for each subdomain in which the row's body is a ghost. Owners ascend along the
+/// curve, so that neighbours of one subdomain are consecutive.
+template<class Visit>
+void Partitioner::for_ghost_subdomains(std::size_t row, const Visit& visit) const {
     auto last = subdomains_.size();
-    for (auto i = first_[row]; i < first_[row + 1]; ++i) {
+    for (auto i = starts_[row]; i < starts_[row + 1]; ++i) {
         const auto subdomain = owners_[neighbours_[i]];
         if (subdomain >= owners_[row]) return;
-        if (std::exchange(last, subdomain) != subdomain) need(subdomain);
+        if (std::exchange(last, subdomain) != subdomain) visit(subdomain);
     }
 }
 
-/// By share: tetrahedra of others' bodies that it needs. Sums of whole numbers, the same in any order.
-std::vector<double> Partitioner::ghost_work() const {
+/// Tetrahedra of ghosts by subdomain. Sums of integers do not depend on the order of threads.
+std::vector<double> Partitioner::compute_ghost_work() const {
     constexpr std::size_t part = 1 << 16;
     std::vector<double> all(subdomains_.size());
     std::mutex mutex;
     parallel_for((order_.size() + part - 1) / part, [&](std::size_t p) {
         std::vector<double> some(subdomains_.size());
         for (auto row = p * part; row < std::min(order_.size(), (p + 1) * part); ++row)
-            for_needs(row, [&](std::size_t subdomain) { some[subdomain] += tetrahedra_of(order_[row]); });
+            for_ghost_subdomains(
+                row, [&](std::size_t subdomain) { some[subdomain] += tetrahedra_of(order_[row]); });
         const std::lock_guard lock(mutex);
         for (std::size_t subdomain = 0; subdomain < all.size(); ++subdomain)
             all[subdomain] += some[subdomain];
@@ -141,14 +143,14 @@ std::vector<double> Partitioner::ghost_work() const {
     return all;
 }
 
-/// Each share takes bodies up to where its part of all work ends, which is less by what others' bodies
-/// `brought` it. Returns the work of its own bodies.
+/// Assigns each subdomain bodies along the curve up to its part of the total work, less its `ghost_work`.
+/// Returns the work of own bodies by subdomain.
 std::vector<double> Partitioner::cut_once(std::span<const double> speeds,
                                           std::span<const double> ghost_work) {
     const double all_work = std::accumulate(work_.begin(), work_.end(), 0.0);
     const double all_ghost_work = std::accumulate(ghost_work.begin(), ghost_work.end(), 0.0);
     const double all_speed = std::accumulate(speeds.begin(), speeds.end(), 0.0);
-    const auto part = [&](std::size_t subdomain) {
+    const auto target = [&](std::size_t subdomain) {
         return std::max(0.0,
                         (all_work + all_ghost_work) * speeds[subdomain] / all_speed - ghost_work[subdomain]);
     };
@@ -158,9 +160,9 @@ std::vector<double> Partitioner::cut_once(std::span<const double> speeds,
     double done = 0, until = 0;
     std::size_t subdomain = 0;
     for (std::size_t i = 0; i < moving_; ++i) {
-        // A body goes to the share in whose part the middle of its work lies.
-        while (subdomain + 1 < subdomains_.size() && done + work_[i] / 2 >= until + part(subdomain))
-            until += part(subdomain++);
+        // A body belongs to the subdomain whose part contains the middle of the body's work.
+        while (subdomain + 1 < subdomains_.size() && done + work_[i] / 2 >= until + target(subdomain))
+            until += target(subdomain++);
         subdomains_[subdomain].own.push_back(order_[i]);
         owners_[i] = subdomain;
         own[subdomain] += work_[i];
@@ -169,63 +171,64 @@ std::vector<double> Partitioner::cut_once(std::span<const double> speeds,
     return own;
 }
 
-/// What others' bodies bring a share is known once it is cut: a few times, and the cut stays in which the
-/// share that takes longest is done first.
+/// Ghost work is known only after a cut, so that the cut is iterated a few times. The cut with the shortest
+/// longest time of a subdomain is used.
 void Partitioner::cut(std::span<const double> speeds) {
     constexpr int times = 4;
     list_neighbours();
-    std::vector<double> foreign(subdomains_.size()), best = foreign;
+    std::vector<double> ghost_work(subdomains_.size()), best = ghost_work;
     double shortest = std::numeric_limits<double>::infinity();
     for (int i = 0; i < times; ++i) {
-        const auto own = cut_once(speeds, foreign);
-        const auto before = std::exchange(foreign, ghost_work());
+        const auto own = cut_once(speeds, ghost_work);
+        const auto before = std::exchange(ghost_work, compute_ghost_work());
         double longest = 0;
         for (std::size_t subdomain = 0; subdomain < subdomains_.size(); ++subdomain)
-            longest = std::max(longest, (own[subdomain] + foreign[subdomain]) / speeds[subdomain]);
+            longest = std::max(longest, (own[subdomain] + ghost_work[subdomain]) / speeds[subdomain]);
         if (longest >= shortest) continue;
         shortest = longest;
         best = before;
     }
     cut_once(speeds, best);
-    gather();
+    collect_ghosts();
 }
 
-/// Of every pair the share that has it needs both.
-void Partitioner::gather() {
+/// Makes ghosts complete: the subdomain that has a pair contains both bodies of it.
+void Partitioner::collect_ghosts() {
     for (auto& subdomain : subdomains_) subdomain.ghosts.clear();
     for (std::size_t row = 0; row < order_.size(); ++row)
-        for_needs(row, [&](std::size_t subdomain) { subdomains_[subdomain].ghosts.push_back(order_[row]); });
+        for_ghost_subdomains(
+            row, [&](std::size_t subdomain) { subdomains_[subdomain].ghosts.push_back(order_[row]); });
     parallel_for(subdomains_.size(),
                  [&](std::size_t subdomain) { std::ranges::sort(subdomains_[subdomain].ghosts); });
 }
 
-void Partitioner::gather_all() {
+void Partitioner::collect_all_ghosts() {
     for (auto& subdomain : subdomains_) subdomain.ghosts.clear();
     for (std::size_t i = 0; i < subdomains_.size(); ++i)
-        for (const auto body : all_)
+        for (const auto body : all_bodies_)
             if (owner_of(body) > i) subdomains_[i].ghosts.push_back(body);
 }
 
 void Partitioner::partition(const Frame& frame, std::span<const double> speeds) {
-    const bool too_short_lived = is_expired_ && is_made_ && held_ < short_lived;
-    has_all_ = has_all_ || (too_short_lived && skin_ >= largest_skin);
-    if (too_short_lived) skin_ = std::min(2 * skin_, largest_skin);
-    held_ = 0;
-    is_made_ = true;
-    places_.set_reference(frame, all_);
-    for (const auto body : all_) balls_[body] = places_.ball(body);
+    const bool expired_early = is_expired_ && is_partitioned_ && valid_frames_ < min_lifetime;
+    has_all_ghosts_ = has_all_ghosts_ || (expired_early && skin_ >= largest_skin);
+    if (expired_early) skin_ = std::min(2 * skin_, largest_skin);
+    valid_frames_ = 0;
+    is_partitioned_ = true;
+    tracker_.set_reference(frame, all_bodies_);
+    for (const auto body : all_bodies_) balls_[body] = tracker_.ball(body);
     order_bodies();
-    near_ = sweep_.pairs(frame, places_.skins(skin_));
+    pairs_ = sweep_.pairs(frame, tracker_.skins(skin_));
     estimate_work();
     cut(speeds);
-    if (has_all_) gather_all();
+    if (has_all_ghosts_) collect_all_ghosts();
     count_tetrahedra();
 }
 
 void Partitioner::partition(std::span<const Ball> balls, std::span<const double> speeds) {
     balls_.assign(balls.begin(), balls.end());
     order_bodies();
-    near_ = sweep_.pairs(balls);
+    pairs_ = sweep_.pairs(balls);
     estimate_work();
     cut(speeds);
     count_tetrahedra();
@@ -235,7 +238,7 @@ double Partitioner::tetrahedra_of(std::uint32_t body) const {
     return static_cast<double>(scene_.meshes[scene_.bodies[body].mesh].tetrahedra.size());
 }
 
-/// Once a deal: who shares frames asks for the work of all shares in every one.
+/// Once a partition, because sessions call work_of() for all subdomains in every frame.
 void Partitioner::count_tetrahedra() {
     tetrahedra_.assign(subdomains_.size(), 0);
     for (std::size_t subdomain = 0; subdomain < subdomains_.size(); ++subdomain)
@@ -254,9 +257,9 @@ std::uint64_t Partitioner::expected_pairs(std::size_t subdomain) const {
     return is_calibrated_ ? static_cast<std::uint64_t>(work / work_of_a_pair) : 0;
 }
 
-/// Sums of the pairs foreseen, times their bodies' numbers, are made those that were found, body by body, a
-/// few times over: iterative proportional fitting (Deming and Stephan 1940) of a symmetric table, whose roots
-/// keep both bodies of a pair from mending the same error.
+/// Fits the factors so that, for each body, the sum of its corrected estimates equals the pairs found:
+/// iterative proportional fitting (Deming and Stephan 1940) of a symmetric table. The square root keeps the
+/// two bodies of a pair from correcting the same error twice.
 void Partitioner::calibrate(std::span<const std::uint64_t> pairs_by_body) {
     constexpr double least = 1e-3, most = 1e3;
     constexpr int times = 12;
@@ -264,8 +267,8 @@ void Partitioner::calibrate(std::span<const std::uint64_t> pairs_by_body) {
     std::vector<double> expected(calibration_.size());
     for (int i = 0; i < times; ++i) {
         std::ranges::fill(expected, 0);
-        for (std::size_t pair = 0; pair < near_.size(); ++pair) {
-            const auto [a, b] = near_[pair];
+        for (std::size_t pair = 0; pair < pairs_.size(); ++pair) {
+            const auto [a, b] = pairs_[pair];
             const double pairs = estimated_pairs_[pair] * calibration_[a] * calibration_[b];
             expected[a] += pairs;
             expected[b] += pairs;

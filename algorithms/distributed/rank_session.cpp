@@ -23,8 +23,8 @@ std::int64_t ns_since(Clock::time_point begin) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
 }
 
-/// Candidate pairs by body. None where the device fails: the others wait for this rank's message, a deal
-/// needs no counts, and the next frame will fail as well.
+/// Candidate pairs by body; empty when the device fails. The remaining ranks wait for this rank's message, a
+/// partition works without counts, and the next frame reports the failure.
 std::vector<std::uint64_t> counts_of(const FrameResult& result) {
     std::vector<std::uint64_t> counts;
     try {
@@ -35,15 +35,15 @@ std::vector<std::uint64_t> counts_of(const FrameResult& result) {
     return counts;
 }
 
-/// Where frame 0 has them all.
-std::vector<Ball> balls_at_the_start(const Scene& scene) {
-    DisplacementTracker places(scene);
+/// The balls of all bodies in frame 0.
+std::vector<Ball> initial_balls(const Scene& scene) {
+    DisplacementTracker tracker(scene);
     std::vector<std::uint32_t> all(scene.bodies.size());
     std::iota(all.begin(), all.end(), 0u);
-    places.set_reference(scene.frame(0), all);
+    tracker.set_reference(scene.frame(0), all);
     std::vector<Ball> balls;
     balls.reserve(all.size());
-    for (const auto body : all) balls.push_back(places.ball(body));
+    for (const auto body : all) balls.push_back(tracker.ball(body));
     return balls;
 }
 
@@ -60,13 +60,13 @@ RankSession::RankSession(const Traversal& traversal, Device& device, const Scene
       balancer_(static_cast<std::size_t>(ranks.size())),
       ghosts_(scene, geometry_of(settings_), ranks),
       device_exchange_(ranks, device.info(), scene, settings_),
-      places_(scene),
-      balls_(balls_at_the_start(scene)) {
+      tracker_(scene),
+      balls_(initial_balls(scene)) {
     partitioner_.partition(balls_, balancer_.speeds());
-    // What compiles and allocates does so now, and not in the first frame.
+    // Compilation and allocation take place before the first frame, which is measured.
     Report own;
     exchange(scene.frame(0), own);
-    fail(reports(own));
+    throw_failure(gather_reports(own));
 }
 
 void RankSession::do_reset() {
@@ -80,20 +80,20 @@ void RankSession::do_count_work(bool on) {
 
 FrameResult RankSession::do_run_device_input(const DeviceFrame&, std::optional<std::span<const BodyPair>>) {
     throw InputError(
-        fmt::format("{}: ranks of a job tell each other where bodies are, from the host's memory; "
-                    "give the frame there",
+        fmt::format("{}: ranks of a job exchange bodies through the host's memory; give the frame in the "
+                    "host's memory",
                     devices_.front()->info().id));
 }
 
-void RankSession::drop() {
-    session_.reset(); // which refers to the scene
+void RankSession::discard_session() {
+    session_.reset(); // first, because it refers to the scene
     local_scene_.reset();
 }
 
-/// A session of those bodies alone, with as much room for answers as the last had.
-void RankSession::build(const std::vector<std::uint32_t>& bodies) {
+/// Makes a session of these bodies only. It continues with the answer buffers of the last session.
+void RankSession::build_session(const std::vector<std::uint32_t>& bodies) {
     const auto answers = session_ ? session_->answers() : nullptr;
-    drop(); // before the next takes memory
+    discard_session(); // frees its memory for the next session
     local_scene_ = local_subscene(scene_, bodies);
     local_frame_ = {std::vector<Pose>(bodies.size()),
                     std::vector<std::vector<Eigen::Vector3d>>(bodies.size())};
@@ -102,30 +102,30 @@ void RankSession::build(const std::vector<std::uint32_t>& bodies) {
     if (counts_work_) session_->count_work(true);
 }
 
-/// Making a session anew takes as long as several frames: as long as there is room, bodies that were there
-/// stay, since those at the border come and go, and those come along that will be next.
-void RankSession::build_for(const std::vector<std::uint32_t>& needed) {
+/// A new session takes as long as several frames. Therefore it keeps the bodies of the last session and adds
+/// the next ghosts, as far as memory allows: bodies at the border come and go.
+void RankSession::build_session_for(const std::vector<std::uint32_t>& needed) {
     auto next = ghosts_.next_ghosts();
     std::ranges::sort(next);
-    std::vector<std::uint32_t> some, all;
-    std::ranges::set_union(needed, next, std::back_inserter(some));
-    std::ranges::set_union(some, session_ ? local_scene_->numbers : next, std::back_inserter(all));
+    std::vector<std::uint32_t> with_next, all;
+    std::ranges::set_union(needed, next, std::back_inserter(with_next));
+    std::ranges::set_union(with_next, session_ ? local_scene_->numbers : next, std::back_inserter(all));
     const bool keeps_answers = session_ != nullptr;
     try {
-        build(all);
+        build_session(all);
     } catch (const OutOfMemory&) {
         if (all == needed && !keeps_answers) throw;
-        build(needed); // without the answer buffers of the session before, which are gone by now
+        build_session(needed); // without the last session's answer buffers, which are freed at this point
     }
 }
 
-void RankSession::apply_subdomain() {
+void RankSession::update_device() {
     const auto& subdomain = ghosts_.subdomain();
-    if (subdomain.own.empty()) return drop();
+    if (subdomain.own.empty()) return discard_session();
     auto needed = subdomain.own;
     needed.insert(needed.end(), subdomain.ghosts.begin(), subdomain.ghosts.end());
     std::ranges::sort(needed);
-    if (!session_ || !std::ranges::includes(local_scene_->numbers, needed)) build_for(needed);
+    if (!session_ || !std::ranges::includes(local_scene_->numbers, needed)) build_session_for(needed);
     local_subdomain_ = to_local(*local_scene_, subdomain);
     session_->take(local_subdomain_);
     session_->expect(std::exchange(expected_pairs_, 0), contacts_a_pair_);
@@ -137,16 +137,16 @@ void RankSession::apply_subdomain() {
     session_->receive(received);
 }
 
-/// Of bodies that have a part in this rank's share.
-void RankSession::take_frame(const Frame& frame) {
-    const auto take = [&](const std::vector<std::uint32_t>& bodies, const std::vector<std::uint32_t>& local,
+/// Copies the states of the subdomain's bodies to the local frame.
+void RankSession::copy_local_frame(const Frame& frame) {
+    const auto copy = [&](const std::vector<std::uint32_t>& bodies, const std::vector<std::uint32_t>& local,
                           bool are_own) {
         for (std::size_t i = 0; i < bodies.size(); ++i) {
             const auto number = bodies[i], body = local[i];
-            const bool is_here = are_own || scene_.bodies[number].fixed;
-            const auto& from = is_here ? frame : ghosts_.ghost_frame();
+            const bool is_local = are_own || scene_.bodies[number].fixed;
+            const auto& from = is_local ? frame : ghosts_.ghost_frame();
             local_frame_.poses[body] = from.poses[number];
-            if (scene_.bodies[number].deformable && (is_here || !device_exchange_.is_enabled()))
+            if (scene_.bodies[number].deformable && (is_local || !device_exchange_.is_enabled()))
                 local_frame_.deformed[body] = from.deformed[number];
             const bool skips = !from.skipped.empty() && !from.skipped[number].empty();
             if (skips) local_frame_.skipped.resize(local_scene_->bodies.size());
@@ -154,30 +154,32 @@ void RankSession::take_frame(const Frame& frame) {
                 local_frame_.skipped[body] = skips ? from.skipped[number] : std::vector<std::uint32_t>{};
         }
     };
-    take(ghosts_.subdomain().own, local_subdomain_.own, true);
-    take(ghosts_.subdomain().ghosts, local_subdomain_.ghosts, false);
+    copy(ghosts_.subdomain().own, local_subdomain_.own, true);
+    copy(ghosts_.subdomain().ghosts, local_subdomain_.ghosts, false);
 }
 
-void RankSession::note(const std::exception& error, Report& own) {
+void RankSession::record_failure(const std::exception& error, Report& own) {
     own.failure = error.what();
-    own.is_memory = dynamic_cast<const OutOfMemory*>(&error) != nullptr;
+    own.is_out_of_memory = dynamic_cast<const OutOfMemory*>(&error) != nullptr;
 }
 
-/// From device to device, once this one has its own.
-void RankSession::pass_vertices(const Frame& frame, GhostExchange::Traffic& traffic, Report& own) {
+/// Collective: uploads own vertices, then exchanges vertices between devices.
+void RankSession::exchange_vertices(const Frame& frame, GhostExchange::Traffic& traffic, Report& own) {
     if (session_ && own.failure.empty()) {
         try {
-            take_frame(frame);
+            copy_local_frame(frame);
             session_->upload_vertices(local_frame_);
         } catch (const std::exception& error) {
-            note(error, own);
+            record_failure(error, own);
         }
     }
-    const bool is_there = session_ && own.failure.empty();
-    device_exchange_.exchange(ghosts_, is_there ? &session_->bodies() : nullptr, local_scene_.get(), traffic);
+    const bool is_usable = session_ && own.failure.empty();
+    device_exchange_.exchange(ghosts_, is_usable ? &session_->bodies() : nullptr, local_scene_.get(),
+                              traffic);
 }
 
-/// What others have to say of a frame. Every rank passes the same messages, whatever becomes of it.
+/// Collective: exchanges ghosts. A rank takes part in all exchanges also after an error, which would block
+/// the other ranks otherwise.
 void RankSession::exchange(const Frame& frame, Report& own) {
     const HostWork work(*devices_.front(), Stage::exchange, "bodies of other ranks");
     const auto begin = Clock::now();
@@ -185,41 +187,42 @@ void RankSession::exchange(const Frame& frame, Report& own) {
     if (ghosts_.is_expired(frame, traffic)) {
         ghosts_.rebuild(own_bodies(), frame, traffic);
         try {
-            apply_subdomain();
+            update_device();
         } catch (const std::exception& error) {
-            note(error, own);
-            drop();
-            ghosts_.forget();
+            record_failure(error, own);
+            discard_session();
+            ghosts_.invalidate();
         }
     }
     ghosts_.exchange_states(frame, traffic, !device_exchange_.is_enabled());
-    if (device_exchange_.is_enabled()) pass_vertices(frame, traffic, own);
+    if (device_exchange_.is_enabled()) exchange_vertices(frame, traffic, own);
     own.work.exchange_ns = ns_since(begin);
     own.work.exchange_bytes = traffic.bytes;
     own.work.messages = traffic.messages;
 }
 
-/// A frame that needs batches needs all vertices here, this time and from now on.
+/// A frame that needs batches needs all vertices in the host's memory. The device exchange is disabled on all
+/// ranks after such a frame.
 FrameResult RankSession::run_local(Report& own) {
     if (!device_exchange_.is_enabled()) return session_->run(local_frame_);
     try {
         return session_->run(local_frame_);
     } catch (const OutOfMemory&) {
-        own.is_in_batches = true;
+        own.needs_batches = true;
     }
     device_exchange_.download_received(ghosts_, session_->bodies(), *local_scene_, local_frame_);
     session_->receive({});
     return session_->run(local_frame_);
 }
 
-void RankSession::walk(const Frame& frame, FrameResult& result, Report& own) {
+void RankSession::run_subdomain(const Frame& frame, FrameResult& result, Report& own) {
     if (!own.failure.empty() || !session_) return;
     const auto begin = Clock::now();
     try {
-        if (!device_exchange_.is_enabled()) take_frame(frame); // with what came
+        if (!device_exchange_.is_enabled()) copy_local_frame(frame); // includes the received states
         result = run_local(own);
     } catch (const std::exception& error) {
-        note(error, own);
+        record_failure(error, own);
         return;
     }
     for (auto& part : result.parts) part = owning_part(std::move(part), local_scene_);
@@ -227,25 +230,25 @@ void RankSession::walk(const Frame& frame, FrameResult& result, Report& own) {
     own.work.body_pairs = result.body_pairs;
     own.work.pairs = result.count;
     own.work.ns = ns_since(begin);
-    own.is_usual = result.retries == 0 && result.batches <= 1;
+    own.is_representative = result.retries == 0 && result.batches <= 1;
 }
 
-/// Throws the error of the first rank that had one, on all of them.
-void RankSession::fail(const std::vector<Report>& all) const {
+/// Throws the error of the lowest rank that has one, on all ranks.
+void RankSession::throw_failure(const std::vector<Report>& all) const {
     const auto failed =
         std::ranges::find_if(all, [](const Report& report) { return !report.failure.empty(); });
     if (failed == all.end()) return;
-    if (failed->is_memory) throw SharedError<OutOfMemory>(failed->failure);
+    if (failed->is_out_of_memory) throw SharedError<OutOfMemory>(failed->failure);
     throw SharedError<DeviceError>(failed->failure);
 }
 
-/// Of all ranks.
-std::vector<RankSession::Report> RankSession::reports(const Report& own) {
+/// Collective: the reports of all ranks.
+std::vector<RankSession::Report> RankSession::gather_reports(const Report& own) {
     Ranks::Bytes message;
     append(message, std::span(&own.work, 1));
-    append(message, std::span(&own.is_memory, 1));
-    append(message, std::span(&own.is_usual, 1));
-    append(message, std::span(&own.is_in_batches, 1));
+    append(message, std::span(&own.is_out_of_memory, 1));
+    append(message, std::span(&own.is_representative, 1));
+    append(message, std::span(&own.needs_batches, 1));
     append_text(message,
                 own.failure.empty() ? own.failure : fmt::format("rank {}: {}", ranks_.rank(), own.failure));
     std::vector<Report> all;
@@ -253,19 +256,19 @@ std::vector<RankSession::Report> RankSession::reports(const Report& own) {
         MessageReader reader(bytes);
         auto& report = all.emplace_back();
         report.work = reader.read<DeviceWork>();
-        report.is_memory = reader.read<bool>();
-        report.is_usual = reader.read<bool>();
-        report.is_in_batches = reader.read<bool>();
+        report.is_out_of_memory = reader.read<bool>();
+        report.is_representative = reader.read<bool>();
+        report.needs_batches = reader.read<bool>();
         report.failure = reader.read_text();
     }
     return all;
 }
 
-/// Where this rank's bodies are, and the candidate pairs of those that it has some of.
+/// The balls of this rank's own bodies, then its nonzero candidate pairs by body.
 Ranks::Bytes RankSession::calibration_message(const Frame& frame, const FrameResult& result) {
-    places_.set_reference(frame, own_bodies());
+    tracker_.set_reference(frame, own_bodies());
     Ranks::Bytes message;
-    for (const auto body : own_bodies()) append(message, std::span(&places_.ball(body), 1));
+    for (const auto body : own_bodies()) append(message, std::span(&tracker_.ball(body), 1));
     const auto counts = counts_of(result);
     for (std::uint32_t body = 0; body < counts.size(); ++body) {
         const std::array<std::uint64_t, 2> row{body, counts[body]};
@@ -274,7 +277,7 @@ Ranks::Bytes RankSession::calibration_message(const Frame& frame, const FrameRes
     return message;
 }
 
-/// All ranks see the same numbers and come to the same end.
+/// Collective: all ranks compute the same partition from the same values.
 void RankSession::repartition(const Frame& frame, FrameResult& result) {
     std::vector<double> work;
     for (std::size_t i = 0; i < result.shared.size(); ++i)
@@ -297,7 +300,7 @@ void RankSession::repartition(const Frame& frame, FrameResult& result) {
     balancer_.repartitioned();
     expected_pairs_ = partitioner_.expected_pairs(static_cast<std::size_t>(ranks_.rank()));
     contacts_a_pair_ = result.contacts_a_pair();
-    ghosts_.forget();
+    ghosts_.invalidate();
     result.repartitions = 1;
 }
 
@@ -306,20 +309,20 @@ FrameResult RankSession::do_run(const Frame& frame, std::optional<std::span<cons
     Report own;
     FrameResult result;
     exchange(frame, own);
-    walk(frame, result, own);
-    const auto all = reports(own);
-    if (std::ranges::any_of(all, &Report::is_in_batches)) {
+    run_subdomain(frame, result, own);
+    const auto all = gather_reports(own);
+    if (std::ranges::any_of(all, &Report::needs_batches)) {
         device_exchange_.disable();
-        ghosts_.forget(); // sessions are told at the next meeting
+        ghosts_.invalidate(); // the next rebuild updates the sessions
     }
-    fail(all);
+    throw_failure(all);
     result.shared.clear();
-    bool is_usual = true;
+    bool is_representative = true;
     for (const auto& report : all) {
         result.shared.push_back(report.work);
-        is_usual = is_usual && report.is_usual;
+        is_representative = is_representative && report.is_representative;
     }
-    if (is_usual) repartition(frame, result);
+    if (is_representative) repartition(frame, result);
     return result;
 }
 

@@ -8,26 +8,26 @@
 
 namespace tandem {
 
-/// A session of one rank of a job, each with a device of its own: ranks own bodies, tell each other where
-/// those are that come near, and each pair is found by one of them. All ranks call run() together. Of a frame
-/// a rank needs its own bodies (owned()) and the fixed ones; what it says of others is not looked at. The
-/// result is what this rank has found, its `shared` what each of them has done. On the device are only bodies
-/// that have a part in this rank's share. An error on one rank is one of all: DeviceError that names it.
+/// The session of one rank of a job; each rank has its own device. Ranks own bodies and exchange ghosts, so
+/// that exactly one rank finds each pair. All ranks call run() together. A rank reads only its own bodies
+/// (owned()) and the fixed bodies of a frame. The result has the pairs of this rank, its `shared` the work of
+/// each rank. The device stores bodies of the subdomain and candidates for ghosts only. An error on one rank
+/// is thrown on all: DeviceError or OutOfMemory that names the rank.
 class RankSession final : public Session {
 public:
-    /// Bodies are dealt by where frame 0 has them, so that all ranks know who owns them. `fitted`:
-    /// Traversal::fitted. All must outlive this.
+    /// Collective. The first partition uses frame 0, so that it is the same on all ranks. `fitted`:
+    /// Traversal::fitted. All arguments passed by reference must outlive this.
     RankSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted,
                 Ranks& ranks);
 
 private:
-    /// What a rank tells all others at the end of a frame.
+    /// What ranks exchange at the end of a frame.
     struct Report {
         DeviceWork work;
-        std::string failure;
-        bool is_memory = false;     ///< that there is too little
-        bool is_usual = true;       ///< the frame took what frames take: no buffer had to grow
-        bool is_in_batches = false; ///< it needs vertices in the host's memory
+        std::string failure;           ///< message of the error; empty: none
+        bool is_out_of_memory = false; ///< the error is OutOfMemory
+        bool is_representative = true; ///< the times are usable: no buffer had to grow
+        bool needs_batches = false;    ///< vertices are needed in the host's memory
     };
 
     void do_reset() override;
@@ -42,18 +42,18 @@ private:
     const std::vector<std::uint32_t>& own_bodies() const {
         return partitioner_.subdomains()[static_cast<std::size_t>(ranks_.rank())].own;
     }
-    void apply_subdomain();
-    void build_for(const std::vector<std::uint32_t>& needed);
-    void build(const std::vector<std::uint32_t>& bodies);
-    void drop();
+    void update_device();
+    void build_session_for(const std::vector<std::uint32_t>& needed);
+    void build_session(const std::vector<std::uint32_t>& bodies);
+    void discard_session();
     void exchange(const Frame& frame, Report& own);
-    static void note(const std::exception& error, Report& own);
-    void take_frame(const Frame& frame);
-    void pass_vertices(const Frame& frame, GhostExchange::Traffic& traffic, Report& own);
+    static void record_failure(const std::exception& error, Report& own);
+    void copy_local_frame(const Frame& frame);
+    void exchange_vertices(const Frame& frame, GhostExchange::Traffic& traffic, Report& own);
     FrameResult run_local(Report& own);
-    void walk(const Frame& frame, FrameResult& result, Report& own);
-    std::vector<Report> reports(const Report& own);
-    void fail(const std::vector<Report>& all) const;
+    void run_subdomain(const Frame& frame, FrameResult& result, Report& own);
+    std::vector<Report> gather_reports(const Report& own);
+    void throw_failure(const std::vector<Report>& all) const;
     Ranks::Bytes calibration_message(const Frame& frame, const FrameResult& result);
     void repartition(const Frame& frame, FrameResult& result);
 
@@ -66,14 +66,14 @@ private:
     LoadBalancer balancer_;
     GhostExchange ghosts_;
     DeviceVertexExchange device_exchange_;
-    DisplacementTracker places_;
-    std::vector<Ball> balls_;                  ///< by body, when they were dealt
-    std::shared_ptr<const Scene> local_scene_; ///< what is on the device; null without a session
+    DisplacementTracker tracker_;
+    std::vector<Ball> balls_;                  ///< by body, at the last partition
+    std::shared_ptr<const Scene> local_scene_; ///< the bodies on the device; null without a session
     Frame local_frame_;                        ///< of local_scene_
-    Subdomain local_subdomain_;                ///< the halo's share, by places in local_scene_
-    std::unique_ptr<ResidentSession> session_; ///< none where the share has no bodies
-    std::uint64_t expected_pairs_ = 0;         ///< of this rank's share after a new deal; 0: nobody knows
-    double contacts_a_pair_ = 1;               ///< when it was dealt
+    Subdomain local_subdomain_;                ///< that of ghosts_, with indices in local_scene_
+    std::unique_ptr<ResidentSession> session_; ///< null when this rank owns no bodies
+    std::uint64_t expected_pairs_ = 0;         ///< of this rank after a repartition; 0: unknown
+    double contacts_a_pair_ = 1;               ///< at the last repartition
     bool counts_work_ = false;
 };
 

@@ -39,10 +39,10 @@ private:
     const Settings& do_settings() const override { return sessions_.front()->settings(); }
 
     bool repartition_if_needed(const Frame& frame);
-    void print_message();
+    void apply_subdomains();
     void distribute_pairs(std::span<const BodyPair> body_pairs);
     FrameResult run_subdomain(std::size_t i, const Frame& frame, bool has_given_pairs);
-    void evaluate(const FrameResult& result);
+    void add_sample(const FrameResult& result);
 
     const Traversal& traversal_;
     std::vector<Device*> devices_;
@@ -50,11 +50,11 @@ private:
     std::optional<BroadSweep> broad_; ///< where the host finds body pairs
     Partitioner partitioner_;
     LoadBalancer balancer_;
-    double contacts_a_pair_ = 1;                         ///< when frames were last out of balance
-    std::vector<Subdomain> subdomains_;                  ///< by device: what its session is to be told
-    std::vector<bool> is_applied_;                       ///< by device
+    double contacts_a_pair_ = 1;                         ///< when the load was last unbalanced
+    std::vector<Subdomain> subdomains_;                  ///< by device
+    std::vector<bool> is_applied_;                       ///< by device: its session has its subdomain
     std::vector<std::vector<Role>> roles_;               ///< by device and body, of subdomains_
-    std::vector<std::vector<BodyPair>> pairs_by_device_; ///< by device: pairs that the host has dealt out
+    std::vector<std::vector<BodyPair>> pairs_by_device_; ///< pairs that the host distributes
 };
 
 SplitSession::SplitSession(const Traversal& traversal, std::span<Device* const> devices, const Scene& scene,
@@ -69,11 +69,11 @@ SplitSession::SplitSession(const Traversal& traversal, std::span<Device* const> 
       pairs_by_device_(devices.size()) {
     for (std::size_t i = 0; i < devices.size(); ++i)
         sessions_.push_back(std::make_unique<ResidentSession>(traversal, *devices[i], scene, fitted[i]));
-    if (const auto who = settings()[parameters::broad]; who != Broad::device)
-        broad_.emplace(scene, geometry_of(settings()), who);
+    if (const auto method = settings()[parameters::broad]; method != Broad::device)
+        broad_.emplace(scene, geometry_of(settings()), method);
 }
 
-/// Deals the bodies anew where it has to be, or had better be; returns whether it has.
+/// Repartitions the bodies when the partition is invalid or the load is unbalanced. Returns whether it did.
 bool SplitSession::repartition_if_needed(const Frame& frame) {
     const bool is_new = !partitioner_.is_valid(frame) || balancer_.should_repartition();
     if (is_new) {
@@ -87,12 +87,13 @@ bool SplitSession::repartition_if_needed(const Frame& frame) {
             is_applied_[i] = false;
         }
     }
-    print_message();
+    apply_subdomains();
     return is_new;
 }
 
-/// Tells sessions their shares, also those that a failure has kept from it before.
-void SplitSession::print_message() {
+/// Passes subdomains to the sessions that do not have them. A failure in one frame may leave some for the
+/// next.
+void SplitSession::apply_subdomains() {
     for (std::size_t i = 0; i < sessions_.size(); ++i) {
         if (is_applied_[i]) continue;
         sessions_[i]->take(subdomains_[i]);
@@ -100,8 +101,8 @@ void SplitSession::print_message() {
     }
 }
 
-/// Deals pairs out by who owns their bodies. Pairs that are given may be of any bodies: shares that lack one
-/// get it.
+/// Distributes pairs by the owners of their bodies. Pairs passed to run() may have any bodies; a subdomain
+/// that lacks one gets it as a ghost.
 void SplitSession::distribute_pairs(std::span<const BodyPair> body_pairs) {
     for (auto& pairs : pairs_by_device_) pairs.clear();
     for (const auto& pair : body_pairs) {
@@ -114,7 +115,7 @@ void SplitSession::distribute_pairs(std::span<const BodyPair> body_pairs) {
             is_applied_[i] = false;
         }
     }
-    print_message();
+    apply_subdomains();
 }
 
 FrameResult SplitSession::run_subdomain(std::size_t i, const Frame& frame, bool has_given_pairs) {
@@ -126,9 +127,9 @@ FrameResult SplitSession::run_subdomain(std::size_t i, const Frame& frame, bool 
     return result;
 }
 
-/// What the frame tells of the next deal.
-void SplitSession::evaluate(const FrameResult& result) {
-    if (result.retries > 0 || result.batches > sessions_.size()) return; // they are not what frames take
+/// Updates speeds, and the estimates for the next partition.
+void SplitSession::add_sample(const FrameResult& result) {
+    if (result.retries > 0 || result.batches > sessions_.size()) return; // its times are not representative
     std::vector<double> work;
     for (std::size_t i = 0; i < result.shared.size(); ++i)
         work.push_back(partitioner_.work_of(i, result.shared[i].pairs));
@@ -159,7 +160,7 @@ FrameResult SplitSession::do_run(const Frame& frame, std::optional<std::span<con
         add(sum, part, traversal_.counters());
     }
     sum.repartitions = is_new ? 1 : 0;
-    evaluate(sum);
+    add_sample(sum);
     return sum;
 }
 

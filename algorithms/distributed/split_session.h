@@ -5,10 +5,10 @@
 
 namespace tandem {
 
-/// A session on several devices, which share a frame's body pairs: each owns some of the bodies and has the
-/// pairs that shares/share.h says, all at the same time. It moves and bounds only the bodies that it needs.
-/// With broad=device each finds its own pairs; otherwise, and where run() is given some, the host deals them
-/// out by the same rule. `fitted`: of each device.
+/// A session on several devices of this process. The bodies are partitioned: each device owns a subdomain,
+/// places and bounds only the bodies of it, and processes its pairs (subdomain.h) in parallel to the rest.
+/// With broad=device each device finds its own pairs. Otherwise, and for pairs passed to run(), the host
+/// distributes the pairs by the same rule. `fitted`: Traversal::fitted for each device.
 std::unique_ptr<Session> split_session(const Traversal& traversal, std::span<Device* const> devices,
                                        const Scene& scene, const std::vector<Settings>& fitted);
 

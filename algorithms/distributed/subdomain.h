@@ -6,18 +6,18 @@
 
 namespace tandem {
 
-/// What one of several devices does of a frame. A pair of bodies belongs to the first share that owns one of
-/// them, so that shares together have every pair once.
+/// The bodies that one of several devices processes. A pair of bodies belongs to the first subdomain that
+/// owns one of the two, so that exactly one subdomain has each pair.
 struct Subdomain {
-    std::vector<std::uint32_t> own; ///< moving bodies, neighbours beside each other
-    std::vector<std::uint32_t>
-        ghosts; ///< fixed ones, and those of later shares, that may meet one of its own
+    std::vector<std::uint32_t> own; ///< moving bodies, spatial neighbours close together
+    /// Fixed bodies, and bodies of later subdomains, that may overlap one of `own`.
+    std::vector<std::uint32_t> ghosts;
 };
 
-/// What a body is to a share.
+/// The role of a body in a subdomain.
 enum class Role : std::uint8_t { none, ghost, own };
 
-/// By body.
+/// The roles of all `bodies` bodies of a scene, by body.
 std::vector<Role> roles_of(const Subdomain& subdomain, std::size_t bodies);
 
 } // namespace tandem
