@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The floors of digest.cl.
+// Cost models of the kernels in digest.cl.
 #include "algorithms/cost.h"
 
 namespace tandem {

@@ -12,16 +12,16 @@ namespace {
 constexpr std::size_t id_bytes = 8;    ///< CONTACT_WORDS words
 constexpr std::size_t value_reals = 8; ///< CONTACT_REALS
 
-/// Of what is available: for pairs with what decides them, for contacts; a walk grows into the rest.
-constexpr double pair_share = 0.2, contact_share = 0.4;
+/// Fractions of the available memory for pairs and for contacts. The rest is for the walk and for growth.
+constexpr double pair_fraction = 0.2, contact_fraction = 0.4;
 
 } // namespace
 
 AnswerPool::AnswerPool(Device& device, PairLayout layout, std::size_t real_bytes, std::int64_t pairs,
                        std::int64_t contacts)
     : device_(device), pair_bytes_(words_of(layout) * 4), real_bytes_(real_bytes), contacts_(contacts > 0) {
-    sets_.push_back(make(first_rows(device, pairs, pair_bytes_, pair_share),
-                         contacts_ ? first_rows(device, contacts, contact_bytes(), contact_share) : 0));
+    sets_.push_back(make(first_rows(device, pairs, pair_bytes_, pair_fraction),
+                         contacts_ ? first_rows(device, contacts, contact_bytes(), contact_fraction) : 0));
 }
 
 std::shared_ptr<AnswerBuffers> AnswerPool::make(std::uint64_t pairs, std::uint64_t contacts) const {
@@ -45,22 +45,23 @@ void AnswerPool::expect(std::uint64_t pairs, double contacts_a_pair) {
         std::min(contacts_ ? expected * contacts_a_pair : 0.0, static_cast<double>(GrowableBuffer::most)));
 }
 
-/// As much room as any set has, or is expected to need. Where memory is short a walk may do with less.
-void AnswerPool::widen(AnswerBuffers& set) {
+/// Enlarges a set to the largest capacity of any set and to the expected need. A failure is no error, because
+/// the walk may need less.
+void AnswerPool::enlarge(AnswerBuffers& set) {
     for (const auto& other : sets_) {
         needed_pairs_ = std::max<std::uint64_t>(needed_pairs_, other->pairs.capacity());
         needed_contacts_ = std::max<std::uint64_t>(needed_contacts_, other->contacts.capacity());
     }
-    const auto widen_one = [&](GrowableBuffer& buffer, std::uint64_t rows, double share) {
+    const auto enlarge_one = [&](GrowableBuffer& buffer, std::uint64_t rows, double fraction) {
         const std::uint64_t capacity = buffer.capacity();
-        if (rows > capacity && rows - capacity <= rows_within(device_, buffer.row_bytes(), share))
+        if (rows > capacity && rows - capacity <= rows_within(device_, buffer.row_bytes(), fraction))
             buffer.reserve(rows);
     };
     try {
-        widen_one(set.pairs, std::exchange(needed_pairs_, 0), pair_share);
+        enlarge_one(set.pairs, std::exchange(needed_pairs_, 0), pair_fraction);
         const auto contacts = std::exchange(needed_contacts_, 0);
-        if (contacts_) widen_one(set.contacts, contacts, contact_share);
-    } catch (const OutOfMemory&) {} // the room that there was is there again, or the walk says that it is not
+        if (contacts_) enlarge_one(set.contacts, contacts, contact_fraction);
+    } catch (const OutOfMemory&) {} // the previous capacity is restored; if not, the walk reports it
 }
 
 std::shared_ptr<AnswerBuffers> AnswerPool::take() {
@@ -70,14 +71,14 @@ std::shared_ptr<AnswerBuffers> AnswerPool::take() {
         sets_.push_back(make(last.pairs.capacity(), last.contacts.capacity()));
         free = std::prev(sets_.end());
     }
-    widen(**free);
+    enlarge(**free);
     return *free;
 }
 
 std::shared_ptr<AnswerBuffers> AnswerPool::take_what_fits(std::uint64_t pairs, std::uint64_t contacts) {
     std::erase_if(sets_, [](const auto& set) { return set.use_count() == 1; });
-    const auto contact_rows = std::min(contacts, rows_within(device_, contact_bytes(), contact_share));
-    sets_.push_back(make(std::min(pairs, rows_within(device_, pair_bytes_, pair_share)), contact_rows));
+    const auto contact_rows = std::min(contacts, rows_within(device_, contact_bytes(), contact_fraction));
+    sets_.push_back(make(std::min(pairs, rows_within(device_, pair_bytes_, pair_fraction)), contact_rows));
     return sets_.back();
 }
 

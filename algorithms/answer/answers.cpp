@@ -14,8 +14,8 @@ namespace tandem {
 
 namespace {
 
-constexpr std::size_t block = 4096; ///< contacts a core takes at a time
-/// Pairs that are brought to the host at once.
+constexpr std::size_t block = 4096; ///< contacts that a thread converts at a time
+/// Pairs of one download.
 constexpr std::uint64_t most_expanded = std::uint64_t{1} << 20;
 static_assert(sizeof(Pair) == 16, "a row of expand_pairs");
 
@@ -29,7 +29,7 @@ std::vector<BodyRow> rows_of(Device& device, const Buffer& buffer, std::uint64_t
     return rows;
 }
 
-/// The reals of contact number `index` in rows of 8.
+/// Row `index` of the contact values, 8 reals a row.
 template<class Real>
 std::array<Real, 8> values_of(std::span<const std::byte> bytes, std::size_t index) {
     std::array<Real, 8> row{};
@@ -47,7 +47,7 @@ void read_values(std::span<const std::byte> bytes, std::size_t index, ContactPoi
     contact.depth = static_cast<double>(row[6]);
 }
 
-/// `pair_at`: the pair of a row.
+/// `pair_at` returns the pair of a row.
 template<class Real, class PairAt>
 Digest digest_of_contacts(const PairAt& pair_at, std::span<const ContactIds> ids,
                           std::span<const std::byte> values) {
@@ -63,7 +63,7 @@ Digest digest_of_contacts(const PairAt& pair_at, std::span<const ContactIds> ids
     return sum;
 }
 
-/// Appends contacts whose rows and values are here, on all cores.
+/// Appends contacts from ids and values in the host's memory, in parallel.
 template<class PairAt>
 void convert(const AnswerTools& tools, const PairAt& pair_at, std::span<const ContactIds> ids,
              std::span<const std::byte> values, std::vector<ContactPoint>& contacts) {
@@ -93,10 +93,10 @@ public:
     }
     void expand(std::uint64_t first, std::uint64_t count, const Buffer& expanded) const override {
         if (first > pairs_ || count > pairs_ - first || expanded.bytes() / sizeof(Pair) < count)
-            throw DeviceError(
-                fmt::format("{}: expand() was asked for pairs {} to {} of {}, 16 bytes each, in a "
-                            "buffer of {} bytes",
-                            tools_->device().info().id, first, first + count, pairs_, expanded.bytes()));
+            throw DeviceError(fmt::format(
+                "{}: expand() cannot write pairs {} to {} of {} to a buffer of {} bytes; a pair takes "
+                "16 bytes",
+                tools_->device().info().id, first, first + count, pairs_, expanded.bytes()));
         tools_->expand(buffers_->pairs.buffer(), first, count, expanded);
     }
     Digest digest() const override { return tools_->digest(buffers_->pairs.buffer(), pairs_); }
@@ -164,7 +164,7 @@ Digest AnswerTools::digest(const Buffer& pairs, std::uint64_t count) const {
 }
 
 Digest AnswerTools::contact_digest(const AnswerBuffers& buffers, std::uint64_t contacts) const {
-    if (contacts == 0) return {}; // also where there are no buffers for them
+    if (contacts == 0) return {}; // buffers for contacts may not exist
     const StageScope scope(device(), Stage::postprocess);
     device().clear(sums_, 16);
     const std::array<Argument, 7> arguments{buffers.pairs.buffer(),
@@ -208,14 +208,14 @@ void AnswerTools::count_by_body(const Buffer& pairs, std::uint64_t count,
     }
 }
 
-/// Through a buffer for a part of them at a time: memory may be short where answers are large.
+/// Uses a small buffer for one part at a time, because large answers leave little memory.
 void AnswerTools::download(const Buffer& pairs, std::uint64_t count, std::vector<Pair>& out) const {
     if (count == 0) return;
     std::uint64_t rows = std::min(count, most_expanded);
     Buffer expanded;
     while (!expanded) {
         try {
-            expanded = device().allocate(rows * sizeof(Pair), "pairs on their way to the host");
+            expanded = device().allocate(rows * sizeof(Pair), "pairs to download");
         } catch (const OutOfMemory&) {
             if (rows == 1) throw;
             rows /= 2;
@@ -253,7 +253,7 @@ HostPart::HostPart(std::shared_ptr<const AnswerTools> tools, const AnswerBuffers
       rows_(rows_of<std::uint32_t>(tools_->device(), buffers.pairs.buffer(), count * tools_->row_words())) {}
 
 void HostPart::expand(std::uint64_t, std::uint64_t, const Buffer&) const {
-    throw DeviceError("pairs that were brought to the host are on no device; download them");
+    throw DeviceError("these pairs are in the host's memory and not on a device; use download()");
 }
 
 void HostPart::add_contacts(const AnswerBuffers& buffers, std::uint64_t count) {
@@ -266,7 +266,7 @@ void HostPart::add_contacts(const AnswerBuffers& buffers, std::uint64_t count) {
     device.download(buffers.contacts.buffer(contact_values), std::span(values_).subspan(first));
 }
 
-/// A part may take most of the host's memory: it is numbered anew a block at a time.
+/// Converts the pairs in blocks, because a part may take most of the host's memory.
 Digest HostPart::digest() const {
     constexpr std::size_t at_a_time = std::size_t{1} << 20;
     Digest sum;

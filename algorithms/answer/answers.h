@@ -8,10 +8,10 @@
 
 namespace tandem {
 
-/// The buffers that one answer lies in.
+/// The device buffers of one answer.
 struct AnswerBuffers {
     GrowableBuffer pairs;    ///< rows of pairs.clh, in the bodies' pair_layout()
-    GrowableBuffer contacts; ///< columns of ContactColumn; none where there are to be no contacts
+    GrowableBuffer contacts; ///< columns of ContactColumn; none if no contacts are made
 };
 
 /// The columns of contacts (contact_rows.clh).
@@ -23,24 +23,24 @@ enum ContactColumn : std::size_t {
 /// PAIR_WORDS of pairs.clh.
 constexpr std::size_t words_of(PairLayout layout) { return layout == PairLayout::slots ? 2 : 4; }
 
-/// What it takes to answer questions about pairs and contacts: kernels, and the bodies they are of. Shared by
-/// a session and its results.
+/// Kernels for digests, counts and downloads of pairs and contacts, with the bodies they refer to. A session
+/// and its results own it together.
 class AnswerTools {
 public:
-    /// `contacts`: whether there will be any; their kernel is compiled only then. Throws DeviceError.
+    /// `contacts`: whether to compile the kernel for contacts. Throws DeviceError.
     AnswerTools(std::shared_ptr<const Bodies> bodies, LaunchShape shape, bool contacts);
 
-    /// Of the first rows of a buffer. They launch, and wait for the sums.
+    /// Digests of the first rows of a buffer. Both launch a kernel and wait for it.
     Digest digest(const Buffer& pairs, std::uint64_t count) const;
     Digest contact_digest(const AnswerBuffers& buffers, std::uint64_t contacts) const;
-    /// As AnswerPart::count_by_body.
+    /// See AnswerPart::count_by_body.
     void count_by_body(const Buffer& pairs, std::uint64_t count, std::vector<std::uint64_t>& counts) const;
-    /// As AnswerPart::expand, of any buffer of rows.
+    /// See AnswerPart::expand; for any buffer of rows.
     void expand(const Buffer& pairs, std::uint64_t first, std::uint64_t count, const Buffer& expanded) const;
-    /// The first rows of a buffer in input order's numbers, appended; waits for them.
+    /// Appends the first rows of a buffer, with ids in input order. Waits for the download.
     void download(const Buffer& pairs, std::uint64_t count, std::vector<Pair>& out) const;
-    /// A row of pairs.clh, of row_words() words, which numbers tetrahedra by position, as a pair in input
-    /// order.
+    /// Converts a row of pairs.clh, row_words() words with positions of tetrahedra, to a pair with ids in
+    /// input order.
     Pair pair_of(const std::uint32_t* row) const;
     PairLayout layout() const { return bodies_->pair_layout(); }
     std::size_t row_words() const { return words_of(layout()); }
@@ -49,7 +49,7 @@ public:
     bool in_double() const { return bodies_->geometry().precision == Precision::fp64; }
 
 private:
-    /// What the last kernel summed up; waits for it.
+    /// The sums of the last kernel; waits for it.
     Digest sums(std::uint64_t count) const;
 
     std::shared_ptr<const Bodies> bodies_;
@@ -58,21 +58,21 @@ private:
     Kernel pairs_kernel_, expand_kernel_, contacts_kernel_, count_kernel_;
 };
 
-/// Pairs and contacts that lie in a device's buffers.
+/// Makes the part for pairs and contacts in a device's buffers.
 std::shared_ptr<const AnswerPart> device_part(std::shared_ptr<const AnswerTools> tools,
                                               std::shared_ptr<const AnswerBuffers> buffers,
                                               std::uint64_t pairs, std::uint64_t contacts);
 
-/// Brings pairs and, of each range of them, contacts to the host's memory.
+/// Pairs and contacts in the host's memory. Contacts are added range by range of the pairs.
 class HostPart : public AnswerPart {
 public:
-    /// The first `count` pairs of `buffers`; booked under Stage::read.
+    /// Downloads the first `count` pairs of `buffers`, in Stage::read.
     HostPart(std::shared_ptr<const AnswerTools> tools, const AnswerBuffers& buffers, std::uint64_t count);
-    /// Appends the first `count` contacts of `buffers`, which are of these pairs.
+    /// Downloads and appends the first `count` contacts of `buffers`, which belong to these pairs.
     void add_contacts(const AnswerBuffers& buffers, std::uint64_t count);
 
     PairBuffer pairs() const override { return {{}, tools_->layout(), count_, count_}; }
-    /// Throws DeviceError: they are on no device.
+    /// Throws DeviceError, because the pairs are not on a device.
     void expand(std::uint64_t first, std::uint64_t count, const Buffer& expanded) const override;
     Digest digest() const override;
     Digest contact_digest() const override;
@@ -90,29 +90,29 @@ private:
     std::vector<std::byte> values_;
 };
 
-/// Buffers that return when the last answer that lies in them is gone, so that an answer outlives the next
-/// run and a caller who keeps none costs none.
+/// A pool of answer buffers. A set is reused when no answer refers to it, so that an answer outlives the next
+/// run. A caller that keeps no answers needs one set only.
 class AnswerPool {
 public:
-    /// `pairs` and `contacts`: how many there is room for at first, fewer where a limit is near; contacts 0:
-    /// no buffers for them.
+    /// `pairs` and `contacts`: initial capacities, reduced under a limit of memory. contacts = 0: no buffers
+    /// for contacts.
     AnswerPool(Device& device, PairLayout layout, std::size_t real_bytes, std::int64_t pairs,
                std::int64_t contacts);
 
-    /// Whether pairs in this layout fit into its rows.
+    /// Whether its rows have the size of pairs in this layout.
     bool fits(PairLayout layout) const { return pair_bytes_ == words_of(layout) * 4; }
-    /// The next buffers taken have room for so many, as far as memory allows.
+    /// Sets the expected size of the next answer: take() then returns that capacity, as far as memory allows.
     void expect(std::uint64_t pairs, double contacts_a_pair);
-    /// Buffers that no answer lies in, with as much room as was ever needed. Throws OutOfMemory.
+    /// Returns a set that no answer refers to, with the largest capacity of any set. Throws OutOfMemory.
     std::shared_ptr<AnswerBuffers> take();
-    /// The same for a frame that did not fit: room for so many, or as much as is free, shared out to pairs
-    /// and contacts with a rest for the walk. Buffers that no answer lies in are given up.
+    /// The same for a frame that did not fit. Frees unused sets, then limits pairs and contacts to fractions
+    /// of the available memory.
     std::shared_ptr<AnswerBuffers> take_what_fits(std::uint64_t pairs, std::uint64_t contacts);
 
 private:
     /// Throws OutOfMemory.
     std::shared_ptr<AnswerBuffers> make(std::uint64_t pairs, std::uint64_t contacts) const;
-    void widen(AnswerBuffers& set);
+    void enlarge(AnswerBuffers& set);
     std::vector<Column> contact_columns() const;
     /// Bytes of one contact, in all columns.
     std::size_t contact_bytes() const;
@@ -120,7 +120,7 @@ private:
     Device& device_;
     std::size_t pair_bytes_, real_bytes_;
     bool contacts_;
-    std::uint64_t needed_pairs_ = 0, needed_contacts_ = 0; ///< of the next set that is taken
+    std::uint64_t needed_pairs_ = 0, needed_contacts_ = 0; ///< minimum capacities of the next take()
     std::vector<std::shared_ptr<AnswerBuffers>> sets_;
 };
 

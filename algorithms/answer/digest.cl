@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is asked about candidate pairs that lie in a buffer: their digest, which tetrahedra they are, and how
-// many each body is in.
+// Kernels over candidate pairs in a buffer: digest, ids in the scene, and number of pairs by body.
 #include "backends/portable.h"
 #include "algorithms/answer/pairs.clh"
 
@@ -8,15 +7,15 @@
 KERNEL void digest_pairs(GLOBAL const uint* found, uint count, GLOBAL const uint* owners,
                          GLOBAL const uint* ids, GLOBAL uint* sums) {
     Tally tally = empty_tally();
-    for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) { // of 64 bits, or it would start over near 2^32
+    for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) { // 64 bits, because 32 overflow near 2^32
         const Members pair = members_of(found, i, owners);
         tally_term(&tally, term_of(&pair, ids));
     }
     add_to_sums(sums, tally.a, tally.b);
 }
 
-// The rows first..first + count - 1 as four words each: body a, tetrahedron a, body b, tetrahedron b, as the
-// scene numbers them.
+// Writes rows first..first + count - 1 as four words each: body a, tetrahedron a, body b, tetrahedron b, with
+// the scene's numbers.
 KERNEL void expand_pairs(GLOBAL const uint* found, uint first, uint count, GLOBAL const uint* owners,
                          GLOBAL const uint* ids, GLOBAL uint* expanded) {
     for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
@@ -25,14 +24,14 @@ KERNEL void expand_pairs(GLOBAL const uint* found, uint first, uint count, GLOBA
     }
 }
 
-// Rows that a work-item looks through: most follow others of the same two bodies.
+// Rows of one work-item. Consecutive rows mostly have the same two bodies, so that few additions are atomic.
 #define ROWS_AT_ONCE 64u
 
 DEVICE void add_count(GLOBAL uint* counts, uint body, uint count) {
     if (count != 0u) counter_add(counts + body, count);
 }
 
-// Adds to counts[b] the number of rows that body b is in.
+// Adds to counts[b] the number of rows that contain body b.
 KERNEL void count_by_body(GLOBAL const uint* found, uint count, GLOBAL const uint* owners,
                           GLOBAL uint* counts) {
     for (ulong first = (ulong)GLOBAL_ID * ROWS_AT_ONCE; first < count;

@@ -7,7 +7,7 @@ namespace tandem {
 
 namespace {
 
-/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014), as pairs.clh has it.
+/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014), as in pairs.clh.
 std::uint64_t split_mix(std::uint64_t x) {
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
     x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;

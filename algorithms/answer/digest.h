@@ -7,7 +7,7 @@
 
 namespace tandem {
 
-/// Order-free digest of pairs, by the definition that pairs.clh implements on devices.
+/// Order-free digest of pairs on the host, with the definition of pairs.clh.
 Digest digest_of(std::span<const Pair> pairs);
 Digest digest_of(const Pair& pair);
 

@@ -7,7 +7,7 @@ namespace tandem {
 
 namespace {
 
-/// Where a contact stands in order, and where in the parts.
+/// Sort key of a contact, and its index before sorting.
 struct ContactKey {
     Pair pair;
     std::uint32_t feature = 0;
@@ -16,7 +16,7 @@ struct ContactKey {
     auto operator<=>(const ContactKey&) const = default;
 };
 
-constexpr std::size_t block = 4096; ///< contacts a core takes at a time
+constexpr std::size_t block = 4096; ///< contacts that a thread processes at a time
 
 template<class Work>
 void for_blocks(std::size_t count, const Work& work) {
@@ -84,7 +84,7 @@ std::vector<ContactPoint> FrameResult::download_contacts() const {
     std::vector<ContactPoint> found;
     if (has_pairs()) found.reserve(contacts);
     for (const auto& part : parts) part->append_contacts(found);
-    // Keys are sorted instead of contacts, which are three times as large.
+    // Sorts keys, because contacts are three times as large.
     std::vector<ContactKey> keys(found.size());
     for_blocks(found.size(), [&](std::size_t i) { keys[i] = {found[i].pair, found[i].feature, i}; });
     parallel_sort(keys);

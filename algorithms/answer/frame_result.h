@@ -23,84 +23,85 @@ struct Digest {
     bool operator==(const Digest&) const = default;
 };
 
-/// Candidate pairs in a device's memory (answer/pairs.clh). With PairLayout::slots rows of 2 words, the slots
-/// of the two tetrahedra; with items of 4: body a, body b, and the positions of the tetrahedra in their
-/// bodies' orders.
+/// Candidate pairs in a device's memory (answer/pairs.clh). PairLayout::slots has rows of 2 words, the slots
+/// of the two tetrahedra. PairLayout::items has rows of 4 words: body a, body b, and the positions of the
+/// tetrahedra in the orders of their bodies.
 struct PairBuffer {
     Buffer rows; ///< empty when the pairs are not on a device
     PairLayout layout = PairLayout::slots;
     std::uint64_t count = 0;
-    std::uint64_t capacity = 0; ///< rows there is room for
+    std::uint64_t capacity = 0; ///< in rows
 };
 
-/// What one device found of a frame, in its memory or brought to the host's.
+/// The part of a frame's answer from one device, in the memory of the device or of the host.
 class AnswerPart {
 public:
     virtual ~AnswerPart() = default;
 
-    /// The pairs where they are. Digests are of these and of the contacts, in input order's numbers, so that
-    /// they do not depend on the device.
+    /// The pairs in the device's memory. Digests of pairs and contacts use ids in input order, so that they
+    /// do not depend on the device.
     virtual PairBuffer pairs() const = 0;
-    /// Writes pairs first..first + count - 1 to a buffer of the device: rows of 4 words, body a, tetrahedron
-    /// a, body b, tetrahedron b, as the scene numbers them. Enqueued; for pairs on a device.
+    /// Enqueues writing pairs first..first + count - 1 to a buffer of the device: rows of 4 words, body a,
+    /// tetrahedron a, body b, tetrahedron b, with the scene's numbers. Throws DeviceError for pairs that are
+    /// not on a device.
     virtual void expand(std::uint64_t first, std::uint64_t count, const Buffer& expanded) const = 0;
     virtual Digest digest() const = 0;
     virtual Digest contact_digest() const = 0;
-    /// Appends pairs and contacts, in no order.
+    /// Appends pairs and contacts, in any order.
     virtual void append_pairs(std::vector<Pair>& pairs) const = 0;
     virtual void append_contacts(std::vector<ContactPoint>& contacts) const = 0;
-    /// Adds the number of pairs that each body is in, by body.
+    /// Adds for each body the number of pairs that contain it.
     virtual void count_by_body(std::vector<std::uint64_t>& counts) const = 0;
 };
 
-/// What one of several devices did of a frame.
+/// The work of one of several devices in a frame.
 struct DeviceWork {
-    std::uint64_t bodies = 0;     ///< placed and bounded, whoever owns them
-    std::uint64_t body_pairs = 0; ///< walked
-    std::uint64_t pairs = 0;      ///< candidate pairs found
-    std::int64_t ns = 0;          ///< from when it was given its share to its answer, by the host's clock
-    std::int64_t exchange_ns = 0; ///< before that, on ranks of a job: passing messages, and waiting for them
+    std::uint64_t bodies = 0;         ///< placed and bounded: own bodies and ghosts
+    std::uint64_t body_pairs = 0;     ///< walked
+    std::uint64_t pairs = 0;          ///< candidate pairs found
+    std::int64_t ns = 0;              ///< from the start of its work to its answer, by the host's clock
+    std::int64_t exchange_ns = 0;     ///< before `ns`, on ranks of a job: messages, and waits for them
     std::uint64_t exchange_bytes = 0; ///< sent
     std::uint64_t messages = 0;       ///< sent
 };
 
-/// What of a frame is counted, and adds up over devices, ranks and batches.
+/// Counts of a frame, which are summed over devices, ranks and batches.
 struct FrameCounts {
     std::uint64_t count = 0;      ///< candidate pairs
-    std::uint64_t body_pairs = 0; ///< those given, or found
+    std::uint64_t body_pairs = 0; ///< passed to run(), or found
     std::uint64_t contacts = 0;
     std::uint64_t degenerate = 0;          ///< pairs without contacts because a tetrahedron has no volume
-    std::uint64_t rejected = 0;            ///< pairs that were told apart
-    std::uint64_t undecided_by_filter = 0; ///< that the certified filter left (decision=recheck, exact)
-    std::uint64_t undecided_by_double = 0; ///< that double left (decision=recheck, fp64, exact)
-    std::uint64_t retries = 0;             ///< times a buffer was too small and a walk ran again
-    std::uint64_t batches = 0; ///< parts that the frame was split into for want of memory; 1: none
+    std::uint64_t rejected = 0;            ///< pairs with a separating axis
+    std::uint64_t undecided_by_filter = 0; ///< by the certified filter (decision=recheck, exact)
+    std::uint64_t undecided_by_double = 0; ///< by double precision (decision=recheck, fp64, exact)
+    std::uint64_t retries = 0;             ///< repetitions of a walk because a buffer was too small
+    std::uint64_t batches = 0;             ///< number of batches; 1: the frame fitted into memory
 
     FrameCounts& operator+=(const FrameCounts& other);
 };
 
-/// A frame's answer, which owns its parts: one for each device, and one for each batch whose pairs were
-/// brought to the host to make room. It can be asked as long as its scene and devices live, also after the
-/// next run; a session keeps its buffers apart until then.
+/// The answer of a frame. It owns its parts: one for each device, and one for each batch, whose pairs are in
+/// the host's memory. It is valid as long as its scene and devices exist, also after the next run: the
+/// session does not reuse its buffers before it is destroyed.
 struct FrameResult : FrameCounts {
-    std::vector<DeviceWork> shared;                 ///< by device; of a session on one device none
-    std::uint64_t repartitions = 0;                 ///< 1 where the bodies were dealt to the devices anew
+    std::vector<DeviceWork> shared;                 ///< by device; empty for a session on one device
+    std::uint64_t repartitions = 0;                 ///< 1: the bodies were repartitioned in this frame
     std::map<std::string_view, std::uint64_t> work; ///< by Counter; empty unless Session::count_work(true)
-    std::optional<Digest> summed;                   ///< output=digest: of the pairs
-    std::array<double, 3> origin{}; ///< what points of contacts in the parts count from (Session::origin)
-    std::vector<std::shared_ptr<const AnswerPart>> parts; ///< none unless output=pairs
+    std::optional<Digest> summed;                   ///< digest of the pairs with output=digest
+    std::array<double, 3> origin{};                 ///< of contact points in the parts (Session::origin)
+    std::vector<std::shared_ptr<const AnswerPart>> parts; ///< empty unless output=pairs
 
-    /// False with output=count or digest, which keep none.
+    /// False with output=count or output=digest, which store no pairs.
     bool has_pairs() const { return !parts.empty(); }
-    /// Adds counts, and the sums of output=digest, of another device, rank or batch.
+    /// Adds the counts of another device, rank or batch, and its digest with output=digest.
     void add(const FrameCounts& counts, const std::optional<Digest>& digest);
-    /// 1 where there are no candidate pairs.
+    /// Contacts per candidate pair; 1 without candidate pairs.
     double contacts_a_pair() const;
-    /// Of pairs and contacts, summed where they are. Not part of a measured frame. Of an answer that only
-    /// counts the sums are 0.
+    /// Digests of pairs and contacts, computed in the memory where they are. Not part of a measured frame.
+    /// The sums are 0 with output=count.
     Digest digest() const;
     Digest contact_digest() const;
-    /// Pairs and contacts in the world, sorted; none unless output=pairs.
+    /// Sorted pairs and contacts, in world coordinates; empty unless output=pairs.
     std::vector<Pair> download() const;
     std::vector<ContactPoint> download_contacts() const;
 };

@@ -12,7 +12,7 @@ GrowableBuffer::GrowableBuffer(Device& device, std::vector<Column> columns, std:
     allocate(rows);
 }
 
-/// All columns, or none of them.
+/// Allocates all columns or, on failure, none.
 void GrowableBuffer::allocate(std::uint64_t rows) {
     std::vector<Buffer> buffers;
     for (const auto& column : columns_)
@@ -29,10 +29,10 @@ void GrowableBuffer::reserve(std::uint64_t rows) {
 
 void GrowableBuffer::replace(std::uint64_t rows, std::uint64_t spare) {
     if (rows > most)
-        throw OutOfMemory(fmt::format("{}: {} rows of {} do not fit into one buffer of at most {}",
+        throw OutOfMemory(fmt::format("{}: {} rows of {} exceed the limit of {} rows for one buffer",
                                       device_->info().id, rows, columns_.front().label, most));
     const auto before = capacity_;
-    buffers_.clear(); // first, so that old and new need not fit side by side
+    buffers_.clear(); // first, so that memory need not hold old and new rows at once
     capacity_ = 0;
     for (const auto wanted : {std::min(rows + spare, most), rows}) {
         try {
@@ -46,7 +46,8 @@ void GrowableBuffer::replace(std::uint64_t rows, std::uint64_t spare) {
     }
 }
 
-/// After a failure: as many rows as before, or fewer, so that whoever frees memory can go on.
+/// After a failure, restores the previous capacity or a smaller one, so that the caller can free memory and
+/// retry.
 void GrowableBuffer::restore(std::uint64_t rows) {
     for (; rows > 0; rows /= 2) {
         try {
@@ -58,8 +59,8 @@ void GrowableBuffer::restore(std::uint64_t rows) {
 
 const Buffer& GrowableBuffer::buffer(std::size_t column) const {
     if (buffers_.empty())
-        throw OutOfMemory(
-            fmt::format("{}: there was no memory for {}", device_->info().id, columns_[column].label));
+        throw OutOfMemory(fmt::format("{}: out of memory for {}; raise --memory, or use fewer bodies",
+                                      device_->info().id, columns_[column].label));
     return buffers_[column];
 }
 

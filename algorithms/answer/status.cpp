@@ -35,7 +35,7 @@ void Status::set_window(std::uint32_t first, std::uint32_t end) {
 
 void Status::write(const Words& words) {
     words_ = words;
-    // Written whole: Oclgrind 21.10 takes the rest of a buffer for uninitialised after a partial write.
+    // Writes all words, because Oclgrind 21.10 treats the rest as uninitialised after a partial write.
     const StageScope scope(device_, Stage::write);
     device_.upload(buffer_, std::as_bytes(std::span(words_)), 0, writes_ == Writes::blocking);
 }

@@ -8,20 +8,21 @@
 
 namespace tandem {
 
-/// The words of status.clh on one device, and what the host knows of them.
+/// The words of status.clh on one device, and the host's copy of them.
 class Status {
 public:
-    /// How words travel: resident ones wait for nothing, published ones as the paper's code did.
+    /// Uploads of words: queued for the resident data path, blocking for the published one, as in the paper's
+    /// code.
     enum class Writes { queued, blocking };
 
     /// `device` must outlive it. Throws OutOfMemory.
     Status(Device& device, Writes writes);
 
-    /// Clears all words but the number of body pairs: those the host has found, or 0.
+    /// Clears all words and sets the number of body pairs: the number that the host has found, or 0.
     void begin(std::uint64_t body_pairs);
-    /// Sets the 64-bit counter at `word`; all others are as they were last read or written.
+    /// Writes the host's copy with the 64-bit counter at `word` set to `value`.
     void set(std::size_t word, std::uint64_t value);
-    /// Writes the window of a windowed walk: items first..end - 1.
+    /// Writes the host's copy with the window of a windowed walk, items first..end - 1.
     void set_window(std::uint32_t first, std::uint32_t end);
     /// Waits for the device and reads all words.
     void read();
@@ -30,7 +31,7 @@ public:
         return words_[word] | std::uint64_t{words_[word + 1]} << 32;
     }
 
-    /// All words as last read or written; write() brings the device back to them.
+    /// All words, as last read or written.
     using Words = std::array<std::uint32_t, STATUS_WORDS>;
     const Words& words() const { return words_; }
     void write(const Words& words);
