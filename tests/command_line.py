@@ -308,7 +308,7 @@ class CommandLine(Case):
         listing = tandem("algorithms")[1]
         self.assertEqual([line for line in listing.splitlines() if len(line) > 100], [])
         self.assertIn("settings, as in preset resident", listing)
-        self.assertRegex(listing, r"\n    broad +device +who finds body pairs")
+        self.assertRegex(listing, r"\n    broad +device +how to find body pairs")
         self.assertIn("[sphere, tight, device; sphere where no preset sets it]", " ".join(listing.split()))
 
     def test_a_peer_beside_the_own(self):

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What a device can do at most, to put the times of the walks against: moving bytes, and overlap tests of
-// nodes that lie in registers.
+// Benchmarks of a device's limits, for comparison with the times of walks: memory throughput, and overlap
+// tests of nodes in registers.
 #include "backends/portable.h"
 #include "algorithms/hierarchy/node.clh"
 
-// Work-items take neighbouring words, and IN_FLIGHT rounds of the grid at once, so that enough reads are in
-// flight.
+// Neighbouring work-items read neighbouring words. Each issues IN_FLIGHT reads at once to hide their latency.
 #define IN_FLIGHT 8
 
-// words = a multiple of the work-items times IN_FLIGHT.
+// `words`: a multiple of the number of work-items times IN_FLIGHT.
 KERNEL void copy_words(GLOBAL const ulong* from, GLOBAL ulong* to, ulong words) {
     const ulong stride = GLOBAL_COUNT;
     for (ulong i = GLOBAL_ID; i < words; i += stride * IN_FLIGHT) {
@@ -18,7 +17,8 @@ KERNEL void copy_words(GLOBAL const ulong* from, GLOBAL ulong* to, ulong words) 
     }
 }
 
-// Reads `words` words `rounds` times. The sum is written only if it is a value that no upload here gives.
+// Reads `words` words `rounds` times. The sum has a use so that the reads are not optimised away, but it is
+// never written: no upload gives this value.
 KERNEL void read_words(GLOBAL const ulong* from, GLOBAL ulong* out, ulong words, uint rounds) {
     const ulong stride = GLOBAL_COUNT;
     ulong sum = 0;
@@ -36,8 +36,8 @@ KERNEL void do_nothing(GLOBAL uint* out) {
     if (GLOBAL_ID == 0xffffffffu) out[0] = 1u;
 }
 
-// rounds * DIRECTIONS closed overlap tests of K comparisons each, a work-item. The slabs of b rotate so that
-// no comparison repeats, and grow a little after each turn so that no turn repeats.
+// Each work-item does rounds * DIRECTIONS closed overlap tests of K comparisons. Slabs of b rotate in each
+// turn and grow after each round, so that the compiler cannot reuse a result.
 KERNEL void test_overlaps(GLOBAL const real* nodes, GLOBAL uint* counts, uint rounds, uint turns) {
     real a[K];
     real b[K];

@@ -12,7 +12,8 @@ namespace {
 
 using Direction = std::array<int, 3>;
 
-/// Directions of planes that face each other: k/2 of them. Integers, so that a slab is a sum of coordinates.
+/// Directions of k-DOPs, one for each pair of parallel planes. Integers, so that a projection is a sum of
+/// coordinates.
 constexpr Direction coordinates[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 constexpr Direction corners[] = {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
 constexpr Direction edges[] = {{1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
@@ -23,8 +24,8 @@ constexpr std::array<const Parameter*, 6> declared{&parameters::k,         &para
 
 } // namespace
 
-/// Coordinates, diagonals of the cube, of its faces, in this order; k = 8 is the paper's four diagonals, or
-/// three coordinates and a diagonal.
+/// Coordinates, diagonals of the cube, diagonals of its faces, in this order. k = 8 has the paper's four cube
+/// diagonals, or three coordinates and one diagonal.
 std::vector<Direction> directions(const Geometry& geometry) {
     std::vector<Direction> result;
     const auto add = [&](auto& set, std::size_t count) { result.insert(result.end(), set, set + count); };
@@ -61,8 +62,8 @@ Geometry geometry_of(const Settings& settings) {
                          "the bound it needs; leave rounding or placement out");
     if (geometry.origin == Origin::automatic && geometry.placement == Placement::exact
         && geometry.precision == Precision::fp64)
-        throw InputError("setting origin=auto takes one difference in double, which placement=exact has no "
-                         "room for with precision=double; leave one of the three out");
+        throw InputError("setting origin=auto rounds one difference in double, which the bounds of "
+                         "placement=exact do not cover with precision=double; leave one of the three out");
     return geometry;
 }
 

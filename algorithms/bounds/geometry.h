@@ -8,8 +8,8 @@
 
 namespace tandem {
 
-/// What fixes the set of candidate pairs of a frame: cells that agree in it must give the same set, and only
-/// those are ever compared. Published rounding thus stands beside others, never against them.
+/// The settings that determine the set of candidate pairs of a frame. Cells with equal geometry must give the
+/// same set. Cells with different geometry, such as published and safe rounding, are never compared.
 struct Geometry {
     int k = 18;
     bool coordinate_axes = false; ///< k = 8 only: x, y, z and one diagonal instead of the four cube diagonals
@@ -21,22 +21,23 @@ struct Geometry {
     bool operator==(const Geometry&) const = default;
 };
 
-/// The integer directions of a geometry, as rows of {-1, 0, 1}; k / 2 of them, in the kernels' order.
+/// The k / 2 integer directions of a geometry, with components in {-1, 0, 1}, in the order of kernels.
 std::vector<std::array<int, 3>> directions(const Geometry& geometry);
 
-/// Settings k, axes, precision, rounding, placement and origin: those an algorithm with k-DOPs declares.
+/// The settings that algorithms with k-DOPs declare: k, axes, precision, rounding, placement and origin.
 std::span<const Parameter* const> geometry_parameters();
 
-/// Throws InputError when axes does not fit k, placement not rounding, or origin not placement.
+/// The geometry of these settings. Throws InputError if axes does not fit k, placement does not fit rounding,
+/// or origin does not fit placement.
 Geometry geometry_of(const Settings& settings);
 
-/// What kernels need that read rows only (rows.clh): precision and placement as defines, with the group size.
+/// Defines for kernels that read rows only (rows.clh): precision, placement and group size.
 Defines row_defines(const Geometry& geometry, std::uint32_t group_size);
 
-/// The whole geometry as defines, with the group size.
+/// Defines for kernels that use bounds: the whole geometry and the group size.
 Defines geometry_defines(const Geometry& geometry, std::uint32_t group_size);
 
-/// Reals of a pose on devices: body.clh.
+/// Reals of a pose on devices (body.clh).
 inline std::size_t pose_reals(const Geometry& geometry) {
     return geometry.placement == Placement::exact ? 16 : 12;
 }

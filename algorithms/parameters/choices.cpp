@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The numbers of choices.h and the names that kernels have for them, side by side.
+// Checks that the numbers of choices.h and of choices.clh are equal.
 #include "algorithms/parameters/choices.clh"
 #include "algorithms/parameters/choices.h"
 

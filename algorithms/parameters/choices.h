@@ -1,98 +1,99 @@
 // SPDX-License-Identifier: MIT
-// What the common settings choose from. Kernels see an enumerator's number under the setting's define; names
-// for these numbers stand in choices.clh, and choices.cpp does not compile when the two differ.
+// Enumerations of the common settings. A kernel gets the number of an enumerator in the define of the
+// setting. choices.clh names these numbers for kernels; choices.cpp does not compile when the two files
+// differ.
 #pragma once
 
 namespace tandem {
 
-/// Which directions k = 8 has.
+/// Directions for k = 8.
 enum class Axes {
-    standard,  ///< the paper's four cube diagonals; for other k the symmetric sets of directions.clh
+    standard,  ///< the paper's four cube diagonals; the sets of directions.clh for other k
     coordinate ///< x, y, z and one diagonal
 };
 
 /// Bits of a real number in vertices, slabs and contacts.
 enum class Precision { fp32 = 32, fp64 = 64 };
 
-/// How a slab's ends are rounded; bounds/README.md has what each is good for.
+/// Rounding of the ends of slabs; bounds/README.md has the guarantees.
 enum class Rounding {
-    nearest,   ///< to nearest, nothing added: misses pairs on directions with three non-zeros
-    safe,      ///< widened where the rounding is not monotone: misses nothing
+    nearest,   ///< to nearest, without widening: misses pairs on directions with three non-zeros
+    safe,      ///< widened if the rounding is not monotone: misses no pair
     published, ///< the paper's: unit directions, an absolute tolerance of 10 FLT_EPSILON; misses pairs
-    directed   ///< outwards, on devices that can: slabs contain the exact ones
+    directed   ///< outwards, on devices with directed rounding: slabs contain the exact ones
 };
 
-/// Where the vertices are whose contacts no slab may miss.
+/// The vertices whose contacts no slab may miss.
 enum class Placement {
-    rounded, ///< the world vertices in the cell's precision, after their transform has been rounded
-    exact    ///< the scene's own doubles where its poses put them, moved without rounding
+    rounded, ///< the world vertices in the cell's precision, after rounding of their transform
+    exact    ///< the scene's vertices in double, transformed by its poses without rounding
 };
 
-/// What coordinates on devices count from.
+/// Origin of coordinates on devices.
 enum class Origin {
     world,
-    automatic ///< a point in the middle of the scene where it begins, zero when that is near enough
+    automatic ///< the middle of the scene in its first frame, or zero if that is near enough
 };
 
-/// Who finds body pairs.
+/// Method that finds body pairs.
 enum class Broad {
-    sphere, ///< the host, by the paper's spheres
-    tight,  ///< the host, by boxes
-    device  ///< the device, by root k-DOPs
+    sphere, ///< on the host, by the paper's spheres
+    tight,  ///< on the host, by boxes
+    device  ///< on the device, by root k-DOPs
 };
 
-/// Where the data of a frame lives between frames.
+/// Location of data between frames.
 enum class Residency {
-    resident, ///< topology once, shared by bodies with one mesh; a frame uploads poses or vertices only
-    published ///< as the paper's code: everything converted, uploaded and read back in every frame
+    resident, ///< topology is uploaded once and shared by bodies with one mesh; frames upload only motion
+    published ///< as the paper's code: everything is converted, uploaded and read back in every frame
 };
 
-/// Who converts a frame's bodies where the host does in every frame.
+/// Threads that convert bodies on the host in every frame.
 enum class Conversion {
     serial,  ///< one thread
-    parallel ///< all that setting threads allows
+    parallel ///< as many threads as setting threads allows
 };
 
-/// How a frame's commands get to the device.
+/// Submission of a frame's commands to the device.
 enum class Submission {
-    one, ///< together, where the device knows how and the frame before had the same commands
+    one, ///< together, if the device supports it and the last frame had the same commands
     each ///< one by one
 };
 
-/// In which order a body's tetrahedra stand, and so which of them share a node.
+/// Order of a body's tetrahedra, which decides the nodes that contain them.
 enum class Builder {
     morton,  ///< along the Z-curve, as the paper
     sah,     ///< cut by the surface area heuristic into runs of 32, 32^2, ...
     breadth, ///< breadth-first from face to face, which the paper tried first
     hilbert, ///< along Hilbert's curve
-    median   ///< halved along the longest axis, at such runs
+    median   ///< halved along the longest axis, at runs of the same lengths
 };
 
-/// Directions that the leaves of a hierarchy of tiles have bounds along.
+/// Directions with bounds in the leaves of a hierarchy of tiles.
 enum class Slabs {
-    three, ///< the first three of the geometry's; the others are decided from vertices
+    three, ///< the first three of the geometry; tests along the rest use vertices
     all,
-    usual ///< one of the above, by device and k: no kernel sees it
+    usual ///< one of the above, chosen by device and k before kernels are compiled
 };
 
-/// What a candidate pair is in a device's memory (answer/pairs.clh).
+/// Format of a candidate pair in a device's memory (answer/pairs.clh).
 enum class PairLayout {
     items, ///< 16 bytes: body a, body b, and the positions of the two tetrahedra in their bodies' orders
-    slots  ///< 8 bytes: two numbers of tetrahedra over all bodies
+    slots  ///< 8 bytes: the slots of the two tetrahedra, which number those of all bodies
 };
 
-/// What a walk hands out.
+/// Output of a walk.
 enum class Output { pairs, count, digest };
 
-/// How contacts are made of a pair that meets; contacts/README.md has the rules.
+/// Rule that makes contacts of a colliding pair; narrow_phase/README.md has the rules.
 enum class ContactRule { opposing, published, sat, clip, restricted, vertex, consistent, growth, none };
 
-/// What decides whether a pair meets.
+/// Method that decides whether a pair collides.
 enum class DecisionPrecision {
-    fp32,    ///< separating axes in the cell's precision; what they do not tell apart meets
-    recheck, ///< a certified filter in the cell's precision, then double for what it cannot decide
+    fp32,    ///< separating axes in the cell's precision; without one the pair collides
+    recheck, ///< a certified filter in the cell's precision, then double for undecided pairs
     fp64,    ///< the certified decision in double for all pairs
-    exact    ///< as recheck, then exact arithmetic on the host for what double cannot decide
+    exact    ///< as recheck, then exact arithmetic on the host for undecided pairs
 };
 
 } // namespace tandem

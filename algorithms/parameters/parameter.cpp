@@ -12,7 +12,7 @@ namespace tandem {
 
 namespace {
 
-/// Integers may be written 10000000 or 1e7.
+/// Accepts integers such as 10000000 and 1e7.
 bool parse_integer(const std::string& text, std::int64_t& value) {
     const auto* end = text.data() + text.size();
     if (const auto result = std::from_chars(text.data(), end, value);
@@ -79,7 +79,7 @@ SettingTexts Preset::texts() const {
     return texts;
 }
 
-/// The defaults, the preset over them, what is given over both.
+/// Starts with the defaults, which the preset overrides; `given` overrides both.
 Settings resolve(std::span<const Parameter* const> parameters, std::span<const Assignment> preset,
                  const SettingTexts& given, std::string_view algorithm) {
     Settings settings(parameters);

@@ -13,39 +13,40 @@
 
 namespace tandem {
 
-/// One row of the table of parameters: everything that is known of a setting, in one place. Parsing, listing,
-/// kernel defines and records read it.
+/// One row of the table of parameters: the complete description of a setting. Parsing, listings, kernel
+/// defines and records use it.
 struct Parameter {
-    /// A word that a setting takes, and the number that it stands for in code and kernels.
+    /// A word that is a value of a setting, and its number in code and kernels.
     struct Word {
         std::string_view text;
         std::int64_t value = 0;
     };
 
-    std::string_view name;   ///< as --set and records have it
-    std::string_view define; ///< what kernels call it; empty: it is the host's alone
+    std::string_view name;   ///< in --set and in records
+    std::string_view define; ///< name in kernels; empty: kernels do not use it
     std::string_view help;
     std::int64_t initial = 0;
-    std::int64_t least = 0, most = 0; ///< of an integer; both included
+    std::int64_t least = 0, most = 0; ///< range of an integer, both ends included
     std::array<Word, 12> words{};
     std::size_t word_count = 0; ///< 0: any integer from least to most
     std::array<std::int64_t, 4> alternative_values{};
     std::size_t alternative_count = 0;
-    std::string_view alternative_setting; ///< the setting that says the same in another way; empty: none
+    std::string_view alternative_setting; ///< another setting with the same effect; empty: none
 
     constexpr std::span<const Word> choices() const { return std::span(words).first(word_count); }
-    /// Values worth trying for speed, where neither this nor alternative_setting is given; none of them
-    /// changes an answer. Empty: it is the user's alone.
+    /// Values that `--algorithm auto` tries for speed when neither this nor alternative_setting is given.
+    /// They do not change an answer. Empty: only the user sets it.
     constexpr std::span<const std::int64_t> alternatives() const {
         return std::span(alternative_values).first(alternative_count);
     }
-    /// The value as --set takes it.
+    /// The value in the form that --set accepts.
     std::string text(std::int64_t value) const;
-    /// Throws InputError that names the allowed values. Integers may be written 10000000 or 1e7.
+    /// Accepts a word, or an integer such as 10000000 or 1e7. Throws InputError that lists the allowed
+    /// values.
     std::int64_t parse(const std::string& text) const;
 };
 
-/// A value of a setting, as presets list them.
+/// A setting with a value, as listed in presets.
 struct Assignment {
     const Parameter* parameter = nullptr;
     std::int64_t value = 0;
@@ -56,8 +57,8 @@ struct ValueRange {
     std::int64_t least = 0, most = 0;
 };
 
-/// A parameter whose values are a `T`: an enumeration, an integer or bool. Rows are constants; one whose
-/// default is none of its choices, or which has two words for one value, does not compile.
+/// A parameter with values of type T: an enumeration, an integer or bool. Rows are constants. A default that
+/// is not a choice, or a duplicate word or value, is a compile error.
 template<class T>
 struct Setting : Parameter {
     using Choices = std::initializer_list<std::pair<std::string_view, T>>;
@@ -84,11 +85,11 @@ struct Setting : Parameter {
         if (initial < least || initial > most) throw "a setting's default is out of its range";
     }
 
-    /// The same row with alternatives(), every one of them a value that it takes.
+    /// The same row with alternatives(), which must be allowed values.
     consteval Setting with_alternatives(std::initializer_list<T> values,
-                                        std::string_view other_way = {}) const {
+                                        std::string_view other_setting = {}) const {
         auto row = *this;
-        row.alternative_setting = other_way;
+        row.alternative_setting = other_setting;
         for (const auto value : values) {
             const auto number = static_cast<std::int64_t>(value);
             bool allowed = word_count == 0 && number >= least && number <= most;
@@ -111,16 +112,16 @@ private:
     }
 };
 
-/// Setting name -> value as text: what users give and records keep.
+/// Value as text by setting name, as users give them and records store them.
 using SettingTexts = std::map<std::string, std::string>;
 
-/// A value for every setting of an algorithm. Made by resolve().
+/// A value for every setting of an algorithm; resolve() makes it.
 class Settings {
 public:
     Settings() = default;
     explicit Settings(std::span<const Parameter* const> parameters);
 
-    /// The value of a setting; std::out_of_range when the algorithm has none of that name.
+    /// The value of a setting. Throws std::out_of_range if the algorithm does not have the setting.
     template<class T>
     T operator[](const Setting<T>& setting) const {
         return static_cast<T>(values_.at(setting.name).value);
@@ -128,7 +129,7 @@ public:
     bool has(const Parameter& parameter) const { return values_.contains(parameter.name); }
     void set(const Assignment& assignment) { values_.at(assignment.parameter->name) = assignment; }
 
-    /// The value of a setting as --set takes it; std::out_of_range for an unknown name.
+    /// The value of a setting in the form that --set accepts. Throws std::out_of_range for an unknown name.
     std::string text(std::string_view name) const;
     SettingTexts texts() const;
     bool empty() const { return values_.empty(); }
@@ -138,7 +139,7 @@ private:
     std::map<std::string_view, Assignment> values_;
 };
 
-/// A named set of values; settings given by the user come on top.
+/// A named set of values. Settings given by the user override it.
 struct Preset {
     std::string_view name;
     std::string_view help;
@@ -147,12 +148,12 @@ struct Preset {
     SettingTexts texts() const;
 };
 
-/// `given` over `preset` over the defaults. Throws InputError for an unknown name (naming the nearest) or an
-/// impossible value (naming the allowed ones).
+/// Combines settings: `given` overrides `preset`, which overrides the defaults. Throws InputError for an
+/// unknown name (with the nearest one) or an impossible value (with the allowed ones).
 Settings resolve(std::span<const Parameter* const> parameters, std::span<const Assignment> preset,
                  const SettingTexts& given, std::string_view algorithm);
 
-/// Adds a value under the define of its setting, as the number that kernels know it by.
+/// Adds the number of a value to the defines, under the define of its setting.
 template<class T>
 void define(std::map<std::string, std::string>& defines, const Setting<T>& setting,
             std::type_identity_t<T> value) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The settings that algorithms share: name, default, choices or range, define and help of each, once. What an
-// algorithm has beside them stands in its own file, in the same form.
+// The settings of several algorithms: name, default, choices or range, define and help. Settings of a single
+// algorithm have the same form, in its own file.
 #pragma once
 
 #include "algorithms/parameters/choices.h"
@@ -28,7 +28,7 @@ inline constexpr Setting<Precision> precision{"precision",
                                               Precision::fp32,
                                               {{"float", Precision::fp32}, {"double", Precision::fp64}},
                                               "PRECISION",
-                                              "of vertices, slabs and contacts"};
+                                              "type of reals in vertices, slabs and contacts"};
 inline constexpr Setting<Rounding> rounding{
     "rounding",
     Rounding::safe,
@@ -44,15 +44,15 @@ inline constexpr Setting<Placement> placement{
     Placement::rounded,
     {{"rounded", Placement::rounded}, {"exact", Placement::exact}},
     "PLACEMENT",
-    "whose contacts no slab may miss: those of the world vertices as rounded, or those of the scene's own "
-    "vertices where its poses put them exactly (safe and directed, wider slabs)"};
+    "vertices whose contacts no slab misses: rounded: the world vertices after rounding; exact: the scene's "
+    "vertices, transformed exactly by its poses (rounding=safe and directed, wider slabs)"};
 inline constexpr Setting<Origin> origin{
     "origin",
     Origin::world,
     {{"world", Origin::world}, {"auto", Origin::automatic}},
     "",
-    "what coordinates count from: the world's origin, or a point in the middle of the scene where it begins, "
-    "so that a scene far away is as exact as one near by"};
+    "origin of coordinates on devices: world: the world's origin; auto: a point in the middle of the scene's "
+    "first frame, so that a scene far from the world's origin is as accurate as one near it"};
 
 inline constexpr auto builder =
     Setting<Builder>{"builder",
@@ -73,9 +73,9 @@ inline constexpr auto slabs =
                    Slabs::usual,
                    {{"three", Slabs::three}, {"all", Slabs::all}, {"usual", Slabs::usual}},
                    "SLABS",
-                   "directions that leaves have bounds along: three of the k/2, with the others decided from "
-                   "the vertices of pairs that pass, or all; usual: all on GPUs up to k = 12 or 2^21 "
-                   "tetrahedra, three elsewhere"}
+                   "directions with bounds in leaves: three of the k/2, with tests along the rest from the "
+                   "vertices of pairs that pass, or all; usual: all on GPUs up to k = 12 or 2^21 tetrahedra, "
+                   "three elsewhere"}
         .with_alternatives({Slabs::three, Slabs::all});
 
 inline constexpr Setting<ContactRule> contact_rule{
@@ -92,9 +92,9 @@ inline constexpr Setting<ContactRule> contact_rule{
      {"none", ContactRule::none}},
     "CONTACT_RULE",
     "opposing: the paper's most opposing boundary faces; published: with its code's tolerances and gaps; "
-    "sat: the least translation; clip: the intersection; restricted: sat along what boundary faces make; "
-    "vertex: corners inside, nearest boundary face; consistent: the one their edges leave by; growth: what "
-    "meets first when both grow"};
+    "sat: the least translation; clip: the intersection; restricted: sat along axes of boundary faces; "
+    "vertex: corners inside, nearest boundary face; consistent: the face that their edges leave by; growth: "
+    "the first contact when both grow"};
 inline constexpr Setting<DecisionPrecision> decision{
     "decision",
     DecisionPrecision::fp32,
@@ -103,18 +103,19 @@ inline constexpr Setting<DecisionPrecision> decision{
      {"fp64", DecisionPrecision::fp64},
      {"exact", DecisionPrecision::exact}},
     "",
-    "whether a pair meets: fp32: separating axes in the cell's precision; recheck: a certified filter, then "
-    "double; fp64: double; exact: then exact arithmetic on the host"};
+    "how to decide whether a pair collides: fp32: separating axes in the cell's precision; recheck: a "
+    "certified filter, then double; fp64: double; exact: as recheck, then exact arithmetic on the host"};
 
 inline constexpr Setting<Broad> broad{
     "broad",
     Broad::sphere,
     {{"sphere", Broad::sphere}, {"tight", Broad::tight}, {"device", Broad::device}},
     "",
-    "who finds body pairs: the host by the paper's spheres, or by boxes, or the device by root k-DOPs"};
-inline constexpr Setting<std::int64_t> body_pair_capacity{
-    "body_pair_capacity", 65536, ValueRange{1, word_limit}, "",
-    "broad=device: body pairs there is room for at first"};
+    "how to find body pairs: sphere: on the host, by the paper's spheres; tight: on the host, by boxes; "
+    "device: on the device, by root k-DOPs"};
+inline constexpr Setting<std::int64_t> body_pair_capacity{"body_pair_capacity", 65536,
+                                                          ValueRange{1, word_limit}, "",
+                                                          "broad=device: initial capacity for body pairs"};
 inline constexpr Setting<Residency> residency{
     "residency",
     Residency::resident,
@@ -126,40 +127,40 @@ inline constexpr Setting<Conversion> convert{
     Conversion::serial,
     {{"serial", Conversion::serial}, {"parallel", Conversion::parallel}},
     "",
-    "residency=published: who converts bodies to the device's arrays and trees back and forth: one thread, "
-    "as in the paper's tables, or as many as setting threads allows, as its OpenMP did"};
+    "residency=published: threads that convert bodies to the device's arrays and trees, and back: serial: "
+    "one, as in the paper's tables; parallel: as many as setting threads allows, as its OpenMP"};
 inline constexpr Setting<Submission> submission{
     "submission",
     Submission::one,
     {{"one", Submission::one}, {"each", Submission::each}},
     "",
-    "a resident frame's commands: one: together, as a CUDA graph, when the same have come before, little is "
-    "uploaded and the host has no body pairs to find; each: one by one, as on other devices"};
+    "submission of a resident frame's commands: one: together, as a CUDA graph, if the last frame had the "
+    "same, uploads are small and the host finds no body pairs; each: one by one, as on other devices"};
 inline constexpr Setting<Output> output{
     "output",
     Output::pairs,
     {{"pairs", Output::pairs}, {"count", Output::count}, {"digest", Output::digest}},
     "OUTPUT",
-    "what a walk hands out; contacts need pairs"};
+    "output of a walk; contacts need pairs"};
 inline constexpr Setting<PairLayout> pair_layout{
     "pair_layout",
     PairLayout::slots,
     {{"slots", PairLayout::slots}, {"items", PairLayout::items}},
     "PAIR_LAYOUT",
-    "a candidate pair on the device: slots: 8 bytes, two numbers of tetrahedra over all bodies; items: 16 "
-    "bytes, "
-    "as the published data path and scenes of more than 2^32 slots have it"};
+    "format of a candidate pair on the device: slots: 8 bytes, the slots of two tetrahedra; items: 16 bytes, "
+    "as in the published data path and in scenes of more than 2^32 slots"};
 inline constexpr auto group_size = Setting<std::int64_t>{"group_size", 128, ValueRange{1, 1024}, "GROUP_SIZE",
                                                          "work-items per work-group (1 on host)"}
                                        .with_alternatives({64, 128, 256});
-inline constexpr Setting<std::int64_t> work_items{"work_items", 2048, ValueRange{1, 1 << 20}, "",
-                                                  "work-items per compute unit of the kernels that stride"};
+inline constexpr Setting<std::int64_t> work_items{
+    "work_items", 2048, ValueRange{1, 1 << 20}, "",
+    "work-items per compute unit of kernels with strided loops"};
 inline constexpr Setting<std::int64_t> threads{
     "threads", 0, ValueRange{0, 4096}, "",
-    "threads that run the work-groups of device host; 0: one for each core; other devices ignore it"};
+    "threads that run the work-groups of device host; 0: one per core; other devices ignore it"};
 inline constexpr Setting<std::int64_t> pair_capacity{"pair_capacity", 1048576, ValueRange{1, word_limit}, "",
-                                                     "candidate pairs there is room for at first"};
+                                                     "initial capacity for candidate pairs"};
 inline constexpr Setting<std::int64_t> contact_capacity{
-    "contact_capacity", 1048576, ValueRange{1, word_limit}, "", "contacts there is room for at first"};
+    "contact_capacity", 1048576, ValueRange{1, word_limit}, "", "initial capacity for contacts"};
 
 } // namespace tandem::parameters
