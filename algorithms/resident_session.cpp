@@ -11,7 +11,7 @@ namespace tandem {
 
 void ResidentSession::take(const Subdomain& share) {
     stale_ = true; // bodies new to the share have no poses here
-    pipeline_.bodies->take(share);
+    pipeline_.bodies->set_subdomain(share);
     pipeline_.stages.hierarchy->take(share, pipeline_.bodies->count());
     pipeline_.body_pairs->take(share);
 }
@@ -19,7 +19,7 @@ void ResidentSession::take(const Subdomain& share) {
 void ResidentSession::receive(std::span<const std::uint32_t> bodies) {
     receives_ = !bodies.empty();
     is_placed_ = false;
-    pipeline_.bodies->leave(bodies);
+    pipeline_.bodies->exclude_from_upload(bodies);
 }
 
 void ResidentSession::upload_vertices(const Frame& frame) {

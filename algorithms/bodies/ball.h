@@ -6,16 +6,16 @@
 
 namespace tandem {
 
-/// About the middle of the box around some points.
+/// A ball about the centre of the bounding box of some points.
 struct Ball {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     double radius = 0;
 };
 
-/// Of no points it is not a number.
+/// The ball that contains the points; NaN without points.
 Ball ball_around(const std::vector<Eigen::Vector3d>& points);
 
-/// Its centre alone.
+/// The centre of that ball.
 Eigen::Vector3d box_centre(const std::vector<Eigen::Vector3d>& points);
 
 } // namespace tandem

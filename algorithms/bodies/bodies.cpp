@@ -34,7 +34,7 @@ Bodies::Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sha
       pair_layout_(sharing == Sharing::by_mesh ? pair_layout : PairLayout::items) {
     for (const auto& mesh : scene.meshes) {
         meshes_.push_back(ordered(mesh, builder));
-        if (geometry.placement == Placement::exact) is_gpu_aware_.push_back(reach_of(mesh.vertices));
+        if (geometry.placement == Placement::exact) mesh_reaches_.push_back(reach_of(mesh.vertices));
     }
     lay_out();
     lay_out_slots();
@@ -46,7 +46,7 @@ bool Bodies::has_own_vertices(std::size_t body) const {
     return sharing_ == Sharing::none || scene_.bodies[body].deformable;
 }
 
-/// Gives every body its row: tetrahedra and rigid vertices by mesh where they are shared, the rest by body.
+/// Assigns every body its row. Shared tetrahedra and rigid vertices are stored once a mesh, the rest by body.
 void Bodies::lay_out() {
     const bool shared = sharing_ == Sharing::by_mesh;
     std::vector<std::uint64_t> first_tetrahedron, first_vertex;
@@ -69,7 +69,7 @@ void Bodies::lay_out() {
     }
     constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
     if (vertex_total_ > most || tetrahedron_total_ > most)
-        throw DeviceError("scene: more than 2^32 vertices or tetrahedra; leave bodies out");
+        throw DeviceError("scene: more than 2^32 vertices or tetrahedra; use fewer bodies");
 }
 
 void Bodies::lay_out_slots() {
@@ -89,7 +89,7 @@ void Bodies::lay_out_slots() {
     first_blocks_.push_back(blocks);
 }
 
-/// In the form of rows of bodies, with the body where these have the number of tetrahedra.
+/// Rows of blocks: as rows of bodies, but with the body in place of the number of tetrahedra.
 std::vector<Bodies::BodyRow> Bodies::block_rows() const {
     std::vector<BodyRow> blocks;
     blocks.reserve(first_blocks_.back());
@@ -97,7 +97,7 @@ std::vector<Bodies::BodyRow> Bodies::block_rows() const {
         const auto body = slot_order_[i];
         auto block = rows_[body];
         block.tetrahedron_count = body;
-        for (auto left = first_blocks_[i + 1] - first_blocks_[i]; left > 0; --left) {
+        for (auto rest = first_blocks_[i + 1] - first_blocks_[i]; rest > 0; --rest) {
             blocks.push_back(block);
             block.tetrahedra += block_slots;
         }
@@ -122,7 +122,7 @@ std::vector<std::byte> Bodies::shared_vertices() const {
     return bytes;
 }
 
-/// What never changes: tetrahedra, ids, boundary, rows, and the vertices of meshes in their own frames.
+/// Uploads constant data: tetrahedra, ids, boundary, rows, and vertices in mesh coordinates.
 void Bodies::upload_static() {
     std::vector<std::uint32_t> tetrahedra, ids{count()};
     std::vector<std::uint8_t> boundary;
@@ -160,7 +160,7 @@ std::size_t Bodies::bytes() const {
 std::array<double, 3> Bodies::drift_of(const Frame& frame, std::size_t body) const {
     if (geometry_.placement == Placement::rounded) return {};
     if (scene_.bodies[body].deformable) return drift_bound(frame.deformed[body], geometry_.precision);
-    return drift_bound(frame.poses[body], is_gpu_aware_[scene_.bodies[body].mesh], geometry_.precision);
+    return drift_bound(frame.poses[body], mesh_reaches_[scene_.bodies[body].mesh], geometry_.precision);
 }
 
 std::vector<std::byte> Bodies::packed_poses(const Frame& frame) const {
@@ -168,7 +168,7 @@ std::vector<std::byte> Bodies::packed_poses(const Frame& frame) const {
     const auto row = pose_reals(geometry_) * real_bytes(geometry_);
     bytes.reserve(frame.poses.size() * row);
     for (std::size_t body = 0; body < frame.poses.size(); ++body) {
-        if (takes(body))
+        if (needs(body))
             pack_pose(bytes, geometry_, frame.poses[body], drift_of(frame, body));
         else
             bytes.resize(bytes.size() + row);
@@ -176,8 +176,8 @@ std::vector<std::byte> Bodies::packed_poses(const Frame& frame) const {
     return bytes;
 }
 
-/// A scene in which nothing rigid moves uploads its poses with `all` only. With placement=exact deformable
-/// bodies have a drift that changes with their vertices and travels with the pose.
+/// Without moving rigid bodies, poses are uploaded with `all` only. With placement=exact the pose of a
+/// deformable body has its drift, which changes with its vertices.
 void Bodies::update_poses(const Frame& frame, bool all) {
     const auto moves = [this](const Body& body) {
         return !body.fixed && (!body.deformable || geometry_.placement == Placement::exact);
@@ -192,25 +192,25 @@ void Bodies::update_poses(const Frame& frame, bool all) {
     device_.upload(poses_, bytes);
 }
 
-void Bodies::take(const Subdomain& share) {
-    roles_ = roles_of(share, rows_.size());
+void Bodies::set_subdomain(const Subdomain& subdomain) {
+    roles_ = roles_of(subdomain, rows_.size());
     plan_runs();
 }
 
-void Bodies::leave(std::span<const std::uint32_t> bodies) {
-    left_.assign(bodies.empty() ? 0 : rows_.size(), false);
-    for (const auto body : bodies) left_[body] = true;
+void Bodies::exclude_from_upload(std::span<const std::uint32_t> bodies) {
+    is_excluded_.assign(bodies.empty() ? 0 : rows_.size(), false);
+    for (const auto body : bodies) is_excluded_[body] = true;
     plan_runs();
 }
 
-/// Vertices of deformable bodies lie behind one another, so that one upload takes them all, and those of
-/// bodies that are left out as well where they are few.
+/// Vertices of deformable bodies are consecutive, so that one upload covers several bodies. It also covers
+/// bodies that need no upload if their vertices are few.
 void Bodies::plan_runs() {
-    constexpr std::uint64_t longest_gap = 4096; // vertices that take less than another upload
+    constexpr std::uint64_t longest_gap = 4096; // vertices; costs less time than another upload
     runs_.clear();
     for (std::uint32_t body = 0; body < rows_.size(); ++body) {
-        const bool is_left = !left_.empty() && left_[body];
-        if (!scene_.bodies[body].deformable || !takes(body) || is_left) continue;
+        const bool is_excluded = !is_excluded_.empty() && is_excluded_[body];
+        if (!scene_.bodies[body].deformable || !needs(body) || is_excluded) continue;
         const auto& row = rows_[body];
         if (runs_.empty() || row.vertices - runs_.back().end > longest_gap)
             runs_.push_back({row.vertices, row.vertices, {}});

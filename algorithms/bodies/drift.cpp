@@ -8,16 +8,16 @@ namespace tandem {
 
 namespace {
 
-constexpr double matrix_error = 24 * 0x1p-53; ///< of an entry that pose_rows computes in double
+constexpr double matrix_error = 24 * 0x1p-53; ///< bound for an entry that pose_rows computes in double
 
 double roundoff(Precision precision) { return precision == Precision::fp64 ? 0x1p-53 : 0x1p-24; }
 
 /// gamma_n of Higham 2002, lemma 3.1.
 double gamma(int n, double u) { return n * u / (1 - n * u); }
 
-/// Room for the roundings of the bound itself, of its rounding to the cell's precision and of three bounds
-/// added there.
-double with_room(double bound, double u) { return bound * (1 + 64 * u); }
+/// Enlarges a bound to cover the rounding of its computation, of its conversion to the cell's precision, and
+/// of a sum of three bounds in that precision.
+double with_slack(double bound, double u) { return bound * (1 + 64 * u); }
 
 } // namespace
 
@@ -37,7 +37,7 @@ std::array<double, 3> drift_bound(const Pose& pose, double reach, Precision prec
     std::array<double, 3> bound{};
     for (int i = 0; i < 3; ++i)
         bound[static_cast<std::size_t>(i)] =
-            with_room(of_rotation + gamma(2, u) * std::fabs(pose.translation[i]), u);
+            with_slack(of_rotation + gamma(2, u) * std::fabs(pose.translation[i]), u);
     return bound;
 }
 
@@ -49,7 +49,7 @@ std::array<double, 3> drift_bound(std::span<const Eigen::Vector3d> world, Precis
         for (int i = 0; i < 3; ++i)
             bound[static_cast<std::size_t>(i)] =
                 std::max(bound[static_cast<std::size_t>(i)], std::fabs(v[i]));
-    for (auto& b : bound) b = with_room(u * b + underflow(precision), u);
+    for (auto& b : bound) b = with_slack(u * b + underflow(precision), u);
     return bound;
 }
 

@@ -28,17 +28,17 @@ std::vector<double> numbers_of(Device& device, const DeviceRows& rows, std::size
     return numbers;
 }
 
-void check_capacity(const DeviceRows& rows, std::size_t numbers, const std::string& whose) {
+void check_capacity(const DeviceRows& rows, std::size_t numbers, const std::string& name) {
     const auto bytes = numbers * bytes_of_number(rows);
     if (rows.buffer.bytes() < bytes)
-        throw InputError(fmt::format("{}: a buffer of {} bytes, and {} numbers of {} bytes are wanted", whose,
+        throw InputError(fmt::format("{}: a buffer of {} bytes is too small for {} numbers of {} bytes", name,
                                      rows.buffer.bytes(), numbers, bytes_of_number(rows)));
 }
 
 } // namespace
 
-/// As --pose: the bounds on the squared norm keep normalising clear of overflow and of 0 / 0. The sum is in
-/// the order of Eigen's normalized() where vectors have two doubles, so that --pose has the same bits.
+/// The bounds on the squared norm exclude overflow and 0 / 0, as for --pose. The sum has the order of Eigen's
+/// normalized() for vectors of two doubles, so that --pose gives the same bits.
 Pose pose_of_row(const double* row, std::size_t body) {
     const double w = row[3], x = row[4], y = row[5], z = row[6];
     const double norm = (x * x + z * z) + (y * y + w * w);
@@ -56,7 +56,7 @@ Pose pose_of_row(const double* row, std::size_t body) {
 void check_fits(const Scene& scene, const DeviceFrame& frame) {
     if (frame.poses.buffer) check_capacity(frame.poses, scene.bodies.size() * pose_numbers, "poses");
     if (frame.deformed.size() != scene.bodies.size())
-        throw InputError(fmt::format("the frame has {} entries of vertices for {} bodies; give each body one",
+        throw InputError(fmt::format("the frame has {} entries of vertices for {} bodies; give one per body",
                                      frame.deformed.size(), scene.bodies.size()));
     for (std::size_t body = 0; body < scene.bodies.size(); ++body)
         if (scene.bodies[body].deformable)
@@ -66,27 +66,29 @@ void check_fits(const Scene& scene, const DeviceFrame& frame) {
 
 Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame) {
     const auto bodies = scene.bodies.size();
-    Frame here{std::vector<Pose>(bodies), std::vector<std::vector<Eigen::Vector3d>>(bodies), frame.skipped};
+    Frame frame_on_host{std::vector<Pose>(bodies), std::vector<std::vector<Eigen::Vector3d>>(bodies),
+                        frame.skipped};
     std::vector<double> rows;
     if (frame.poses.buffer) rows = numbers_of(device, frame.poses, bodies * pose_numbers);
     for (std::size_t body = 0; body < bodies; ++body) {
         if (!scene.bodies[body].deformable) {
-            if (!rows.empty()) here.poses[body] = pose_of_row(&rows[body * pose_numbers], body);
+            if (!rows.empty()) frame_on_host.poses[body] = pose_of_row(&rows[body * pose_numbers], body);
             continue;
         }
         const auto count = scene.meshes[scene.bodies[body].mesh].vertices.size();
         const auto numbers = numbers_of(device, frame.deformed[body], 3 * count);
-        for (std::size_t v = 0; v < count; ++v) here.deformed[body].emplace_back(&numbers[3 * v]);
+        for (std::size_t v = 0; v < count; ++v) frame_on_host.deformed[body].emplace_back(&numbers[3 * v]);
     }
-    return here;
+    return frame_on_host;
 }
 
 void refuse_flawed(Device& device, const Scene& scene, const DeviceFrame& frame, Precision precision,
                    std::uint64_t flawed) {
     check_range(scene, downloaded(device, scene, frame), precision);
-    throw InputError(fmt::format("{} rows of the frame were out of range on {}, and have changed since; they "
-                                 "must not be written before run() returns",
-                                 flawed, device.info().id));
+    throw InputError(
+        fmt::format("{} rows of the frame were out of range on {} and have changed since; do not "
+                    "write them before run() returns",
+                    flawed, device.info().id));
 }
 
 } // namespace tandem

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
-// What the host has to say of frames in a device's memory: whether they fit a scene, and what is wrong with
-// one that kernels have found to be out of range.
+// Checks on the host for frames in a device's memory: whether a frame fits its scene, and the error for a
+// frame in which kernels have found rows out of range.
 #pragma once
 
 #include "algorithms/device_frame.h"
 
 namespace tandem {
 
-/// Throws InputError that names the first buffer that is missing or too small for the scene's bodies.
+/// Throws InputError that names the first missing buffer, or the first that is too small for the scene.
 void check_fits(const Scene& scene, const DeviceFrame& frame);
 
-/// The frame in the host's memory; waits. Throws InputError for the first row without a rotation.
+/// Downloads the frame; waits. Throws InputError for the first row without a rotation.
 Frame downloaded(Device& device, const Scene& scene, const DeviceFrame& frame);
 
-/// Throws the InputError that the same frame has in the host's memory: of `flawed` rows, one at least.
+/// Throws the InputError that check_range throws for the same frame in the host's memory. `flawed`: number of
+/// rows out of range, at least 1.
 [[noreturn]] void refuse_flawed(Device& device, const Scene& scene, const DeviceFrame& frame,
                                 Precision precision, std::uint64_t flawed);
 

@@ -6,14 +6,14 @@
 
 namespace tandem {
 
-/// The point that a session of the scene counts coordinates from. Of Origin::automatic the middle of the box
-/// around frame 0, rounded to a power of two no less than the box is long: zero for a scene about the
-/// world's origin, and a difference that seldom needs rounding for one far from it. Zero where the scene has
-/// no frame or a coordinate of it is not finite.
+/// The origin of coordinates for sessions of the scene. Origin::automatic: the centre of the box around frame
+/// 0, rounded to a multiple of a power of two that is at least the longest side of the box. It is zero for a
+/// scene near the world's origin; for a distant scene, subtracting it rarely needs rounding. Zero if the
+/// scene has no frame or has a coordinate that is not finite.
 Eigen::Vector3d origin_of(const Scene& scene, Origin origin);
 
-/// The frame with coordinates that count from `origin`; a difference in double each. Deformable bodies only
-/// have vertices of their own to move, rigid ones poses.
+/// The frame with coordinates relative to `origin`: one subtraction in double for each vertex of deformable
+/// bodies, and for the translation of other bodies.
 Frame counted_from(const Eigen::Vector3d& origin, Frame frame);
 
 } // namespace tandem

@@ -9,9 +9,9 @@ namespace {
 
 template<class Real, class Numbers>
 void append(std::vector<std::byte>& out, const Numbers& numbers) {
-    const auto at = out.size();
-    out.resize(at + numbers.size() * sizeof(Real)); // once: a number at a time took longer than making them
-    auto* target = out.data() + at;
+    const auto offset = out.size();
+    out.resize(offset + numbers.size() * sizeof(Real)); // once, because appending single numbers is slow
+    auto* target = out.data() + offset;
     for (const double number : numbers) {
         const auto value = static_cast<Real>(number);
         std::memcpy(target, &value, sizeof(Real));
@@ -21,8 +21,8 @@ void append(std::vector<std::byte>& out, const Numbers& numbers) {
 
 template<class Real>
 void write_rows(std::byte* target, const OrderedMesh& mesh, const std::vector<Eigen::Vector3d>& vertices) {
-    // In the order in which they lie in memory, where a new frame's vertices may not be in a cache yet; what
-    // is written fits into one.
+    // Reads in the order of memory, because a new frame's vertices may not be in a cache; the written rows
+    // fit into one.
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         if (mesh.numbers[i] == OrderedMesh::unused) continue;
         const auto& p = vertices[i];
@@ -44,12 +44,12 @@ void write_vertices(std::byte* out, const Geometry& geometry, const OrderedMesh&
 
 void pack_vertices(std::vector<std::byte>& out, const Geometry& geometry, const OrderedMesh& mesh,
                    const std::vector<Eigen::Vector3d>& vertices) {
-    const auto at = out.size();
-    out.resize(at + mesh.vertices.size() * 4 * real_bytes(geometry));
-    write_vertices(out.data() + at, geometry, mesh, vertices);
+    const auto offset = out.size();
+    out.resize(offset + mesh.vertices.size() * 4 * real_bytes(geometry));
+    write_vertices(out.data() + offset, geometry, mesh, vertices);
 }
 
-/// The order of operations is part of the answer: the reference has the same
+/// The order of operations affects the bits of answers; the reference has the same order
 /// (harness/verify/world_vertices.cpp).
 std::array<double, 12> pose_rows(const Pose& pose) {
     const auto& q = pose.rotation;

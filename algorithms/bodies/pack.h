@@ -10,18 +10,18 @@
 
 namespace tandem {
 
-/// Appends 4 reals a vertex (the fourth is padding) in the ordered mesh's numbering, rounded once to the
-/// geometry's precision.
+/// Appends 4 reals per vertex (the fourth is padding) in the numbering of the ordered mesh, rounded once to
+/// the geometry's precision.
 void pack_vertices(std::vector<std::byte>& out, const Geometry& geometry, const OrderedMesh& mesh,
                    const std::vector<Eigen::Vector3d>& vertices);
 
-/// The same rows to `out`, which has room for them.
+/// Writes the same rows to `out`, which must be large enough.
 void write_vertices(std::byte* out, const Geometry& geometry, const OrderedMesh& mesh,
                     const std::vector<Eigen::Vector3d>& vertices);
 
-/// Appends 12 reals a pose: the rows of the rotation matrix, each followed by its component of the
-/// translation. The quaternion is normalised and the matrix made in double, then rounded once. With placement
-/// = exact 4 more: `drift`, the body's drift_bound, and padding.
+/// Appends the 12 reals of a pose: the rows of the rotation matrix, each followed by its component of the
+/// translation. The quaternion is normalised and the matrix computed in double, then rounded once. With
+/// placement=exact 4 more reals follow: `drift`, the body's drift_bound, and padding.
 void pack_pose(std::vector<std::byte>& out, const Geometry& geometry, const Pose& pose,
                const std::array<double, 3>& drift);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Frames that lie in the device's memory, in double or float, as pack.cpp packs those of the host: operation
-// by operation, so that the bits are the same. Rows out of range are counted, and packed as if they were at
-// the origin: what comes after them in the frame has finite numbers, and the host refuses the frame.
+// Packs frames in the device's memory, in double or float, with the operations of pack.cpp, so that the bits
+// are the same. Rows out of range are counted and packed as if they were at the origin, so that later kernels
+// get finite numbers. The host then rejects the frame.
 #include "backends/portable.h"
 #include "algorithms/answer/status.clh"
 #include "algorithms/bodies/body.clh"
@@ -10,20 +10,20 @@
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #endif
 
-// How the numbers of rows are written.
+// Number format of rows.
 #define ROWS_FLOAT 0u
 #define ROWS_DOUBLE 1u
 #define ROWS_NONE 2u
 
 #define POSE_NUMBERS 7
-#define LEAST_NORM 1e-300 // of a quaternion, squared: normalising it is clear of overflow and of 0 / 0
+#define LEAST_NORM 1e-300 // squared norm of a quaternion: the bounds exclude overflow and 0 / 0
 #define LARGEST_NORM 1e300
 
 DEVICE double number_at(GLOBAL const void* rows, uint kind, ulong i) {
     return kind == ROWS_DOUBLE ? ((GLOBAL const double*)rows)[i] : (double)((GLOBAL const float*)rows)[i];
 }
 
-// False also of what is no number.
+// False also for NaN.
 DEVICE int in_range(const double* point, double limit) {
     return ABSOLUTE(point[0]) <= limit && ABSOLUTE(point[1]) <= limit && ABSOLUTE(point[2]) <= limit;
 }
@@ -37,15 +37,15 @@ DEVICE RealRow row_of(double x, double y, double z, double w) {
     return row;
 }
 
-// The rows of a unit quaternion's matrix, as pose_rows of pack.cpp makes them.
+// The rows of a unit quaternion's matrix, as in pose_rows of pack.cpp.
 DEVICE void write_pose(GLOBAL RealRow* rows, double w, double x, double y, double z, const double* t) {
     rows[0] = row_of(1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), t[0]);
     rows[1] = row_of(2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), t[1]);
     rows[2] = row_of(2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), t[2]);
 }
 
-// `numbers`: tx ty tz qw qx qy qz. Normalised as pose_of_row does it, and once more as pose_rows does: the
-// second time changes bits, and they are part of the answer.
+// `numbers`: tx ty tz qw qx qy qz. Normalises as pose_of_row and again as pose_rows, because the second time
+// changes bits that affect answers.
 DEVICE void pack_pose(GLOBAL RealRow* rows, const double* numbers, double norm) {
     const double first = SQUARE_ROOT(norm);
     const double a = numbers[3] / first;
@@ -56,7 +56,7 @@ DEVICE void pack_pose(GLOBAL RealRow* rows, const double* numbers, double norm) 
     write_pose(rows, a / second, b / second, c / second, d / second, numbers);
 }
 
-// A body a work-item. Bodies whose vertices are in the world are at the identity.
+// A work-item packs one body. Bodies with vertices in world coordinates get the identity.
 KERNEL void pack_poses(GLOBAL real* poses, GLOBAL const void* rows, uint kind, GLOBAL const uint* bodies,
                        uint count, double limit, double origin_x, double origin_y, double origin_z,
                        GLOBAL uint* status) {
@@ -82,11 +82,11 @@ KERNEL void pack_poses(GLOBAL real* poses, GLOBAL const void* rows, uint kind, G
     }
 }
 
-// A vertex a work-item: of one deformable body, whose rows begin with `first`. `places`: from `places_first`
-// on, the row of each vertex among them, or NO_PLACE where it is in no tetrahedron.
-#define NO_PLACE 0xffffffffu
+// A work-item packs one vertex of one deformable body, whose rows begin with `first`. `indices`: from
+// `indices_first` on, the row of each vertex relative to `first`, or NO_INDEX if no tetrahedron uses it.
+#define NO_INDEX 0xffffffffu
 
-KERNEL void pack_vertices(GLOBAL real* vertices, uint first, GLOBAL const uint* places, uint places_first,
+KERNEL void pack_vertices(GLOBAL real* vertices, uint first, GLOBAL const uint* indices, uint indices_first,
                           GLOBAL const void* rows, uint kind, uint count, double limit, double origin_x,
                           double origin_y, double origin_z, GLOBAL uint* status) {
     for (ulong vertex = GLOBAL_ID; vertex < count; vertex += GLOBAL_COUNT) {
@@ -96,9 +96,9 @@ KERNEL void pack_vertices(GLOBAL real* vertices, uint first, GLOBAL const uint* 
             counter_add(status + STATUS_FLAWED, 1u);
             point[0] = point[1] = point[2] = 0;
         }
-        const uint place = places[places_first + vertex];
-        if (place != NO_PLACE)
-            ((GLOBAL RealRow*)vertices)[(ulong)first + place] =
+        const uint index = indices[indices_first + vertex];
+        if (index != NO_INDEX)
+            ((GLOBAL RealRow*)vertices)[(ulong)first + index] =
                 row_of(point[0] - origin_x, point[1] - origin_y, point[2] - origin_z, 0);
     }
 }

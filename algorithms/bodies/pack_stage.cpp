@@ -24,7 +24,7 @@ std::uint32_t kind_of(const DeviceRows& rows) {
 void check_device(const DeviceInfo& info, const Geometry& geometry) {
     if (!info.has_double)
         throw InputError(
-            fmt::format("{} has no double, in which a frame in its memory is packed; {}", info.id, remedy));
+            fmt::format("{} has no double, which packs a frame in its memory; {}", info.id, remedy));
     if (geometry.placement == Placement::exact)
         throw InputError(fmt::format("setting placement=exact bounds on the host how far vertices drift, and "
                                      "the frame is in the memory of {}; {}",
@@ -42,15 +42,15 @@ PackStage::PackStage(const Bodies& bodies, LaunchShape shape)
     const auto& source = kernel_source("algorithms/bodies/pack_frame.cl");
     poses_ = device.compile(source, "pack_poses", defines);
     vertices_ = device.compile(source, "pack_vertices", defines);
-    std::vector<std::uint32_t> places;
+    std::vector<std::uint32_t> indices;
     for (std::uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
-        first_places_.push_back(static_cast<std::uint32_t>(places.size()));
+        first_indices_.push_back(static_cast<std::uint32_t>(indices.size()));
         const auto deforms = [&](const Body& body) { return body.deformable && body.mesh == mesh; };
         if (std::ranges::none_of(scene.bodies, deforms)) continue;
         const auto& numbers = bodies.ordered_mesh(mesh).numbers;
-        places.insert(places.end(), numbers.begin(), numbers.end());
+        indices.insert(indices.end(), numbers.begin(), numbers.end());
     }
-    places_ = uploaded(device, bytes_of(places), "places of vertices");
+    indices_ = uploaded(device, bytes_of(indices), "row indices of vertices");
 }
 
 Grid PackStage::grid_over(std::uint64_t count) const {
@@ -71,11 +71,11 @@ void PackStage::pack_poses(const DeviceRows& rows, const Eigen::Vector3d& origin
 void PackStage::pack_vertices(std::size_t body, const DeviceRows& rows, const Eigen::Vector3d& origin,
                               const Buffer& status) const {
     const auto count = static_cast<std::uint32_t>(bodies_.mesh(body).numbers.size());
-    const auto first_place = first_places_[bodies_.scene().bodies[body].mesh];
+    const auto first_index = first_indices_[bodies_.scene().bodies[body].mesh];
     const std::array<Argument, 12> arguments{bodies_.vertices(),
                                              bodies_.row(body).vertices,
-                                             places_,
-                                             first_place,
+                                             indices_,
+                                             first_index,
                                              rows.buffer,
                                              kind_of(rows),
                                              count,

@@ -6,16 +6,17 @@
 
 namespace tandem {
 
-/// Packs frames that lie in the device's memory: kernels read them there, and leave the bits that
-/// Bodies::update uploads of the same frame in the host's memory.
+/// Packs frames in the device's memory with kernels. The result has the bits that Bodies::update uploads for
+/// the same frame in the host's memory.
 class PackStage {
 public:
-    /// `bodies`, of Sharing::by_mesh, must outlive it. Throws InputError where the device has no double, or
-    /// with placement=exact, whose drift the host bounds.
+    /// `bodies` must have Sharing::by_mesh and outlive this. Throws InputError if the device has no double,
+    /// and with placement=exact, because only the host bounds drift.
     PackStage(const Bodies& bodies, LaunchShape shape);
 
-    /// Enqueues the packing of a frame that fits the scene (check_fits): a launch for the poses, one for each
-    /// deformable body. Coordinates count from `origin`. Rows out of range go to STATUS_FLAWED of `status`.
+    /// Enqueues the packing of a frame that passes check_fits: one launch for the poses, and one per
+    /// deformable body. Coordinates are made relative to `origin`. Adds rows out of range to STATUS_FLAWED of
+    /// `status`.
     void launch(const DeviceFrame& frame, const Eigen::Vector3d& origin, const Buffer& status) const;
 
 private:
@@ -26,10 +27,10 @@ private:
 
     const Bodies& bodies_;
     LaunchShape shape_;
-    double limit_; ///< of coordinates
+    double limit_; ///< largest magnitude of a coordinate
     Kernel poses_, vertices_;
-    Buffer places_;                           ///< OrderedMesh::numbers of meshes that deformable bodies have
-    std::vector<std::uint32_t> first_places_; ///< by mesh, among these
+    Buffer indices_;                           ///< OrderedMesh::numbers of the meshes of deformable bodies
+    std::vector<std::uint32_t> first_indices_; ///< by mesh, in indices_
 };
 
 } // namespace tandem

@@ -11,7 +11,7 @@ namespace tandem {
 
 namespace {
 
-/// Infinite when a coordinate is not a number, which maxima would drop.
+/// Infinite if a coordinate is NaN, because a maximum would ignore NaN.
 double largest(const Eigen::Vector3d& point) {
     return point.hasNaN() ? std::numeric_limits<double>::infinity() : point.lpNorm<Eigen::Infinity>();
 }
@@ -22,7 +22,7 @@ double largest(const std::vector<Eigen::Vector3d>& points) {
     return size;
 }
 
-/// Throws InputError that names the first vertex of a deformable body with a coordinate that is not finite.
+/// Throws InputError that names the first vertex with a coordinate that is not finite.
 void check_finite(const std::vector<Eigen::Vector3d>& vertices, std::size_t body) {
     for (std::size_t v = 0; v < vertices.size(); ++v)
         if (!vertices[v].allFinite())

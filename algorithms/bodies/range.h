@@ -6,12 +6,12 @@
 
 namespace tandem {
 
-/// The largest magnitude of a coordinate, before and after the transform, at which no sum along a direction
-/// overflows (three terms of one transformed vertex, each a sum of four products with |entries| <= 1).
+/// The largest magnitude of coordinates, before and after the transform, for which no sum along a direction
+/// overflows: three terms of one transformed vertex, each a sum of four products with |entries| <= 1.
 double largest_coordinate(Precision precision);
 
-/// Throws InputError that names the first body of `frame` with a coordinate beyond largest_coordinate, or
-/// that is not finite.
+/// Throws InputError that names the first body of `frame` with a coordinate that is not finite or exceeds
+/// largest_coordinate.
 void check_range(const Scene& scene, const Frame& frame, Precision precision);
 
 } // namespace tandem
