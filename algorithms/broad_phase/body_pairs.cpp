@@ -10,21 +10,21 @@
 
 namespace tandem {
 
-BodyPairs::BodyPairs(const BuildContext& ground, const Hierarchy& hierarchy, Status::Writes writes)
+BodyPairs::BodyPairs(const BuildContext& context, const Hierarchy& hierarchy, Status::Writes writes)
     : hierarchy_(hierarchy),
-      shape_(ground.shape),
-      bodies_(ground.bodies),
-      first_capacity_(static_cast<std::uint64_t>(ground.settings[parameters::body_pair_capacity])),
-      device_(ground.device),
-      scene_(ground.scene),
-      geometry_(ground.bodies.geometry()),
+      shape_(context.shape),
+      bodies_(context.bodies),
+      first_capacity_(static_cast<std::uint64_t>(context.settings[parameters::body_pair_capacity])),
+      device_(context.device),
+      scene_(context.scene),
+      geometry_(context.bodies.geometry()),
       writes_(writes),
-      rows_(ground.device, "body pairs", sizeof(BodyPair), 0) {
-    const auto who = ground.settings[parameters::broad];
-    if (who == Broad::device)
+      rows_(context.device, "body pairs", sizeof(BodyPair), 0) {
+    const auto method = context.settings[parameters::broad];
+    if (method == Broad::device)
         make_stage();
     else
-        broad_.emplace(ground.scene, geometry_, who);
+        broad_.emplace(context.scene, geometry_, method);
 }
 
 void BodyPairs::make_stage() {
@@ -44,8 +44,7 @@ void BodyPairs::upload(std::span<const BodyPair> pairs) {
 
 void BodyPairs::upload_given(std::span<const BodyPair> given) {
     if (given.size() > GrowableBuffer::most)
-        throw InputError(
-            fmt::format("run() was given {} body pairs; kernels number at most 2^32 - 1", given.size()));
+        throw InputError(fmt::format("run() got {} body pairs; give at most 2^32 - 1", given.size()));
     upload(given);
 }
 
@@ -67,27 +66,27 @@ void BodyPairs::begin(const Frame& frame, std::optional<std::span<const BodyPair
     } else if (!broad_) {
         on_host_ = {};
         searches_ = true;
-        // Once a session: bodies move little from frame to frame, and a stale order costs time, not pairs.
+        // Once a session, because bodies move little between frames. An old order costs time but no pairs.
         if (!sorted_) stage_->sort(frame);
         sorted_ = true;
     } else {
         {
             const HostWork work(device_, Stage::broad, "body pairs");
             found_ = broad_->pairs(frame);
-            std::erase_if(found_, [this](BodyPair pair) { return !has(pair); });
+            std::erase_if(found_, [this](BodyPair pair) { return !contains(pair); });
         }
         upload(found_);
     }
 }
 
-void BodyPairs::take(const Subdomain& share) {
-    roles_ = roles_of(share, scene_.bodies.size());
-    if (stage_) stage_->take(share);
+void BodyPairs::set_subdomain(const Subdomain& subdomain) {
+    roles_ = roles_of(subdomain, scene_.bodies.size());
+    if (stage_) stage_->set_subdomain(subdomain);
     sorted_ = true;
 }
 
-/// Whether the share has that pair.
-bool BodyPairs::has(BodyPair pair) const {
+/// Whether the pair belongs to the subdomain.
+bool BodyPairs::contains(BodyPair pair) const {
     if (roles_.empty()) return true;
     const auto a = roles_[pair.a], b = roles_[pair.b];
     return a != Role::none && b != Role::none && (a == Role::own || b == Role::own);
@@ -111,12 +110,12 @@ std::vector<BodyPair> BodyPairs::list(const Frame* frame, const Status& status) 
     const auto found = status.counter(STATUS_BODY_PAIRS);
     if (found > rows_.capacity()) {
         if (frame == nullptr)
-            throw OutOfMemory(fmt::format("{}: there is no memory left for {} body pairs; raise --memory, or "
-                                          "take fewer bodies",
+            throw OutOfMemory(fmt::format("{}: out of memory for {} body pairs; raise --memory, or use fewer "
+                                          "bodies",
                                           device_.info().id, found));
         const HostWork work(device_, Stage::broad, "body pairs");
         auto all = BroadSweep(scene_, geometry_, Broad::tight).pairs(*frame);
-        std::erase_if(all, [this](BodyPair pair) { return !has(pair); });
+        std::erase_if(all, [this](BodyPair pair) { return !contains(pair); });
         return all;
     }
     std::vector<BodyPair> pairs(found);

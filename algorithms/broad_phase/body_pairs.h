@@ -12,67 +12,67 @@
 
 namespace tandem {
 
-/// A frame's body pairs on a device: found there or by the host, as setting broad says, or given.
+/// A frame's body pairs on a device. They are found by the device or the host, according to setting broad, or
+/// are passed to run().
 class BodyPairs {
 public:
-    /// `writes`: whether an upload of pairs is waited for. What is given must outlive this.
-    BodyPairs(const BuildContext& ground, const Hierarchy& hierarchy, Status::Writes writes);
+    /// `writes`: whether uploads of pairs wait. The arguments must outlive this.
+    BodyPairs(const BuildContext& context, const Hierarchy& hierarchy, Status::Writes writes);
 
-    /// The next launches are of `frame`: uploads the pairs that are given or that the host finds. Throws
-    /// InputError for more than kernels number.
+    /// Starts a frame: uploads `given` pairs, or those that the host finds. Throws InputError for more than
+    /// 2^32 - 1 pairs.
     void begin(const Frame& frame, std::optional<std::span<const BodyPair>> given);
-    /// The same of a frame that is in the device's memory, after its refit: the device finds the pairs that
-    /// are not given, whatever setting broad says.
+    /// Starts a frame in the device's memory, after its refit. Without `given` the device finds the pairs,
+    /// independent of setting broad.
     void begin_on_device(std::optional<std::span<const BodyPair>> given);
-    /// Whether begin() makes the host work for so long that a device had better have something to do
-    /// meanwhile.
+    /// Whether begin() contains so much work on the host that the device should get earlier commands first.
     bool works_on_host(bool given) const { return !given && (broad_ || !sorted_); }
-    /// Whether begin_on_device() has the host wait for where the bodies are.
+    /// Whether the host waits in begin_on_device() for the positions of bodies.
     bool sorts_on_device(bool given) const { return !given && !sorted_; }
-    /// The same with a part of the frame's pairs.
+    /// Starts a batch: uploads a part of the frame's pairs.
     void begin_part(std::span<const BodyPair> part);
-    /// Enqueues the device's search, if it is the device that finds the frame's pairs.
+    /// Enqueues the search of the device, if the device finds the pairs.
     void launch(const Status& status);
-    /// After a launch: makes room for what the device has found; true when the search has to run again.
-    /// Throws OutOfMemory.
+    /// After a launch, grows the buffer to the number of pairs found. Returns true if the search must run
+    /// again. Throws OutOfMemory.
     bool grow(const Status& status);
-    /// The frame's pairs in ascending order, after a launch; they are downloaded when the device has found
-    /// them, and found by the host where there is no room for them on the device.
-    /// `frame`: null where it is in the device's memory, so that the host cannot: throws OutOfMemory.
+    /// The frame's pairs in ascending order, after a launch. Pairs of the device are downloaded. If its
+    /// buffer is too small for them, the host finds them; for a frame in the device's memory (`frame` = null)
+    /// that is impossible and throws OutOfMemory.
     std::vector<BodyPair> list(const Frame* frame, const Status& status) const;
-    /// Forgets the order in which bodies stand, unless it is that of a share.
+    /// Makes the next search sort the bodies again, unless they have the order of a subdomain.
     void reset() { sorted_ = !roles_.empty(); }
-    /// From now on finds the pairs of `share`, which has them all where the host does not tell otherwise.
-    void take(const Subdomain& share);
+    /// From the next frame on, finds the pairs of this subdomain. `given` pairs are not filtered.
+    void set_subdomain(const Subdomain& subdomain);
 
-    /// Whether it is the device that finds the pairs at hand.
+    /// Whether the device finds the current pairs.
     bool searched() const { return searches_; }
-    /// The pairs at hand where the host knows them.
+    /// The current pairs; empty if the device finds them.
     std::span<const BodyPair> on_host() const { return on_host_; }
     /// Rows of two words, body a and body b, a < b.
     const GrowableBuffer& rows() const { return rows_; }
 
 private:
     void upload(std::span<const BodyPair> pairs);
-    bool has(BodyPair pair) const;
+    bool contains(BodyPair pair) const;
     void upload_given(std::span<const BodyPair> given);
     void make_stage();
 
     const Hierarchy& hierarchy_;
     LaunchShape shape_;
     const Bodies& bodies_;
-    std::uint64_t first_capacity_; ///< of pairs that the device finds
+    std::uint64_t first_capacity_; ///< initial capacity for pairs that the device finds
     Device& device_;
     const Scene& scene_;
     Geometry geometry_;
     Status::Writes writes_;
-    std::optional<BroadSweep> broad_;   ///< the host's search; none where setting broad says device
-    std::unique_ptr<BroadStage> stage_; ///< the device's, once it has to find any
+    std::optional<BroadSweep> broad_;   ///< search of the host; none with broad=device
+    std::unique_ptr<BroadStage> stage_; ///< search of the device; created at its first use
     bool searches_ = false;             ///< the device searches in this frame
-    bool sorted_ = false;               ///< bodies stand in the order of some frame
-    std::vector<Role> roles_;           ///< by body, in a share; none without one
+    bool sorted_ = false;               ///< bodies are sorted by an earlier frame or by subdomain
+    std::vector<Role> roles_;           ///< by body; empty without a subdomain
     std::vector<BodyPair> found_;       ///< by the host
-    std::span<const BodyPair> on_host_; ///< of this launch, where the host knows them
+    std::span<const BodyPair> on_host_; ///< current pairs, if not found by the device
     GrowableBuffer rows_;
 };
 

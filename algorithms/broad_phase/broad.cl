@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Body pairs from the volumes that refit has just made: all pairs of bodies whose root k-DOPs overlap, two
-// fixed bodies left out. Bodies stand in an order that keeps neighbours together, fixed ones last, in tiles
-// of BROAD_TILE. Tiles whose unions are apart are skipped; of the others every body is tested with every one.
+// Finds body pairs from the volumes of the last refit: all pairs of bodies with overlapping root k-DOPs,
+// except pairs of two fixed bodies. Bodies are in a spatial order, fixed ones last, in tiles of BROAD_TILE.
+// Two tiles are skipped if their unions do not overlap; otherwise all their pairs are tested.
 #include "backends/portable.h"
 #include "algorithms/broad_phase/tile.clh"
 #include "algorithms/answer/status.clh"
 #include "algorithms/bounds/volume.clh"
 
-// A volume here is DIRECTIONS rows {lower, upper}.
+// In roots and unions a volume is DIRECTIONS rows {lower, upper}.
 
 DEVICE RealPair slab_of(GLOBAL const real* volumes, GLOBAL const uint* order, uint position, uint axis) {
     GLOBAL const real* root = volume_of(volumes, order[position]);
@@ -17,7 +17,7 @@ DEVICE RealPair slab_of(GLOBAL const real* volumes, GLOBAL const uint* order, ui
     return slab;
 }
 
-// Copies the root volumes of a tile into the order of bodies and makes their union. A work-group a tile.
+// A work-group copies the root volumes of one tile in the order of bodies, and computes their union.
 KERNEL void bound_tiles(GLOBAL const real* volumes, GLOBAL const uint* order, uint body_count,
                         GLOBAL RealPair* roots, GLOBAL RealPair* unions) {
     LOCAL_ARRAY(RealPair, tile, BROAD_TILE * DIRECTIONS);
@@ -40,7 +40,7 @@ KERNEL void bound_tiles(GLOBAL const real* volumes, GLOBAL const uint* order, ui
     }
 }
 
-// Whether pairs of these tiles are to be looked at; each pair of tiles is, once.
+// Whether the pairs of these tiles must be tested. Each pair of tiles is tested once, with row <= column.
 DEVICE int tiles_overlap(GLOBAL const RealPair* unions, uint row, uint column) {
     GLOBAL const RealPair* a = unions + (ulong)row * DIRECTIONS;
     GLOBAL const RealPair* b = unions + (ulong)column * DIRECTIONS;
@@ -50,7 +50,8 @@ DEVICE int tiles_overlap(GLOBAL const RealPair* unions, uint row, uint column) {
     return 1;
 }
 
-// Closed overlap: touching overlaps. Most bodies are apart on their first axes, so that whole groups leave.
+// Closed overlap: touching overlaps. Most bodies are disjoint along the first axes, so that whole groups
+// return early.
 DEVICE int volumes_overlap(const RealPair* a, LOCAL const RealPair* b) {
     int apart = 0;
     UNROLL for (int axis = 0; axis < DIRECTIONS; ++axis) {
@@ -62,7 +63,7 @@ DEVICE int volumes_overlap(const RealPair* a, LOCAL const RealPair* b) {
     return !apart;
 }
 
-// Bit c: the body at `position` overlaps column c, which follows it in the order.
+// Bit c is set if the body at `position` overlaps column c and precedes it in the order.
 DEVICE uint overlapping_columns(GLOBAL const RealPair* roots, int is_only_tile, uint position,
                                 LOCAL const RealPair* columns, uint first, uint count) {
     RealPair own[DIRECTIONS];
@@ -81,7 +82,7 @@ DEVICE uint count_bits(uint bits) {
     return count;
 }
 
-// Writes the body pairs of one row from number `index` on, as far as there is room.
+// Writes the body pairs of one row from number `index` on, up to the capacity.
 DEVICE void write_pairs(GLOBAL uint* pairs, uint capacity, uint index, GLOBAL const uint* order,
                         uint position, uint first, uint hits) {
     for (; hits != 0u; hits &= hits - 1u, ++index) {
@@ -94,15 +95,15 @@ DEVICE void write_pairs(GLOBAL uint* pairs, uint capacity, uint index, GLOBAL co
     }
 }
 
-// A group's shared words.
-#define CHOSEN 0 // pairs of tiles to look at
-#define FOUND 1  // body pairs of one round
-#define PLACE 2  // where they go
+// Words shared by a work-group.
+#define CHOSEN 0      // number of pairs of tiles to test
+#define FOUND 1       // number of body pairs of one round
+#define FIRST_INDEX 2 // index of the first of them in the output
 
-// A work-group takes pairs of tiles a fixed stride apart, a work-item one, and keeps those whose unions
-// overlap; then it does these one after the other, a work-item a row. One addition to the counter a round.
-// Of bodies that are one tile the volumes are enough: no bound_tiles comes before.
-// Loops with barriers run once at least: PoCL 3.1 gets others wrong.
+// Each work-item of a group tests one pair of tiles, a fixed stride apart, and keeps it if the unions
+// overlap. Then the group processes the kept pairs one by one, a work-item per row. One atomic addition per
+// round. A single tile is read from the volumes, without a launch of bound_tiles. Loops with barriers run at
+// least once, because PoCL 3.1 compiles other loops incorrectly.
 KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* roots,
                             GLOBAL const RealPair* unions, GLOBAL const uint* order, uint body_count,
                             uint moving_count, GLOBAL uint* pairs, uint capacity, GLOBAL uint* status) {
@@ -145,12 +146,13 @@ KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* r
                 const uint hits = row < rows_end ? overlapping_columns(roots, is_only_tile, row, columns,
                                                                        from, column_count)
                                                  : 0u;
-                const uint place = hits != 0u ? LOCAL_ATOMIC_ADD(shared + FOUND, count_bits(hits)) : 0u;
+                const uint offset = hits != 0u ? LOCAL_ATOMIC_ADD(shared + FOUND, count_bits(hits)) : 0u;
                 BARRIER;
                 if (LOCAL_ID == 0u && shared[FOUND] != 0u)
-                    shared[PLACE] = counter_add(status + STATUS_BODY_PAIRS, shared[FOUND]);
+                    shared[FIRST_INDEX] = counter_add(status + STATUS_BODY_PAIRS, shared[FOUND]);
                 BARRIER;
-                if (hits != 0u) write_pairs(pairs, capacity, shared[PLACE] + place, order, row, from, hits);
+                if (hits != 0u)
+                    write_pairs(pairs, capacity, shared[FIRST_INDEX] + offset, order, row, from, hits);
                 row += GROUP_SIZE;
                 rows_done += GROUP_SIZE;
             } while (rows_done < rows_end);

@@ -13,13 +13,13 @@ namespace tandem {
 
 namespace {
 
-/// Roundings on the way from a body's vertex to a slab: input, rotation (4), two sums, and E of a safe corner
-/// (4), doubled for good measure and for the bound on the drift from the pose (6; placement = exact). Below
-/// the least normal number they lose underflow() besides.
+/// Number of roundings between a body's vertex and a slab: input, rotation (4), two sums, and E of a safe
+/// corner (4). It is doubled for safety and for the bound of drift (6; placement=exact). underflow() bounds
+/// the additional error below the least normal number.
 constexpr double rounding_steps = 24;
 
-/// What published rounding adds, in integer directions: its tolerance is one of unit directions, shared by
-/// two bodies; three times as much covers the roundings of the test.
+/// Widening for published rounding, whose tolerance applies to unit directions. Each of two bodies gets half
+/// of it; the factor 3 covers the roundings of the test.
 constexpr double published_slack = 3 * 0.5 * 10 * 0x1p-23;
 
 } // namespace
@@ -77,10 +77,10 @@ void BroadSweep::bound_deformed(const std::vector<Eigen::Vector3d>& vertices, do
     }
 }
 
-/// A point that moves by `margin` moves by no more along a unit direction.
-void BroadSweep::widen(double* slabs, double margin) const {
+/// A point displaced by `skin` is displaced by at most that along a unit direction.
+void BroadSweep::widen(double* slabs, double skin) const {
     for (const auto& d : directions_) {
-        const double width = margin * d.norm() * (1 + 8 * std::numeric_limits<double>::epsilon());
+        const double width = skin * d.norm() * (1 + 8 * std::numeric_limits<double>::epsilon());
         *slabs++ -= width;
         *slabs++ += width;
     }
@@ -108,19 +108,19 @@ std::size_t BroadSweep::sweep_direction(const std::vector<double>& slabs) const 
     return best;
 }
 
-void BroadSweep::bound(const Frame& frame, std::uint32_t body, double margin, double* slabs) const {
+void BroadSweep::bound(const Frame& frame, std::uint32_t body, double skin, double* slabs) const {
     if (scene_.bodies[body].deformable)
         bound_deformed(frame.deformed[body], slabs);
     else
         bound_rigid(shapes_[scene_.bodies[body].mesh], frame.poses[body], slabs);
-    if (margin > 0) widen(slabs, margin);
+    if (skin > 0) widen(slabs, skin);
 }
 
-std::vector<BodyPair> BroadSweep::pairs(const Frame& frame, std::span<const double> margins) const {
+std::vector<BodyPair> BroadSweep::pairs(const Frame& frame, std::span<const double> skins) const {
     const auto stride = 2 * directions_.size();
     std::vector<double> slabs(scene_.bodies.size() * stride);
     for (std::uint32_t body = 0; body < scene_.bodies.size(); ++body)
-        bound(frame, body, margins.empty() ? 0 : margins[body], &slabs[body * stride]);
+        bound(frame, body, skins.empty() ? 0 : skins[body], &slabs[body * stride]);
     return swept(slabs);
 }
 
@@ -134,7 +134,7 @@ std::vector<BodyPair> BroadSweep::pairs(std::span<const Ball> balls) const {
     return swept(slabs);
 }
 
-/// Pairs of bodies whose slabs overlap along all directions.
+/// The pairs of bodies whose slabs overlap along all directions.
 std::vector<BodyPair> BroadSweep::swept(const std::vector<double>& slabs) const {
     auto pairs = overlapping(slabs, directions_.size(), sweep_direction(slabs));
     std::erase_if(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The floors of broad.cl.
+// Cost models of the kernels in broad.cl.
 #include "algorithms/cost.h"
 
 namespace tandem {

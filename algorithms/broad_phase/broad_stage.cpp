@@ -13,7 +13,7 @@ namespace tandem {
 
 namespace {
 
-constexpr std::uint32_t most_bodies = (1u << 15) * BROAD_TILE; ///< 2^30 pairs of tiles, numbered by a word
+constexpr std::uint32_t most_bodies = (1u << 15) * BROAD_TILE; ///< 2^30 pairs of tiles, numbered by 32 bits
 
 std::uint32_t tiles_of(std::uint32_t bodies) { return (bodies + BROAD_TILE - 1) / BROAD_TILE; }
 
@@ -59,7 +59,7 @@ std::vector<Eigen::Vector3d> BroadStage::centres(const Frame& frame) const {
     return centres;
 }
 
-/// Along the first three directions, which span space.
+/// Centres of the volumes along the first three directions, which are linearly independent.
 template<class Real>
 std::vector<Eigen::Vector3d> BroadStage::centres_of_volumes() const {
     const auto k = static_cast<std::size_t>(bodies_.geometry().k);
@@ -97,10 +97,10 @@ void BroadStage::sort(const std::vector<Eigen::Vector3d>& centres) {
     upload(order);
 }
 
-void BroadStage::take(const Subdomain& share) {
-    auto order = share.own;
-    order.insert(order.end(), share.ghosts.begin(), share.ghosts.end());
-    moving_count_ = static_cast<std::uint32_t>(share.own.size());
+void BroadStage::set_subdomain(const Subdomain& subdomain) {
+    auto order = subdomain.own;
+    order.insert(order.end(), subdomain.ghosts.begin(), subdomain.ghosts.end());
+    moving_count_ = static_cast<std::uint32_t>(subdomain.own.size());
     upload(order);
 }
 

@@ -7,26 +7,25 @@
 
 namespace tandem {
 
-/// Finds body pairs on the device: all pairs (a < b) whose root k-DOPs, as refit has just left them, overlap,
-/// but those of two fixed bodies. Grids depend on the number of bodies only.
+/// Finds body pairs on the device: all pairs (a < b) whose root k-DOPs overlap after the last refit, except
+/// pairs of two fixed bodies. Grids depend on the number of bodies only.
 class BroadStage {
 public:
-    /// Pairs of `bodies` by the volumes of `hierarchy`. Throws InputError for more bodies than pairs of tiles
-    /// can be numbered for.
+    /// Both arguments must outlive this. Throws InputError if there are too many bodies to number the pairs
+    /// of their tiles.
     BroadStage(const Bodies& bodies, const Hierarchy& hierarchy, LaunchShape shape);
 
-    /// Puts the bodies in order of where `frame` has them. Neighbours in space should be neighbours there
-    /// whenever pairs are sought: that decides how fast they are found, never which.
+    /// Sorts the bodies by their positions in `frame`. The order affects the speed of later searches, which
+    /// is high if spatial neighbours are close in it, but not the pairs.
     void sort(const Frame& frame);
-    /// From now on finds the pairs of a share, in whose order bodies stand.
-    void take(const Subdomain& share);
-    /// The same of where the last refit has left the bodies' volumes, for frames that the host does not have;
-    /// waits for it.
+    /// From the next launch on, finds the pairs of a subdomain, and has its order of bodies.
+    void set_subdomain(const Subdomain& subdomain);
+    /// Sorts the bodies by the volumes of the last refit, for frames in the device's memory. Waits for it.
     void sort_by_volumes();
-    /// Enqueues the search. Pairs go to `pairs`, 2 words each, in no order, as far as its `capacity` reaches;
-    /// their number goes to `status`, which has been cleared.
+    /// Enqueues the search. It writes pairs of 2 words to `pairs`, in any order and up to `capacity`, and
+    /// adds their number to `status`, which the caller has cleared.
     void launch(const Buffer& pairs, std::uint32_t capacity, const Buffer& status);
-    /// Of these bodies there are no more pairs than that.
+    /// Upper bound on the number of pairs.
     std::uint64_t most_pairs() const;
 
 private:
@@ -40,7 +39,7 @@ private:
     const Hierarchy& hierarchy_;
     LaunchShape shape_;
     std::uint32_t count_ = 0;        ///< bodies in the order
-    std::uint32_t moving_count_ = 0; ///< of these the first, one of which every pair has: that are not fixed
+    std::uint32_t moving_count_ = 0; ///< moving bodies, which are first in it; every pair has one
     std::vector<Eigen::Vector3d> mesh_centres_;
     Buffer order_, roots_, unions_;
     Kernel bound_, find_;

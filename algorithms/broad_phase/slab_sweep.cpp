@@ -14,10 +14,10 @@ namespace tandem {
 
 namespace {
 
-constexpr std::size_t least_bodies = 2048; ///< of fewer, one sweep is as fast
-constexpr double in_a_cell = 256;          ///< bodies, or cells are not worth sorting
-constexpr double widths = 2;               ///< of a body on average: in narrower cells most are twice
-constexpr std::size_t most_cells = 4;      ///< that a body lies in, on average
+constexpr std::size_t min_bodies_for_cells = 2048; ///< for fewer bodies one sweep is as fast
+constexpr double bodies_per_cell = 256;            ///< least average; smaller cells cost more than they save
+constexpr double widths_per_strip = 2;        ///< average body widths; most bodies are twice in narrower ones
+constexpr std::size_t max_cells_per_body = 4; ///< on average
 
 struct Ends {
     std::span<const double> ends;
@@ -28,7 +28,7 @@ struct Ends {
     double upper(std::size_t body, std::size_t axis) const { return ends[2 * (body * axes + axis) + 1]; }
 };
 
-/// apart[j] != 0 for those bodies i + 1 .. end - 1 that some direction tells from body i.
+/// Sets apart[j] != 0 for the bodies j = i + 1 .. end - 1 that a direction separates from body i.
 void mark_apart(const std::vector<std::vector<double>>& along, std::size_t i, std::size_t end,
                 std::vector<std::int64_t>& apart) {
     std::fill(apart.begin() + static_cast<std::ptrdiff_t>(i),
@@ -44,16 +44,16 @@ void mark_apart(const std::vector<std::vector<double>>& along, std::size_t i, st
     }
 }
 
-/// Calls keep(a, b) for pairs of `bodies` that overlap, in no order of a and b.
-template<class Keep>
-void sweep_along(const Ends& slabs, std::size_t axis, std::vector<std::uint32_t> bodies, const Keep& keep) {
+/// Calls visit(a, b) for the overlapping pairs of `bodies`; a may be the larger.
+template<class Visit>
+void sweep_along(const Ends& slabs, std::size_t axis, std::vector<std::uint32_t> bodies, const Visit& visit) {
     std::sort(bodies.begin(), bodies.end(),
               [&](auto a, auto b) { return slabs.lower(a, axis) < slabs.lower(b, axis); });
     std::vector<std::vector<double>> along(2 * slabs.axes, std::vector<double>(bodies.size()));
     for (std::size_t slab = 0; slab < along.size(); ++slab)
         for (std::size_t i = 0; i < bodies.size(); ++i)
             along[slab][i] = slabs.ends[bodies[i] * along.size() + slab];
-    std::vector<std::int64_t> apart(bodies.size()); // as wide as a slab, so that the compiler can use vectors
+    std::vector<std::int64_t> apart(bodies.size()); // as wide as a double, for vector code
     const auto& starts = along[2 * axis];
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const auto end =
@@ -62,30 +62,30 @@ void sweep_along(const Ends& slabs, std::size_t axis, std::vector<std::uint32_t>
                                      - starts.begin());
         mark_apart(along, i, end, apart);
         for (std::size_t j = i + 1; j < end; ++j)
-            if (apart[j] == 0) keep(bodies[i], bodies[j]);
+            if (apart[j] == 0) visit(bodies[i], bodies[j]);
     }
 }
 
-/// Equal parts of where bodies lie along an axis; the first and the last have no end.
+/// Equal parts of the range of bodies along an axis; the first and the last are unbounded.
 struct Strips {
     std::size_t axis = 0, count = 1;
     double first = 0, width = 1;
 
     std::size_t at(double value) const {
-        const double place = (value - first) / width;
-        if (!(place > 0)) return 0; // also what is no number
-        return place < static_cast<double>(count) ? static_cast<std::size_t>(place) : count - 1;
+        const double position = (value - first) / width;
+        if (!(position > 0)) return 0; // also for NaN
+        return position < static_cast<double>(count) ? static_cast<std::size_t>(position) : count - 1;
     }
 };
 
-/// The same length in another number of strips.
+/// The same range in `count` strips.
 Strips divided(Strips strips, std::size_t count) {
     strips.width *= static_cast<double>(strips.count) / static_cast<double>(count);
     strips.count = count;
     return strips;
 }
 
-/// As many as bodies of average width fit into one after the other, give or take `widths`.
+/// Strips of `widths_per_strip` average body widths.
 Strips strips_of(const Ends& slabs, std::size_t axis) {
     double first = std::numeric_limits<double>::infinity(), last = -first, sum = 0;
     for (std::size_t body = 0; body < slabs.bodies(); ++body) {
@@ -96,22 +96,23 @@ Strips strips_of(const Ends& slabs, std::size_t axis) {
         sum += upper - lower;
     }
     const double mean = sum / static_cast<double>(slabs.bodies());
-    const double count = std::min((last - first) / (widths * mean), static_cast<double>(slabs.bodies()));
+    const double count =
+        std::min((last - first) / (widths_per_strip * mean), static_cast<double>(slabs.bodies()));
     if (!(count > 1)) return {.axis = axis};
     return divided({axis, 1, first, last - first}, static_cast<std::size_t>(count));
 }
 
-/// Bodies by the cells of two axes that they reach into: a pair is found in the one cell in which both of its
-/// lower ends' larger ones lie.
+/// Bodies by the cells of two axes that they overlap. A pair belongs to the one cell that contains, along
+/// both axes, the larger of its two lower ends.
 class BodyCells {
 public:
     BodyCells(const Ends& slabs, Strips rows, Strips columns)
         : slabs_(slabs), rows_(rows), columns_(columns) {}
 
     std::size_t count() const { return rows_.count * columns_.count; }
-    /// Fewer cells until bodies are in few of them.
-    void strew() {
-        while (reached() > most_cells * slabs_.bodies() + count()) {
+    /// Bins the bodies. Reduces the number of cells first, until the average body is in few cells.
+    void fill() {
+        while (reached_cells() > max_cells_per_body * slabs_.bodies() + count()) {
             rows_ = divided(rows_, (rows_.count + 1) / 2);
             columns_ = divided(columns_, (columns_.count + 1) / 2);
         }
@@ -135,7 +136,7 @@ public:
 private:
     std::size_t row(std::uint32_t body) const { return rows_.at(slabs_.lower(body, rows_.axis)); }
     std::size_t column(std::uint32_t body) const { return columns_.at(slabs_.lower(body, columns_.axis)); }
-    /// Work(cell, body) for all cells that bodies reach into.
+    /// Calls work(cell, body) for all cells of all bodies.
     template<class Work>
     void for_cells(const Work& work) const {
         for (std::uint32_t body = 0; body < slabs_.bodies(); ++body) {
@@ -145,7 +146,7 @@ private:
                 for (auto c = column(body); c <= last_column; ++c) work(r * columns_.count + c, body);
         }
     }
-    std::size_t reached() const {
+    std::size_t reached_cells() const {
         std::size_t sum = 0;
         for_cells([&](std::size_t, std::uint32_t) { ++sum; });
         return sum;
@@ -157,11 +158,11 @@ private:
     std::vector<std::uint32_t> bodies_;
 };
 
-/// By cell.
+/// The pairs by cell.
 std::vector<std::vector<BodyPair>> sweep_cells(const Ends& slabs, Strips rows, Strips columns,
                                                std::size_t axis) {
     BodyCells cells(slabs, rows, columns);
-    cells.strew();
+    cells.fill();
     std::vector<std::vector<BodyPair>> found(cells.count());
     parallel_for(cells.count(), [&](std::size_t cell) {
         sweep_along(slabs, axis, cells.bodies(cell), [&](std::uint32_t a, std::uint32_t b) {
@@ -189,14 +190,14 @@ std::vector<BodyPair> ascending(std::vector<BodyPair> pairs, std::size_t bodies)
 std::vector<BodyPair> overlapping(std::span<const double> ends, std::size_t axes, std::size_t sweep) {
     const Ends slabs{ends, axes};
     const auto bodies = slabs.bodies();
-    // The axis with the most strips is swept.
+    // Sweeps along the axis with the most strips.
     std::array<Strips, 3> strips;
     for (std::size_t axis = 0; axis < 3; ++axis) strips[axis] = strips_of(slabs, axis);
     std::ranges::sort(strips, std::greater{}, &Strips::count);
-    const auto most = static_cast<std::size_t>(std::sqrt(static_cast<double>(bodies) / in_a_cell)) + 1;
+    const auto most = static_cast<std::size_t>(std::sqrt(static_cast<double>(bodies) / bodies_per_cell)) + 1;
     for (auto& some : std::span(strips).subspan(1)) some = divided(some, std::min(some.count, most));
     std::vector<BodyPair> pairs;
-    if (bodies < least_bodies || strips[1].count == 1) {
+    if (bodies < min_bodies_for_cells || strips[1].count == 1) {
         std::vector<std::uint32_t> all(bodies);
         std::iota(all.begin(), all.end(), 0u);
         sweep_along(slabs, sweep, std::move(all), [&](std::uint32_t a, std::uint32_t b) {

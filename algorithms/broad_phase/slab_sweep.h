@@ -7,11 +7,11 @@
 
 namespace tandem {
 
-/// Pairs (a < b) of bodies whose slabs overlap along all axes, ascending; closed, as everywhere. `slabs`: of
-/// each body lower and upper end along each axis, one after the other; the first three axes span space, and
-/// there may be no more than three. `sweep`: the axis that spreads few bodies most; many are strewn into
-/// cells along two axes first, and each cell is swept along the third, on all cores. O(n log n) where no body
-/// is much larger than most.
+/// Pairs (a < b) of bodies whose slabs overlap along all axes, in ascending order; touching overlaps.
+/// `slabs`: for each body the lower and upper end along each axis. There are at least three axes, and the
+/// first three are linearly independent. `sweep`: the axis to sweep few bodies along. Many bodies are binned
+/// into cells along two axes, and cells are swept along the third in parallel. O(n log n) for bodies of
+/// similar size.
 std::vector<BodyPair> overlapping(std::span<const double> slabs, std::size_t axes, std::size_t sweep);
 
 } // namespace tandem
