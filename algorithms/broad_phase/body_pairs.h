@@ -25,7 +25,7 @@ public:
     /// Starts a frame in the device's memory, after its refit. Without `given` the device finds the pairs,
     /// independent of setting broad.
     void begin_on_device(std::optional<std::span<const BodyPair>> given);
-    /// Whether begin() contains so much work on the host that the device should get earlier commands first.
+    /// Whether begin() has so much work on the host that the device should get earlier commands first.
     bool works_on_host(bool given) const { return !given && (broad_ || !sorted_); }
     /// Whether the host waits in begin_on_device() for the positions of bodies.
     bool sorts_on_device(bool given) const { return !given && !sorted_; }
