@@ -11,13 +11,13 @@ namespace tandem {
 
 namespace {
 
-/// Room for a part's pairs may grow into that share of what is available before the part is split.
-constexpr double growing_share = 0.2;
+/// The buffer for pairs may grow by this fraction of the available memory before a part is split.
+constexpr double growth_fraction = 0.2;
 
 /// Some of a frame's body pairs, or one of them and some items of its body a.
 struct Batch {
     std::size_t first = 0, count = 0;
-    std::uint32_t item_first = 0, item_end = 0; ///< of a windowed part; 0, 0: all items
+    std::uint32_t item_first = 0, item_end = 0; ///< items of a windowed part; 0, 0: all items
 
     bool windowed() const { return item_end != 0; }
 };
@@ -27,7 +27,7 @@ public:
     BatchRun(Pipeline& pipeline, const Frame* frame, std::optional<std::span<const BodyPair>> given);
 
     FrameResult run(std::uint64_t batches);
-    /// After it: whether all of its pairs and contacts would fit at once by now.
+    /// After run(): whether all pairs and contacts fit into the current buffers at once.
     bool fits() const { return fits_; }
 
 private:
@@ -59,14 +59,14 @@ BatchRun::BatchRun(Pipeline& pipeline, const Frame* frame, std::optional<std::sp
         pairs_.assign(given->begin(), given->end());
     else
         search(frame);
-    // What the frame wants, as far as the walk that did not fit has told.
+    // The sizes that the frame needs, as counted by the walk that did not fit.
     const auto pairs = std::max(pipeline.status.counter(STATUS_PAIRS), least(parameters::pair_capacity));
     const auto contacts =
         std::max(pipeline.status.counter(STATUS_CONTACTS), least(parameters::contact_capacity));
     answer_ = pipeline_.answers->take_what_fits(pairs, std::max(pairs, contacts));
 }
 
-/// All body pairs of the frame, wherever they are found.
+/// Finds all body pairs of the frame, on the device or the host.
 void BatchRun::search(const Frame* frame) {
     if (pipeline_.body_pairs->searched()) {
         pipeline_.status.begin(0);
@@ -80,7 +80,7 @@ std::uint32_t BatchRun::items_of(const Batch& batch) const {
     return pipeline_.bodies->row(pairs_[batch.first].a).tetrahedron_count;
 }
 
-/// Puts `ways` parts in the place of one that did not fit; throws OutOfMemory when it cannot be split.
+/// Replaces a part that did not fit by `ways` parts. Throws OutOfMemory if it cannot be split.
 void BatchRun::split(const Batch& batch, std::uint64_t ways) {
     if (batch.count <= 1) {
         split_items(batch, ways);
@@ -98,8 +98,8 @@ void BatchRun::split_items(const Batch& batch, std::uint64_t ways) {
     const std::uint64_t first = batch.windowed() ? batch.item_first : 0;
     const std::uint64_t count = (batch.windowed() ? batch.item_end : items_of(batch)) - first;
     if (count <= 1)
-        throw OutOfMemory(fmt::format("{}: there is no memory left for the candidate pairs of a single "
-                                      "tetrahedron; raise --memory, or take fewer bodies",
+        throw OutOfMemory(fmt::format("{}: out of memory for the candidate pairs of a single tetrahedron; "
+                                      "raise --memory, or use fewer bodies",
                                       pipeline_.device.info().id));
     ways = std::min(ways, count);
     for (auto i = ways; i-- > 0;)
@@ -119,8 +119,7 @@ void BatchRun::walk(const Batch& batch) {
     }
 }
 
-/// Adds what the status counts of a batch; contacts are added by those who bring them to the host, and body
-/// pairs are the frame's.
+/// Adds the counts of a batch. make_contacts() adds contacts, and run() sets the number of body pairs.
 void BatchRun::add_counts() {
     auto one = pipeline_.counts();
     one.contacts = one.body_pairs = 0;
@@ -128,7 +127,7 @@ void BatchRun::add_counts() {
     if (pipeline_.counting) pipeline_.stages.walker->report(pipeline_.status, result_.work);
 }
 
-/// Ranges of pairs whose contacts fit into their buffer, one after the other.
+/// Makes contacts for consecutive ranges of pairs, so that the contacts of each range fit into their buffer.
 void BatchRun::make_contacts(HostPart& host, std::uint64_t pairs) {
     auto& status = pipeline_.status;
     auto words = status.words();
@@ -139,12 +138,12 @@ void BatchRun::make_contacts(HostPart& host, std::uint64_t pairs) {
         pipeline_.contacts->launch(*answer_, first, end, status);
         status.read();
         const auto made = status.counter(STATUS_CONTACTS);
-        const auto room = answer_->contacts.capacity();
-        if (made > room) {
+        const auto capacity = answer_->contacts.capacity();
+        if (made > capacity) {
             if (step == 1) answer_->contacts.grow(made);
-            const auto share = static_cast<double>(room) / static_cast<double>(made);
+            const auto fraction = static_cast<double>(capacity) / static_cast<double>(made);
             step = std::max<std::uint64_t>(
-                1, static_cast<std::uint64_t>(0.9 * share * static_cast<double>(end - first)));
+                1, static_cast<std::uint64_t>(0.9 * fraction * static_cast<double>(end - first)));
             ++result_.retries;
             continue;
         }
@@ -175,24 +174,25 @@ void BatchRun::finish_part() {
     result_.parts.push_back(std::move(host));
 }
 
-/// Walks a part and finishes it, or puts smaller parts, or the same with more room, in its place.
+/// Walks a part and finishes it. If it does not fit, replaces it by smaller parts, or enlarges the buffer and
+/// repeats it.
 void BatchRun::run_batch(const Batch& batch) {
     std::uint64_t ways = 2;
     try {
         walk(batch);
         const auto pairs = pipeline_.status.counter(STATUS_PAIRS);
-        const std::uint64_t room = answer_->pairs.capacity();
-        if (pipeline_.output != Output::pairs || pairs <= room) {
+        const std::uint64_t capacity = answer_->pairs.capacity();
+        if (pipeline_.output != Output::pairs || pairs <= capacity) {
             finish_part();
             return;
         }
         ++result_.retries;
-        if (pairs <= rows_within(pipeline_.device, answer_->pairs.row_bytes(), growing_share)) {
+        if (pairs <= rows_within(pipeline_.device, answer_->pairs.row_bytes(), growth_fraction)) {
             answer_->pairs.grow(pairs);
             todo_.push_front(batch);
             return;
         }
-        ways = std::max<std::uint64_t>(2, (pairs + pairs / 4) / room + 1);
+        ways = std::max<std::uint64_t>(2, (pairs + pairs / 4) / capacity + 1);
     } catch (const OutOfMemory&) {
         ++result_.retries;
     }

@@ -5,12 +5,11 @@
 
 namespace tandem {
 
-/// A frame that does not fit into memory, part after part: the paper's relaunching on a backlog. It is split
-/// by body pairs into `batches` at first, and where that is not enough into more (`batches` is then what a
-/// like frame should begin with); a body pair that alone does not fit is split by the items of its body a.
-/// Pairs and contacts of a part that has ended move to the host's memory. Bodies and hierarchy are those of
-/// `frame` already; null: the frame is in the device's memory. Throws OutOfMemory when not even one item's
-/// pairs fit.
+/// Runs a frame that does not fit into memory in batches, as the paper's relaunching on a backlog. The body
+/// pairs are split into `batches` parts at first, and into more if necessary; a single body pair is split by
+/// the items of its body a. `batches` becomes the number for the next similar frame. Pairs and contacts of a
+/// finished part move to the host's memory. Bodies and hierarchy must be those of the frame. `frame` is null
+/// for a frame in the device's memory. Throws OutOfMemory if the pairs of a single item do not fit.
 FrameResult run_in_batches(Pipeline& pipeline, const Frame* frame,
                            std::optional<std::span<const BodyPair>> given, std::uint64_t& batches);
 

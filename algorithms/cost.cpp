@@ -15,13 +15,14 @@ namespace {
 
 double number(std::size_t value) { return static_cast<double>(value); }
 
-/// Marks, of which it counts those that are new.
+/// A set of indices.
 class Marks {
 public:
-    bool add(std::size_t place) {
-        if (place >= marked_.size()) marked_.resize(place + 1);
-        if (marked_[place]) return false;
-        marked_[place] = true;
+    /// Returns whether the index is new.
+    bool add(std::size_t index) {
+        if (index >= marked_.size()) marked_.resize(index + 1);
+        if (marked_[index]) return false;
+        marked_[index] = true;
         ++count_;
         return true;
     }
@@ -44,7 +45,7 @@ double FrameFacts::counted(std::string_view counter) const {
     return found == work.end() ? 0 : found->second;
 }
 
-/// The published data path refits everything and shares nothing.
+/// In the published data path all bodies are refitted, and no data are shared.
 SceneFacts::SceneFacts(const Scene& scene, const Settings& settings) {
     const auto geometry = geometry_of(settings);
     const bool published = is_published(settings);
@@ -54,7 +55,7 @@ SceneFacts::SceneFacts(const Scene& scene, const Settings& settings) {
     pose_bytes = number(pose_reals(geometry)) * real;
     row_bytes = 4 * number(words_of(settings[parameters::pair_layout]));
     pair_bytes = settings[parameters::output] == Output::pairs ? row_bytes : 0;
-    std::set<std::uint32_t> meshes, shared; // whose tetrahedra, and whose vertices, are counted
+    std::set<std::uint32_t> meshes, shared; // meshes with counted tetrahedra, and with counted vertices
     for (const auto& body : scene.bodies) {
         if (body.fixed && !published) continue;
         const auto& mesh = scene.meshes[body.mesh];
@@ -71,15 +72,15 @@ SceneFacts::SceneFacts(const Scene& scene, const Settings& settings) {
 void add_touched(FrameFacts& facts, const Scene& scene, const Settings& settings,
                  std::span<const Pair> pairs) {
     const bool published = is_published(settings);
-    // Of each body, and of each mesh behind the bodies.
+    // `rows` and `vertices` have an entry for each body, followed by one for each mesh.
     std::vector<Marks> bodies(scene.bodies.size()), rows(bodies.size() + scene.meshes.size()), vertices(rows);
     const auto touch = [&](std::uint32_t body, std::uint32_t tetrahedron) {
         if (!bodies[body].add(tetrahedron)) return;
-        const auto& is = scene.bodies[body];
-        const auto of_mesh = scene.bodies.size() + is.mesh;
-        rows[published ? body : of_mesh].add(tetrahedron);
-        for (const auto vertex : scene.meshes[is.mesh].tetrahedra[tetrahedron])
-            vertices[published || is.deformable ? body : of_mesh].add(vertex);
+        const auto& instance = scene.bodies[body];
+        const auto mesh_entry = scene.bodies.size() + instance.mesh;
+        rows[published ? body : mesh_entry].add(tetrahedron);
+        for (const auto vertex : scene.meshes[instance.mesh].tetrahedra[tetrahedron])
+            vertices[published || instance.deformable ? body : mesh_entry].add(vertex);
     };
     for (const auto& pair : pairs) {
         touch(pair.body_a, pair.tet_a);

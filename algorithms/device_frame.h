@@ -10,28 +10,28 @@
 
 namespace tandem {
 
-/// Rows of numbers in a device's memory, one behind the other; Buffer::adopt makes one of an application's.
+/// Consecutive rows of numbers in a device's memory. Buffer::adopt makes a buffer from an application's
+/// memory.
 struct DeviceRows {
-    Buffer buffer;                         ///< empty: there are none
+    Buffer buffer;                         ///< empty: no rows
     Precision precision = Precision::fp64; ///< of its numbers
 };
 
-/// A frame whose numbers are in memory of the device that a session works on; they have to be there when
-/// run() is called, as far as commands of the device's queue go (Device::queue, Device::follow), and have
-/// been read when it returns.
+/// A frame in the memory of the session's device. Commands that write it must come before run() in the order
+/// of the device's queue (Device::queue, Device::follow). run() has read it when it returns.
 struct DeviceFrame {
-    /// Of each body tx ty tz qw qx qy qz: x_world = R(q) x_mesh + t, where q, of any length whose square is
-    /// between 1e-300 and 1e300, is made a unit quaternion. Rows of deformable bodies are not read. None:
-    /// every body at the identity.
+    /// One row per body, tx ty tz qw qx qy qz: x_world = R(q) x_mesh + t. q is normalised; its squared norm
+    /// must be between 1e-300 and 1e300. Rows of deformable bodies are not read. Empty: all bodies at the
+    /// identity.
     DeviceRows poses;
-    /// One a body: x y z of each vertex of a deformable body, in the world, as its mesh numbers them; none of
-    /// a rigid one.
+    /// One entry per body. Deformable bodies: x y z of each vertex in world coordinates, in the order of the
+    /// mesh. Other bodies: empty.
     std::vector<DeviceRows> deformed;
-    std::vector<std::vector<std::uint32_t>> skipped{}; ///< as Frame::skipped, in the host's memory
+    std::vector<std::vector<std::uint32_t>> skipped{}; ///< see Frame::skipped; in the host's memory
 };
 
-/// The pose of a row tx ty tz qw qx qy qz, whose quaternion it makes a unit one: in the order of operations
-/// that pack_frame.cl has. Throws InputError that names row `body` where it is not finite or has no rotation.
+/// The pose of a row tx ty tz qw qx qy qz, with normalised quaternion. The order of operations is that of
+/// pack_frame.cl. Throws InputError that names row `body` if it is not finite or has no rotation.
 Pose pose_of_row(const double* row, std::size_t body);
 
 } // namespace tandem

@@ -7,13 +7,13 @@
 
 namespace tandem {
 
-/// How many groups to launch for work of which only the last frame's amount is known. Kernels stride, so that
-/// any number is right; groups without work take time to come and go. The number changes seldom, so that
-/// frames after another have the same commands.
+/// Chooses the number of groups for a launch whose amount of work is known from the last frame only. Kernels
+/// have strided loops, so that any number is correct, but groups without work cost time. The number rarely
+/// changes, so that consecutive frames have the same commands.
 class ExpectedGroups {
 public:
-    /// Room for twice `wanted`, at most `most`: the number of the last call where that is neither too small
-    /// nor eight times too large.
+    /// Returns the number of the last call if it is between `wanted` and 8 times `wanted`. Otherwise a power
+    /// of two of at least twice `wanted`, limited to `most`.
     std::uint32_t enough_for(std::uint64_t wanted, std::uint32_t most) {
         wanted = std::clamp<std::uint64_t>(wanted, 1, most);
         if (groups_ < wanted || groups_ / 8 > wanted)

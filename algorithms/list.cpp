@@ -39,7 +39,8 @@ void add_algorithm(const Traversal& traversal) {
     for (const auto& list : {algorithms(), baselines()})
         for (const auto* other : list)
             if (other->name() == traversal.name())
-                throw InputError(fmt::format("there is an algorithm {} already", traversal.name()));
+                throw InputError(
+                    fmt::format("an algorithm {} exists already; choose another name", traversal.name()));
     listed().push_back(&traversal);
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 LaunchShape shape_of(const Settings& settings, const DeviceInfo& info) {
     const auto group_size = static_cast<std::uint32_t>(settings[parameters::group_size]);
-    // Where a group is one work-item there are enough of them for any number of cores.
+    // With groups of one work-item there are enough groups for any number of cores.
     const auto units = info.max_group_size == 1 ? 1 : info.compute_units;
     const auto items = static_cast<std::uint64_t>(settings[parameters::work_items]) * units;
     return {group_size, static_cast<std::uint32_t>(std::max<std::uint64_t>(1, items / group_size))};
@@ -23,7 +23,7 @@ Status::Writes writes_of(const Settings& settings) {
     return is_published(settings) ? Status::Writes::blocking : Status::Writes::queued;
 }
 
-/// Bodies and an algorithm's own steps over them.
+/// Bodies, and the stages that an algorithm builds over them.
 struct Foundation {
     std::shared_ptr<Bodies> bodies;
     AlgorithmStages stages;
@@ -40,7 +40,8 @@ Foundation build(const Traversal& traversal, Device& device, const Scene& scene,
     return built;
 }
 
-/// Builds; where a limit set by hand is too low, builds once more without it to say what would be enough.
+/// Builds the foundation. If the memory limit is too low, builds it again without limit to report the bytes
+/// it needs.
 Foundation build_within(const Traversal& traversal, Device& device, const Scene& scene,
                         const Settings& settings, LaunchShape shape) {
     try {
@@ -58,8 +59,8 @@ Foundation build_within(const Traversal& traversal, Device& device, const Scene&
             throw;
         }
         device.set_memory_limit(limit);
-        throw OutOfMemory(fmt::format("{}: bodies and hierarchy of scene {} take {} bytes, and the limit of "
-                                      "its memory is {}; raise --memory, or take fewer bodies",
+        throw OutOfMemory(fmt::format("{}: bodies and hierarchy of scene {} need {} bytes, but the limit of "
+                                      "its memory is {}; raise --memory, or use fewer bodies",
                                       device.info().id, scene.name, bytes, limit));
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From resolved settings to a session: what fits a device, and which data path runs it.
+// Makes sessions from resolved settings: checks them against the devices, and chooses the data path.
 #include "algorithms/bodies/frame_on_device.h"
 #include "algorithms/bodies/origin.h"
 #include "algorithms/pipeline.h"
@@ -16,12 +16,12 @@ namespace tandem {
 
 namespace {
 
-/// What the device lacks for the geometry and the decision.
+/// Throws InputError if the device lacks arithmetic for the geometry or the decision.
 void check_arithmetic(const Settings& settings, const DeviceInfo& info) {
     const auto geometry = geometry_of(settings);
     if (geometry.rounding == Rounding::directed && !info.has_directed_rounding)
         throw InputError(
-            fmt::format("setting rounding=directed is impossible on {}, which adds to nearest only; "
+            fmt::format("setting rounding=directed is impossible on {}, which rounds to nearest only; "
                         "choose safe, or a cuda device",
                         info.id));
     if (geometry.precision == Precision::fp64 && !info.has_double)
@@ -68,7 +68,7 @@ FrameResult Session::finished(FrameResult result) const {
 
 FrameResult Session::do_run_device_input(const DeviceFrame&, std::optional<std::span<const BodyPair>>) {
     const auto* const why = devices().size() > 1
-                                ? "several devices share a frame, which the host deals out; name one device"
+                                ? "several devices share a frame, which the host partitions; name one device"
                                 : "residency=published converts every frame on the host; leave it out";
     throw InputError(fmt::format("{}: {}, or give the frame in the host's memory", names_of(devices()), why));
 }
@@ -87,7 +87,7 @@ FrameResult Session::run(const Frame& frame, std::span<const BodyPair> body_pair
 
 void Traversal::do_fit(Settings&, const DeviceInfo&, const Scene*) const {}
 
-AlgorithmStages Traversal::build(const BuildContext& ground) const { return do_build(ground); }
+AlgorithmStages Traversal::build(const BuildContext& context) const { return do_build(context); }
 
 Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info, const Scene* scene) const {
     check_arithmetic(settings, info);
@@ -96,11 +96,11 @@ Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info, con
     if (info.max_group_size == 1)
         fitting.set(tandem::parameters::group_size(1));
     else if (wanted > info.max_group_size)
-        throw InputError(fmt::format("setting group_size={} is impossible on {}; it takes at most {}", wanted,
+        throw InputError(fmt::format("setting group_size={} is impossible on {}; choose at most {}", wanted,
                                      info.id, info.max_group_size));
     if (settings[tandem::parameters::broad] == Broad::device && is_published(settings))
-        throw InputError("setting broad=device does not go with residency=published, whose bounds are the "
-                         "host's; choose broad=sphere");
+        throw InputError("setting broad=device does not go with residency=published, whose bounds are on the "
+                         "host; choose broad=sphere");
     do_fit(fitting, info, scene);
     do_check(fitting, info);
     return fitting;
@@ -111,7 +111,7 @@ void Traversal::check(std::span<Device* const> devices, const Settings& settings
     if (devices.size() > 1 && is_published(settings))
         throw InputError(
             fmt::format("{} with residency=published cannot split a frame between {}: the paper's data path "
-                        "is one device's; name one device, or leave residency and preset out",
+                        "has one device; name one device, or leave residency and preset out",
                         name(), names_of(devices)));
 }
 
@@ -138,7 +138,7 @@ std::unique_ptr<Session> Traversal::prepare(Device& device, const Scene& scene, 
     if (is_published(settings))
         throw InputError(
             fmt::format("{} with residency=published cannot share a frame between ranks: the paper's "
-                        "data path is one device's; leave residency and preset out",
+                        "data path has one device; leave residency and preset out",
                         name()));
     if (settings[tandem::parameters::broad] != Broad::device)
         throw InputError(

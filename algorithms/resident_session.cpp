@@ -9,22 +9,22 @@
 
 namespace tandem {
 
-void ResidentSession::take(const Subdomain& share) {
-    stale_ = true; // bodies new to the share have no poses here
-    pipeline_.bodies->set_subdomain(share);
-    pipeline_.stages.hierarchy->take(share, pipeline_.bodies->count());
-    pipeline_.body_pairs->take(share);
+void ResidentSession::set_subdomain(const Subdomain& subdomain) {
+    stale_ = true; // new bodies of the subdomain have no poses on the device
+    pipeline_.bodies->set_subdomain(subdomain);
+    pipeline_.stages.hierarchy->take(subdomain, pipeline_.bodies->count());
+    pipeline_.body_pairs->set_subdomain(subdomain);
 }
 
-void ResidentSession::receive(std::span<const std::uint32_t> bodies) {
-    receives_ = !bodies.empty();
-    is_placed_ = false;
+void ResidentSession::set_received(std::span<const std::uint32_t> bodies) {
+    has_received_ = !bodies.empty();
+    is_uploaded_ = false;
     pipeline_.bodies->exclude_from_upload(bodies);
 }
 
 void ResidentSession::upload_vertices(const Frame& frame) {
     pipeline_.bodies->update_deformed(frame, true);
-    is_placed_ = true;
+    is_uploaded_ = true;
 }
 
 void ResidentSession::do_reset() {
@@ -35,53 +35,54 @@ void ResidentSession::do_reset() {
 FrameResult ResidentSession::do_run_device_input(const DeviceFrame& frame,
                                                  std::optional<std::span<const BodyPair>> body_pairs) {
     if (!pack_) pack_ = std::make_unique<PackStage>(*pipeline_.bodies, pipeline_.shape);
-    return run_given({.there = &frame, .body_pairs = body_pairs});
+    return run_input({.device = &frame, .body_pairs = body_pairs});
 }
 
-/// Bodies and hierarchy as the frame has them; also those that do not move, unless a frame with them is known
-/// to have run.
-void ResidentSession::refresh(const Given& given) {
+/// Updates bodies and hierarchy to the frame. Fixed bodies are included unless an earlier frame has updated
+/// them successfully.
+void ResidentSession::refresh(const Input& input) {
     const bool all = std::exchange(stale_, true);
-    if (given.here != nullptr) {
-        pipeline_.bodies->update_poses(*given.here, all);
-        if (!std::exchange(is_placed_, false)) pipeline_.bodies->update_deformed(*given.here);
-        pipeline_.stages.hierarchy->refit(*given.here, all);
+    if (input.host != nullptr) {
+        pipeline_.bodies->update_poses(*input.host, all);
+        if (!std::exchange(is_uploaded_, false)) pipeline_.bodies->update_deformed(*input.host);
+        pipeline_.stages.hierarchy->refit(*input.host, all);
         return;
     }
-    pack_->launch(*given.there, origin(), pipeline_.status.buffer());
-    pipeline_.stages.hierarchy->refit({.poses = {}, .deformed = {}, .skipped = given.there->skipped}, all);
+    pack_->launch(*input.device, origin(), pipeline_.status.buffer());
+    pipeline_.stages.hierarchy->refit({.poses = {}, .deformed = {}, .skipped = input.device->skipped}, all);
 }
 
-void ResidentSession::find_body_pairs(const Given& given) {
-    if (given.here != nullptr)
-        pipeline_.body_pairs->begin(*given.here, given.body_pairs);
+void ResidentSession::find_body_pairs(const Input& input) {
+    if (input.host != nullptr)
+        pipeline_.body_pairs->begin(*input.host, input.body_pairs);
     else
-        pipeline_.body_pairs->begin_on_device(given.body_pairs);
+        pipeline_.body_pairs->begin_on_device(input.body_pairs);
 }
 
-/// Whether the device would be idle while the host works or waits before the end of the frame's commands.
-bool ResidentSession::waits_within_frame(const Given& given) const {
-    const bool has_pairs = given.body_pairs.has_value();
-    return given.here != nullptr ? pipeline_.body_pairs->works_on_host(has_pairs)
+/// Whether the host works or waits between the frame's commands, so that a single submission would leave the
+/// device idle.
+bool ResidentSession::waits_within_frame(const Input& input) const {
+    const bool has_pairs = input.body_pairs.has_value();
+    return input.host != nullptr ? pipeline_.body_pairs->works_on_host(has_pairs)
                                  : pipeline_.body_pairs->sorts_on_device(has_pairs);
 }
 
-/// Throws InputError when packing counted rows out of range, which stand in bounds as something else.
-void ResidentSession::refuse_flaws(const Given& given) {
-    if (given.there == nullptr) return;
+/// Throws InputError if packing has counted rows out of range; the bounds of their bodies are wrong.
+void ResidentSession::reject_flaws(const Input& input) {
+    if (input.device == nullptr) return;
     const auto flawed = pipeline_.status.counter(STATUS_FLAWED);
     if (flawed == 0) return;
     stale_ = true;
-    refuse_flawed(pipeline_.device, scene_, *given.there, pipeline_.bodies->geometry().precision, flawed);
+    refuse_flawed(pipeline_.device, scene_, *input.device, pipeline_.bodies->geometry().precision, flawed);
 }
 
-/// The frame's commands from body pairs to contacts.
+/// Enqueues the frame's commands from body pairs to contacts.
 void ResidentSession::launch(const AnswerBuffers& answer) {
     pipeline_.status.begin(pipeline_.body_pairs->on_host().size());
     walk(answer);
 }
 
-/// The same with counters that have begun.
+/// The same after Status::begin().
 void ResidentSession::walk(const AnswerBuffers& answer) {
     pipeline_.body_pairs->launch(pipeline_.status);
     const auto task = pipeline_.task(answer);
@@ -91,7 +92,7 @@ void ResidentSession::walk(const AnswerBuffers& answer) {
         pipeline_.contacts->launch(answer, 0, answer.pairs.capacity(), pipeline_.status);
 }
 
-/// Makes room for what the status counts; true when the frame has to run again.
+/// Grows all buffers to the counts of the status. Returns true if the walk must run again.
 bool ResidentSession::grow(AnswerBuffers& answer) {
     const auto& status = pipeline_.status;
     bool again = pipeline_.stages.walker->grow(status);
@@ -109,30 +110,30 @@ bool ResidentSession::grow(AnswerBuffers& answer) {
     return again;
 }
 
-/// Everything of a frame up to its one wait, as one submission unless the device would be idle meanwhile.
-/// Packing counts in the status, which therefore begins before it.
-void ResidentSession::begin(const Given& given, const AnswerBuffers& answer) {
+/// Enqueues all commands of a frame up to its only wait, as one submission if the host does not interrupt
+/// them. Packing counts in the status, so that Status::begin() comes first.
+void ResidentSession::begin(const Input& input, const AnswerBuffers& answer) {
     const auto all = [&] {
-        if (given.there != nullptr) pipeline_.status.begin(given.body_pairs ? given.body_pairs->size() : 0);
-        refresh(given);
-        find_body_pairs(given);
-        if (given.there != nullptr)
+        if (input.device != nullptr) pipeline_.status.begin(input.body_pairs ? input.body_pairs->size() : 0);
+        refresh(input);
+        find_body_pairs(input);
+        if (input.device != nullptr)
             walk(answer);
         else
             launch(answer);
         pipeline_.status.read();
     };
-    if (pipeline_.settings[parameters::submission] == Submission::one && !waits_within_frame(given))
+    if (pipeline_.settings[parameters::submission] == Submission::one && !waits_within_frame(input))
         pipeline_.device.as_one(all);
     else
         all();
     stale_ = false;
-    refuse_flaws(given);
+    reject_flaws(input);
 }
 
-FrameResult ResidentSession::run_whole(const Given& given) {
+FrameResult ResidentSession::run_whole(const Input& input) {
     auto answer = pipeline_.answers->take();
-    begin(given, *answer);
+    begin(input, *answer);
     std::uint64_t retries = 0;
     for (;; ++retries) {
         if (pipeline_.contacts) pipeline_.contacts->expect(pipeline_.status.counter(STATUS_PAIRS));
@@ -147,32 +148,32 @@ FrameResult ResidentSession::run_whole(const Given& given) {
     return result;
 }
 
-/// From the beginning: how far the frame came is not known.
-FrameResult ResidentSession::run_parts(const Given& given) {
-    if (receives_)
+/// Runs the frame in batches, from the start, because the state after a failed run is unknown.
+FrameResult ResidentSession::run_parts(const Input& input) {
+    if (has_received_)
         throw OutOfMemory(fmt::format("{}: a frame in batches needs all vertices in the host's memory",
                                       pipeline_.device.info().id));
-    if (given.there != nullptr) pipeline_.status.begin(0);
-    refresh(given);
-    if (given.there != nullptr) {
+    if (input.device != nullptr) pipeline_.status.begin(0);
+    refresh(input);
+    if (input.device != nullptr) {
         pipeline_.status.read();
-        refuse_flaws(given);
+        reject_flaws(input);
     }
     try {
-        find_body_pairs(given);
-    } catch (const OutOfMemory&) {} // its parts need less
-    auto result = run_in_batches(pipeline_, given.here, given.body_pairs, batches_);
+        find_body_pairs(input);
+    } catch (const OutOfMemory&) {} // batches need less memory
+    auto result = run_in_batches(pipeline_, input.host, input.body_pairs, batches_);
     stale_ = false;
     return result;
 }
 
-FrameResult ResidentSession::run_given(const Given& given) {
+FrameResult ResidentSession::run_input(const Input& input) {
     try {
-        if (batches_ == 1) return run_whole(given);
+        if (batches_ == 1) return run_whole(input);
     } catch (const OutOfMemory&) {
         batches_ = 2;
     }
-    return run_parts(given);
+    return run_parts(input);
 }
 
 } // namespace tandem

@@ -9,49 +9,49 @@
 
 namespace tandem {
 
-/// A session on one device whose data stay there: a frame is a fixed sequence of commands and one wait. Past
-/// capacity counters count on, buffers grow and the walk runs again; a frame that does not fit into memory
-/// runs in batches.
+/// A session on one device with resident data: a frame is a fixed sequence of commands with one wait. If a
+/// buffer overflows, its counter continues, the buffer grows and the walk runs again. A frame that does not
+/// fit into memory runs in batches.
 class ResidentSession final : public Session {
 public:
-    /// `fitted`: Traversal::fitted.
-    /// `answers`: of a session before it on this device with these settings, whose room for answers it
-    /// goes on with; null: none.
+    /// `fitted`: Traversal::fitted. `answers`: the answer pool of an earlier session on this device with
+    /// these settings, to reuse its buffers; or null.
     ResidentSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted,
                     std::shared_ptr<AnswerPool> answers = nullptr)
         : scene_(scene),
           pipeline_(traversal, device, scene, std::move(fitted), std::move(answers)),
           devices_{&device} {}
     const std::shared_ptr<AnswerPool>& answers() const { return pipeline_.answers; }
-    /// What the next frame is going to find, as far as anybody knows: with room for it it need not run twice.
+    /// Sets the expected size of the next answer, so that its buffers are large enough for a single run.
     void expect(std::uint64_t pairs, double contacts_a_pair) {
         pipeline_.answers->expect(pairs, contacts_a_pair);
     }
 
-    // Where vertices come by another way than from the host's memory:
+    // For vertices that do not come from the host's memory (DeviceVertexExchange):
 
-    /// From now on somebody else writes the vertices of these deformable bodies, between upload_vertices()
-    /// and run(), which throws OutOfMemory where it needs them in the host's: a frame in batches.
-    void receive(std::span<const std::uint32_t> bodies);
-    /// Puts the other deformable bodies' vertices of the next frame that is run to the device, and waits.
+    /// From the next frame on, other code writes the vertices of these deformable bodies on the device,
+    /// between upload_vertices() and run(). A frame in batches needs them in the host's memory: run() throws
+    /// OutOfMemory.
+    void set_received(std::span<const std::uint32_t> bodies);
+    /// Uploads the vertices of the remaining deformable bodies for the next run(), and waits.
     void upload_vertices(const Frame& frame);
     const Bodies& bodies() const { return *pipeline_.bodies; }
 
-    /// From now on finds the pairs of a share of each frame, and looks at nothing else of it. Body pairs that
-    /// run() is given are of bodies that have a part in the share.
-    void take(const Subdomain& share);
+    /// From the next frame on, reads the bodies of this subdomain only and finds its pairs. Body pairs passed
+    /// to run() must have bodies of the subdomain.
+    void set_subdomain(const Subdomain& subdomain);
 
 private:
-    /// A frame in the host's memory or in the device's, and the body pairs that were given with it.
-    struct Given {
-        const Frame* here = nullptr;
-        const DeviceFrame* there = nullptr;
+    /// The arguments of run(): a frame in the host's memory or in the device's, and body pairs.
+    struct Input {
+        const Frame* host = nullptr;
+        const DeviceFrame* device = nullptr;
         std::optional<std::span<const BodyPair>> body_pairs{};
     };
 
     void do_reset() override;
     FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override {
-        return run_given({.here = &frame, .body_pairs = body_pairs});
+        return run_input({.host = &frame, .body_pairs = body_pairs});
     }
     FrameResult do_run_device_input(const DeviceFrame& frame,
                                     std::optional<std::span<const BodyPair>> body_pairs) override;
@@ -59,26 +59,26 @@ private:
     std::span<Device* const> do_devices() const override { return devices_; }
     const Settings& do_settings() const override { return pipeline_.settings; }
 
-    void refresh(const Given& given);
-    void find_body_pairs(const Given& given);
-    bool waits_within_frame(const Given& given) const;
-    void refuse_flaws(const Given& given);
+    void refresh(const Input& input);
+    void find_body_pairs(const Input& input);
+    bool waits_within_frame(const Input& input) const;
+    void reject_flaws(const Input& input);
     void launch(const AnswerBuffers& answer);
     void walk(const AnswerBuffers& answer);
-    void begin(const Given& given, const AnswerBuffers& answer);
+    void begin(const Input& input, const AnswerBuffers& answer);
     bool grow(AnswerBuffers& answer);
-    FrameResult run_whole(const Given& given);
-    FrameResult run_parts(const Given& given);
-    FrameResult run_given(const Given& given);
+    FrameResult run_whole(const Input& input);
+    FrameResult run_parts(const Input& input);
+    FrameResult run_input(const Input& input);
 
     const Scene& scene_;
     Pipeline pipeline_;
     std::array<Device*, 1> devices_;
-    std::unique_ptr<PackStage> pack_; ///< from the first frame in the device's memory on
-    std::uint64_t batches_ = 1;       ///< to begin a frame with
-    bool stale_ = true;               ///< whether all commands so far have run is not known
-    bool is_placed_ = false;          ///< the next frame's vertices are there
-    bool receives_ = false;           ///< some come by another way
+    std::unique_ptr<PackStage> pack_; ///< created by the first frame in the device's memory
+    std::uint64_t batches_ = 1;       ///< initial number for the next frame
+    bool stale_ = true;               ///< poses and bounds on the device may be out of date
+    bool is_uploaded_ = false;        ///< upload_vertices() has uploaded the next frame's vertices
+    bool has_received_ = false;       ///< set_received() has bodies
 };
 
 } // namespace tandem

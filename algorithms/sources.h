@@ -7,17 +7,18 @@
 
 namespace tandem {
 
-/// Every kernel file of the project, flattened and embedded (generated).
+/// All kernel files of the project, flattened and embedded. The definition is generated.
 std::span<const KernelSource> kernel_sources();
 
-/// Adds kernel files of a program's own to those that kernel_source() knows; cmake/kernels.cmake generates
-/// the call. They must live as long as the program. Not thread-safe.
+/// Adds kernel files of an application to those of kernel_source(); cmake/kernels.cmake generates the call.
+/// They must live as long as the program. Not thread-safe.
 void add_kernel_sources(std::span<const KernelSource> sources);
 
-/// The kernel file of that name, as in "algorithms/chunked/chunked.cl".
+/// The kernel file of that name, such as "algorithms/chunked/chunked.cl". Throws DeviceError if it is
+/// unknown.
 const KernelSource& kernel_source(std::string_view name);
 
-/// Of the texts of all of them: what was measured with kernels of another digest says nothing of these.
+/// Digest of the texts of all kernel files. Measurements with another digest do not apply to these kernels.
 std::uint64_t kernel_sources_digest();
 
 } // namespace tandem

@@ -6,16 +6,16 @@
 
 namespace tandem {
 
-/// What an algorithm makes its steps from. Everything in it outlives them.
+/// Input from which an algorithm builds its stages. All references outlive the stages.
 struct BuildContext {
     Device& device;
     const Scene& scene;
-    const Settings& settings; ///< as the device takes them
+    const Settings& settings; ///< Traversal::fitted
     const Bodies& bodies;
     LaunchShape shape;
 };
 
-/// An algorithm's own steps of a frame: a hierarchy, and the walk over it.
+/// An algorithm's own stages of a frame: a hierarchy, and the walk over it.
 struct AlgorithmStages {
     std::unique_ptr<Hierarchy> hierarchy;
     std::unique_ptr<Walker> walker;

@@ -8,37 +8,37 @@
 
 namespace tandem {
 
-/// How a walk's kernels are built.
+/// Build options of a walk's kernels.
 struct WalkBuild {
     Output output = Output::pairs;
     PairLayout pair_layout = PairLayout::slots;
     bool counting = false; ///< count work; never timed
-    bool windowed = false; ///< answer for the items of the status' window only (emit.clh)
+    bool windowed = false; ///< emit pairs of the items in the status' window only (emit.clh)
 
     bool operator==(const WalkBuild&) const = default;
-    /// Its defines, added to those of a hierarchy.
+    /// Adds its defines to those of a hierarchy.
     void add_to(Defines& defines) const;
 };
 
-/// What a data path does between the launches of one walk, if anything.
+/// Callback of a data path between the launches of one walk.
 class LaunchHook {
 public:
     virtual ~LaunchHook() = default;
-    /// A part of the walk has ended and may have found pairs.
+    /// Called after a part of the walk, which may have found pairs.
     virtual void part_walked() = 0;
 };
 
-/// What a walk works on: body pairs on the device, and where answers go.
+/// Input and output of a walk: body pairs on the device, and the buffers of the answer.
 struct WalkTask {
     const Buffer& body_pairs;          ///< rows of two words; the status has their number
-    std::uint32_t pair_capacity = 0;   ///< rows there is room for: their number is at most that
-    bool searched = false;             ///< the device has found them, and the host does not know their number
-    std::span<const BodyPair> on_host; ///< the pairs themselves unless the device has found them
+    std::uint32_t pair_capacity = 0;   ///< capacity of `body_pairs`, in rows
+    bool searched = false;             ///< the device finds the pairs; the host does not have their number
+    std::span<const BodyPair> on_host; ///< the pairs; empty if the device finds them
     const AnswerBuffers& answer;
     Status& status;
-    LaunchHook* launch_hook = nullptr; ///< of data paths that have one
+    LaunchHook* launch_hook = nullptr; ///< null: none
 
-    /// Their number, or the most it can be.
+    /// The number of body pairs, or an upper bound if the device finds them.
     std::uint32_t most_pairs() const {
         return searched ? pair_capacity : static_cast<std::uint32_t>(on_host.size());
     }
@@ -52,13 +52,14 @@ public:
     Walker(const Walker&) = delete;
     Walker& operator=(const Walker&) = delete;
 
-    /// Compiles, or takes what has been compiled. Comes before the first launch.
+    /// Compiles the kernels, or reuses compiled ones. Must be called before the first launch.
     void compile(const WalkBuild& build) { do_compile(build); }
-    /// Enqueues the walk; one whose schedule needs the host runs it. Throws DeviceError.
+    /// Enqueues the walk. If its schedule needs the host, runs it. Throws DeviceError.
     void launch(const WalkTask& task) { do_launch(task); }
-    /// Grows own buffers that a walk has found too small; true when it has to run again. Throws OutOfMemory.
+    /// Grows the walker's own buffers if the last walk overflowed them. Returns true if the walk must run
+    /// again. Throws OutOfMemory.
     bool grow(const Status& status) { return do_grow(status); }
-    /// Adds what a counting walk counted, by the names of Traversal::counters().
+    /// Adds the counts of a counting walk, by the names of Traversal::counters().
     void report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const {
         do_report(status, work);
     }
@@ -70,10 +71,10 @@ private:
     virtual void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const = 0;
 };
 
-/// Counters of every walk that emits by emit.clh.
+/// Counters of all walks that use emit.clh.
 namespace counters {
 inline constexpr Counter bvtt_nodes{"bvtt_nodes", "node pairs", "node pairs tested"};
-inline constexpr Counter seeds{"seeds", "node pairs", "node pairs that walks started from"};
+inline constexpr Counter seeds{"seeds", "node pairs", "node pairs from which walks start"};
 } // namespace counters
 
 } // namespace tandem

@@ -127,14 +127,14 @@ void RankSession::update_device() {
     std::ranges::sort(needed);
     if (!session_ || !std::ranges::includes(local_scene_->numbers, needed)) build_session_for(needed);
     local_subdomain_ = to_local(*local_scene_, subdomain);
-    session_->take(local_subdomain_);
+    session_->set_subdomain(local_subdomain_);
     session_->expect(std::exchange(expected_pairs_, 0), contacts_a_pair_);
     std::vector<std::uint32_t> received;
     if (device_exchange_.is_enabled())
         for (const auto& bodies : ghosts_.deformed_received())
             for (const auto body : bodies)
                 received.push_back(static_cast<std::uint32_t>(local_index(*local_scene_, body)));
-    session_->receive(received);
+    session_->set_received(received);
 }
 
 /// Copies the states of the subdomain's bodies to the local frame.
@@ -211,7 +211,7 @@ FrameResult RankSession::run_local(Report& own) {
         own.needs_batches = true;
     }
     device_exchange_.download_received(ghosts_, session_->bodies(), *local_scene_, local_frame_);
-    session_->receive({});
+    session_->set_received({});
     return session_->run(local_frame_);
 }
 

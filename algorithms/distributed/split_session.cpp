@@ -96,7 +96,7 @@ bool SplitSession::repartition_if_needed(const Frame& frame) {
 void SplitSession::apply_subdomains() {
     for (std::size_t i = 0; i < sessions_.size(); ++i) {
         if (is_applied_[i]) continue;
-        sessions_[i]->take(subdomains_[i]);
+        sessions_[i]->set_subdomain(subdomains_[i]);
         is_applied_[i] = true;
     }
 }

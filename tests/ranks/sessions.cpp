@@ -370,7 +370,7 @@ TEST_F(RankSessions, RefuseWhatOneRankCannotDo) {
     there.deformed[1] = {own_device().allocate(scene.meshes[0].vertices.size() * 24, "vertices"),
                          Precision::fp64};
     EXPECT_THAT([&] { session->run(there); },
-                testing::ThrowsMessage<InputError>(testing::HasSubstr("ranks of a job tell each other")));
+                testing::ThrowsMessage<InputError>(testing::HasSubstr("ranks of a job exchange bodies")));
     EXPECT_THAT(refusal("tiled", {{"broad", "tight"}}), testing::HasSubstr("choose broad=device"));
     EXPECT_THAT(refusal("chunked", {{"residency", "published"}}), testing::HasSubstr("cannot share a frame"));
     EXPECT_THAT(refusal("tiled", {}), testing::HasSubstr("which ranks of a job find themselves"));
