@@ -2,44 +2,24 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
-#include <exception>
-#include <mutex>
+#include <functional>
 #include <span>
-#include <thread>
 #include <vector>
 
 namespace tandem {
 
-/// Calls work(i) for i < count on `threads` threads at most. When a call throws, no further ones are begun,
-/// and the first exception is thrown after those that run have ended.
-template<class Work>
-void parallel_for(std::size_t count, std::size_t threads, Work work) {
-    std::atomic<std::size_t> next = 0;
-    std::exception_ptr failure;
-    std::once_flag failed;
-    const auto drain = [&] {
-        try {
-            for (auto i = next++; i < count; i = next++) work(i);
-        } catch (...) {
-            next = count;
-            std::call_once(failed, [&] { failure = std::current_exception(); });
-        }
-    };
-    {
-        std::vector<std::jthread> others;
-        for (std::size_t i = 1; i < std::min(count, threads); ++i) others.emplace_back(drain);
-        drain();
-    }
-    if (failure) std::rethrow_exception(failure);
-}
+/// Cores that this process may use, at least 1.
+std::size_t usable_cores();
 
-/// The same on all cores.
-template<class Work>
-void parallel_for(std::size_t count, Work work) {
-    parallel_for(count, std::thread::hardware_concurrency(), std::move(work));
-}
+/// Calls work(i) once for each i < count, in any order, on at most `threads` threads of oneTBB's pool, of
+/// which the caller is one. When a call throws, no further call starts, and the first exception is thrown
+/// after the running calls have ended. Calls may block: with more threads than cores the pool grows for this
+/// loop.
+void parallel_for(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work);
+
+/// The same on all usable cores.
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& work);
 
 /// Spans of `values` in order, none empty, small enough that all cores get some of a long list.
 template<class Value>
@@ -54,7 +34,7 @@ std::vector<std::span<const Value>> in_parts(std::span<const Value> values) {
 /// How many parts are worth sorting at once.
 inline std::size_t sort_parts(std::size_t count) {
     constexpr std::size_t least = 1 << 14;
-    return std::clamp<std::size_t>(count / least, 1, std::max(1u, std::thread::hardware_concurrency()));
+    return std::clamp<std::size_t>(count / least, 1, usable_cores());
 }
 
 /// std::sort on all cores: parts of their own, then merged by twos. No two values may be equal, or their

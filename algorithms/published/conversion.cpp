@@ -2,7 +2,7 @@
 #include "algorithms/published/conversion.h"
 
 #include "algorithms/bodies/pack.h"
-#include "backends/host/fork_join.h"
+#include "base/fork_join.h"
 
 #include <algorithm>
 #include <cstring>
@@ -38,12 +38,12 @@ void Converter::each(std::size_t count, const std::function<void(std::size_t)>& 
         return;
     }
     using Parts = tbb::blocked_range<std::size_t>;
-    host::ForkJoin edges;
+    ForkJoin edges;
     const auto work = [&](const Parts& parts) {
-        const host::ForkJoin::Part own(edges);
+        const ForkJoin::Part own(edges);
         for (auto i = parts.begin(); i != parts.end(); ++i) part(i);
     };
-    arena_->execute([&] { tbb::parallel_for(Parts(0, count), host::SynchronizedWork(work)); });
+    arena_->execute([&] { tbb::parallel_for(Parts(0, count), SynchronizedWork(work)); });
 }
 
 /// Each array stores a body at the position of its row.

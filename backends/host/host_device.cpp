@@ -2,7 +2,7 @@
 #include "backends/host/host_device.h"
 
 #include "backends/host/dialect.h"
-#include "backends/host/fork_join.h"
+#include "base/fork_join.h"
 
 #include <fmt/format.h>
 #include <algorithm>

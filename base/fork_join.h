@@ -6,7 +6,7 @@ extern "C" void __tsan_acquire(void*);
 extern "C" void __tsan_release(void*);
 #endif
 
-namespace tandem::host {
+namespace tandem {
 
 /// What comes before a parallel loop happens before its parts, and these before what comes after it. oneTBB
 /// sees to that, but is not compiled with ThreadSanitizer, which has to be told; elsewhere this is nothing.
@@ -83,4 +83,4 @@ private:
     const Work* work_;
 };
 
-} // namespace tandem::host
+} // namespace tandem
