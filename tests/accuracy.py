@@ -61,7 +61,7 @@ class Accuracy(Case):
         self.assertEqual((contacts["complete"], contacts["overlapping"]), (False, 5))
 
     def test_check_shows_missed_and_false(self):
-        _, text = self.run_two("check", "--algorithm", "chunked", "--preset", "resident", command="check")
+        _, text = self.run_two("check", "--algorithm", "chunked", "--preset", "grouped", command="check")
         head, row = text.splitlines()[-3:-1]
         self.assertEqual(head.split()[-2:], ["missed", "false"])
         self.assertEqual(row.split()[-2], "0")

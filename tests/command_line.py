@@ -132,7 +132,7 @@ class CommandLine(Case):
             self.bad([str(path), reason], "run", "--mesh", path)
 
     def test_hard_cases(self):
-        fast = ("--device", "host", "--quiet", "--preset", "resident,fair", *(() if LONG else sets(SMALL)))
+        fast = ("--device", "host", "--quiet", "--preset", "grouped,resident,fair", *(() if LONG else sets(SMALL)))
         status, out, errors = tandem("check", "hard:corner-cancellation", "--set", "k=8", "--set", "rounding=nearest,safe", *fast)
         self.assertEqual((status, errors), (0, []), out)
         missed = [int(line.split()[-2]) for line in out.splitlines() if line.startswith("host ")]
@@ -302,7 +302,7 @@ class CommandLine(Case):
                 self.assertIn(" ".join(f"{counter['name']} {counter['meaning']} [{counter['unit']}]".split()), flat)
             only = json.loads(tandem("algorithms", entry["name"], "--json")[1])
             self.assertEqual(only, [entry])
-        self.assertIn("device in resident; sphere in published", tandem("algorithms", "chunked")[1])
+        self.assertIn("device in grouped, paper; sphere in published", tandem("algorithms", "chunked")[1])
         self.assertIn("device in resident; sphere where no preset sets it", tandem("algorithms", "tiled")[1])
         self.bad("the nearest is 'tiled'", "algorithms", "chunked", "tild")
         listing = tandem("algorithms")[1]

@@ -21,7 +21,7 @@ def record(factor=1.0, samples=9, k="8", commit="aaaa11112222", session=None):
     made["environment"]["commit"] = commit
     made["schema"] = 2
     if session:
-        made.update(schema=3, session=session, sampling={"seed": 1})
+        made.update(schema=4, session=session, sampling={"seed": 1})
         made["total_ns"]["rounds"] = list(range(samples))
     return made
 
@@ -47,7 +47,7 @@ class Compare(Case):
         for label in ("k=8 ", "k=18 "):
             row = next(line for line in out.splitlines() if line.startswith(label))
             self.assertEqual(row.split()[-3:][0], "≈")
-        self.assertIn("all  chunked, resident, cuda:0, NVIDIA H200", out)
+        self.assertIn("all  chunked, grouped, cuda:0, NVIDIA H200", out)
         self.assertLessEqual(max(map(len, out.splitlines())), 100)
 
     def test_slower_and_faster(self):

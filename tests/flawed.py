@@ -66,7 +66,7 @@ class Flawed(Case):
             for handling in ((), ("--degenerate", "flat"), ("--degenerate", "reject")):
                 self.bad("4 not finite in 1 of 2 bodies: body 0 tetrahedron 0, 1, ... in frame 0;", command, scene, "--device", "host",
                          *handling)
-        for arguments in (("check", scene, *(() if LONG else ("--preset", "resident,fair"))), ("run", scene, "--repeat", 1)):
+        for arguments in (("check", scene, *(() if LONG else ("--preset", "grouped,resident,fair"))), ("run", scene, "--repeat", 1)):
             out = self.work / f"{arguments[0]}-finite.jsonl"
             status, text, errors = tandem(*arguments, "--degenerate", "skip", "--out", out, "--truth", "contacts")
             self.assertEqual((status, errors), (0, []), text)

@@ -144,7 +144,7 @@ class Journal(Case):
     def test_standard_output_that_takes_nothing(self):
         """Exit code 3 and one line, from every command; records and files are written as ever."""
         commands = [("--help",), ("run", "--help"), ("devices",), ("devices", "--json"), ("scenes",), ("scenes", "--json"), ("algorithms",),
-                    ("algorithms", "--json"), ("run", *self.cell("--repeat", 1, "--out")), ("check", *self.cell("--preset", "resident", "--out")),
+                    ("algorithms", "--json"), ("run", *self.cell("--repeat", 1, "--out")), ("check", *self.cell("--preset", "grouped", "--out")),
                     ("accuracy", *self.cell()[:-3], "--set", "k=6", "--out"),
                     ("simulate", "block", "--steps", 2, "--device", "host", "--quiet", "--record"),
                     ("export", "block", "--frames", 0, "--glb"), ("export", "block", "--chunks")]

@@ -39,8 +39,8 @@ def record(chance, bodies, devices, with_ranks=False, frames=2):
     """Of a scene shared evenly, as the known coefficients have it."""
     own, body_pairs, pairs = bodies // devices, int(bodies * chance.uniform(1, 12)), int(bodies * chance.uniform(500, 5000))
     scene = {"key": "made", "bodies": bodies, "tetrahedra": TETRAHEDRA * bodies}
-    line = {"schema": 3, "key": "made", "status": "ok", "preset": "resident", "algorithm": "tiled", "settings": {"k": "18", "slabs": "three", "broad": "device"}, "scene": scene,
-            "shares": None,
+    line = {"schema": 4, "key": "made", "status": "ok", "preset": "resident", "algorithm": "tiled", "settings": {"k": "18", "slabs": "three", "broad": "device"}, "scene": scene,
+            "partition": None,
             "devices": [{"name": "made", "clock": "made"}] * devices, "frames": {"first": 0,
                                                                                  "last": frames - 1}, "work": {"body_pairs": [body_pairs] * frames,
                                                                                                                "candidate_pairs": [pairs] * frames},
@@ -59,7 +59,7 @@ def record(chance, bodies, devices, with_ranks=False, frames=2):
     line["total_ns"] = {"median": max(l["ns"]["median"] + (l["exchange"] or {"host_ns": 0})["host_ns"] for l in parts) + beside}
     line["stages"] = {name: {clock: {"median": ns} for clock, ns in stage.items()} for name, stage in parts[0]["stages"].items()}
     if devices > 1:
-        line["shares"] = {"devices": parts}
+        line["partition"] = {"devices": parts}
     return line
 
 
@@ -111,7 +111,7 @@ class Fit(ModelCase):
         self.assertEqual((every.bodies, every.ranks), (30000, 4))
         self.assertLess(abs(every.beside / BESIDE - 1), 0.01)
         largest = records()[-1]
-        self.assertAlmostEqual(every.own, min(one["exchange"]["host_ns"] for one in largest["shares"]["devices"]) / 2 / 7500)
+        self.assertAlmostEqual(every.own, min(one["exchange"]["host_ns"] for one in largest["partition"]["devices"]) / 2 / 7500)
 
     def test_no_coefficient_is_negative(self):
         counts = [{"tetrahedra": n, "pairs": m} for n, m in ((1e6, 10), (2e6, 20), (4e6, 5), (9e6, 50))]

@@ -57,12 +57,12 @@ check() { # ARGUMENTS...
 # form are those without which every kernel is run.
 long() { [ -z "${TANDEM_LONG_FORM:-}" ] || check "$@"; }
 chunked=(--algorithm chunked --set leaves=4)
-check "${chunked[@]}" --preset resident --set seed_threshold=1
+check "${chunked[@]}" --preset grouped --set seed_threshold=1
 check "${chunked[@]}" --preset published --set seed_threshold=1000
-long "${chunked[@]}" --preset resident --set seed_threshold=1000
+long "${chunked[@]}" --preset grouped --set seed_threshold=1000
 long "${chunked[@]}" --preset published --set seed_threshold=1
-check --algorithm chunked --preset resident --set precision=double --set output=digest
-long --algorithm chunked --preset resident --set precision=double --set output=count
+check --algorithm chunked --preset grouped --set precision=double --set output=digest
+long --algorithm chunked --preset grouped --set precision=double --set output=count
 queues=(--algorithm gproximity --preset fair --set groups=3 --set initial_items=4 --set queue_capacity=64
         --set balance_group_size=8)
 check "${queues[@]}" --set local_queue=12 --set balance=parallel

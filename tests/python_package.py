@@ -160,8 +160,8 @@ class Reading(unittest.TestCase):
         good = (H200 / "seeds.jsonl").read_text().splitlines()[0]
         without = json.dumps({name: value for name, value in json.loads(good).items() if name != "frames"})
         for text, words in ((f"{good}\nnot json\n", ":2: is not JSON"), ("[1]\n", ":1: is no record of a cell"), ("[" * 100000 + "\n", ":1: is not JSON"),
-                            (good.replace('"schema":3', '"schema":1', 1) + "\n", "scripts/convert_records"),
-                            (good.replace('"schema":3', '"schema":9', 1) + "\n", "schema 9"), (f"{without}\n", "record"), ("", "is empty")):
+                            (good.replace('"schema":4', '"schema":1', 1) + "\n", "scripts/convert_records"),
+                            (good.replace('"schema":4', '"schema":9', 1) + "\n", "schema 9"), (f"{without}\n", "record"), ("", "is empty")):
             with tempfile.NamedTemporaryFile("w", suffix=".jsonl") as file:
                 file.write(text)
                 file.flush()

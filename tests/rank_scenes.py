@@ -66,7 +66,7 @@ class RankScenes(Case):
             for field in ("body_pairs", "candidate_pairs", "contacts", "digest", "contact_digest", "rejected"):
                 self.assertEqual(record["work"][field], one["work"][field], field)
             self.assertEqual((record["ranks"], len(record["devices"])), (ranks, ranks))
-            shares = record["shares"]["devices"]
+            shares = record["partition"]["devices"]
             self.assertEqual(len(shares), ranks)
             self.assertEqual([sum(pairs) for pairs in zip(*(share["candidate_pairs"] for share in shares))], one["work"]["candidate_pairs"])
             self.assertGreater(sum(share["exchange"]["bytes"] for share in shares), 0)

@@ -56,7 +56,7 @@ class Records(Case):
         status, text, errors = tandem(*arguments)
         self.assertEqual((status, errors), (0, []), text)
         self.assertEqual(text.count(": right: "), 4, text)
-        for word in ("ms/frame", "traverse", "launches", "95 %", "times as long as chunked resident on host", "narrow"):
+        for word in ("ms/frame", "traverse", "launches", "95 %", "times as long as chunked grouped on host", "narrow"):
             self.assertIn(word, text)
         first = out.read_bytes()
         records = self.records(out)
@@ -146,13 +146,13 @@ class Records(Case):
                                                    "registers", "local_bytes", "spill_bytes", "missed_upper95", "candidate_ratio", "decisions",
                                                    "depth_relative", "depth_ulps", "normal_degrees", "point", "hausdorff", "volume_relative"}
         of_condition = ("cores", "quota_cores", "own_cores", "other_cores", "governor", "mhz", "throttled_periods", "pressure_percent")
-        nullable_paths = {("environment", "processor"), ("environment", "sources"), ("conditions",), ("ranks",), ("shares",),
+        nullable_paths = {("environment", "processor"), ("environment", "sources"), ("conditions",), ("ranks",), ("partition",),
                           *(("conditions", when, "processor", name) for when in ("before", "after") for name in of_condition),
                           *(("conditions", when, "gpus", 0) for when in ("before", "after")), *(("sampling", name) for name in ("cells", "seed", "repeat", "noise", "seconds", "spent_seconds", "converged", "drift")), ("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift"),
                           *(("work", name) for name in ("undecided_by_filter", "undecided_by_double", "batches")),
                           *(("work", "counters", name) for name in record["work"]["counters"])}
         since = {"chosen", "truth", "inputs", "volume_relative", "no_volume"}  # records from before each lack it
-        since_paths = {("devices", 0, "clock"), ("work", "digest"), ("work", "contact_digest"), ("work", "submissions"), ("sampling", "continued"), ("host_work",), ("ranks",), ("shares",)}
+        since_paths = {("devices", 0, "clock"), ("work", "digest"), ("work", "contact_digest"), ("work", "submissions"), ("sampling", "continued"), ("host_work",), ("ranks",), ("partition",)}
         seen = set()
         for path in places(record):
             shape = tuple(0 if isinstance(name, int) else name for name in path)
@@ -266,7 +266,7 @@ class Records(Case):
 
     def test_no_table_of_what_is_no_record(self):
         other, empty = self.work / "other.jsonl", self.work / "empty.jsonl"
-        other.write_text('{"schema":3}\n')
+        other.write_text('{"schema":4}\n')
         empty.write_text("")
         self.bad(f"{other}:1: is no record of a cell", "export", other, "--csv")
         self.bad(f"{empty}: is empty", "export", empty, "--csv")
@@ -282,7 +282,7 @@ class Records(Case):
         self.bad("cannot be written", "export", old, "--csv", self.work / "none" / "x.csv")
         self.bad("writing failed (No space left on device)", "export", old, "--csv", "/dev/full")
         record = json.loads(old.read_text().split("\n", 1)[0])
-        for change, expected in (({"frames": None}, "is no record of a cell"), ({"schema": 1}, "scripts/convert_records"), ({"schema": 4}, "schema 4"),
+        for change, expected in (({"frames": None}, "is no record of a cell"), ({"schema": 1}, "scripts/convert_records"), ({"schema": 5}, "schema 5"),
                                  ({"settings": {"k": 8}}, "is no record of a cell"), ({"work": {"counters": 3}}, "lacks fields of its schema"),
                                  ({"frames": {"first": 1, "last": 0}}, "lacks fields of its schema")):
             other.write_text(json.dumps(record | change) + "\n")

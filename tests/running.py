@@ -85,7 +85,7 @@ class Running(Case):
         self.assertIn("8 cells are in ", text)
         self.assertEqual((status, len(self.records(out))), (0, 11))
         self.bad("--resume requires --out", "run", *CELLS, "--resume")
-        out.write_text(lines[0].replace('"schema":3', '"schema":2', 1))
+        out.write_text(lines[0].replace('"schema":4', '"schema":2', 1))
         self.bad("has records of schema 2", *arguments, "--resume")
 
     def test_interrupt_keeps_what_is_measured(self):
@@ -122,7 +122,7 @@ class Running(Case):
         tables = re.split(r"\n\n.*: right", text)[0].split("\n", 1)[1]
         self.assertLessEqual(max(map(len, tables.splitlines())), 100, tables)
         self.assertNotIn("\033", text)
-        self.assertIn("times as long as chunked resident", tables)
+        self.assertIn("times as long as chunked grouped", tables)
 
     def test_scenes_are_opened_before_they_are_measured(self):
         self.bad("unknown scene", "run", "plates:count=2", "plaits", "--frames", 0, "--device", "host", "--algorithm", "tiled")

@@ -181,7 +181,7 @@ class Scripts(Case):
                "list.jsonl": (b"[]\n", ":1: is no record of tandem"), "other.jsonl": (b'{"a": 1}\n', ":1: is no record of tandem"),
                "deep.jsonl": (b"[" * 100000 + b"\n", ":1: is not JSON"), "bytes.jsonl": (bytes(range(256)), "is not JSON"),
                "nan.jsonl": (json.dumps({**record, "total_ns": math.nan}).encode() + b"\n", ":1: is not JSON"),
-               "half.jsonl": (b'{"key": "\\ud83d"}\n', ":1: is not JSON"), "second.jsonl": (line + b'{"schema":3,"key"\n', ":2: is not JSON"),
+               "half.jsonl": (b'{"key": "\\ud83d"}\n', ":1: is not JSON"), "second.jsonl": (line + b'{"schema":4,"key"\n', ":2: is not JSON"),
                "torn.jsonl": (line[:100], "torn.jsonl: its only line has no end"),
                "old.jsonl": (json.dumps({**record, "schema": 2}).encode() + b"\n", [":1: a record of schema 2", "scripts/convert_records"]),
                "newer.jsonl": (json.dumps({**record, "schema": 9}).encode() + b"\n", [":1: a record of schema 9", "take the package"]),
@@ -249,10 +249,36 @@ class Scripts(Case):
             self.assertGreater(len(done.stdout), 20)
         self.assertEqual(copy.read_bytes(), walks.read_bytes())
 
+    def test_older_records_are_converted_to_the_newest_schema(self):
+        """What schema 3 of cells (2 of simulations, 1 of profiles) called otherwise, and nothing else, changes; converting again changes nothing."""
+        def older(record):
+            if isinstance(record, list):
+                return [older(one) for one in record]
+            if not isinstance(record, dict):
+                return record
+            record = {"shares" if name == "partition" else "deals" if name == "repartitions" else name: older(value) for name, value in record.items()}
+            if record.get("algorithm") == "chunked" and record.get("preset") in ("grouped", "paper"):
+                record["preset"] = "resident"
+            return record
+
+        presets = set()
+        for name in ("h200/plan.jsonl", "h200/auto.jsonl", "h100x2/shares.jsonl", "h200/profile.jsonl", "h200/simulation-funnel.jsonl"):
+            records = committed(name)
+            presets.update(record["preset"] for record in records if record.get("algorithm") == "chunked")
+            path = self.work / "older.jsonl"
+            path.write_text("".join(json.dumps({**older(record), "schema": record["schema"] - 1}) + "\n" for record in records))
+            self.refused("tables", "convert_records", path)
+            self.said("convert_records", path)
+            self.assertEqual([json.loads(line) for line in path.read_text().splitlines()], records, name)
+            once = path.read_bytes()
+            self.said("convert_records", path)
+            self.assertEqual(path.read_bytes(), once)
+        self.assertEqual(presets, {"grouped", "paper", "published"})
+
     def test_cells_that_failed_or_are_wrong_are_shown_and_never_ranked(self):
         plates = {record["algorithm"] + record["preset"]: record for record in reversed(committed("h200/plates.jsonl"))
                   if record["settings"]["k"] == "8" and record["devices"][0]["id"] == "cuda:0"}
-        first, second, third = (plates[name] for name in ("chunkedresident", "chunkedpublished", "gproximityfair"))
+        first, second, third = (plates[name] for name in ("chunkedgrouped", "chunkedpublished", "gproximityfair"))
         fastest = {**first, "status": "wrong", "agreement": {**first["agreement"], "missing": 7, "extra": 0}}
         lost = {**second, "status": "failed", "failure": "the device | was\nlost", "total_ns": None, "breakdown_ns": None, "stages": {}, "work": None,
                 "agreement": None, "conditions": None}
@@ -314,7 +340,7 @@ class Scripts(Case):
         with open(path, "w") as out:
             for i in range(count):
                 settings = {**record["settings"], "threads": str(i)}
-                algorithm, preset = (("chunked", "resident"), ("gproximity", "fair"))[i % 2]
+                algorithm, preset = (("chunked", "grouped"), ("gproximity", "fair"))[i % 2]
                 out.write(json.dumps({**record, "algorithm": algorithm, "preset": preset, "settings": settings}) + "\n")
         text = self.said("tables", path, address_space=1 << 29)
         self.assertEqual(text.count("threads="), count + count) # a row each; half of them as ratios, of two cells

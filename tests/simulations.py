@@ -72,7 +72,7 @@ class Simulations(Case):
             self.assertIn(f"{steps} frames", text)
         self.assertEqual(len({file.read_bytes() for file in files}), 1)
         status, text, errors = tandem("check", files[0], "--frames", f"{steps - 2}:{steps - 1}", "--device", "host,opencl:0",
-                                      "--preset", "all" if LONG else "resident,fair")
+                                      "--preset", "all" if LONG else "grouped,resident,fair")
         self.assertEqual((status, errors), (0, []), text)
         self.assertIn("all agree with the reference", text)
 

@@ -21,9 +21,14 @@ constexpr std::array<const Parameter*, 8> own{&chunk_bytes, &leaves,  &seed_thre
                                               &schedule,    &descent, &root_test,      &seed_capacity};
 
 const std::vector<Preset> all_presets{
-    {"resident",
-     "everything resident, body pairs included, one wait per frame",
-     {parameters::broad(Broad::device)}},
+    {"grouped",
+     "our schedule: work-groups share the walks of their seeds; everything resident, one wait per frame",
+     {parameters::broad(Broad::device)},
+     "resident"},
+    {"paper",
+     "the paper's schedule (item, both children, threshold 10^7) with everything resident",
+     {parameters::broad(Broad::device), schedule(Schedule::item), descent(Descent::both),
+      seed_threshold(10000000)}},
     {"published",
      "the paper: k = 8, 8000-byte chunks, everything converted and transferred in every frame",
      {parameters::k(8), parameters::residency(Residency::published), schedule(Schedule::item),

@@ -144,6 +144,7 @@ struct Preset {
     std::string_view name;
     std::string_view help;
     std::vector<Assignment> values;
+    std::string_view former_name = {}; ///< before record schema 4; empty: the same
 
     SettingTexts texts() const;
 };

@@ -84,15 +84,30 @@ void check_sets(const Request& request, std::span<const Traversal* const> chosen
                 fmt::format("--set {}=... is given twice; write --set {}=V1,V2", set->first, set->first));
 }
 
+/// Throws where a preset is asked for by a former name, and no preset of this algorithm is by its own.
+void refuse_former_name(const std::string& name, const Request& request, const Traversal& traversal) {
+    const auto asked = [&](const Preset& preset) {
+        return std::ranges::any_of(request.presets,
+                                   [&](const auto& one) { return one == "all" || one == preset.name; });
+    };
+    if (std::ranges::any_of(traversal.presets(), asked)) return;
+    for (const auto& preset : traversal.presets())
+        if (preset.former_name == name)
+            throw InputError(fmt::format("preset '{}' of {} is now called '{}'; give --preset {}", name,
+                                         traversal.name(), preset.name, preset.name));
+}
+
 void check_presets(const Request& request, std::span<const Traversal* const> chosen) {
     std::vector<std::string> names{"all"};
     for (const auto* traversal : chosen)
         for (const auto& candidate : traversal->presets())
             if (std::find(names.begin(), names.end(), candidate.name) == names.end())
                 names.emplace_back(candidate.name);
-    for (const auto& name : request.presets)
+    for (const auto& name : request.presets) {
+        for (const auto* traversal : chosen) refuse_former_name(name, request, *traversal);
         if (std::find(names.begin(), names.end(), name) == names.end())
             throw InputError(unknown("preset", name, names));
+    }
 }
 
 /// The cells of one algorithm, or of auto, on one group of devices.

@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int schema = 1; ///< of results/profile.schema.json
+constexpr int schema = 2; ///< of results/profile.schema.json
 
 Json known(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 Json known(std::int64_t value) { return value < 0 ? Json() : Json(value); }

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 void add_times(Json& record, const Measurement& m, bool measured);
 
 /// How several devices shared its frames; null on one.
-Json shares_json(const Measurement& m, const Cell& cell);
+Json partition_json(const Measurement& m, const Cell& cell);
 
 /// How it was sampled, and what is to be thought of it.
 Json sampling_json(const Measurement& m, const Cell& cell, const Outcome& outcome, const Sampling& sampling);

@@ -193,7 +193,7 @@ Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, 
     json["sampling"] = record_parts::sampling_json(m, cell, outcome, sampling);
     json["conditions"] = record_parts::conditions_json(m);
     record_parts::add_times(json, m, measured);
-    json["shares"] = record_parts::shares_json(m, cell);
+    json["partition"] = record_parts::partition_json(m, cell);
     json["work"] = measured ? work_json(m, *cell.algorithm) : Json();
     json["kernels"] = kernels_json(m.kernels);
     json["preparation"] =

@@ -8,7 +8,7 @@
 namespace tandem {
 
 /// The version of results/record.schema.json.
-inline constexpr int record_schema = 3;
+inline constexpr int record_schema = 4;
 
 /// One measured cell as the JSON object of results/record.schema.json. Of a cell that failed it has what was
 /// measured before.

@@ -74,7 +74,7 @@ void RunTotals::add(const StepReport& report, const ContactSearch& search, std::
 
 Json step_record(const StepReport& report, const ContactSearch& search, std::int64_t wall_ns,
                  std::uint64_t session) {
-    return {{"schema", 2},
+    return {{"schema", 3},
             {"kind", "step"},
             {"session", session_name(session)},
             {"step", report.step},
@@ -105,7 +105,7 @@ Json step_record(const StepReport& report, const ContactSearch& search, std::int
 }
 
 Json run_record(const Cell& cell, const Scene& scene, const RunTotals& t, const std::string& failure) {
-    Json json{{"schema", 2},
+    Json json{{"schema", 3},
               {"kind", "run"},
               {"session", session_name(t.session)},
               {"status", failure.empty() ? "ok" : "failed"},

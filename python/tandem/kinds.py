@@ -4,7 +4,7 @@ import contextlib
 
 from . import lines
 
-SCHEMAS = {"cell": 3, "profile": 1, "simulation": 2, "ceilings": 1}
+SCHEMAS = {"cell": 4, "profile": 2, "simulation": 3, "ceilings": 1}
 _MARKS = {"profile_of": "profile", "key": "cell", "copy_bytes_per_s": "ceilings"}  # the first that a record has says its kind
 
 

@@ -8,7 +8,7 @@ import re
 import warnings
 
 WHAT_TO_GIVE = "give files that 'tandem run --out' wrote"
-OLDEST, NEWEST = 2, 3
+OLDEST, NEWEST = 2, 4
 # What a reader of fields raises where a record is not of its schema.
 FIELD_ERRORS = (KeyError, TypeError, AttributeError, IndexError, ValueError, ArithmeticError)
 _LARGE = re.compile(rb"[eE]\+?\d{3}|\d{300}")  # a number that may be beyond all doubles
@@ -52,7 +52,7 @@ def checked_cell(record, place):
     if schema < OLDEST:
         raise RecordError(f"{place}: a record of schema {schema}; bring it to schema {NEWEST} with scripts/convert_records")
     if schema > NEWEST:
-        raise RecordError(f"{place}: a record of schema {schema}, and this package knows {OLDEST} and {NEWEST}; take the package "
+        raise RecordError(f"{place}: a record of schema {schema}, and this package knows {OLDEST} to {NEWEST}; take the package "
                           "of the program that wrote it")
     return record
 

@@ -90,7 +90,7 @@ TEST_P(Skipping, LeavesTheRestAsItIsAtEveryLevel) {
     const auto& traversal = algorithm("chunked");
     for (const std::string leaves : {"2", "4"})
         for (const std::string broad : {"device", "tight"})
-            expect_the_rest(traversal, preset(traversal, "resident"),
+            expect_the_rest(traversal, preset(traversal, "grouped"),
                             {{"leaves", leaves}, {"k", "8"}, {"broad", broad}, {"contact_rule", "none"}},
                             scene);
 }

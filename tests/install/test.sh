@@ -50,7 +50,7 @@ cmake --build "$work/consumer" >"$work/log" || { cat "$work/log" >&2; exit 1; }
   prefix/bin/tandem accuracy hard:touch:pairs=4,together=2 --device host --set k=8,18 --repeat 1 --truth-contacts 1 --quiet --out truth.jsonl >/dev/null
   prefix/bin/tandem-figures truth.jsonl drawn >/dev/null
   [ -s drawn/bars.svg ]
-  sed 's/"schema":3/"schema":2/' walks.jsonl >old.jsonl
+  sed 's/"schema":4/"schema":3/' walks.jsonl >old.jsonl
   status=0 && prefix/bin/tandem-tables old.jsonl 2>said || status=$?
   [ "$status" = 2 ] && grep -q 'tandem-convert-records' said
   if /usr/bin/python3 -c 'import numpy, PIL' 2>/dev/null; then

@@ -66,14 +66,14 @@ def _load_alone(record, frames):
 def _load_of_part(record, one, frames):
     """One device's, of several."""
     stages, scene = {name: stage["device_ns"] for name, stage in one["stages"].items()}, record["scene"]
-    counts = counts_of(scene, _mean(one["bodies"]), scene["bodies"] / len(record["shares"]["devices"]), _mean(one["body_pairs"]),
+    counts = counts_of(scene, _mean(one["bodies"]), scene["bodies"] / len(record["partition"]["devices"]), _mean(one["body_pairs"]),
                        _mean(one["candidate_pairs"]), False, _mean(one["bodies"]) if record.get("ranks") else None)
     return _load(counts, _part_times(stages, frames), one["ns"]["median"] / frames / 1e3, frames, one["exchange"])
 
 
 def loads_of(record):
     """A Record of the record of a cell. Raises one of lines.FIELD_ERRORS."""
-    frames, parts = cell_rows.frames_of(record), record.get("shares")
+    frames, parts = cell_rows.frames_of(record), record.get("partition")
     loads = [_load_alone(record, frames)] if parts is None else [_load_of_part(record, one, frames) for one in parts["devices"]]
     return Record(loads, record["total_ns"]["median"] / frames / 1e3, record["scene"], (record.get("preparation") or {}).get("device_bytes"),
                   _mean(record["work"]["candidate_pairs"]), record.get("ranks") is not None)

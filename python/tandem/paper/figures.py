@@ -197,8 +197,8 @@ def figure12(folder):
     for colour, simulation in zip(COLOURS, simulations):
         launches = [sum(stage["launches"] for stage in step["stages"].values()) for step in simulation.steps]
         steps = [step["step"] for step in simulation.steps]
-        curves.plot(steps, launches, color=colour, label=f"{simulation.scene}, chunked resident")
-        plot.rows += [{"scene": simulation.scene, "method": "chunked resident", "step": step, "launches": n} for step, n in zip(steps, launches)]
+        curves.plot(steps, launches, color=colour, label=f"{simulation.scene}, chunked grouped")
+        plot.rows += [{"scene": simulation.scene, "method": "chunked grouped", "step": step, "launches": n} for step, n in zip(steps, launches)]
     curves.set(xlabel="step", ylabel="launches")
     curves.set_ylim(bottom=0)
     curves.legend(fontsize=8, ncols=2, loc="lower left", bbox_to_anchor=(0, 1))
@@ -223,7 +223,7 @@ def figure13(folder):
         return missing(folder.path, 13, "Seed thresholds", "no cell of the sweep has ended well")
     plot = Plot(13, 2, 2.5)
     said = []
-    for ax, preset in zip(plot.axes, ("published", "resident")):
+    for ax, preset in zip(plot.axes, ("published", "grouped")):
         own = sorted((int(way.settings["seed_threshold"]), way) for way in ways if way.preset == preset)
         x = [value for value, _ in own]
         for name, colour in (("traverse", COLOUR_OF["traverse"]), ("seed", "#777777"), ("write", COLOUR_OF["write"])):
@@ -268,7 +268,7 @@ def figure14(folder):
             plot.rows += [{"k": k, "order": order, "chunk_bytes": bytes_, "ms": ms, "low_ms": l, "high_ms": h, "records": way.places[0]}
                           for way, bytes_, ms, l, h in zip(own, x, y, low, high)]
         ax.set(xscale="log", yscale="log", xlabel="chunk bytes of equation (1)")
-        ax.set_title(f"chunked resident, k = {k}", fontsize=9, loc="left", color=INK)
+        ax.set_title(f"chunked grouped, k = {k}", fontsize=9, loc="left", color=INK)
         milliseconds(ax)
         ax.legend(ncols=4, fontsize=8)
         best = min((way for way in ways if way.settings["k"] == k), key=lambda way: way.total() / way.frames)

@@ -130,7 +130,7 @@ def factors(own, other, path, against):
 def scene_factors(folder, scene):
     ways = folder.ways(f"cells-{scene}")
     rows = []
-    published, resident = pick(ways, "chunked", "published"), pick(ways, "chunked", "resident")
+    published, resident = pick(ways, "chunked", "published"), pick(ways, "chunked", "grouped")
     others = [way for way in ways if way.algorithm == "gproximity" and way.preset == "published"]
     others += folder.ways(f"gpus-{scene}")
     for other in others if published else ():

@@ -57,7 +57,7 @@ Json exchange_json(const Measurement& m, std::size_t device) {
 
 } // namespace
 
-Json shares_json(const Measurement& m, const Cell& cell) {
+Json partition_json(const Measurement& m, const Cell& cell) {
     if (m.samples.empty() || m.shared.empty()) return nullptr;
     std::vector<double> imbalances;
     for (const auto& sample : m.samples) imbalances.push_back(sample.imbalance().value_or(1));
@@ -73,7 +73,7 @@ Json shares_json(const Measurement& m, const Cell& cell) {
                            {"exchange", exchange_json(m, i)},
                            {"stages", stages_json(m, i)}});
     return {{"imbalance", imbalances[imbalances.size() / 2]},
-            {"deals", m.samples.back().repartitions},
+            {"repartitions", m.samples.back().repartitions},
             {"devices", devices}};
 }
 
