@@ -38,7 +38,7 @@ class Journal(Case):
         out, torn = self.work / "torn.jsonl", self.work / "torn.jsonl.torn"
         out.write_bytes(LINE + LINE[:-5])
         status, text, errors = run("run", *self.cell("--repeat", 1, "--out", out))
-        self.assertEqual((status, errors), (0, [f"tandem: {out}: the last line was torn; its {len(LINE) - 5} bytes are set aside in {torn}"]), text)
+        self.assertEqual((status, errors), (0, [f"tandem: {out}: the last line was torn; its {len(LINE) - 5} bytes were moved to {torn}"]), text)
         self.assertEqual(len(self.whole(out)), 1)
         self.assertEqual(torn.read_bytes(), LINE[:-5] + b"\n")
         out.write_bytes(LINE + LINE[:-1])
@@ -52,14 +52,14 @@ class Journal(Case):
         for data in (b"frame,body_a\n1,2\n", b"\x00\x01" * 3000, self.good.read_bytes()):
             for command in commands:
                 out.write_bytes(data)
-                self.bad([str(out), "its first line is no JSON object", "choose another --out"], *command, out)
+                self.bad([str(out), "its first line is not a JSON object", "choose another --out"], *command, out)
                 self.assertEqual(out.read_bytes(), data)
         self.bad([str(self.work), "Is a directory", "choose another --out"], *commands[0], self.work)
         self.assertFalse((self.work / "other.torn").exists())
 
     def test_a_full_disk_keeps_the_table(self):
         status, text, errors = run("run", *self.cell("--repeat", 1, "--set", "k=6,8", "--out", "/dev/full"))
-        self.assertEqual((status, errors), (3, ["tandem: /dev/full: writing failed (No space left on device); the records before are whole"]))
+        self.assertEqual((status, errors), (3, ["tandem: /dev/full: writing failed (No space left on device); earlier records are complete"]))
         self.assertIn("traverse", text)
         self.assertEqual(text.count(": right: "), 1, text)
         for command in (("check", *self.cell("--set", "k=6,8")), ("accuracy", *self.cell()[:-3], "--set", "k=6,8")):
@@ -129,7 +129,7 @@ class Journal(Case):
         os.symlink(victim, f"{out}.unfinished")
         status, _, errors = run("run", *self.cell("--repeat", 2, "--out", out))
         self.assertEqual((status, len(errors)), (0, 1), errors)
-        self.assertIn("rounds are no longer kept", errors[0])
+        self.assertIn("rounds are no longer saved", errors[0])
         self.assertEqual((victim.read_text(), len(self.records(out))), ("of another", 1))
 
     def test_programs_that_append_at_a_time(self):

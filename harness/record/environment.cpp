@@ -20,7 +20,7 @@ constexpr auto compiler = "g++ " __VERSION__;
 
 } // namespace
 
-/// Arguments apart by blanks, in single quotes where they hold one.
+/// Expects arguments separated by blanks, and in single quotes where they contain a blank.
 std::string without_folders(std::string_view line) {
     std::string result;
     while (!line.empty()) {

@@ -7,7 +7,7 @@
 
 namespace tandem {
 
-/// Where and with what a record was made; no host name. Empty or 0 when unknown.
+/// The machine and the program that made a record; no host name. Unknown values are empty or 0.
 struct Environment {
     std::string commit;
     bool dirty = false;
@@ -18,23 +18,24 @@ struct Environment {
     std::string compiler;
 };
 
-/// Of this process, now. Never throws: what cannot be read is unknown.
+/// The environment of this process at the time of the call. Never throws: values that cannot be read stay
+/// unknown.
 Environment environment();
 
-/// "tandem 0.1.0, commit 0123456789ab, dirty, g++ 12.2.0, with Embree 3.13.5, ...": what `tandem --version`
-/// prints.
+/// The output of `tandem --version`: "tandem 0.1.0, commit 0123456789ab, dirty, g++ 12.2.0, with Embree
+/// 3.13.5, ...".
 std::string version_line();
 
-/// 16 hexadecimal digits of chance: of all records of one run of the program, and of no other.
+/// A random identifier of 16 hexadecimal digits, shared by all records of one run of the program.
 const std::string& session_id();
 
-/// 16 hexadecimal digits of the sources that the program was built from, those of its kernels included.
+/// A digest of 16 hexadecimal digits over the sources of the program, including its kernels.
 std::string sources_digest();
 
-/// As it was given, the program without its folder; empty when unknown.
+/// The command line as the user gave it, with the program's folder removed; empty when unknown.
 std::string command_line();
 
-/// A line without the folders of its absolute paths, which say whose machine it was.
+/// Removes the folders of absolute paths from a line, because they can identify the machine or its user.
 std::string without_folders(std::string_view line);
 
 } // namespace tandem

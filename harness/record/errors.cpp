@@ -64,7 +64,7 @@ Json truth_json(const AnswerErrors& e) {
     return json;
 }
 
-/// As many bodies as a record names; it says of how many there are.
+/// Most bodies that a record lists; "flawed_bodies" is their full number.
 constexpr std::size_t most_flawed_bodies = 16;
 
 Json inputs_json(const Flaws& flaws) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Structures as JSON, field by field, every number exactly: what goes from process to process and is kept
-// between runs. Records are written by hand.
+// Converts structures to JSON field by field, with every number exact. Child processes and files kept between
+// runs use this form. Records have writers of their own.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,7 +8,7 @@
 
 namespace nlohmann {
 
-/// Nothing is null.
+/// An empty optional is null in JSON.
 template<class T>
 struct adl_serializer<std::optional<T>> {
     static void to_json(json& to, const std::optional<T>& value) { to = value ? json(*value) : json(); }
@@ -19,7 +19,7 @@ struct adl_serializer<std::optional<T>> {
 
 } // namespace nlohmann
 
-/// to_json and from_json of a structure by all its fields, in their order: one left out does not compile.
+/// Defines to_json and from_json of a structure. List all fields in order: a missing field does not compile.
 #define TANDEM_FIELDS(Type, ...)                                                                             \
     NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Type, __VA_ARGS__)                                                    \
     inline void fields_of(const Type& value) { [[maybe_unused]] const auto& [__VA_ARGS__] = value; }

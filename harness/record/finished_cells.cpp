@@ -13,8 +13,8 @@ namespace tandem {
 
 namespace {
 
-/// The key of what was asked for: with the settings that the devices took otherwise as they were given.
-std::string asked_key(const nlohmann::ordered_json& record) {
+/// The key with the settings that the user requested, which the record lists where a device changed them.
+std::string requested_key(const nlohmann::ordered_json& record) {
     auto settings = record.at("settings").get<SettingTexts>();
     for (const auto& [name, value] : record.at("asked").items()) settings[name] = value.get<std::string>();
     const auto key = record.at("key").get<std::string>();
@@ -25,27 +25,27 @@ std::string asked_key(const nlohmann::ordered_json& record) {
 
 FinishedCells::FinishedCells(const RecordFile& file, const std::string& path) {
     file.for_each([&](const nlohmann::ordered_json& record) {
-        if (!record.contains("key")) return; // of ceilings or a simulation
+        if (!record.contains("key")) return; // a record of ceilings or of a simulation
         const auto schema = record.value("schema", nlohmann::ordered_json());
         if (schema != record_schema)
             throw InputError(
-                fmt::format("{}: has records of schema {}, and this program writes {}; bring them to it "
-                            "with scripts/convert_records, or choose another --out",
+                fmt::format("{}: has records of schema {}, but this program writes schema {}; convert "
+                            "them with scripts/convert_records, or choose another --out",
                             path, schema.dump(), record_schema));
         try {
-            take(record);
+            add(record);
         } catch (const nlohmann::json::exception&) {
             throw InputError(fmt::format(
-                "{}: the record of {} is not as results/record.schema.json says; repair it, or "
+                "{}: the record of {} does not match results/record.schema.json; repair it, or "
                 "choose another --out",
                 path, record.at("key").dump(-1, ' ', true, nlohmann::json::error_handler_t::replace)));
         }
     });
 }
 
-void FinishedCells::take(const nlohmann::ordered_json& record) {
+void FinishedCells::add(const nlohmann::ordered_json& record) {
     if (record.at("status") == "failed" || record.at("sampling").at("interrupted") == true) return;
-    auto& finished = by_key_[asked_key(record)];
+    auto& finished = by_key_[requested_key(record)];
     const auto& sources = record.at("environment").at("sources");
     finished.same_sources |= sources.is_string() && sources == sources_digest();
     const auto& spent = record.at("sampling").at("spent_seconds");

@@ -11,20 +11,22 @@
 
 namespace tandem {
 
-/// The cells that a file of records has already, by what was asked for: devices may take settings otherwise.
+/// The cells that a file of records already contains. The key uses the requested settings, because a device
+/// may run with different ones.
 class FinishedCells {
 public:
     FinishedCells() = default;
-    /// Reads what this program, of the same sources, has finished (right or wrong, and not interrupted) into
-    /// the file. Throws InputError where it holds records of another schema.
+    /// Reads the records of finished cells, right or wrong; skips failed and interrupted ones. Throws
+    /// InputError when the file contains records of another schema.
     explicit FinishedCells(const RecordFile& file, const std::string& path);
 
+    /// Whether a program of the same sources has finished the cell.
     bool has(const Cell& cell, const Scene& scene, const FrameRange& range) const;
-    /// What its rounds took, whichever sources they were of; none when it was never measured.
+    /// Duration of the cell's rounds in seconds, for any sources; empty when it was never measured.
     std::optional<double> seconds(const Cell& cell, const Scene& scene, const FrameRange& range) const;
 
 private:
-    void take(const nlohmann::ordered_json& record);
+    void add(const nlohmann::ordered_json& record);
 
     struct Finished {
         bool same_sources = false;

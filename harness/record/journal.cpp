@@ -23,7 +23,7 @@ namespace tandem {
 
 namespace {
 
-/// Alone with the file among those that append. File systems without locks go without.
+/// Excludes other processes that append to the file. Has no effect on file systems without locks.
 class AppendLock {
 public:
     explicit AppendLock(int file) : file_(file) {
@@ -37,7 +37,7 @@ private:
     int file_;
 };
 
-/// The descriptor that a path is another name of; -1 for any other path.
+/// The descriptor that a path such as /dev/fd/3 names; -1 for any other path.
 int descriptor_named(std::string_view path) {
     if (path == "/dev/stdout") return STDOUT_FILENO;
     if (path == "/dev/stderr") return STDERR_FILENO;
@@ -51,20 +51,21 @@ int descriptor_named(std::string_view path) {
     return -1;
 }
 
-/// A descriptor is shared, not opened anew: what is printed to it goes behind the records, not over them.
-int share(int descriptor) {
+/// Duplicates a descriptor instead of opening its path: both then share one file offset, so that printed text
+/// does not overwrite records.
+int duplicate(int descriptor) {
     const int flags = fcntl(descriptor, F_GETFL);
     if (flags >= 0 && (flags & O_ACCMODE) == O_RDONLY) errno = EBADF;
     if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY) return -1;
     return fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
 }
 
-/// Files are read as well, for what a kill has left; a pipe that was opened for both would wait for no
-/// reader.
+/// Regular files are also opened for reading, because repairs read the last line. A pipe is opened for
+/// writing only: opened for both, it would not wait for a reader.
 int open_for_appending(const std::string& path, Links links) {
     if (links == Links::refused)
         return open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC, 0644);
-    if (const int descriptor = descriptor_named(path); descriptor >= 0) return share(descriptor);
+    if (const int descriptor = descriptor_named(path); descriptor >= 0) return duplicate(descriptor);
     struct stat facts {};
     const bool special = stat(path.c_str(), &facts) == 0 && !S_ISREG(facts.st_mode);
     return open(path.c_str(), (special ? O_WRONLY : O_RDWR | O_CREAT) | O_APPEND | O_CLOEXEC, 0644);
@@ -77,17 +78,17 @@ bool is_regular(int file) {
 
 struct Written {
     std::size_t bytes = 0;
-    int error = 0; ///< errno of the write that ended it; 0: all is written
+    int error = 0; ///< errno of the failed write; 0 when everything is written
 };
 
-/// One write, unless a signal or a limit cuts it short.
+/// Uses one write call, unless a signal or a limit interrupts it.
 Written write_all(int file, std::string_view text) {
     Written written;
     while (written.bytes < text.size()) {
         const auto n = write(file, text.data() + written.bytes, text.size() - written.bytes);
         if (n >= 0) {
             written.bytes += static_cast<std::size_t>(n);
-        } else if (errno == EAGAIN) { // a pipe that does not wait for its reader
+        } else if (errno == EAGAIN) { // a full non-blocking pipe
             pollfd ready{file, POLLOUT, 0};
             poll(&ready, 1, -1);
         } else if (errno != EINTR) {
@@ -98,7 +99,7 @@ Written write_all(int file, std::string_view text) {
     return written;
 }
 
-/// The errno of a write that did not reach the disk; 0 for what cannot be synchronised, as pipes and
+/// The errno of a failed synchronisation to disk; 0 for files that cannot be synchronised, such as pipes and
 /// terminals.
 int sync_error(int file) {
     while (fsync(file) != 0) {
@@ -112,12 +113,12 @@ int sync_error(int file) {
 
 RecordFile::RecordFile(const std::string& path, Links links)
     : RecordFile(path, path.empty() ? -1 : open_for_appending(path, links)) {
-    if (path.empty() || !can_be_mended_) return;
+    if (path.empty() || !is_repairable_) return;
     const AppendLock lock(file_);
     try {
-        if (size_of(file_, path_) == 0) sync_folder_of(path_); // it may be new
+        if (size_of(file_, path_) == 0) sync_folder_of(path_); // the file may be new
         check_first_line(file_, path_);
-        mend_last_line(file_, path_);
+        repair_last_line(file_, path_);
     } catch (const OutputError& error) {
         throw InputError(fmt::format("{}; choose another --out", error.what()));
     }
@@ -127,7 +128,7 @@ RecordFile::RecordFile(const std::string& path, int file) : path_(path), file_(f
     if (!path.empty() && file < 0)
         throw InputError(
             fmt::format("{}: cannot be written ({}); choose another --out", path, std::strerror(errno)));
-    can_be_mended_ = file >= 0 && descriptor_named(path) < 0 && is_regular(file);
+    is_repairable_ = file >= 0 && descriptor_named(path) < 0 && is_regular(file);
 }
 
 RecordFile::~RecordFile() {
@@ -137,7 +138,7 @@ RecordFile::~RecordFile() {
 void RecordFile::append(const nlohmann::ordered_json& record) {
     if (file_ < 0) return;
     failed_ = true;
-    // File names need not be UTF-8; JSON must be.
+    // JSON must be UTF-8, but file names in a record need not be.
     write_line(record.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
     failed_ = false;
     ++appended_;
@@ -154,30 +155,30 @@ bool RecordFile::append_or_report(const nlohmann::ordered_json& record) {
 }
 
 void RecordFile::write_line(const std::string& line) {
-    // What was printed comes before it, where both go to one place.
+    // Where printed text and records go to the same file, text that was printed earlier comes first.
     if (descriptor_named(path_) >= 0) flush_output();
     const AppendLock lock(file_);
-    // Another process may have been killed in the midst of its line.
-    if (can_be_mended_) mend_last_line(file_, path_);
-    const auto before = can_be_mended_ ? size_of(file_, path_) : 0;
+    // Another process may have been killed while it wrote a line.
+    if (is_repairable_) repair_last_line(file_, path_);
+    const auto before = is_repairable_ ? size_of(file_, path_) : 0;
     const auto [bytes, error] = write_all(file_, line);
     if (error == 0) {
         if (const int not_synced = sync_error(file_); not_synced != 0)
             throw OutputError(fmt::format("{}: writing failed ({})", path_, std::strerror(not_synced)));
         return;
     }
-    // Who takes no lock may have appended as well: what is his is left.
-    const bool alone = can_be_mended_ && bytes > 0 && size_of(file_, path_) == before + bytes;
+    // A process without the lock may have appended too; truncation must not remove its text.
+    const bool alone = is_repairable_ && bytes > 0 && size_of(file_, path_) == before + bytes;
     if (alone && ftruncate(file_, static_cast<off_t>(before)) != 0)
-        throw OutputError(fmt::format("{}: writing failed ({}) and left a part of a line, which the next "
+        throw OutputError(fmt::format("{}: writing failed ({}) and left a partial line, which the next "
                                       "record moves to {}.torn",
                                       path_, std::strerror(error), path_));
     throw OutputError(
-        fmt::format("{}: writing failed ({}); the records before are whole", path_, std::strerror(error)));
+        fmt::format("{}: writing failed ({}); earlier records are complete", path_, std::strerror(error)));
 }
 
 void RecordFile::for_each(const std::function<void(const nlohmann::ordered_json&)>& visit) const {
-    if (!can_be_mended_) return;
+    if (!is_repairable_) return;
     std::size_t at = 0;
     for (std::string line; read_line(file_, path_, at, line); at += line.size() + 1) {
         const auto json = nlohmann::ordered_json::parse(line, nullptr, false);

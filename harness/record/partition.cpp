@@ -7,14 +7,14 @@ namespace tandem::record_parts {
 
 namespace {
 
-/// One number of a device in every frame of the last sample.
+/// One value of a device in every frame of the last sample.
 Json by_frame(const Measurement& m, std::size_t device, std::uint64_t DeviceWork::*member) {
     Json json = Json::array();
     for (const auto& frame : m.shared) json.push_back(frame[device].*member);
     return json;
 }
 
-/// By replay; the clock is the host's, and of the span that total_ns is of.
+/// Times by replay, by the host's clock, within the span that total_ns measures.
 Json times_json(const Measurement& m, std::size_t device) {
     std::vector<std::int64_t> samples;
     std::vector<std::uint32_t> rounds;
@@ -26,7 +26,7 @@ Json times_json(const Measurement& m, std::size_t device) {
     return {{"samples", samples}, {"median", s.median}, {"low", s.low}, {"high", s.high}};
 }
 
-/// Medians of the instrumented replays; stages in which nothing was done are left out.
+/// Medians of the instrumented replays, without stages that took no time.
 Json stages_json(const Measurement& m, std::size_t device) {
     Json json = Json::object();
     for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
@@ -43,7 +43,7 @@ Json stages_json(const Measurement& m, std::size_t device) {
     return json;
 }
 
-/// Bytes and messages of the frames of the last sample; null where none were sent.
+/// Sums over the frames of the last sample; null without an exchange.
 Json exchange_json(const Measurement& m, std::size_t device) {
     DeviceWork sum;
     for (const auto& frame : m.shared) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The parts of the record of a cell, for make_record() alone.
+// The parts of a cell's record; only make_record() uses them.
 #pragma once
 
 #include "harness/sampling/rounds.h"
@@ -10,19 +10,20 @@ namespace tandem::record_parts {
 
 using Json = nlohmann::ordered_json;
 
-/// From "total_ns" to "host_work": of a cell that failed what there is.
+/// Adds the fields from "total_ns" to "host_work". A failed cell has only what was measured before the
+/// failure.
 void add_times(Json& record, const Measurement& m, bool measured);
 
-/// How several devices shared its frames; null on one.
+/// The work of each of several devices, frame by frame; null for one device.
 Json partition_json(const Measurement& m, const Cell& cell);
 
-/// How it was sampled, and what is to be thought of it.
+/// How the cell was sampled, with outliers and drift as measures of quality.
 Json sampling_json(const Measurement& m, const Cell& cell, const Outcome& outcome, const Sampling& sampling);
 
-/// What the machine was like in its rounds; null where none has samples.
+/// The condition of the machine in the cell's rounds; null when no round has samples.
 Json conditions_json(const Measurement& m);
 
-/// Errors against the truth, and what was wrong with the input.
+/// Errors against the truth, and the flaws of the input.
 Json error_json(const Measurement& m, const Flaws& flaws);
 
 } // namespace tandem::record_parts

@@ -20,7 +20,7 @@ using record_parts::Json;
 
 std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
 
-/// Negative and empty mean not known, which is null in a record.
+/// Negative numbers and empty text mean unknown, which is null in a record.
 Json known(std::int64_t value) { return value < 0 ? Json(nullptr) : Json(value); }
 
 Json known(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
@@ -29,12 +29,12 @@ Json digest_json(const Digest& digest) {
     return {{"count", digest.count}, {"a", hex(digest.a)}, {"b", hex(digest.b)}};
 }
 
-/// Settings that the devices did not take as they were asked for, as they were.
-Json asked_json(const SettingTexts& asked, const SettingTexts& taken) {
+/// Requested values of the settings that the devices changed.
+Json asked_json(const SettingTexts& requested, const SettingTexts& actual) {
     Json json = Json::object();
-    for (const auto& [name, value] : asked) {
-        const auto found = taken.find(name);
-        if (found == taken.end() || found->second != value) json[name] = value;
+    for (const auto& [name, value] : requested) {
+        const auto found = actual.find(name);
+        if (found == actual.end() || found->second != value) json[name] = value;
     }
     return json;
 }
@@ -120,7 +120,7 @@ Json agreement_json(const Measurement& m, const Scene& scene) {
             {"contact_digest", digest_json(a.contact_digest)}};
 }
 
-/// By the names that the algorithm declares; null where nothing was counted.
+/// Values by the names that the algorithm declares; null for a counter without a value.
 Json counters_json(const Measurement& m, const Traversal& algorithm) {
     Json json = Json::object();
     for (const auto& counter : algorithm.counters()) {
@@ -150,11 +150,11 @@ std::string status_of(const Measurement& m, const std::string& failure) {
     return m.agreement.ok() ? "ok" : "wrong";
 }
 
-/// A breakdown may be another process's, of an isolated cell or of the run that is continued, and its clock
-/// another than this one's.
+/// Takes clocks from the breakdowns: another process may have measured them, an isolated child or an earlier
+/// run, with a different clock than this one.
 Json devices_json(const Measurement& m, const Cell& cell) {
     auto json = record_devices(cell.devices);
-    if (cell.team != nullptr) // rank 0's clock is known
+    if (cell.team != nullptr) // only rank 0 has a device with a clock in this process
         for (std::size_t rank = 1; rank < cell.team->devices().size(); ++rank)
             json.push_back(record_device(cell.team->devices()[rank]));
     for (std::size_t i = 0; i < json.size(); ++i) {
@@ -171,7 +171,7 @@ Json devices_json(const Measurement& m, const Cell& cell) {
 Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, const Measurement& m,
                  const Outcome& outcome, const Sampling& sampling) {
     const auto& failure = outcome.failure;
-    // Those the device took; of a cell that failed before that, those that were asked for.
+    // The settings that the device used. A cell that failed earlier has only the requested ones.
     const auto& settings = m.settings.empty() ? cell.settings : m.settings;
     Json json;
     json["schema"] = record_schema;

@@ -10,16 +10,16 @@ namespace tandem {
 /// The version of results/record.schema.json.
 inline constexpr int record_schema = 4;
 
-/// One measured cell as the JSON object of results/record.schema.json. Of a cell that failed it has what was
-/// measured before.
+/// One measured cell as the JSON object of results/record.schema.json. A failed cell has only what was
+/// measured before the failure.
 nlohmann::ordered_json make_record(const Cell& cell, const Scene& scene, const FrameRange& range,
                                    const Measurement& measurement, const Outcome& outcome,
                                    const Sampling& sampling);
 
-/// The parts of a record that say of what, where and with what it was made.
+/// The parts of a record that identify the scene, the devices and the environment.
 nlohmann::ordered_json record_scene(const Scene& scene);
 nlohmann::ordered_json record_device(const DeviceInfo& info);
-/// With what takes its times, certain once clocks have been on.
+/// As record_device(), with the clock that measures the device; reliable once the clocks have been on.
 nlohmann::ordered_json record_timed_device(const Device& device);
 nlohmann::ordered_json record_devices(const DeviceGroup& devices);
 nlohmann::ordered_json record_environment();

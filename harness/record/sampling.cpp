@@ -19,15 +19,15 @@ Json conditions_json(const Measurement& m) {
 Json sampling_json(const Measurement& m, const Cell& cell, const Outcome& outcome, const Sampling& sampling) {
     const auto rounds = round_medians(m.totals(), m.rounds());
     const auto change = drift(rounds);
-    const auto& enough = sampling.enough;
+    const auto& criterion = sampling.enough;
     return {{"rounds", rounds.size()},
             {"cells", sampling.cells},
             {"seed", sampling.seed},
-            {"repeat", enough.repeat ? Json(*enough.repeat) : Json()},
-            {"noise", enough.repeat ? Json() : Json(noise_of(cell.devices, enough))},
-            {"seconds", enough.repeat ? Json() : Json(enough.seconds)},
+            {"repeat", criterion.repeat ? Json(*criterion.repeat) : Json()},
+            {"noise", criterion.repeat ? Json() : Json(noise_of(cell.devices, criterion))},
+            {"seconds", criterion.repeat ? Json() : Json(criterion.seconds)},
             {"spent_seconds", static_cast<double>(outcome.sampler->state().spent_ns) * 1e-9},
-            {"converged", enough.repeat ? Json() : Json(outcome.converged)},
+            {"converged", criterion.repeat ? Json() : Json(outcome.converged)},
             {"interrupted", sampling.interrupted},
             {"continued", m.continued},
             {"outliers", count_outliers(rounds)},

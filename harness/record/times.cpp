@@ -14,7 +14,7 @@ Json statistics_json(const Summary& s) {
     return {{"median", s.median}, {"q1", s.q1}, {"q3", s.q3}, {"low", s.low}, {"high", s.high}};
 }
 
-/// The replays, then what is said of their rounds.
+/// The samples, then statistics over their rounds.
 Json total_json(const Measurement& m) {
     const auto totals = m.totals();
     const auto rounds = m.rounds();
@@ -25,14 +25,14 @@ Json total_json(const Measurement& m) {
     return json;
 }
 
-/// Of what every instrumented replay has, frame by frame: their sums with statistics, and the median of each
-/// frame. `of(replay)` gives a vector by frame.
-template<class Of>
-Json replays_json(const Measurement& m, const Of& of) {
+/// Sums over the frames of each instrumented replay with statistics, and the median of each frame.
+/// `values_of(replay)` returns one value a frame.
+template<class ValuesOf>
+Json replays_json(const Measurement& m, const ValuesOf& values_of) {
     std::vector<std::int64_t> sums;
     std::vector<std::vector<std::int64_t>> by_frame;
     for (const auto& replay : m.breakdowns) {
-        const std::vector<std::int64_t> frames = of(replay);
+        const std::vector<std::int64_t> frames = values_of(replay);
         by_frame.resize(frames.size());
         for (std::size_t i = 0; i < frames.size(); ++i) by_frame[i].push_back(frames[i]);
         sums.push_back(std::accumulate(frames.begin(), frames.end(), std::int64_t{0}));
@@ -46,7 +46,7 @@ Json replays_json(const Measurement& m, const Of& of) {
     return json;
 }
 
-/// One number of one stage.
+/// One value of one stage.
 Json stage_times_json(const Measurement& m, std::size_t stage, std::int64_t StageSample::*member) {
     return replays_json(m, [&](const InstrumentedReplay& replay) {
         std::vector<std::int64_t> values;
@@ -55,7 +55,7 @@ Json stage_times_json(const Measurement& m, std::size_t stage, std::int64_t Stag
     });
 }
 
-/// Counts are of the last replay; times of all.
+/// Counts come from the last replay, times from all replays.
 Json stages_json(const Measurement& m) {
     Json json = Json::object();
     if (m.breakdowns.empty()) return json;
@@ -74,7 +74,7 @@ Json stages_json(const Measurement& m) {
     return json;
 }
 
-/// What a replay has under a name (`sums`, `time`), one sample a replay; 0 where one does not have it.
+/// Samples of a named entry of the map `sums`, one a replay; 0 for a replay without the entry.
 template<class Sums, class Time>
 Json named_times_json(const Measurement& m, const std::string& name, Sums sums, Time time) {
     std::vector<std::int64_t> times;
@@ -87,7 +87,7 @@ Json named_times_json(const Measurement& m, const std::string& name, Sums sums, 
     return samples;
 }
 
-/// By entry point, as stages_json.
+/// Times by kernel entry point; counts as in stages_json.
 Json kernel_times_json(const Measurement& m) {
     Json json = Json::object();
     if (m.breakdowns.empty()) return json;
@@ -98,7 +98,7 @@ Json kernel_times_json(const Measurement& m) {
     return json;
 }
 
-/// By name, as kernel_times_json.
+/// Times by name of the host work; counts as in stages_json.
 Json host_work_json(const Measurement& m) {
     Json json = Json::object();
     if (m.breakdowns.empty()) return json;
@@ -110,7 +110,7 @@ Json host_work_json(const Measurement& m) {
     return json;
 }
 
-/// Null where a command told no times.
+/// Null when a command has no device times.
 Json device_span_json(const Measurement& m) {
     for (const auto& replay : m.breakdowns)
         if (std::ranges::any_of(replay.span_ns, [](auto span) { return span < 0; })) return nullptr;

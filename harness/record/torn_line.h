@@ -6,22 +6,22 @@
 
 namespace tandem {
 
-// Parts of a RecordFile, each of an open file that can be read and is called `path` in errors. Where nothing
-// else is said they throw OutputError.
+// Parts of RecordFile. `file` is an open, readable file; errors name it by `path`. All functions throw
+// OutputError on failure, unless stated otherwise.
 
-/// Bytes of the file.
+/// Size of the file in bytes.
 std::size_t size_of(int file, const std::string& path);
 
-/// The line that begins `at` so many bytes, without its end; false behind the last byte.
+/// Reads the line that begins at byte `at`, without its newline; false at the end of the file.
 bool read_line(int file, const std::string& path, std::size_t at, std::string& line);
 
-/// Throws InputError unless the file is empty or its first line is a JSON object, or the beginning of one and
-/// all there is: zeros behind it count as torn, and nothing but zeros as well.
+/// Throws InputError unless the file is empty or its first line is a JSON object. A torn object that is the
+/// whole file is accepted too. An object followed by zeros, or zeros alone, count as torn.
 void check_first_line(int file, const std::string& path);
 
-/// For a file whose last byte ends no line: ends a last line that is a whole JSON object; moves any other to
-/// PATH.torn, which is synchronised before it is taken off the file, and says so on standard error. A
-/// PATH.torn that is there is added to; one that is no file, links included, is an error.
-void mend_last_line(int file, const std::string& path);
+/// Repairs a file that does not end with a newline. A last line that is a whole JSON object gets its newline.
+/// Any other moves to the end of PATH.torn, which is synchronised first, with a message on standard error. It
+/// is an error when PATH.torn is a link or no regular file.
+void repair_last_line(int file, const std::string& path);
 
 } // namespace tandem

@@ -11,22 +11,22 @@ namespace tandem {
 
 namespace {
 
-/// Of its lines; those of another are as if they were not there.
+/// Lines of another schema are ignored.
 constexpr int unfinished_schema = 1;
 
-bool is_of_this_program(const nlohmann::ordered_json& line) {
+bool matches_program(const nlohmann::ordered_json& line) {
     return line.value("schema", 0) == unfinished_schema && line.value("sources", "") == sources_digest();
 }
 
 } // namespace
 
-Unfinished::Unfinished(const std::string& path, bool go_on) {
+Unfinished::Unfinished(const std::string& path, bool resume) {
     if (path.empty() || !std::filesystem::is_regular_file(path)) return;
     path_ = path + ".unfinished";
-    if (!go_on || !std::filesystem::exists(path_)) return;
+    if (!resume || !std::filesystem::exists(path_)) return;
     file_ = std::make_unique<RecordFile>(path_, Links::refused);
     file_->for_each([&](const nlohmann::ordered_json& line) {
-        if (!is_of_this_program(line)) return;
+        if (!matches_program(line)) return;
         auto& lines = lines_[line.at("key").get<std::string>()];
         if (line.contains("checked")) lines.clear();
         lines.push_back(line);
@@ -43,11 +43,10 @@ CellState Unfinished::state(const Cell& cell, const std::string& key) {
     return state;
 }
 
-std::vector<nlohmann::ordered_json> Unfinished::of_others() const {
+std::vector<nlohmann::ordered_json> Unfinished::lines_of_other_cells() const {
     std::vector<nlohmann::ordered_json> lines;
     RecordFile(path_, Links::refused).for_each([&](const nlohmann::ordered_json& line) {
-        if (is_of_this_program(line) && !own_.contains(line.at("key").get<std::string>()))
-            lines.push_back(line);
+        if (matches_program(line) && !own_.contains(line.at("key").get<std::string>())) lines.push_back(line);
     });
     return lines;
 }
@@ -59,7 +58,7 @@ void Unfinished::append(nlohmann::ordered_json line) {
         if (!file_) file_ = std::make_unique<RecordFile>(path_, Links::refused);
         file_->append(line);
     } catch (const std::runtime_error& error) {
-        print_message("tandem: {}; rounds are no longer kept, records are\n", error.what());
+        print_message("tandem: {}; rounds are no longer saved, but records are\n", error.what());
         path_.clear();
     }
 }
@@ -78,18 +77,18 @@ void Unfinished::remove() {
     file_.reset();
     if (!std::filesystem::exists(path_)) return;
     try {
-        const auto others = of_others();
+        const auto lines = lines_of_other_cells();
         const auto rest = path_ + ".rest";
-        if (!others.empty()) {
+        if (!lines.empty()) {
             std::filesystem::remove(rest);
             RecordFile file(rest, Links::refused);
-            for (const auto& line : others) file.append(line);
+            for (const auto& line : lines) file.append(line);
             std::filesystem::rename(rest, path_);
         } else {
             std::filesystem::remove(path_);
         }
     } catch (const std::exception& error) {
-        print_message("tandem: {}; {} has rounds of cells that are measured\n", error.what(), path_);
+        print_message("tandem: {}; {} still contains rounds of recorded cells\n", error.what(), path_);
     }
 }
 

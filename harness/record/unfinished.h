@@ -12,34 +12,35 @@
 
 namespace tandem {
 
-/// Rounds of cells that have no record yet, in a file FILE.unfinished beside that of the records: what a kill
-/// costs is the round that it falls into. A line of it is what checking a cell gave, or one round.
+/// Rounds of cells that have no record yet, in FILE.unfinished beside the record file FILE. A killed run
+/// loses only its current round. Each line contains the result of checking a cell, or one round.
 class Unfinished {
 public:
-    /// Keeps nothing.
+    /// Stores nothing.
     Unfinished() = default;
-    /// Beside a file of records at `path`; nowhere where that is none that lines can be taken from again.
-    /// With `go_on` it reads what is there of this program's sources. Throws InputError when that cannot be
-    /// read.
-    Unfinished(const std::string& path, bool go_on);
+    /// Uses the file beside the records at `path`; stores nothing when that is not a regular file. With
+    /// `resume` it reads the lines that a program of the same sources has written, and throws InputError when
+    /// that fails.
+    Unfinished(const std::string& path, bool resume);
 
-    /// What is there of a cell, by the key of what was asked for; nothing for a cell that was not begun.
+    /// The stored state of a cell, by the key of its requested settings; an empty state when there is none.
     CellState state(const Cell& cell, const std::string& key);
-    /// The whole state, or its last round. That it cannot be written is told, and costs nothing else.
+    /// Stores the whole state, or its last round. A failed write only prints a message and stops storing.
     void keep(const std::string& key, const CellState& state, bool whole);
-    /// A cell of this run that has a record already.
+    /// Marks a cell of this run that already has a record.
     void forget(const std::string& key) { own_.insert(key); }
-    /// Once all cells have a record: those of other cells, as of another plan that was killed, stay.
+    /// Removes the rounds of this run's cells; call it once all have a record. Rounds of other cells, such as
+    /// those of another plan that was killed, stay.
     void remove();
 
 private:
     void append(nlohmann::ordered_json line);
-    std::vector<nlohmann::ordered_json> of_others() const;
+    std::vector<nlohmann::ordered_json> lines_of_other_cells() const;
 
     std::string path_;
     std::unique_ptr<RecordFile> file_;
     std::map<std::string, std::vector<nlohmann::ordered_json>> lines_; ///< by key, from the last check on
-    std::set<std::string> own_;                                        ///< keys of cells of this run
+    std::set<std::string> own_;                                        ///< keys of this run's cells
 };
 
 } // namespace tandem

@@ -5,10 +5,10 @@
 
 namespace tandem {
 
-/// The last line of a cell: right, or by how much not.
+/// The last printed line of a cell: right, or the number of wrong answers.
 std::string verdict(const Measurement& m);
 
-/// What is to be thought of a cell's times; empty when nothing speaks against them.
+/// Reasons to doubt a cell's times, such as disturbed rounds or drift; empty when there are none.
 std::string doubts(const CellResult& result);
 
 } // namespace tandem

@@ -70,8 +70,8 @@ TEST_F(JournalFile, SetsATornLineAside) {
     const auto said = after_appending("{\"a\":1}\n{\"b\":2}\n{\"c\":\"3");
     EXPECT_EQ(bytes_of(file()), "{\"a\":1}\n{\"b\":2}\n{\"new\":1}\n");
     EXPECT_EQ(bytes_of(torn()), "{\"c\":\"3\n");
-    EXPECT_EQ(said, "tandem: " + file() + ": the last line was torn; its 7 bytes are set aside in " + torn()
-                        + "\n");
+    EXPECT_EQ(said,
+              "tandem: " + file() + ": the last line was torn; its 7 bytes were moved to " + torn() + "\n");
     after_appending("{\"a\":1}\n" + std::string(200000, '\0'));
     EXPECT_EQ(bytes_of(file()), "{\"a\":1}\n{\"new\":1}\n");
     EXPECT_EQ(bytes_of(torn()), "{\"c\":\"3\n" + std::string(200000, '\0') + "\n");
@@ -110,11 +110,11 @@ TEST_F(JournalFile, RefusesWhatIsNoJsonLines) {
           "{\"a\":x", "frame,body_a\n{\"a\":1}\n"}) {
         EXPECT_EQ(refusal(bytes),
                   file()
-                      + ": its first line is no JSON object, so records do not go there; choose "
+                      + ": its first line is not a JSON object, so no records are appended; choose "
                         "another --out");
     }
-    EXPECT_THAT(refusal(std::string("\x7f\x45LF\0\0\0{\n", 9)), HasSubstr("no JSON object"));
-    EXPECT_THAT(refusal(std::string("{\0\0\0\n", 5)), HasSubstr("no JSON object"));
+    EXPECT_THAT(refusal(std::string("\x7f\x45LF\0\0\0{\n", 9)), HasSubstr("not a JSON object"));
+    EXPECT_THAT(refusal(std::string("{\0\0\0\n", 5)), HasSubstr("not a JSON object"));
 }
 
 TEST_F(JournalFile, RefusesWhatCannotBeWritten) {
@@ -155,7 +155,7 @@ TEST_F(JournalFile, FullDevice) {
     testing::internal::CaptureStderr();
     EXPECT_FALSE(full.append_or_report({{"a", 1}}));
     EXPECT_EQ(testing::internal::GetCapturedStderr(),
-              "tandem: /dev/full: writing failed (No space left on device); the records before are whole\n");
+              "tandem: /dev/full: writing failed (No space left on device); earlier records are complete\n");
     EXPECT_EQ(full.appended(), 0u);
 }
 

@@ -49,20 +49,20 @@ std::string in_columns(const std::vector<std::string>& labels, const std::string
     for (const auto& label : labels)
         if (label.size() <= longest_label) label_width = std::max(label_width, label.size());
     std::string text;
-    std::vector<const Column*> together;
+    std::vector<const Column*> pending;
     std::size_t width = label_width;
     for (const auto& column : columns) {
         if (std::ranges::all_of(column.texts, [](const auto& t) { return t.empty(); })) continue;
         const auto own = gap + width_of_column(column);
-        if (!together.empty() && width + own > line_columns) {
-            text += block(labels, head, label_width, together) + "\n";
-            together.clear();
+        if (!pending.empty() && width + own > line_columns) {
+            text += block(labels, head, label_width, pending) + "\n";
+            pending.clear();
             width = label_width;
         }
-        together.push_back(&column);
+        pending.push_back(&column);
         width += own;
     }
-    return together.empty() ? text : text + block(labels, head, label_width, together);
+    return pending.empty() ? text : text + block(labels, head, label_width, pending);
 }
 
 std::string milliseconds(double ms) {

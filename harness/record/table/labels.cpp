@@ -11,11 +11,11 @@ namespace tandem {
 
 namespace {
 
-/// What a row may be told apart by, in the order of a label.
+/// A property that can distinguish rows, in the order of a label.
 struct LabelPart {
     std::string name, text;
     bool is_setting = false;
-    bool is_said = true; ///< what all share is said of this one: no preset says it
+    bool is_explicit = true; ///< no preset implies it, so that the common text lists it
 };
 using Parts = std::vector<LabelPart>;
 
@@ -35,20 +35,21 @@ std::string text_of(const Parts& parts, const std::string& name) {
     return found == parts.end() ? std::string() : found->text;
 }
 
-/// What decides which pairs are candidates, whatever the algorithm: cells that differ in it are not compared.
+/// Settings that determine the candidate pairs for every algorithm; cells that differ in them are not
+/// compared.
 constexpr std::array geometry_names{"k", "axes", "precision", "rounding", "placement", "origin"};
 
 bool is_geometry(const LabelPart& part) {
     return std::ranges::find(geometry_names, part.name) != geometry_names.end();
 }
 
-/// Among which rows a part tells one apart: settings those of one algorithm and preset, which says what its
-/// own are.
+/// The group of rows within which a part is compared. A setting is compared within one algorithm and preset,
+/// because the preset implies its value.
 std::string scope_of(const LabelPart& part, const Parts& parts) {
     return part.is_setting && !is_geometry(part) ? parts[0].text + " " + parts[1].text : "";
 }
 
-/// The texts that rows have for a part of a name within a scope; empty for a row without it.
+/// The texts of all rows for each scope and name of a part; empty for a row without the part.
 class Texts {
 public:
     explicit Texts(const std::vector<Parts>& rows) {
@@ -72,12 +73,12 @@ std::set<std::string> varying_names(const Parts& parts, const Texts& texts) {
     return varying;
 }
 
-/// Of one setting that was swept every value is said; of several those that the preset does not have, or
-/// labels would be longer than lines.
+/// A single swept setting is in every label. With several, a label has only the values that its preset does
+/// not imply, because labels would otherwise be longer than lines.
 bool is_in_label(const LabelPart& part, const Parts& parts, const std::set<std::string>& varying) {
     if (part.name == "algorithm") return true;
     if (!varying.contains(part.name)) return false;
-    if (!part.is_setting || is_geometry(part) || part.is_said) return true;
+    if (!part.is_setting || is_geometry(part) || part.is_explicit) return true;
     return std::ranges::count_if(parts,
                                  [&](const LabelPart& other) {
                                      return other.is_setting && !is_geometry(other)
@@ -95,7 +96,7 @@ void append_word(std::string& text, const std::string& word) {
 RowLabels row_labels(std::span<const Row> rows) {
     std::vector<Parts> all;
     for (const auto& row : rows) all.push_back(parts_of(row));
-    std::set<std::string> said{"algorithm"}, varying_anywhere;
+    std::set<std::string> listed{"algorithm"}, varying_anywhere;
     std::vector<std::set<std::string>> varying;
     const Texts texts(all);
     for (const auto& parts : all) {
@@ -104,11 +105,12 @@ RowLabels row_labels(std::span<const Row> rows) {
     }
     RowLabels labels;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        auto& label = labels.of.emplace_back();
+        auto& label = labels.by_row.emplace_back();
         for (const auto& part : all[i]) {
             if (is_in_label(part, all[i], varying[i]))
                 append_word(label, part.text);
-            else if (!varying_anywhere.contains(part.name) && part.is_said && said.insert(part.name).second)
+            else if (!varying_anywhere.contains(part.name) && part.is_explicit
+                     && listed.insert(part.name).second)
                 labels.common += (labels.common.empty() ? "" : ", ")
                                  + (part.name == "preset" ? "preset " + part.text : part.text);
         }

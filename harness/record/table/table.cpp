@@ -20,11 +20,11 @@ double per_frame_ms(const Measurement& m, double ns) {
     return ns * 1e-6 / static_cast<double>(std::max<std::size_t>(1, m.candidate_pairs.size()));
 }
 
-/// The median of the instrumented replays, milliseconds a frame.
-template<class Of>
-double replay_ms(const Measurement& m, const Of& of) {
+/// The median over the instrumented replays, in milliseconds a frame.
+template<class ValueOf>
+double replay_ms(const Measurement& m, const ValueOf& value_of) {
     std::vector<std::int64_t> values;
-    for (const auto& replay : m.breakdowns) values.push_back(of(replay));
+    for (const auto& replay : m.breakdowns) values.push_back(value_of(replay));
     return values.empty() ? 0 : per_frame_ms(m, summarise(values).median);
 }
 
@@ -32,7 +32,7 @@ double stage_ms(const Measurement& m, Stage stage, std::int64_t StageSample::*me
     return replay_ms(m, [&](const auto& r) { return r.totals()[static_cast<std::size_t>(stage)].*member; });
 }
 
-/// Counts are the same in every replay.
+/// Counts are equal in all replays, so that the last one is enough.
 std::uint64_t count_over(const Measurement& m, std::span<const Stage> stages,
                          std::uint64_t StageSample::*member) {
     if (m.breakdowns.empty()) return 0;
@@ -52,7 +52,7 @@ std::uint64_t launches_of(const Measurement& m) {
     return count_over(m, all_stages(), &StageSample::launches);
 }
 
-/// By the clock of whoever does the work.
+/// By the host's clock for stages that the host does, by the device's otherwise.
 double stage_ms(const Measurement& m, Stage stage) {
     const bool host =
         stage == Stage::preprocess || stage == Stage::postprocess || stage == Stage::exchange
@@ -71,8 +71,8 @@ double kernels_ms(const Measurement& m) {
     return sum_ms(m, {Stage::seed, Stage::traverse, Stage::balance, Stage::contact});
 }
 
-/// Kernels, transfers and conversions after the refit: what the paper calls the narrow phase, less its
-/// wall-clock overheads.
+/// Kernels, transfers and conversions after the refit. The paper calls this the narrow phase; its wall-clock
+/// overheads are not included.
 double narrow_ms(const Measurement& m) {
     return kernels_ms(m) + sum_ms(m, {Stage::read, Stage::write, Stage::preprocess, Stage::postprocess});
 }
@@ -88,7 +88,7 @@ Column column(std::string head, std::span<const Row> rows, const Text& text) {
     return result;
 }
 
-/// A count's column is left out where all are 0.
+/// A column of counts; omitted when all are 0.
 template<class Count>
 Column count_column(std::string head, std::span<const Row> rows, const Count& count) {
     auto result = column(std::move(head), rows, [&](const Row& row) { return short_count(count(row)); });
@@ -97,7 +97,7 @@ Column count_column(std::string head, std::span<const Row> rows, const Count& co
     return result;
 }
 
-/// The middle one of the samples; empty on one device.
+/// The upper median over the samples; empty for one device.
 std::string imbalance_text(const Measurement& m) {
     std::vector<double> values;
     for (const auto& sample : m.samples)
@@ -115,13 +115,13 @@ std::string half_width(const Measurement& m) {
 
 /// Whether no comparable cell has a lower median.
 bool is_fastest(const Row& row, std::span<const Row> rows) {
-    bool others = false;
+    bool found = false;
     for (const auto& other : rows) {
         if (&other == &row || !comparable(row, other)) continue;
-        others = true;
+        found = true;
         if (median_ns(*other.measurement) < median_ns(*row.measurement)) return false;
     }
-    return others;
+    return found;
 }
 
 std::string painted(const std::string& text, const char* code, bool colour) {
@@ -149,7 +149,7 @@ std::string totals_table(std::span<const Row> rows, const RowLabels& labels, boo
         column("", rows, [&](const Row& row) {
             return row.measurement->agreement.ok() ? std::string() : painted("WRONG", "1;31", colour);
         })};
-    return in_columns(labels.of, "", columns);
+    return in_columns(labels.by_row, "", columns);
 }
 
 std::string stages_table(std::span<const Row> rows, const RowLabels& labels) {
@@ -165,12 +165,11 @@ std::string stages_table(std::span<const Row> rows, const RowLabels& labels) {
             return std::accumulate(r.frame_ns.begin(), r.frame_ns.end(), std::int64_t{0});
         }));
     }));
-    return in_columns(labels.of, "stages, ms/frame", columns);
+    return in_columns(labels.by_row, "stages, ms/frame", columns);
 }
 
-/// Milliseconds a frame of one device in a stage: the larger of its own time and the host's in its calls,
-/// where that is the host's work.
-double share_stage_ms(const Measurement& m, std::size_t device, Stage stage) {
+/// Milliseconds a frame of one device in a stage, by the host's clock for the host's work.
+double device_stage_ms(const Measurement& m, std::size_t device, Stage stage) {
     const bool is_host =
         stage == Stage::preprocess || stage == Stage::postprocess || stage == Stage::exchange;
     return replay_ms(m, [&](const InstrumentedReplay& r) {
@@ -185,14 +184,14 @@ std::uint64_t mean_over_frames(const Measurement& m, std::size_t device, std::ui
     return sum / std::max<std::size_t>(1, m.shared.size());
 }
 
-double share_ms(const Measurement& m, std::size_t device) {
+double device_ms(const Measurement& m, std::size_t device) {
     std::vector<std::int64_t> samples;
     for (const auto& sample : m.samples) samples.push_back(sample.shared_ns[device]);
     return per_frame_ms(m, summarise(samples).median);
 }
 
-/// A row for each of several devices of a cell.
-std::string shares_table(const Row& row, const std::string& label) {
+/// One row for each of several devices of a cell; empty for one device.
+std::string devices_table(const Row& row, const std::string& label) {
     const auto& m = *row.measurement;
     if (m.shared.empty() || m.samples.empty() || m.breakdowns.empty()) return {};
     const auto infos = infos_of(*row.cell);
@@ -206,17 +205,18 @@ std::string shares_table(const Row& row, const std::string& label) {
         columns[0].texts.push_back(short_count(mean_over_frames(m, i, &DeviceWork::bodies)));
         columns[1].texts.push_back(short_count(mean_over_frames(m, i, &DeviceWork::body_pairs)));
         columns[2].texts.push_back(short_count(mean_over_frames(m, i, &DeviceWork::pairs)));
-        columns[3].texts.push_back(milliseconds(share_ms(m, i)));
+        columns[3].texts.push_back(milliseconds(device_ms(m, i)));
         for (std::size_t stage = 0; stage < stage_names.size(); ++stage)
-            columns[4 + stage].texts.push_back(milliseconds(share_stage_ms(m, i, static_cast<Stage>(stage))));
+            columns[4 + stage].texts.push_back(
+                milliseconds(device_stage_ms(m, i, static_cast<Stage>(stage))));
     }
     for (auto& column : columns)
         if (std::ranges::all_of(column.texts, [](const auto& t) { return t == "0.000"; }))
             column.texts.assign(devices.size(), "");
-    return fmt::format("shares of {}\n{}\n", label, in_columns(devices, "a frame", columns));
+    return fmt::format("devices of {}\n{}\n", label, in_columns(devices, "a frame", columns));
 }
 
-/// By rounds, which the two took side by side.
+/// Paired by rounds, because cells of one group take turns in each round.
 Ratio ratio_of(const Measurement& above, const Measurement& below) {
     const auto a = round_medians(above.totals(), above.rounds());
     const auto b = round_medians(below.totals(), below.rounds());
@@ -229,42 +229,42 @@ std::string quotient(double above, double below) {
     return below > 0 ? fmt::format("{:.3g}", above / below) : std::string("-");
 }
 
-/// The comparable rows after `base`, against it.
+/// Ratios of the comparable rows after `base` to `base`.
 std::string ratios_to(const Row& base, const std::string& base_label, std::span<const Row> rows,
                       const std::vector<std::string>& labels) {
-    std::vector<Row> others;
+    std::vector<Row> compared;
     std::vector<std::string> names;
     for (std::size_t i = 0; i < rows.size(); ++i)
         if (rows[i].cell != base.cell && comparable(base, rows[i])) {
-            others.push_back(rows[i]);
+            compared.push_back(rows[i]);
             names.push_back(labels[i]);
         }
-    if (others.empty()) return {};
+    if (compared.empty()) return {};
     const auto& b = *base.measurement;
-    const auto of = [&](const char* head, const auto& value) {
-        return column(head, others,
+    const auto ratios = [&](const char* head, const auto& value) {
+        return column(head, compared,
                       [&](const Row& row) { return quotient(value(*row.measurement), value(b)); });
     };
     const auto stage = [](Stage s) { return [s](const Measurement& m) { return stage_ms(m, s); }; };
     const std::vector<Column> columns{
-        column("total", others, [&](const Row& row) { return ratio_text(*row.measurement, b); }),
-        of("narrow", narrow_ms),
-        of("kernels", kernels_ms),
-        of("read", stage(Stage::read)),
-        of("write", stage(Stage::write)),
-        of("launches", [](const Measurement& m) { return static_cast<double>(launches_of(m)); })};
+        column("total", compared, [&](const Row& row) { return ratio_text(*row.measurement, b); }),
+        ratios("narrow", narrow_ms),
+        ratios("kernels", kernels_ms),
+        ratios("read", stage(Stage::read)),
+        ratios("write", stage(Stage::write)),
+        ratios("launches", [](const Measurement& m) { return static_cast<double>(launches_of(m)); })};
     return fmt::format("times as long as {}\n{}\n", base_label, in_columns(names, "", columns));
 }
 
-/// Of every set of comparable rows the first is what the others are divided by.
+/// The first row of each set of comparable rows is the base of its ratios.
 std::string ratio_tables(std::span<const Row> rows, const RowLabels& labels) {
     std::string text;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const bool is_first =
             std::ranges::none_of(rows.first(i), [&](const Row& r) { return comparable(r, rows[i]); });
         if (is_first)
-            text += ratios_to(rows[i], labels.of[i], rows.subspan(i),
-                              {labels.of.begin() + static_cast<std::ptrdiff_t>(i), labels.of.end()});
+            text += ratios_to(rows[i], labels.by_row[i], rows.subspan(i),
+                              {labels.by_row.begin() + static_cast<std::ptrdiff_t>(i), labels.by_row.end()});
     }
     return text;
 }
@@ -280,10 +280,10 @@ std::string ratio_text(const Measurement& above, const Measurement& below) {
 }
 
 bool comparable(const Row& a, const Row& b) {
-    const auto takes_part = [](const Row& row) {
+    const auto is_eligible = [](const Row& row) {
         return row.measurement->agreement.ok() && total_count(row.measurement->candidate_pairs) > 0;
     };
-    if (!takes_part(a) || !takes_part(b) || a.scene != b.scene || a.cell->devices != b.cell->devices)
+    if (!is_eligible(a) || !is_eligible(b) || a.scene != b.scene || a.cell->devices != b.cell->devices)
         return false;
     const auto x = a.measurement->settings.texts(), y = b.measurement->settings.texts();
     const auto same = [&](const char* name) {
@@ -300,7 +300,7 @@ std::string result_tables(std::span<const Row> rows, bool colour) {
     auto text = labels.common.empty() ? std::string() : "all: " + labels.common + "\n\n";
     text += totals_table(rows, labels, colour) + "\n";
     text += stages_table(rows, labels) + "\n";
-    for (std::size_t i = 0; i < rows.size(); ++i) text += shares_table(rows[i], labels.of[i]);
+    for (std::size_t i = 0; i < rows.size(); ++i) text += devices_table(rows[i], labels.by_row[i]);
     return text + ratio_tables(rows, labels);
 }
 
