@@ -10,7 +10,7 @@ from program import Case, tandem
 class NoRanks(Case):
     def test_it_refuses_to_be_one_of_many(self):
         for variable in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMI_RANK", "PMIX_RANK"):
-            self.bad("started by a launcher of MPI and built without MPI", "scenes", environment={variable: "2"})
+            self.bad("an MPI launcher started this program, but it was built without MPI", "scenes", environment={variable: "2"})
         status, out, errors = tandem("--version")
         self.assertEqual((status, errors), (0, []))
         self.assertIn("without MPI", out)

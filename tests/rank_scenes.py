@@ -109,7 +109,7 @@ class RankScenes(Case):
             status, text, errors = launch(job(*([*stubs, f"CUDA_VISIBLE_DEVICES={which}"] for which in shown))(*common, asked))
             self.assertEqual((status, errors), (0, []), text)
             self.assertIn(f"rank 1, {expected}", text)
-        for shown, asked, expected in ((("0,1", "0,1"), "cuda:0", "ranks 0 and 1 have one GPU, GPU-"), (("1", "1"), "cuda:0", "ranks 0 and 1 have one GPU, GPU-"),
+        for shown, asked, expected in ((("0,1", "0,1"), "cuda:0", "ranks 0 and 1 share one GPU, GPU-"), (("1", "1"), "cuda:0", "ranks 0 and 1 share one GPU, GPU-"),
                                        (("0", "1"), "cuda:0+cuda:1", "rank 1: unknown device 'cuda:1'")):
             status, text, errors = launch(job(*([*stubs, f"CUDA_VISIBLE_DEVICES={which}"] for which in shown))(*common, asked))
             self.assertEqual((status, len(errors)), (2, 1), (text, errors))

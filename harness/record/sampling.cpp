@@ -19,7 +19,7 @@ Json conditions_json(const Measurement& m) {
 Json sampling_json(const Measurement& m, const Cell& cell, const Outcome& outcome, const Sampling& sampling) {
     const auto rounds = round_medians(m.totals(), m.rounds());
     const auto change = drift(rounds);
-    const auto& criterion = sampling.enough;
+    const auto& criterion = sampling.criterion;
     return {{"rounds", rounds.size()},
             {"cells", sampling.cells},
             {"seed", sampling.seed},

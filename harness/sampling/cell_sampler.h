@@ -9,41 +9,41 @@
 
 namespace tandem {
 
-/// How answers are looked at, and what else a cell is replayed for.
+/// How a cell's answers are checked, and which additional replays it has.
 struct CheckOptions {
-    bool check = true;        ///< against the reference
-    bool count_work = true;   ///< by kernels that count
-    Truths* truths = nullptr; ///< of the same scene and frames; null: no comparison with the truth
+    bool check = true;        ///< compare with the reference
+    bool count_work = true;   ///< run a replay with the counting kernels
+    Truths* truths = nullptr; ///< for the same scene and frames; null: no comparison with the truth
     std::function<void(std::string_view)> progress = [](std::string_view) {};
 };
 
-/// One cell as it is measured: a check of every answer, then rounds. A round prepares a session anew, so that
-/// the luck of an allocation is part of the noise; warms up until replays stop falling; takes samples, each
-/// held against the checked answers; and one replay with a clock around every command.
-/// Every function may throw DeviceError; what was measured before stays.
+/// Measures one cell: a check of every answer, then rounds. A round prepares a new session, so that effects
+/// of memory allocation are part of the noise. It warms up until replays stop getting faster, takes samples,
+/// each compared with the checked answers, and ends with one instrumented replay. Every function may throw
+/// DeviceError; earlier measurements stay valid.
 class CellSampler {
 public:
-    /// The cell must outlive this; it goes on with the state.
+    /// Continues from `state`. The cell must outlive this object.
     explicit CellSampler(const Cell& cell, CellState state = {}) : cell_(cell), state_(std::move(state)) {
-        // Of a cell that fails before it has begun those that were asked for are said.
+        // A cell that fails before its first session records the requested settings.
         if (state_.measurement.settings.empty()) state_.measurement.settings = cell.settings;
     }
     virtual ~CellSampler() = default;
 
-    /// The first session: every answer against the reference and the truth.
+    /// The first session: compares every answer with the reference and the truth.
     void check(const CheckOptions& options) { do_check(options); }
-    /// A round of so many samples, which may be 0.
+    /// A round with `samples` samples, which may be 0.
     void round(std::size_t samples) { do_round(samples); }
-    /// With a session of its own, which has the kernels that count.
+    /// Counts work once, in a separate session with the counting kernels.
     void count_work() {
         if (!state_.counted) do_count_work();
         state_.counted = true;
     }
-    /// Frees the session, which the next round prepares anew.
+    /// Frees the session; the next round prepares a new one.
     void release() { do_release(); }
 
-    /// The next round is this one, of another run of the program than those before it.
-    void go_on_from(std::uint32_t round) {
+    /// Sets the number of the next round; earlier rounds are from a previous run of the program.
+    void resume_at(std::uint32_t round) {
         state_.rounds = round;
         if (state_.is_checked()) state_.measurement.continued.push_back(round);
     }
@@ -51,9 +51,9 @@ public:
     const Cell& cell() const { return cell_; }
     const CellState& state() const { return state_; }
     const Measurement& measurement() const { return state_.measurement; }
-    /// How many samples of it take a quarter of the time that a preparation does; 1 to 32.
+    /// Number of samples that last a quarter of a preparation, limited to 1..32.
     std::size_t samples_a_round() const;
-    /// Of seconds, so that every sample had better not have its own.
+    /// Whether a preparation lasts over 2 s, so that one for every sample is too expensive.
     bool preparation_is_long() const { return state_.prepare_ns > 2'000'000'000; }
 
     CellSampler(const CellSampler&) = delete;

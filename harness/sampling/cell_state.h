@@ -7,27 +7,27 @@
 
 namespace tandem {
 
-/// A cell that is being measured: what it gave so far, and what going on with it takes, in this process or in
-/// another.
+/// The state of a cell during its measurement: the results so far, and what this process or another needs to
+/// continue.
 struct CellState {
     Measurement measurement;
     std::vector<Digest> digests; ///< [frame] of the checking replay; empty before it
-    std::int64_t replay_ns = -1; ///< of the last replay; -1 before the first
-    std::int64_t prepare_ns = 0; ///< of the last session
-    std::int64_t spent_ns = 0;   ///< of all rounds, with their preparations
-    std::uint32_t rounds = 0;    ///< taken
-    bool counted = false;        ///< the replay that counts work is done
+    std::int64_t replay_ns = -1; ///< duration of the last replay; -1 before the first
+    std::int64_t prepare_ns = 0; ///< duration of the last session's preparation
+    std::int64_t spent_ns = 0;   ///< duration of all rounds, with their preparations
+    std::uint32_t rounds = 0;    ///< finished rounds
+    bool counted = false;        ///< whether the counting replay is finished
 
     bool is_checked() const { return !digests.empty(); }
 };
 
-/// The state but for its rounds: what checking and counting gave.
+/// The results of checking and counting, without rounds.
 nlohmann::json checked_json(const CellState& state);
-/// The rounds from number `first` on, and what they changed of the rest.
+/// The rounds from number `first` on, and the other values that rounds change.
 nlohmann::json rounds_json(const CellState& state, std::uint32_t first);
 
-/// Takes over what the functions above have written of the same cell, every number exactly. Throw
-/// nlohmann::json::exception, or InputError, when they have not.
+/// Read the output of the functions above for the same cell, with every number exact. They throw
+/// nlohmann::json::exception or InputError for any other input.
 void take_checked(CellState& state, const nlohmann::json& json, const Cell& cell);
 void take_rounds(CellState& state, const nlohmann::json& json);
 

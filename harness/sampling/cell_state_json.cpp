@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// States of cells as JSON: a list of the fields of every structure in them.
+// Converts states of cells to JSON: lists the fields of every structure in a state.
 #include "harness/sampling/cell_state.h"
 
 #include "harness/verify/accuracy/answer_errors_json.h"
@@ -26,7 +26,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Those of a vector of replays or conditions that were taken in a round from `first` on.
+/// The items (replays or conditions) of round `first` and later rounds.
 template<class Item>
 json from_round(const std::vector<Item>& items, std::uint32_t first) {
     auto list = json::array();
@@ -44,7 +44,7 @@ std::map<std::string, std::uint64_t> named(const std::map<std::string_view, std:
     return {work.begin(), work.end()};
 }
 
-/// By the algorithm's own names, which live as long as it.
+/// Uses the algorithm's own names as keys: their storage lives as long as the algorithm.
 std::map<std::string_view, std::uint64_t> counted(const json& work, const Traversal& algorithm) {
     std::map<std::string_view, std::uint64_t> counts;
     for (const auto& counter : algorithm.counters())
@@ -53,8 +53,8 @@ std::map<std::string_view, std::uint64_t> counted(const json& work, const Traver
     return counts;
 }
 
-/// What checking and counting gave, field by field: `each(name, value)`. Settings and counts stand apart, for
-/// they are read by the names of the algorithm.
+/// Calls `each(name, value)` for every field that checking and counting set. The caller handles settings and
+/// counts, whose names depend on the algorithm.
 template<class State, class Each>
 void each_checked(State& state, const Each& each) {
     auto& m = state.measurement;
@@ -75,7 +75,7 @@ void each_checked(State& state, const Each& each) {
     each("counted", state.counted);
 }
 
-/// What a round changes beside what it adds.
+/// Calls `each(name, value)` for every field that a round changes, other than the lists that it extends.
 template<class State, class Each>
 void each_of_round(State& state, const Each& each) {
     auto& m = state.measurement;

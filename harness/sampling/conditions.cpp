@@ -12,7 +12,7 @@ namespace tandem {
 
 namespace {
 
-/// Thousandths suffice, and keep records short.
+/// Rounds to thousandths, which is precise enough and keeps records short.
 nlohmann::ordered_json number_or_null(std::optional<double> value) {
     if (!value || !std::isfinite(*value)) return nullptr;
     return std::round(*value * 1000) / 1000;
@@ -30,14 +30,15 @@ void add_reason(std::string& reasons, const std::string& reason) {
 
 void add_processor(std::string& reasons, const ProcessorCondition& after, const Thresholds& thresholds) {
     if (after.others && *after.others > thresholds.others * after.cores)
-        add_reason(reasons, fmt::format("busy: others take {:.1f} of {} cores", *after.others, after.cores));
+        add_reason(reasons,
+                   fmt::format("busy: other processes use {:.1f} of {} cores", *after.others, after.cores));
     if (after.throttled && *after.throttled > thresholds.throttled)
         add_reason(reasons, *after.throttled == 1
                                 ? "quota: throttled once"
                                 : fmt::format("quota: throttled {} times", *after.throttled));
 }
 
-/// `where` names the device among several.
+/// `where` names the device when there are several.
 void add_gpu(std::string& reasons, const GpuCondition& before, const GpuCondition& after,
              const Thresholds& thresholds, const std::string& where) {
     const auto slowed = throttle_reasons(before.throttle.value_or(0) | after.throttle.value_or(0));
@@ -108,7 +109,7 @@ nlohmann::ordered_json condition_json(const Condition& condition) {
 
 namespace {
 
-/// Of one shape whatever slows a GPU down: the reasons as one text, empty where there are none.
+/// Joins the reasons of throttling into one text, empty without reasons, so that all readings have one shape.
 nlohmann::ordered_json with_reasons_as_text(nlohmann::ordered_json condition) {
     for (auto& gpu : condition["gpus"])
         if (!gpu.is_null() && gpu["throttled"].is_array())
@@ -117,7 +118,7 @@ nlohmann::ordered_json with_reasons_as_text(nlohmann::ordered_json condition) {
     return condition;
 }
 
-/// Values of one shape, or null, as one value.
+/// Merges values of one shape, or null, into one value.
 nlohmann::ordered_json folded(const std::vector<nlohmann::ordered_json>& values) {
     const auto shape = std::ranges::find_if(values, [](const auto& value) { return value.is_structured(); });
     if (shape == values.end()) {

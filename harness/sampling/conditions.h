@@ -13,24 +13,23 @@
 
 namespace tandem {
 
-/// What the machine was like at a reading, and since the one before.
+/// The condition of the machine at a reading, and since the previous reading.
 struct Condition {
     ProcessorCondition processor;
-    std::vector<GpuCondition> gpus; ///< one for each device of the cell, in order; all unknown of processors
+    std::vector<GpuCondition> gpus; ///< by device of the cell; all values unknown for a processor
 
     bool operator==(const Condition&) const = default;
 };
 
-/// Reads the condition that a cell is measured under. Differences are taken from the reading before, the
-/// first one's from the construction. Readings belong before and after a sample, never into a span that is
-/// timed.
+/// Reads the condition under which a cell is measured. Differences are relative to the previous reading, for
+/// the first reading to the construction. Read before and after a sample, never within a timed span.
 class ConditionReader {
 public:
-    /// The devices are not kept. `root` and `own` are ProcessorReader's.
+    /// The devices need not outlive this object. `root` and `own` are passed to ProcessorReader.
     explicit ConditionReader(const DeviceGroup& devices, std::string root = "/",
                              std::function<OwnUse()> own = own_use);
 
-    /// Never fails: what cannot be read is unknown.
+    /// Never fails: values that cannot be read stay unknown.
     Condition read();
 
 private:
@@ -38,29 +37,29 @@ private:
     std::vector<GpuGauge> gauges_;
 };
 
-/// From where on a sample is doubtful.
+/// Limits above which a sample is doubtful.
 struct Thresholds {
-    /// Share of the cores that others take. An idle machine's services take under one in a hundred, and
-    /// counting in ticks errs by up to four in ProcessorReader's shortest period.
+    /// Fraction of the cores that other processes use. Services of an idle machine use under 1 %, and
+    /// counting in ticks has an error of up to 4 % in ProcessorReader's shortest period.
     double others = 0.10;
-    std::uint64_t throttled = 0; ///< periods with the quota used up; more are too many
-    unsigned processes = 0;      ///< others that compute on a GPU; more are too many
+    std::uint64_t throttled = 0; ///< periods with an exhausted quota
+    unsigned processes = 0;      ///< other processes that compute on a GPU
 };
 
-/// Why a sample between the two readings, which follow each other, is doubtful, in a few words: "busy: others
-/// take 0.8 of 2 cores; throttled: power cap". None where nothing speaks against it, as far as is known.
+/// Why a sample between two consecutive readings is doubtful: "busy: other processes use 0.8 of 2 cores;
+/// throttled: power cap". Empty when no known value exceeds its threshold.
 std::optional<std::string> disturbance(const Condition& before, const Condition& after,
                                        const Thresholds& thresholds = {});
 
-/// With units in the names; unknown is null, as is the whole of a device of which nothing is known.
+/// JSON with units in the names. Unknown values are null; so is a device without any known value.
 nlohmann::ordered_json condition_json(const Condition& condition);
-/// Of one or more readings of the same devices in that form: what was the same at each stands by itself, what
-/// was not as an array, one a reading, for most never changes and there are many rounds; reasons of
-/// throttling as one text. Of a device of which nothing was known at one reading, all is null there.
+/// The same form for one or more readings of the same devices. A constant value appears once, a varying one
+/// as an array with one element a reading, which keeps records short. Reasons of throttling are one text. A
+/// device that is unknown at a reading has null for every value of that reading.
 nlohmann::ordered_json conditions_json(std::span<const Condition> conditions);
 nlohmann::ordered_json gpu_condition_json(const GpuCondition& condition);
 
-/// "1980 MHz SM, 3201 MHz memory, 34 C, 76 of 700 W", as far as known; empty when nothing is.
+/// The known values as "1980 MHz SM, 3201 MHz memory, 34 C, 76 of 700 W"; empty when none is known.
 std::string gpu_condition_text(const GpuCondition& condition);
 
 } // namespace tandem

@@ -10,7 +10,7 @@ namespace tandem {
 
 namespace {
 
-/// Where a hierarchy that limits processors is mounted, and the group of this process in it.
+/// The mount point of a hierarchy that limits processors, and the group of this process in it.
 struct Membership {
     std::filesystem::path mount;
     std::filesystem::path group;
@@ -32,7 +32,7 @@ std::optional<Membership> membership(const std::filesystem::path& root, const st
     return std::nullopt;
 }
 
-/// "QUOTA PERIOD" or "max PERIOD" of version 2; of version 1 a file each, -1 for no limit.
+/// Version 2 has one file, "QUOTA PERIOD" or "max PERIOD"; version 1 has two files, and -1 for no limit.
 std::optional<double> quota_of(const std::filesystem::path& folder) {
     double quota = 0;
     double period = 0;
@@ -66,7 +66,7 @@ ControlGroup read_control_group(const std::string& root) {
     for (std::string line; std::getline(file, line);) {
         const auto member = membership(root, line);
         if (!member) continue;
-        // In a container the path may be that outside, of which only the end, the mount itself, is there.
+        // In a container the path can be that of the host, of which only the mount itself exists.
         for (auto group = member->group; !group.empty(); group = group.parent_path())
             add_folder(sum, member->mount / group);
         add_folder(sum, member->mount);

@@ -7,13 +7,14 @@
 
 namespace tandem {
 
-/// What this process's control groups, it and those above it, leave it of the processor.
+/// The processor limits of this process's control group and its ancestors.
 struct ControlGroup {
-    std::optional<double> cores;            ///< the least quota; none where there is no limit
-    std::optional<std::uint64_t> throttled; ///< periods so far in which a quota was used up
+    std::optional<double> cores;            ///< the smallest quota; empty without a limit
+    std::optional<std::uint64_t> throttled; ///< periods so far with an exhausted quota
 };
 
-/// Of versions 2 and 1, with files under `root` ("/"). Never throws: what cannot be read is unknown.
+/// Reads control groups of versions 1 and 2 under `root` ("/"). Never throws: values that cannot be read stay
+/// unknown.
 ControlGroup read_control_group(const std::string& root);
 
 } // namespace tandem

@@ -11,18 +11,18 @@ namespace {
 
 volatile std::sig_atomic_t signalled = 0;
 constexpr std::array signals{SIGINT, SIGTERM, SIGHUP};
-constexpr std::size_t at_sigterm = 1; ///< of them
+constexpr std::size_t sigterm_index = 1; ///< in `signals`
 std::array<struct sigaction, signals.size()> actions_before{};
 timespec first_sigterm{};
 
-void ask_to_end(int) { signalled = 1; }
+void request_end(int) { signalled = 1; }
 
-/// Slurm tells of a time limit by two within milliseconds, which are one.
-void ask_by_sigterm(int) {
+/// At a time limit Slurm sends SIGTERM twice within milliseconds; both count as one.
+void handle_sigterm(int) {
     timespec now{};
     clock_gettime(CLOCK_MONOTONIC, &now);
     if (first_sigterm.tv_sec != 0 && now.tv_sec > first_sigterm.tv_sec + 1) {
-        sigaction(SIGTERM, &actions_before[at_sigterm], nullptr);
+        sigaction(SIGTERM, &actions_before[sigterm_index], nullptr);
         raise(SIGTERM);
     }
     if (first_sigterm.tv_sec == 0) first_sigterm = now;
@@ -36,12 +36,12 @@ Interrupt::Interrupt() {
     first_sigterm = {};
     struct sigaction action {};
     for (std::size_t i = 0; i < signals.size(); ++i) {
-        // Once: the second signal does what it would have done. Reads and writes go on.
-        const bool is_term = i == at_sigterm;
-        action.sa_handler = is_term ? ask_by_sigterm : ask_to_end;
+        // SA_RESETHAND restores the default for the second signal; SA_RESTART continues reads and writes.
+        const bool is_term = i == sigterm_index;
+        action.sa_handler = is_term ? handle_sigterm : request_end;
         action.sa_flags = SA_RESTART | (is_term ? 0 : static_cast<int>(SA_RESETHAND));
         sigaction(signals[i], nullptr, &actions_before[i]);
-        // What the caller ignores, as nohup does, stays ignored.
+        // A signal that the caller ignores, as nohup does, stays ignored.
         if (actions_before[i].sa_handler != SIG_IGN) sigaction(signals[i], &action, nullptr);
     }
 }

@@ -3,9 +3,9 @@
 
 namespace tandem {
 
-/// While it lives, the first SIGINT, SIGTERM or SIGHUP only asks to end, so that what is being measured is
-/// written first; a second one ends the program at once, of SIGTERM one that comes a second later. One at a
-/// time.
+/// Handles SIGINT, SIGTERM and SIGHUP during its lifetime. The first signal only requests the end, so that
+/// results are written first. A second signal ends the program at once; a second SIGTERM must come at least a
+/// second later. At most one object may exist at a time.
 class Interrupt {
 public:
     Interrupt();
@@ -13,7 +13,7 @@ public:
     Interrupt(const Interrupt&) = delete;
     Interrupt& operator=(const Interrupt&) = delete;
 
-    /// Whether a signal has come.
+    /// Whether a signal has arrived.
     static bool asked();
 };
 

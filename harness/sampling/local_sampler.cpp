@@ -12,11 +12,11 @@ namespace tandem {
 
 namespace {
 
-/// Warming up ends when so many replays have not been faster than the fastest before them by more than this
-/// share, since one alone says little where a frame takes a tenth of a millisecond, and so much time has
-/// passed; or when it has taken so long.
-constexpr double falling = 0.02;
-constexpr int patience = 3;
+/// Warming up ends after the longest time, or after the least time once several successive replays have not
+/// been faster than the fastest one by more than the least gain. One replay alone is too noisy where a frame
+/// lasts a tenth of a millisecond.
+constexpr double least_gain = 0.02;
+constexpr int replays_without_gain = 3;
 constexpr std::int64_t least_warming_ns = 5'000'000;
 constexpr std::int64_t longest_warming_ns = 250'000'000;
 
@@ -33,9 +33,9 @@ LocalSampler::LocalSampler(const Cell& cell, const Scene& scene, const FrameRang
       conditions_(cell.devices) {}
 
 void LocalSampler::begin_session() {
-    replays_.reset(); // before the next takes memory
+    replays_.reset(); // frees memory before the next session allocates
     MemoryReserve::refill();
-    // Facts of kernels from here on are those of this cell; the ones of the cells before are dropped.
+    // Drops the facts of earlier cells' kernels, so that later ones belong to this cell.
     for (auto* device : cell_.devices) device->take_kernels();
     replays_.emplace(cell_, scene_, range_);
     state_.prepare_ns = replays_->prepare_ns();
@@ -47,8 +47,8 @@ bool LocalSampler::makes_contacts() const {
            && out_.settings[parameters::contact_rule] != ContactRule::none;
 }
 
-/// Pairs are told apart one by one where there are pairs. With output=count or digest only sums are left: a
-/// wrong sum with the right count is at least one pair missing and one too many.
+/// Compares pair by pair where the answer has pairs. With output=count or digest it has only sums: a wrong
+/// sum with the right count means at least one missing pair and one extra pair.
 void LocalSampler::compare(std::size_t index, const FrameResult& result, const Digest& digest,
                            const Digest& contacts) {
     auto& agreement = out_.agreement;
@@ -61,7 +61,7 @@ void LocalSampler::compare(std::size_t index, const FrameResult& result, const D
     if (!decided(cell_.team, is_first(cell_.team) && differs())) return;
     const auto pairs = result.has_pairs() ? result.download() : std::vector<Pair>{};
     if (!is_first(cell_.team)) return;
-    // Digests may have been kept by an earlier process; an answer is called wrong by what this one computes.
+    // An earlier process may have stored the expected digest: recompute before an answer counts as wrong.
     const auto& expected = references_.answer(geometry_, contact_settings_of(out_.settings), index);
     if (digest != expected.digest) {
         if (result.has_pairs()) {
@@ -81,8 +81,8 @@ ReferenceDigests LocalSampler::expected_digests(std::size_t index) {
     return references_.digests(geometry_, contact_settings_of(out_.settings), index);
 }
 
-/// The truth keeps errors by digest, so that the answer is downloaded only when no other cell gave the same;
-/// where ranks download it together they always do.
+/// Truths stores errors by digest, so that it downloads an answer only when no other cell had the same one.
+/// Ranks download collectively, and therefore always.
 void LocalSampler::add_errors(Truths& truths, std::size_t index, const FrameResult& result,
                               const Digest& digest, const Digest& contacts, const Report& report) {
     FrameAnswer answer;
@@ -114,11 +114,11 @@ void LocalSampler::add_counts(const FrameResult& result) {
     out_.batches += result.batches;
 }
 
-/// At one answer of the checking replay.
-void LocalSampler::look(std::size_t index, const FrameResult& result, const CheckOptions& options) {
+/// Checks one answer of the checking replay.
+void LocalSampler::check_answer(std::size_t index, const FrameResult& result, const CheckOptions& options) {
     const auto frame = fmt::format("frame {} of {}", index + 1, range_.size());
     options.progress(fmt::format("{}: checking {}", name_, frame));
-    // output=count makes no digest: its count stands for it, and for the whole where it is right.
+    // output=count has no digest: the count replaces it, and a correct count implies the expected digest.
     const bool counted = out_.settings[parameters::output] == Output::count;
     auto digest = counted ? Digest{result.count, 0, 0} : result.digest();
     const auto contacts = result.contact_digest();
@@ -140,52 +140,55 @@ void LocalSampler::look(std::size_t index, const FrameResult& result, const Chec
     add_counts(result);
 }
 
-/// Kernels compile at their first launch on some devices, buffers grow to their size, and every later sample
-/// is held against the digests kept here.
+/// Also compiles kernels, which some devices do at the first launch, and grows buffers. Later samples are
+/// compared with the digests of this replay.
 void LocalSampler::do_check(const CheckOptions& options) {
     options.progress(fmt::format("{}: preparing", name_));
     begin_session();
     out_.prepare_ns = state_.prepare_ns;
     out_.settings = replays_->settings();
     geometry_ = geometry_of(out_.settings);
-    const auto replay =
-        replays_->timed([&](std::size_t index, const FrameResult& result) { look(index, result, options); });
+    const auto replay = replays_->timed(
+        [&](std::size_t index, const FrameResult& result) { check_answer(index, result, options); });
     state_.replay_ns = replay.total_ns();
     is_compiled_ = true;
     for (const auto* device : cell_.devices) out_.device_bytes += device->bytes_allocated();
     take_kernels();
 }
 
-/// Of a state that another process has begun, the first replay of this one is what warming up may not count.
+/// When another process has checked the cell, the first replay of this one compiles kernels, and warming up
+/// must not count it.
 void LocalSampler::compile() {
     if (is_compiled_) return;
     replays_->timed([](std::size_t, const FrameResult&) {});
     is_compiled_ = true;
 }
 
-/// Clocks rise, caches fill and buffers grow in the first replays of a session, and while the host did
-/// something else clocks may have fallen.
+/// Clocks rise, caches fill and buffers grow in the first replays of a session. Clocks can also have fallen
+/// while the device was idle.
 void LocalSampler::warm_up() {
     std::int64_t spent = 0;
     auto least = std::numeric_limits<std::int64_t>::max();
     int without_gain = 0;
-    const auto goes_on = [&] {
-        return (without_gain < patience || spent < least_warming_ns) && spent < longest_warming_ns;
+    const auto continues = [&] {
+        return (without_gain < replays_without_gain || spent < least_warming_ns)
+               && spent < longest_warming_ns;
     };
-    while (decided(cell_.team, goes_on())) {
+    while (decided(cell_.team, continues())) {
         state_.replay_ns = replays_->timed([](std::size_t, const FrameResult&) {}).total_ns();
         spent += state_.replay_ns;
-        const bool fell = static_cast<double>(state_.replay_ns) < static_cast<double>(least) * (1 - falling);
-        without_gain = fell ? 0 : without_gain + 1;
+        const bool gained =
+            static_cast<double>(state_.replay_ns) < static_cast<double>(least) * (1 - least_gain);
+        without_gain = gained ? 0 : without_gain + 1;
         least = std::min(least, state_.replay_ns);
     }
 }
 
-/// The answer is looked at between the frames, outside the span that is timed: a sample that gives another
-/// than the checked replay counts against the cell.
+/// Compares each answer with that of the checking replay, between frames and outside the timed span. A
+/// different answer makes the cell wrong.
 void LocalSampler::sample() {
     const auto before = replays_->submissions();
-    std::uint64_t looking = 0;
+    std::uint64_t checking = 0;
     out_.shared.clear();
     auto replay = replays_->timed([&](std::size_t index, const FrameResult& result) {
         if (!result.shared.empty()) out_.shared.push_back(result.shared);
@@ -193,9 +196,9 @@ void LocalSampler::sample() {
         if (out_.settings[parameters::output] != Output::count && result.digest() != state_.digests[index])
             ++out_.agreement.extra;
         if (result.count != out_.candidate_pairs[index]) ++out_.agreement.extra;
-        looking += replays_->submissions() - begin;
+        checking += replays_->submissions() - begin;
     });
-    out_.submissions = replays_->submissions() - before - looking;
+    out_.submissions = replays_->submissions() - before - checking;
     replay.round = state_.rounds;
     state_.replay_ns = replay.total_ns();
     out_.samples.push_back(std::move(replay));
@@ -206,7 +209,7 @@ void LocalSampler::do_round(std::size_t samples) {
     if (!replays_) begin_session();
     compile();
     if (samples > 0) {
-        // Nothing stands between warming up and the samples: reading takes a third of a millisecond.
+        // Read conditions before warming up, because a reading lasts a third of a millisecond.
         RoundConditions conditions{state_.rounds, conditions_.read(), {}};
         warm_up();
         for (std::size_t i = 0; i < samples; ++i) sample();
@@ -227,7 +230,7 @@ void LocalSampler::do_count_work() {
     do_release();
 }
 
-/// Of the devices since the last time; asking again for a kernel that is known adds nothing.
+/// Adds the facts of kernels that the devices have compiled since the last call; skips known kernels.
 void LocalSampler::take_kernels() {
     for (auto* device : cell_.devices)
         for (auto& facts : device->take_kernels()) {

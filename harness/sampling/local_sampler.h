@@ -6,10 +6,10 @@
 
 namespace tandem {
 
-/// A cell as this process measures it.
+/// Measures a cell in this process.
 class LocalSampler : public CellSampler {
 public:
-    /// All must outlive this.
+    /// All arguments except `state` must outlive this object.
     LocalSampler(const Cell& cell, const Scene& scene, const FrameRange& range, References& references,
                  CellState state = {});
 
@@ -26,7 +26,7 @@ private:
     bool makes_contacts() const;
     void compare(std::size_t index, const FrameResult& result, const Digest& digest, const Digest& contacts);
     ReferenceDigests expected_digests(std::size_t index);
-    void look(std::size_t index, const FrameResult& result, const CheckOptions& options);
+    void check_answer(std::size_t index, const FrameResult& result, const CheckOptions& options);
     void add_errors(Truths& truths, std::size_t index, const FrameResult& result, const Digest& digest,
                     const Digest& contacts, const Report& report);
     void add_counts(const FrameResult& result);
@@ -36,11 +36,11 @@ private:
     const FrameRange& range_;
     References& references_;
     std::string name_;
-    Measurement& out_; ///< of the state
+    Measurement& out_; ///< the measurement in `state_`
     std::optional<Replays> replays_;
     ConditionReader conditions_;
     Geometry geometry_;
-    bool is_compiled_ = false; ///< by a replay of this process
+    bool is_compiled_ = false; ///< whether a replay of this process has compiled the kernels
 };
 
 } // namespace tandem

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What measuring a cell gives.
+// The results of measuring a cell.
 #pragma once
 
 #include "harness/verify/accuracy/answer_errors.h"
@@ -21,10 +21,10 @@ struct StageSample {
     StageSample& operator+=(const StageSample& other);
 };
 
-/// By stage, as in stage_names.
+/// One sample a stage, in the order of stage_names.
 using StageSamples = std::array<StageSample, stage_names.size()>;
 
-/// The sums of what ran; device times that were not measured count as 0.
+/// Sums over the commands of a trace; device times that were not measured count as 0.
 StageSamples by_stage(const Trace& trace);
 
 /// Nanoseconds since `begin`.
@@ -32,7 +32,7 @@ std::int64_t since(std::chrono::steady_clock::time_point begin);
 
 /// Sums of one kernel over a replay.
 struct KernelSample {
-    std::int64_t device_ns = 0; ///< those that were not measured count as 0
+    std::int64_t device_ns = 0; ///< times that were not measured count as 0
     std::uint64_t launches = 0;
     Stage stage = Stage::write;   ///< of the last launch, as group_size
     std::uint64_t groups = 0;     ///< of the largest launch
@@ -44,52 +44,51 @@ struct KernelSample {
 struct HostWorkSample {
     std::int64_t host_ns = 0;
     std::uint64_t times = 0;
-    Stage stage = Stage::preprocess; ///< in which it counts as well
+    Stage stage = Stage::preprocess; ///< whose times include it
 };
 
-/// A replay in which nothing but the span of each frame was timed: a sample.
+/// A sample: a replay that times only the whole span of each frame.
 struct TimedReplay {
     std::uint32_t round = 0;
     std::vector<std::int64_t> frame_ns;
-    // Of a session on several devices.
-    std::vector<std::int64_t> shared_ns = {}; ///< by device: what it was at work, over the frames
-    std::int64_t longest_ns = 0;              ///< of the devices, frame by frame, over the frames
-    std::uint64_t repartitions = 0;           ///< frames for which bodies were dealt anew
+    // Only for a session on several devices; sums over the frames.
+    std::vector<std::int64_t> shared_ns = {}; ///< [device] time at work
+    std::int64_t longest_ns = 0;              ///< the longest device time of each frame
+    std::uint64_t repartitions = 0;           ///< frames before which the bodies were repartitioned
 
     std::int64_t total_ns() const;
     void add_shared(const FrameResult& result);
-    /// The longest of the devices over the mean of all, 1 where all end together; none on one device.
+    /// Ratio of the longest device time to the mean, 1 for equal times; empty for one device.
     std::optional<double> imbalance() const;
 };
 
-/// A replay with a clock around every command; slower than a sample, so that nothing of it goes into the
-/// headline.
+/// A replay with a clock around every command. It is slower than a sample; the headline does not use it.
 struct InstrumentedReplay {
     std::uint32_t round = 0;
-    std::vector<std::int64_t> frame_ns;               ///< host spans
-    std::vector<std::int64_t> span_ns;                ///< by frame, first begin to last end; -1: not known
-    std::vector<StageSamples> stages;                 ///< by frame
-    std::vector<StageSamples> by_device = {};         ///< sums over the frames
-    std::map<std::string, KernelSample> kernels = {}; ///< by entry point
+    std::vector<std::int64_t> frame_ns;                   ///< host spans
+    std::vector<std::int64_t> span_ns;                    ///< by frame, first begin to last end; -1: unknown
+    std::vector<StageSamples> stages;                     ///< by frame
+    std::vector<StageSamples> by_device = {};             ///< sums over the frames
+    std::map<std::string, KernelSample> kernels = {};     ///< by entry point
     std::map<std::string, HostWorkSample> host_work = {}; ///< by name
-    std::vector<std::string> clocks = {};                 ///< by device: what took its times
+    std::vector<std::string> clocks = {};                 ///< by device: the clock of its times
 
     /// Sums over the frames.
     StageSamples totals() const;
 };
 
-/// What the machine was like before and after the samples of a round.
+/// The condition of the machine before and after the samples of a round.
 struct RoundConditions {
     std::uint32_t round = 0;
     Condition before, after;
 
-    /// Why the round is doubtful; none where nothing speaks against it.
+    /// Why the round is doubtful; empty when it is not.
     std::optional<std::string> disturbed() const { return disturbance(before, after); }
 };
 
-/// The cell's answers against the reference.
+/// Comparison of the cell's answers with the reference.
 struct Agreement {
-    std::uint64_t frames = 0; ///< compared
+    std::uint64_t frames = 0; ///< compared frames
     std::uint64_t missing = 0, extra = 0;
     std::uint64_t contact_frames_wrong = 0; ///< frames whose contacts differ in any bit
     Digest digest;                          ///< sums over the frames
@@ -98,32 +97,32 @@ struct Agreement {
     bool ok() const { return missing == 0 && extra == 0 && contact_frames_wrong == 0; }
 };
 
-/// Everything one cell gave.
+/// All results of one cell.
 struct Measurement {
-    Settings settings; ///< as the device took them
+    Settings settings; ///< as the device used them
     std::vector<TimedReplay> samples;
     std::vector<InstrumentedReplay> breakdowns;
     std::vector<RoundConditions> conditions; ///< of every round with samples
-    std::vector<std::uint32_t> continued;    ///< rounds from which on another run of the program went on
+    std::vector<std::uint32_t> continued;    ///< first rounds of later runs that resumed the cell
     std::vector<std::uint64_t> body_pairs, candidate_pairs, contacts; ///< [frame]
     std::uint64_t degenerate = 0, rejected = 0, undecided_by_filter = 0, undecided_by_double = 0;
     std::uint64_t retries = 0, batches = 0;      ///< of the checking replay
-    std::vector<std::vector<DeviceWork>> shared; ///< [frame][device], in the last sample; of several devices
-    std::uint64_t submissions = 0;               ///< calls that handed devices work, in the last sample
+    std::vector<std::vector<DeviceWork>> shared; ///< [frame][device] of the last sample; empty on one device
+    std::uint64_t submissions = 0;               ///< calls that submitted work, in the last sample
     std::map<std::string_view, std::uint64_t> work; ///< by counter, over the frames; empty when not counted
     Agreement agreement;
-    std::optional<AnswerErrors> errors; ///< against the exact truth; none when not asked for
+    std::optional<AnswerErrors> errors; ///< against the exact truth; empty when not requested
     std::vector<KernelFacts> kernels;
-    std::int64_t prepare_ns = 0; ///< of the first session, its compilations included; in no sample
+    std::int64_t prepare_ns = 0; ///< of the first session, with compilation; not part of any sample
     std::size_t device_bytes = 0;
 
-    /// Of the samples, and the round of each: what summarise() takes.
+    /// Time and round of each sample, as arguments of summarise().
     std::vector<std::int64_t> totals() const;
     std::vector<std::uint32_t> rounds() const;
     std::size_t round_count() const; ///< rounds with samples
 };
 
-/// Median nanoseconds of a replay; of a cell without samples (tandem check) that of its instrumented ones.
+/// Median nanoseconds of a sample; of an instrumented replay for a cell without samples (tandem check).
 double median_ns(const Measurement& m);
 
 } // namespace tandem

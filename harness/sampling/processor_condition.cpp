@@ -18,15 +18,14 @@ namespace tandem {
 
 namespace {
 
-/// Clock ticks of one core since the machine began: man 5 proc, /proc/stat.
+/// Clock ticks of one core since the machine started: man 5 proc, /proc/stat.
 struct Ticks {
     double all = 0;
-    double busy =
-        0; ///< neither idle nor waiting for a disk; time that the host gave to other guests included
+    double busy = 0; ///< neither idle nor waiting for a disk; includes time stolen by other virtual machines
 };
 
-/// Of a line "cpuN user nice system idle iowait irq softirq steal ..."; what follows stands in user and nice
-/// too.
+/// Parses a line "cpuN user nice system idle iowait irq softirq steal ...". Later columns are ignored: user
+/// and nice already include them.
 std::optional<std::pair<unsigned, Ticks>> ticks_in(const std::string& line) {
     std::istringstream words(line);
     std::string name;
@@ -66,18 +65,18 @@ std::optional<std::string> governor_of(const std::string& root, std::span<const 
     return governor;
 }
 
-/// "cpu MHz" of /proc/cpuinfo, in the order of cores; those of others are left out.
+/// "cpu MHz" of the given cores in /proc/cpuinfo, in the order of the file.
 std::vector<double> cpuinfo_mhz(const std::string& root, std::span<const unsigned> cores) {
     std::ifstream file(root + "/proc/cpuinfo");
     std::vector<double> clocks;
-    bool ours = false;
+    bool is_listed = false;
     for (std::string line; clocks.size() < cores.size() && std::getline(file, line);) {
         double value = 0;
         const auto colon = line.find(':');
         if (colon == std::string::npos || !(std::istringstream(line.substr(colon + 1)) >> value)) continue;
         if (line.starts_with("processor"))
-            ours = value >= 0 && value < 1e6 && is_among(cores, static_cast<unsigned>(value));
-        if (ours && line.starts_with("cpu MHz")) clocks.push_back(value);
+            is_listed = value >= 0 && value < 1e6 && is_among(cores, static_cast<unsigned>(value));
+        if (is_listed && line.starts_with("cpu MHz")) clocks.push_back(value);
     }
     return clocks;
 }
@@ -96,7 +95,7 @@ std::optional<double> mhz_of(const std::string& root, std::span<const unsigned> 
     return sum / static_cast<double>(clocks.size());
 }
 
-/// "some avg10=0.12 ...": the kernel's documentation of pressure stall information.
+/// Parses "some avg10=0.12 ...", which the kernel's documentation of pressure stall information defines.
 std::optional<double> pressure_of(const std::string& root) {
     std::ifstream file(root + "/proc/pressure/cpu");
     std::string some, average;
@@ -114,7 +113,7 @@ OwnUse own_use() {
     OwnUse use;
     cpu_set_t set;
     CPU_ZERO(&set);
-    // Machines of more cores than the set has room for answer with an error: none is known then.
+    // The call fails on machines with more cores than the set can contain: the cores stay unknown.
     if (sched_getaffinity(0, sizeof(set), &set) == 0)
         for (unsigned core = 0; core < CPU_SETSIZE; ++core)
             if (CPU_ISSET(core, &set)) use.cores.push_back(core);
@@ -127,8 +126,8 @@ OwnUse own_use() {
 
 ProcessorReader::ProcessorReader(std::string root, std::function<OwnUse()> own)
     : root_(std::move(root)), own_use_(std::move(own)) {
-    take_load(own_use_());
-    take_throttled(read_control_group(root_).throttled);
+    update_load(own_use_());
+    update_throttled(read_control_group(root_).throttled);
 }
 
 std::optional<ProcessorReader::Load> ProcessorReader::load(const OwnUse& use) const {
@@ -147,7 +146,7 @@ std::optional<ProcessorReader::Load> ProcessorReader::load(const OwnUse& use) co
     return sum;
 }
 
-void ProcessorReader::take_load(const OwnUse& use) {
+void ProcessorReader::update_load(const OwnUse& use) {
     auto now = load(use);
     if (!now || !base_ || now->cores != base_->cores || now->elapsed < base_->elapsed) {
         own_ = others_ = std::nullopt;
@@ -161,8 +160,8 @@ void ProcessorReader::take_load(const OwnUse& use) {
     base_ = std::move(now);
 }
 
-/// A group that this process was moved to may have been throttled less often.
-std::optional<std::uint64_t> ProcessorReader::take_throttled(std::optional<std::uint64_t> now) {
+/// The count can decrease when this process moves to another control group.
+std::optional<std::uint64_t> ProcessorReader::update_throttled(std::optional<std::uint64_t> now) {
     const auto before = std::exchange(throttled_, now);
     if (!now || !before) return std::nullopt;
     return *now - std::min(*now, *before);
@@ -170,16 +169,17 @@ std::optional<std::uint64_t> ProcessorReader::take_throttled(std::optional<std::
 
 ProcessorCondition ProcessorReader::read() {
     const auto use = own_use_();
-    take_load(use);
+    update_load(use);
     const auto group = read_control_group(root_);
-    const auto asked = std::span(use.cores).first(std::min<std::size_t>(use.cores.size(), most_cores_asked));
+    const auto sampled =
+        std::span(use.cores).first(std::min<std::size_t>(use.cores.size(), most_sampled_cores));
     return {.cores = static_cast<unsigned>(use.cores.size()),
             .quota = group.cores,
             .own = own_,
             .others = others_,
-            .governor = governor_of(root_, asked),
-            .mhz = mhz_of(root_, asked),
-            .throttled = take_throttled(group.throttled),
+            .governor = governor_of(root_, sampled),
+            .mhz = mhz_of(root_, sampled),
+            .throttled = update_throttled(group.throttled),
             .pressure = pressure_of(root_)};
 }
 

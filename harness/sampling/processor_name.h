@@ -5,7 +5,7 @@
 
 namespace tandem {
 
-/// As the kernel tells it; empty when it does not.
+/// The processor's model name in /proc/cpuinfo; empty when unknown.
 std::string processor_name();
 
 } // namespace tandem

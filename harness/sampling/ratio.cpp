@@ -11,7 +11,7 @@ namespace tandem {
 
 namespace {
 
-/// The generator is specified to the bit, unlike distributions of the library.
+/// The standard specifies this generator's exact output, unlike that of the library's distributions.
 using Generator = std::mt19937_64;
 constexpr std::uint64_t bootstrap_seed = 20180606;
 constexpr std::size_t resamples = 1000;

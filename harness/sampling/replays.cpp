@@ -48,7 +48,7 @@ void add_host_work(const Trace& trace, std::map<std::string, HostWorkSample>& wo
     }
 }
 
-/// What each device did of a frame: those of this process, or one of each rank.
+/// Stage samples of a frame by device: this process's devices, or one device of each rank.
 std::vector<StageSamples> stages_of(RankTeam* team, const std::vector<Trace>& traces) {
     std::vector<StageSamples> stages;
     for (const auto& trace : traces) stages.push_back(by_stage(trace));
@@ -81,7 +81,7 @@ void Replays::wait() {
     });
 }
 
-/// Once all ranks have it and all devices are idle.
+/// Returns the frame once all ranks have it and all devices are idle.
 std::shared_ptr<const Frame> Replays::next_frame(std::size_t index) {
     std::shared_ptr<const Frame> frame;
     together(cell_.team, [&] {
@@ -114,7 +114,7 @@ InstrumentedReplay Replays::instrumented() {
             for (auto* device : cell_.devices) traces.push_back(device->finish());
         });
         auto& sum = replay.stages.emplace_back();
-        std::int64_t span = 0; // the longest of the devices, -1 when one does not tell
+        std::int64_t span = 0; // the longest device span; -1 when one is unknown
         for (const auto& trace : traces) {
             add_kernels(trace, replay.kernels);
             add_host_work(trace, replay.host_work);

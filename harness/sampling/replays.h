@@ -8,23 +8,23 @@
 
 namespace tandem {
 
-/// A session of a cell and the ways to replay the frames with it. Every function may throw DeviceError. Ranks
-/// that measure the cell together call each function together, and those of results in `look`.
+/// Replays the frames with one session of a cell. Every function may throw DeviceError. For a cell of several
+/// ranks every function is collective, and so are the functions of results that `visit` calls.
 class Replays {
 public:
-    /// Prepares the session and waits until it is. All must outlive this.
+    /// Prepares the session and waits for the end. All arguments must outlive this object.
     Replays(const Cell& cell, const Scene& scene, const FrameRange& range);
 
-    /// Upload of static data, and compilations that were not made before.
+    /// Duration of the upload of static data and of new compilations.
     std::int64_t prepare_ns() const { return prepare_ns_; }
     const Settings& settings() const { return session_->settings(); }
 
-    /// Runs every frame, with nothing but its span timed, and hands each result to `look` outside of that
-    /// span. So is a frame made that the range does not hold: neither the span nor the profiler's range of
-    /// the frame has that, but that of the cell has, as it has `look`. Where frames are made the session's
-    /// data is colder in caches, and the devices were idle for longer, than where they are held.
-    template<class Look>
-    TimedReplay timed(const Look& look) {
+    /// Runs every frame, times only its span, and passes each result to `visit` outside that span. A frame
+    /// that the range does not store is generated outside the span and the frame's profiler range, but inside
+    /// the cell's profiler range, as is `visit`. Generating a frame cools the caches and leaves the devices
+    /// idle for longer.
+    template<class Visit>
+    TimedReplay timed(const Visit& visit) {
         const ranges::ProfilerRange cell(name_.c_str());
         session_->reset();
         TimedReplay replay;
@@ -35,20 +35,20 @@ public:
             const auto result = session_->run(*frame);
             replay.frame_ns.push_back(since(begin));
             replay.add_shared(result);
-            look(i, result);
+            visit(i, result);
         }
         return replay;
     }
-    /// With a clock around every command.
+    /// Runs every frame with a clock around every command.
     InstrumentedReplay instrumented();
-    /// The commands of frame number `index` of the range on each device, with a clock around them, once the
-    /// frames up to it have run without.
+    /// The timed commands of frame number `index` of the range, by device. Frames up to and including it run
+    /// first without clocks.
     std::vector<Trace> traced(std::size_t index);
-    /// By counter of the algorithm, over the frames. The kernels that count are others: what they take is not
-    /// measured, and the session is of no use for times afterwards.
+    /// Values of the algorithm's counters over the frames. Counting uses other kernels, which are not timed:
+    /// do not use the session for times afterwards.
     std::map<std::string_view, std::uint64_t> counted();
 
-    /// Calls that handed work to the devices so far.
+    /// Calls so far that submitted work to the devices.
     std::uint64_t submissions() const;
 
 private:
@@ -58,7 +58,7 @@ private:
     const Cell& cell_;
     const FrameRange& range_;
     std::string name_;                     ///< of the cell, for profilers
-    std::vector<std::string> frame_names_; ///< of its frames; empty texts where no profiler looks
+    std::vector<std::string> frame_names_; ///< by frame; empty texts without a profiler
     std::unique_ptr<Session> session_;
     std::int64_t prepare_ns_ = 0;
 };

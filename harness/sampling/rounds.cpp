@@ -13,13 +13,13 @@ namespace tandem {
 
 namespace {
 
-/// A group at work.
+/// Samples a group of cells.
 class Group {
 public:
-    Group(std::span<CellSampler* const> cells, const CheckOptions& check, const StoppingCriterion& enough,
+    Group(std::span<CellSampler* const> cells, const CheckOptions& check, const StoppingCriterion& criterion,
           std::uint64_t seed, const RoundsListener& listener)
         : check_(check), listener_(listener), random_(seed) {
-        sampling_.enough = enough;
+        sampling_.criterion = criterion;
         sampling_.seed = seed;
         sampling_.cells = cells.size();
         for (auto* cell : cells) outcomes_.push_back({cell, {}, false, 0});
@@ -28,15 +28,15 @@ public:
     bool run();
 
 private:
-    /// The first round of a cell, or another; false when it failed, or has been sampled enough, and is
-    /// finished.
     RankTeam* team() const { return outcomes_.empty() ? nullptr : outcomes_.front().sampler->cell().team; }
     bool stops() const { return decided(team(), listener_.stop()); }
+    /// Runs one round of a cell. Returns false when the cell is finished: it has failed, or it meets the
+    /// criterion.
     template<class Work>
-    bool goes_on(Outcome& outcome, bool is_first, const Work& work);
+    bool run_round(Outcome& outcome, bool is_first, const Work& work);
     bool begin(Outcome& outcome);
     bool round(Outcome& outcome);
-    bool is_enough(Outcome& outcome) const;
+    bool meets_criterion(Outcome& outcome) const;
     std::size_t next_samples(const CellSampler& cell) const;
     std::string name(const Outcome& outcome) const;
 
@@ -48,39 +48,39 @@ private:
 };
 
 std::size_t Group::next_samples(const CellSampler& cell) const {
-    const auto& repeat = sampling_.enough.repeat;
+    const auto& repeat = sampling_.criterion.repeat;
     if (!repeat) return decided(team(), cell.samples_a_round());
     const auto left = *repeat - std::min(*repeat, cell.measurement().samples.size());
-    // One a round, but where every round would take long before its sample.
+    // One sample a round, unless preparations are long.
     return decided(team(),
                    std::min(left, cell.preparation_is_long() ? cell.samples_a_round() : std::size_t{1}));
 }
 
-bool Group::is_enough(Outcome& outcome) const {
+bool Group::meets_criterion(Outcome& outcome) const {
     auto& cell = *outcome.sampler;
     const auto& m = cell.measurement();
-    const auto& enough = sampling_.enough;
-    if (enough.repeat) return outcome.converged = m.samples.size() >= *enough.repeat;
+    const auto& criterion = sampling_.criterion;
+    if (criterion.repeat) return outcome.converged = m.samples.size() >= *criterion.repeat;
     const std::size_t rounds = m.round_count();
     if (rounds < StoppingCriterion::least) return false;
-    const bool is_late = static_cast<double>(cell.state().spent_ns) * 1e-9 >= enough.seconds;
-    if (!is_late && rounds < outcome.next_look) return false;
-    outcome.next_look = rounds + rounds / 10;
+    const bool is_late = static_cast<double>(cell.state().spent_ns) * 1e-9 >= criterion.seconds;
+    if (!is_late && rounds < outcome.next_check) return false;
+    outcome.next_check = rounds + rounds / 10;
     const auto s = summarise(m.totals(), m.rounds());
-    outcome.converged = s.high - s.low <= noise_of(cell.cell().devices, enough) * s.median;
+    outcome.converged = s.high - s.low <= noise_of(cell.cell().devices, criterion) * s.median;
     return outcome.converged || is_late;
 }
 
 template<class Work>
-bool Group::goes_on(Outcome& outcome, bool is_first, const Work& work) {
+bool Group::run_round(Outcome& outcome, bool is_first, const Work& work) {
     try {
         work();
-        if (!decided(team(), is_enough(outcome))) {
+        if (!decided(team(), meets_criterion(outcome))) {
             listener_.kept(*outcome.sampler, is_first);
             return true;
         }
     } catch (const DeviceError& error) {
-        // An error of one rank alone ends the job: the others wait for it.
+        // An error of a single rank ends the job, because the other ranks wait for that rank.
         if (team() != nullptr && dynamic_cast<const OfAllRanks*>(&error) == nullptr) throw;
         outcome.failure = error.what();
     } catch (const std::bad_alloc&) {
@@ -94,11 +94,11 @@ bool Group::goes_on(Outcome& outcome, bool is_first, const Work& work) {
 
 bool Group::begin(Outcome& outcome) {
     auto& cell = *outcome.sampler;
-    return goes_on(outcome, true, [&] {
+    return run_round(outcome, true, [&] {
         if (!cell.state().is_checked()) cell.check(check_);
         if (cell.measurement().breakdowns.empty()) {
-            // Checking has let the device wait for the host, frame by frame: the first round had better begin
-            // as every other does.
+            // The device waited for the host during the check; begin the first round as every other round,
+            // with a new session.
             if (next_samples(cell) > 0) cell.release();
             listener_.progress(fmt::format("{}: first round", name(outcome)));
             cell.round(next_samples(cell));
@@ -111,7 +111,7 @@ bool Group::begin(Outcome& outcome) {
 bool Group::round(Outcome& outcome) {
     auto& cell = *outcome.sampler;
     listener_.progress(fmt::format("{}: round {}", name(outcome), cell.measurement().round_count() + 1));
-    return goes_on(outcome, false, [&] {
+    return run_round(outcome, false, [&] {
         cell.round(next_samples(cell));
         cell.release();
     });
@@ -120,23 +120,23 @@ bool Group::round(Outcome& outcome) {
 std::string Group::name(const Outcome& outcome) const { return describe(outcome.sampler->cell()); }
 
 bool Group::run() {
-    // Cells that go on with earlier rounds may have taken unlike numbers of them; rounds of one number are
-    // taken side by side.
+    // Resumed cells can have different numbers of rounds. All continue at the largest number, because cells
+    // are compared by rounds of equal number.
     std::uint32_t next = 0;
     for (const auto& outcome : outcomes_) next = std::max(next, outcome.sampler->state().rounds);
-    for (auto& outcome : outcomes_) outcome.sampler->go_on_from(next);
+    for (auto& outcome : outcomes_) outcome.sampler->resume_at(next);
     std::vector<Outcome*> left;
     for (auto& outcome : outcomes_) {
         if (stops()) break;
         if (begin(outcome)) left.push_back(&outcome);
     }
     while (!left.empty() && !stops()) {
-        // std::shuffle is not the same everywhere; this is.
+        // Unlike std::shuffle, this gives the same order with every standard library.
         for (std::size_t i = left.size(); i > 1; --i) std::swap(left[i - 1], left[random_() % i]);
-        std::vector<Outcome*> going;
+        std::vector<Outcome*> remaining;
         for (auto* outcome : left)
-            if (stops() || round(*outcome)) going.push_back(outcome);
-        left = std::move(going);
+            if (stops() || round(*outcome)) remaining.push_back(outcome);
+        left = std::move(remaining);
     }
     sampling_.interrupted = stops();
     for (auto* outcome : left) listener_.finished(*outcome, sampling_);
@@ -145,15 +145,15 @@ bool Group::run() {
 
 } // namespace
 
-double noise_of(const DeviceGroup& devices, const StoppingCriterion& enough) {
-    if (enough.noise) return *enough.noise;
+double noise_of(const DeviceGroup& devices, const StoppingCriterion& criterion) {
+    if (criterion.noise) return *criterion.noise;
     const bool gpus = std::ranges::all_of(devices, [](const auto* device) { return device->info().is_gpu; });
     return gpus ? 0.01 : 0.03;
 }
 
 bool sample_group(std::span<CellSampler* const> cells, const CheckOptions& check,
-                  const StoppingCriterion& enough, std::uint64_t seed, const RoundsListener& listener) {
-    return Group(cells, check, enough, seed, listener).run();
+                  const StoppingCriterion& criterion, std::uint64_t seed, const RoundsListener& listener) {
+    return Group(cells, check, criterion, seed, listener).run();
 }
 
 } // namespace tandem

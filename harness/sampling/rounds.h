@@ -5,49 +5,48 @@
 
 namespace tandem {
 
-/// When a cell has been sampled enough.
+/// When the sampling of a cell ends.
 struct StoppingCriterion {
-    std::optional<std::size_t> repeat{}; ///< so many samples; none: as the rest says
-    std::optional<double> noise{}; ///< width of the median's 95 % interval, relative; none: by its devices
-    double seconds = 10;           ///< of rounds; then `least` rounds suffice
+    std::optional<std::size_t> repeat{}; ///< number of samples; empty: by the other criteria
+    std::optional<double> noise{}; ///< relative width of the median's 95 % interval; empty: by its devices
+    double seconds = 10;           ///< duration of rounds after which `least` rounds suffice
     static constexpr std::size_t least = 10;
 };
 
-/// 1 % where all devices are GPUs, 3 % where one is a processor.
-double noise_of(const DeviceGroup& devices, const StoppingCriterion& enough);
+/// The criterion's noise; by default 1 % when all devices are GPUs, 3 % otherwise.
+double noise_of(const DeviceGroup& devices, const StoppingCriterion& criterion);
 
-/// How a group of cells was sampled, as a record says it.
+/// How a group of cells was sampled, for the record.
 struct Sampling {
-    StoppingCriterion enough;
+    StoppingCriterion criterion;
     std::uint64_t seed = 0;   ///< of the order of cells in a round
-    std::size_t cells = 1;    ///< of the group, in turn in every round
-    bool interrupted = false; ///< before all were sampled enough
+    std::size_t cells = 1;    ///< number of cells in the group
+    bool interrupted = false; ///< before all cells met the criterion
 };
 
-/// A cell of a group, and what became of it.
+/// A cell of a group and its result.
 struct Outcome {
     CellSampler* sampler = nullptr;
-    std::string failure;       ///< of its device or its memory; empty when it finished
-    bool converged = false;    ///< its interval is narrower than asked for; always so with `repeat`
-    std::size_t next_look = 0; ///< rounds at which to ask again: many take as long to judge as to sample
+    std::string failure;        ///< of its device or its memory; empty when it finished
+    bool converged = false;     ///< its interval is narrow enough, or it has `repeat` samples
+    std::size_t next_check = 0; ///< rounds at the next check of the interval, which is slow for many rounds
 };
 
-/// What a group tells while it is sampled.
+/// Callbacks during the sampling of a group.
 struct RoundsListener {
     std::function<void(std::string_view)> progress = [](std::string_view) {};
-    /// A cell that needs no more rounds, or has failed; once each.
+    /// Called once for each cell, when it needs no more rounds or has failed.
     std::function<void(const Outcome&, const Sampling&)> finished = [](const Outcome&, const Sampling&) {};
-    /// Of a cell that needs more rounds: after the first that it took here, and after each of the others.
+    /// Called after each round of a cell that needs more rounds; `first` for the first round of this run.
     std::function<void(const CellSampler&, bool first)> kept = [](const CellSampler&, bool) {};
-    /// Asked between rounds of cells: whether to end now, with what there is.
+    /// Called between rounds: whether to end now with the results so far.
     std::function<bool()> stop = [] { return false; };
 };
 
-/// Checks every cell and takes its first round, in the order given; then goes round by round through those
-/// that have not been sampled enough, in an order drawn for every round, so that drift of the machine is
-/// shared by all cells and does not look like an effect. One session lives at a time. Returns whether it was
-/// interrupted.
+/// Checks every cell and takes its first round, in the given order. Further rounds visit the cells that do
+/// not yet meet the criterion, each in a new random order, so that drift of the machine affects all cells
+/// alike. One session lives at a time. Returns whether it was interrupted.
 bool sample_group(std::span<CellSampler* const> cells, const CheckOptions& check,
-                  const StoppingCriterion& enough, std::uint64_t seed, const RoundsListener& listener);
+                  const StoppingCriterion& criterion, std::uint64_t seed, const RoundsListener& listener);
 
 } // namespace tandem

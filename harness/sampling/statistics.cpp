@@ -18,9 +18,9 @@ double quantile(const std::vector<double>& sorted, double fraction) {
 
 namespace {
 
-/// Ascending medians of resamples of the same size, drawn with replacement. The seed is fixed and the
-/// generator specified to the bit, unlike distributions of the library, so that every machine gives the same
-/// interval.
+/// Ascending medians of resamples of the same size, drawn with replacement. Every machine computes the same
+/// interval: the seed is fixed, and the standard specifies the generator's exact output, unlike that of the
+/// library's distributions.
 std::vector<double> bootstrap_medians(const std::vector<double>& samples) {
     std::mt19937_64 random(20180606);
     std::vector<double> medians(1000);
@@ -128,18 +128,18 @@ std::optional<double> drift(std::span<const double> values) {
             concordance += change > 0 ? 1 : (change < 0 ? -1 : 0);
             slopes.push_back(change / static_cast<double>(j - i));
         }
-    // Normal from eight values on; the 1 corrects for steps of two.
+    // Approximately normal from eight values on; the 1 is the continuity correction for steps of two.
     const double deviation = std::sqrt(n * (n - 1) * (2 * n + 5) / 18);
-    if (std::abs(concordance) - 1 < 2.5758 * deviation) return std::nullopt; // 99 % of both sides
+    if (std::abs(concordance) - 1 < 2.5758 * deviation) return std::nullopt; // two-sided, 99 %
     return median(std::move(slopes)) * (n - 1) / median({values.begin(), values.end()});
 }
 
 std::optional<Spread> spread(std::vector<double> samples) {
     if (samples.empty()) return std::nullopt;
     std::sort(samples.begin(), samples.end());
-    // The nearest rank: always a sample, never a mixture of two.
-    const auto at = [&](double share) {
-        const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(samples.size())));
+    // The nearest rank is always a sample, never an interpolation of two.
+    const auto at = [&](double fraction) {
+        const auto rank = static_cast<std::size_t>(std::ceil(fraction * static_cast<double>(samples.size())));
         return samples[std::max<std::size_t>(rank, 1) - 1];
     };
     return Spread{at(0.5), at(0.99), samples.back()};

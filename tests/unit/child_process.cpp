@@ -44,24 +44,24 @@ TEST_F(ChildProcesses, AnswerLineByLine) {
         const auto result = ask(line.c_str());
         EXPECT_EQ(result.failure, "");
         EXPECT_THAT(result.output, EndsWith("before\n<" + line + ">"));
-        EXPECT_FALSE(child.is_over());
+        EXPECT_FALSE(child.has_ended());
     }
 }
 
 TEST_F(ChildProcesses, ThatEndAreOver) {
     EXPECT_EQ(ask("leave").failure, "ended with code 7");
-    EXPECT_TRUE(child.is_over());
+    EXPECT_TRUE(child.has_ended());
 }
 
 TEST_F(ChildProcesses, ThatCrashAreOver) {
     ask("one");
     EXPECT_THAT(ask("crash").failure, HasSubstr("ended by signal 6"));
-    EXPECT_TRUE(child.is_over());
+    EXPECT_TRUE(child.has_ended());
 }
 
 TEST_F(ChildProcesses, ThatHangAreEnded) {
     EXPECT_EQ(ask("hang", 0.2).failure, "took longer than 0.2 s and was ended");
-    EXPECT_TRUE(child.is_over());
+    EXPECT_TRUE(child.has_ended());
 }
 
 } // namespace

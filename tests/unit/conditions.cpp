@@ -89,7 +89,7 @@ TEST_F(Conditions, OthersAreCountedOnTheCoresOfThisProcess) {
     const Condition after{processor.read(), {}};
     EXPECT_EQ(before.processor.others, std::nullopt) << "no time has passed";
     EXPECT_THAT(after.processor.others, Optional(DoubleNear(0.8, 1e-9)));
-    EXPECT_EQ(disturbance(before, after), "busy: others take 0.8 of 2 cores");
+    EXPECT_EQ(disturbance(before, after), "busy: other processes use 0.8 of 2 cores");
     EXPECT_EQ(disturbance(before, after, {.others = 0.5}), std::nullopt);
 }
 
@@ -245,7 +245,7 @@ TEST(Disturbance, OfAGpu) {
     Condition shared{of_cores(4), {shared_gpu(0x4, 2)}};
     shared.processor.others = 0.5;
     shared.processor.throttled = 1;
-    EXPECT_EQ(disturbance(quiet, shared), "busy: others take 0.5 of 4 cores; quota: throttled once; "
+    EXPECT_EQ(disturbance(quiet, shared), "busy: other processes use 0.5 of 4 cores; quota: throttled once; "
                                           "throttled: power cap; other processes on the GPU: 2");
     EXPECT_EQ(disturbance(quiet, shared, {.others = 1, .throttled = 1, .processes = 2}),
               "throttled: power cap");

@@ -21,7 +21,7 @@
 
 namespace tandem {
 
-/// A descriptor that is closed with it.
+/// Owns a file descriptor and closes it.
 class ChildProcess::Descriptor {
 public:
     explicit Descriptor(int number = -1) : number_(number) {}
@@ -47,7 +47,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 [[noreturn]] void fail(const char* what, int error) {
-    throw OutputError(fmt::format("a process of its own cannot be made: {}: {}", what, std::strerror(error)));
+    throw OutputError(fmt::format("cannot start a child process: {}: {}", what, std::strerror(error)));
 }
 
 using Descriptor = ChildProcess::Descriptor;
@@ -87,7 +87,7 @@ pid_t start(std::span<const std::string> arguments, const Descriptor& input, con
 
 enum class End { of_answer, of_output, of_time };
 
-/// A limit of so many seconds from now on; 0: none.
+/// A limit in seconds from the construction; 0: no limit.
 class Deadline {
 public:
     explicit Deadline(double seconds) : seconds_(seconds), begin_(Clock::now()) {}
@@ -99,23 +99,23 @@ public:
             begin_ + std::chrono::duration<double>(seconds_) - Clock::now();
         return std::max(0, static_cast<int>(std::min(left.count() * 1e3 + 1, 1e9)));
     }
-    bool is_over() const { return left_ms() == 0; }
+    bool has_expired() const { return left_ms() == 0; }
 
 private:
     double seconds_;
     Clock::time_point begin_;
 };
 
-/// A part of the input into the pipe, which is closed where nobody reads it.
-void feed(Descriptor& pipe, std::string_view& input) {
+/// Writes as much of the input as the pipe accepts; closes the pipe when it has no reader.
+void write_some(Descriptor& pipe, std::string_view& input) {
     const auto written = ::write(pipe.number(), input.data(), input.size());
     if (written < 0 && (errno == EINTR || errno == EAGAIN)) return;
     if (written > 0) input.remove_prefix(static_cast<std::size_t>(written));
     if (written < 0) pipe.close();
 }
 
-/// Adds what there is to the output; false at its end.
-bool take(const Descriptor& pipe, std::string& output) {
+/// Appends available data to the output; false at its end.
+bool read_some(const Descriptor& pipe, std::string& output) {
     std::array<char, 65536> part{};
     const auto count = ::read(pipe.number(), part.data(), part.size());
     if (count < 0) return errno == EINTR;
@@ -123,22 +123,22 @@ bool take(const Descriptor& pipe, std::string& output) {
     return count > 0;
 }
 
-/// Until the child has answered or closed its output, or a limit is reached.
-End converse(Descriptor& to, const Descriptor& from, std::string_view input, std::string& output,
+/// Sends the input and reads the output until the child answers, closes its output, or the time is up.
+End exchange(Descriptor& to, const Descriptor& from, std::string_view input, std::string& output,
              double seconds) {
     const Deadline deadline(seconds);
     for (;;) {
-        // poll() leaves out descriptors below 0.
-        const int hears = input.empty() ? -1 : to.number();
-        std::array<pollfd, 2> ends{{{from.number(), POLLIN, 0}, {hears, POLLOUT, 0}}};
+        // poll() ignores negative descriptors.
+        const int writable = input.empty() ? -1 : to.number();
+        std::array<pollfd, 2> ends{{{from.number(), POLLIN, 0}, {writable, POLLOUT, 0}}};
         const int ready = poll(ends.data(), ends.size(), deadline.left_ms());
-        if (deadline.is_over()) return End::of_time;
+        if (deadline.has_expired()) return End::of_time;
         if (ready < 0 && errno != EINTR) fail("poll", errno);
         if (ready < 0) continue;
-        if (ends[1].revents != 0) feed(to, input);
+        if (ends[1].revents != 0) write_some(to, input);
         if (ends[0].revents == 0) continue;
-        if (!take(from, output)) return End::of_output;
-        // Libraries may print behind it, too.
+        if (!read_some(from, output)) return End::of_output;
+        // Libraries can print text after the answer.
         if (const auto answer = output.find(end_of_answer); answer != std::string::npos) {
             output.resize(answer);
             return End::of_answer;
@@ -146,11 +146,11 @@ End converse(Descriptor& to, const Descriptor& from, std::string_view input, std
     }
 }
 
-/// Whether the child closes its output in time, whatever it still prints.
-bool closes(const Descriptor& output, double seconds) {
+/// Whether the child closes its output in time; discards further output.
+bool closes_output(const Descriptor& output, double seconds) {
     const Deadline deadline(seconds);
     std::array<char, 4096> rest{};
-    while (!deadline.is_over()) {
+    while (!deadline.has_expired()) {
         pollfd end{output.number(), POLLIN, 0};
         if (poll(&end, 1, deadline.left_ms()) <= 0) continue;
         if (::read(output.number(), rest.data(), rest.size()) == 0) return true;
@@ -158,13 +158,13 @@ bool closes(const Descriptor& output, double seconds) {
     return false;
 }
 
-std::string described(int status) {
+std::string failure_text(int status) {
     if (WIFSIGNALED(status))
         return fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
     return WEXITSTATUS(status) == 0 ? "" : fmt::format("ended with code {}", WEXITSTATUS(status));
 }
 
-int waited_for(pid_t child) {
+int wait_for(pid_t child) {
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
     return status;
@@ -187,29 +187,29 @@ ChildProcess::ChildProcess(std::span<const std::string> arguments) : running_(st
 
 ChildProcess::~ChildProcess() {
     if (!running_) return;
-    constexpr double patience = 10; // seconds: drivers take some to close
-    running_->to.close();           // which ends it
-    if (!closes(running_->from, patience)) kill(running_->child, SIGKILL);
-    waited_for(running_->child);
+    constexpr double grace_seconds = 10; // closing a driver lasts some seconds
+    running_->to.close();                // the child ends at the end of its input
+    if (!closes_output(running_->from, grace_seconds)) kill(running_->child, SIGKILL);
+    wait_for(running_->child);
 }
 
-bool ChildProcess::is_over() const { return !running_; }
+bool ChildProcess::has_ended() const { return !running_; }
 
 ChildResult ChildProcess::ask(const std::string& line, double seconds) {
     ChildResult result;
-    const auto end = converse(running_->to, running_->from, line + '\n', result.output, seconds);
+    const auto end = exchange(running_->to, running_->from, line + '\n', result.output, seconds);
     if (end == End::of_answer) return result;
     const auto running = std::exchange(running_, nullptr);
     if (end != End::of_output) kill(running->child, SIGKILL);
-    const int status = waited_for(running->child);
+    const int status = wait_for(running->child);
     result.failure = end == End::of_time ? fmt::format("took longer than {:g} s and was ended", seconds)
-                                         : described(status);
+                                         : failure_text(status);
     return result;
 }
 
 void end_with_parent() {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() == 1) std::_Exit(3); // it has ended already
+    if (getppid() == 1) std::_Exit(3); // the parent has already ended
 }
 
 } // namespace tandem

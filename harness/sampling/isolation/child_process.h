@@ -8,28 +8,28 @@
 
 namespace tandem {
 
-/// What became of a question.
+/// The result of a request to a child process.
 struct ChildResult {
     std::string output;  ///< of the process, up to the end of its answer
-    std::string failure; ///< "ended by signal 11 (Segmentation fault)"; empty behind an answer, or code 0
+    std::string failure; ///< "ended by signal 11 (Segmentation fault)"; empty after an answer or exit code 0
 };
 
-/// Ends an answer on a child's standard output: what libraries print there has no such byte.
+/// Ends an answer on a child's standard output. Text that libraries print does not contain this byte.
 constexpr char end_of_answer = '\x1e';
 
-/// This program again with other arguments, in a process group of its own, so that signals of a terminal do
-/// not reach it, outside of any job of MPI. It shares standard error.
+/// Runs this program with other arguments as a child process, outside any MPI job. The child shares standard
+/// error and has its own process group, so that it does not receive signals of a terminal.
 class ChildProcess {
 public:
-    /// Starts it. Throws OutputError when no process can be made.
+    /// Starts the process. Throws OutputError when that fails.
     explicit ChildProcess(std::span<const std::string> arguments);
-    /// Lets it end, and kills it where it takes long.
+    /// Closes its input, waits for its end, and kills it after 10 s.
     ~ChildProcess();
 
-    /// Gives it a line on its standard input and waits for the end of its answer, `seconds` at most (0:
-    /// without a limit), after which it is killed. Without an answer there is no more to be asked.
+    /// Writes a line to its standard input and waits for the end of its answer. Kills it after `seconds` (0:
+    /// no limit). After a request without an answer the process has ended: do not call ask() again.
     ChildResult ask(const std::string& line, double seconds);
-    bool is_over() const;
+    bool has_ended() const;
 
     ChildProcess(const ChildProcess&) = delete;
     ChildProcess& operator=(const ChildProcess&) = delete;
@@ -38,10 +38,10 @@ public:
 
 private:
     struct Running;
-    std::unique_ptr<Running> running_; ///< null when it is over
+    std::unique_ptr<Running> running_; ///< null when the process has ended
 };
 
-/// Called by the child: it ends when its parent does.
+/// Called by the child: kills it when its parent ends.
 void end_with_parent();
 
 } // namespace tandem

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The side of the process that asks.
+// The parent's side: sends requests to child processes.
 #include "harness/sampling/isolation/isolated_sampler.h"
 
 #include "harness/sampling/isolation/child_process.h"
@@ -14,8 +14,8 @@ namespace tandem {
 
 namespace {
 
-/// The answer, which is the last line: libraries have been seen to print before it. Throws DeviceError when
-/// there is none.
+/// The answer is the last line, because some libraries print text before it. Throws DeviceError without an
+/// answer.
 nlohmann::json answer_of(const ChildResult& result) {
     auto text = result.output;
     while (text.ends_with('\n')) text.pop_back();
@@ -25,9 +25,9 @@ nlohmann::json answer_of(const ChildResult& result) {
         fmt::format("its process {}", result.failure.empty() ? "ended without an answer" : result.failure));
 }
 
-/// Asks a process of its own. Throws DeviceError where that ended without an answer, and InputError where the
-/// request was wrong.
-nlohmann::json ask_a_process(const nlohmann::json& request, double timeout) {
+/// Sends a request to a new child process. Throws DeviceError when it ends without an answer, and InputError
+/// when it rejects the request.
+nlohmann::json ask_child(const nlohmann::json& request, double timeout) {
     ChildProcess child(std::array<std::string, 1>{"isolated"});
     auto answer = answer_of(child.ask(request.dump(), timeout));
     if (answer.contains("input_error")) throw InputError(answer["input_error"].get<std::string>());
@@ -46,7 +46,7 @@ void leave_out_this_process(std::span<RoundConditions> rounds, std::uint32_t fir
 
 void IsolatedSampler::ask(const char* work, const CheckOptions& options, std::size_t samples) {
     const auto request = request_json(options_, *this, {work, samples, options});
-    const auto answer = ask_a_process(request, options_.timeout);
+    const auto answer = ask_child(request, options_.timeout);
     if (answer.contains("checked") && !answer["checked"].is_null()) {
         take_checked(state_, answer["checked"], cell_);
         const auto first = state_.rounds;
@@ -56,7 +56,7 @@ void IsolatedSampler::ask(const char* work, const CheckOptions& options, std::si
     if (answer.contains("failure")) throw DeviceError(answer["failure"].get<std::string>());
 }
 
-/// Counting as well, in the same process.
+/// The same process also counts work.
 void IsolatedSampler::do_check(const CheckOptions& options) {
     options.progress(fmt::format("{}: checking in another process", describe(cell_)));
     ask("check", options, 0);

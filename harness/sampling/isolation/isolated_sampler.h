@@ -8,12 +8,11 @@
 
 namespace tandem {
 
-/// A cell of which the check and every round is done by another process: what a crash, an error that sticks
-/// to the device, or a hang costs is this cell only. How such a process ended is a DeviceError.
+/// Measures a cell in child processes, one for the check and one for each round. A crash, a hang or a
+/// persistent device error affects only this cell. Throws DeviceError when a child ends without an answer.
 class IsolatedSampler : public CellSampler {
 public:
-    /// `options` are those of the scene, its frames and the check; all must outlive this. The check and every
-    /// round have a process of their own, whose luck is part of the noise.
+    /// `options` select the scene, its frames and the check. `cell` and `options` must outlive this object.
     IsolatedSampler(const Cell& cell, const RunOptions& options, CellState state = {})
         : CellSampler(cell, std::move(state)), options_(options) {}
 
@@ -28,12 +27,12 @@ private:
     const RunOptions& options_;
 };
 
-/// Of rounds from number `first` on that another process took: this one has the GPU open as well, and leaves
-/// it alone meanwhile, so that it is none of those that compute on it.
+/// Subtracts this process from the GPU processes in the conditions of rounds from `first` on. A child process
+/// measured them, and this process had the GPU open but idle.
 void leave_out_this_process(std::span<RoundConditions> rounds, std::uint32_t first);
 
-/// What the process does: reads requests from standard input, a JSON object on each line, and writes the
-/// answers to standard output, until there is no more. Returns the exit code.
+/// The main function of a child process. Reads requests from standard input, one JSON object a line, and
+/// writes answers to standard output until the input ends. Returns the exit code.
 int isolated_command();
 
 } // namespace tandem

@@ -7,7 +7,7 @@ namespace tandem {
 
 namespace {
 
-/// Those of the options that say of what scene, which frames and how they are checked.
+/// The options that select the scene, its frames and the check.
 nlohmann::json options_json(const RunOptions& options) {
     return {{"scene", options.scene},
             {"meshes", options.meshes},
@@ -20,7 +20,7 @@ nlohmann::json options_json(const RunOptions& options) {
             {"check_afresh", options.check_afresh}};
 }
 
-void take_options(RunOptions& options, const nlohmann::json& json) {
+void read_options(RunOptions& options, const nlohmann::json& json) {
     json.at("scene").get_to(options.scene);
     json.at("meshes").get_to(options.meshes);
     json.at("poses").get_to(options.poses);
@@ -38,22 +38,23 @@ nlohmann::json request_json(const RunOptions& options, const CellSampler& sample
     const auto& cell = sampler.cell();
     const auto& state = sampler.state();
     auto request = options_json(options);
-    request.update({{"algorithm", cell.algorithm->name()},
-                    {"preset", cell.preset},
-                    {"settings", cell.settings.texts()},
-                    {"devices", name_of(cell.devices)},
-                    {"work", work.work},
-                    {"samples", work.samples},
-                    {"check", work.check.check},
-                    {"count", work.check.count_work},
-                    {"checked", state.is_checked() ? checked_json(state) : nlohmann::json()},
-                    {"rounds", rounds_json(state, state.rounds)}}); // none of them, but how many there are
+    request.update(
+        {{"algorithm", cell.algorithm->name()},
+         {"preset", cell.preset},
+         {"settings", cell.settings.texts()},
+         {"devices", name_of(cell.devices)},
+         {"work", work.work},
+         {"samples", work.samples},
+         {"check", work.check.check},
+         {"count", work.check.count_work},
+         {"checked", state.is_checked() ? checked_json(state) : nlohmann::json()},
+         {"rounds", rounds_json(state, state.rounds)}}); // an empty list, with the number of rounds
     return request;
 }
 
 IsolatedRequest request_of(const nlohmann::json& json) {
     IsolatedRequest request;
-    take_options(request.options, json);
+    read_options(request.options, json);
     json.at("algorithm").get_to(request.algorithm);
     json.at("preset").get_to(request.preset);
     json.at("settings").get_to(request.settings);

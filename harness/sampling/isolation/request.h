@@ -7,17 +7,17 @@
 
 namespace tandem {
 
-/// What a process of its own is to do with a cell.
+/// A request to a child process to do one step of measuring a cell.
 struct IsolatedWork {
     std::string work;        ///< "check", "round" or "count"
     std::size_t samples = 0; ///< of a round
-    CheckOptions check;      ///< its truths and progress are not sent
+    CheckOptions check;      ///< without truths and progress, which are not sent
 };
 
-/// `options` are those of the scene, its frames and the check.
+/// `options` select the scene, its frames and the check.
 nlohmann::json request_json(const RunOptions& options, const CellSampler& sampler, const IsolatedWork& work);
 
-/// The same on the other side; the scene is yet to be opened.
+/// A request as the child receives it, before it opens the scene.
 struct IsolatedRequest {
     RunOptions options;
     IsolatedWork work;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The side of the process that answers.
+// The child's side: answers requests.
 #include "harness/plans/inputs.h"
 #include "harness/sampling/isolation/child_process.h"
 #include "harness/sampling/isolation/isolated_sampler.h"
@@ -19,12 +19,12 @@ namespace {
 
 using nlohmann::json;
 
-/// Does what was asked for; a failure of the device leaves what was measured before.
-void work(LocalSampler& sampler, const IsolatedWork& asked, json& answer) {
+/// Does the requested step. Earlier measurements stay in the state when the device fails.
+void work(LocalSampler& sampler, const IsolatedWork& step, json& answer) {
     try {
-        if (asked.work == "check") sampler.check(asked.check);
-        if (asked.work == "round") sampler.round(asked.samples);
-        if (asked.work == "count" || (asked.work == "check" && asked.check.count_work)) sampler.count_work();
+        if (step.work == "check") sampler.check(step.check);
+        if (step.work == "round") sampler.round(step.samples);
+        if (step.work == "count" || (step.work == "check" && step.check.count_work)) sampler.count_work();
     } catch (const DeviceError& error) {
         answer["failure"] = error.what();
     } catch (const std::bad_alloc&) {
@@ -32,20 +32,20 @@ void work(LocalSampler& sampler, const IsolatedWork& asked, json& answer) {
     }
 }
 
-json answer_to(const json& asked) {
-    auto request = request_of(asked);
+json answer_to(const json& message) {
+    auto request = request_of(message);
     const auto backends = open_backends(std::array{request.devices}, {});
     const auto group = open_devices(request.options, backends, std::array{request.devices}).front();
     const auto& traversal = algorithm(request.algorithm);
     const auto job = open_job(
         request.options, {make_cell(traversal, preset(traversal, request.preset), request.settings, group)});
-    const auto kept = checks_folder(request.options);
-    References references(job.scene, job.range, kept);
-    Truths truths(job.scene, job.range, request.options.truth, request.options.truth_contacts, kept);
+    const auto cache = checks_folder(request.options);
+    References references(job.scene, job.range, cache);
+    Truths truths(job.scene, job.range, request.options.truth, request.options.truth_contacts, cache);
     if (request.options.truth != TruthAmount::none) request.work.check.truths = &truths;
     CellState state;
-    if (!asked.at("checked").is_null()) take_checked(state, asked["checked"], job.cells.front());
-    take_rounds(state, asked.at("rounds"));
+    if (!message.at("checked").is_null()) take_checked(state, message["checked"], job.cells.front());
+    take_rounds(state, message.at("rounds"));
     const auto first = state.rounds;
     LocalSampler sampler(job.cells.front(), job.scene, job.range, references, std::move(state));
     json answer = json::object();

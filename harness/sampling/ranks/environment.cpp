@@ -10,7 +10,7 @@
 namespace tandem {
 
 bool has_launcher() {
-    // Open MPI's mpirun; PMI of MPICH's, Intel's and Slurm's; PMIx of the others.
+    // Open MPI's mpirun; PMI launchers of MPICH, Intel and Slurm; launchers with PMIx.
     constexpr std::array names{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMI_RANK", "PMIX_RANK"};
     return std::ranges::any_of(names, [](const char* name) { return std::getenv(name) != nullptr; });
 }

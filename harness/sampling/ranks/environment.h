@@ -5,15 +5,15 @@
 
 namespace tandem {
 
-/// Whether the environment is one that a launcher of MPI made for the processes it starts.
+/// Whether an MPI launcher started this process, according to its environment.
 bool has_launcher();
 
-/// How many tasks srun has started beside this one, itself included, none of which is told of the others
-/// (--mpi=none, Slurm's default); 1 elsewhere.
+/// Number of independent tasks that srun started, this one included, with --mpi=none (Slurm's default); 1 in
+/// every other case.
 int tasks_without_mpi();
 
-/// This process's environment without what a launcher of MPI put there, for processes that are none of its
-/// job: pointers into the environment, a null at the end.
+/// This process's environment without the variables of an MPI launcher, for child processes outside the job.
+/// Pointers into the environment, terminated by a null.
 std::vector<char*> environment_without_launcher();
 
 } // namespace tandem

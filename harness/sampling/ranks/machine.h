@@ -5,8 +5,8 @@
 
 namespace tandem {
 
-/// What tells this machine from others while it runs: the kernel's own name for this start of it, which
-/// containers on one machine share as they do its devices; else the host's name. Compared, never recorded.
+/// Identifies this machine: the kernel's boot identifier, which containers on one machine share, or else the
+/// host name. Only for comparisons between ranks; never recorded.
 std::string this_machine();
 
 } // namespace tandem

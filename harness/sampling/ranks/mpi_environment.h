@@ -8,9 +8,9 @@
 
 namespace tandem {
 
-/// MPI for as long as it lives, where a launcher of MPI (mpirun, srun) started this process; otherwise
-/// nothing is loaded and nothing changes. One in main(). Throws InputError where there was a launcher and the
-/// program was built without MPI: its copies would all do the same work, and write the same files.
+/// Initialises MPI for its lifetime when an MPI launcher (mpirun, srun) started this process; does nothing
+/// otherwise. Create one in main(). Throws InputError when a launcher started a program built without MPI,
+/// because all processes would do the same work and write the same files.
 class MpiEnvironment {
 public:
     MpiEnvironment();
@@ -22,11 +22,10 @@ private:
     std::unique_ptr<Ranks> ranks_;
 };
 
-/// The ranks of the job that this process is one of; null where no launcher started it, or where it started
-/// one process.
+/// The ranks of this process's job; null without a launcher, or in a job of one process.
 Ranks* job_ranks();
 
-/// What passes messages, "Open MPI v4.1.4"; or the sentence why nothing does.
+/// The MPI library, such as "Open MPI v4.1.4", or a sentence why there is none.
 std::string mpi_library_version();
 
 } // namespace tandem

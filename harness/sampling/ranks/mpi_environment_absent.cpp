@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Built where there is no MPI.
+// For builds without MPI.
 #include "harness/sampling/ranks/environment.h"
 #include "harness/sampling/ranks/mpi_environment.h"
 #include "base/error.h"
@@ -9,9 +9,9 @@ namespace tandem {
 MpiEnvironment::MpiEnvironment() {
     if (has_launcher())
         throw InputError(
-            "this program was started by a launcher of MPI and built without MPI: every copy would do "
-            "the same; install an MPI (Debian: libopenmpi-dev, openmpi-bin) and build it again, or start "
-            "it without the launcher");
+            "an MPI launcher started this program, but it was built without MPI: every process would do the "
+            "same work; install an MPI (Debian: libopenmpi-dev, openmpi-bin) and rebuild the program, or "
+            "start it without the launcher");
 }
 
 MpiEnvironment::~MpiEnvironment() = default;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Built where there is an MPI; launched_absent.cpp is built where there is none.
+// For builds with MPI; see mpi_environment_absent.cpp for builds without.
 #include "backends/mpi/mpi_ranks.h"
 #include "harness/sampling/ranks/environment.h"
 #include "harness/sampling/ranks/mpi_environment.h"
@@ -14,11 +14,11 @@ Ranks* running = nullptr;
 
 MpiEnvironment::MpiEnvironment() {
     if (!has_launcher()) return;
-    // Work-groups of device host and devices that share a frame run on threads of their own, which pass no
+    // Work-groups of the host device, and devices that share a frame, use further threads, which send no
     // messages.
-    int given = MPI_THREAD_SINGLE;
-    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &given) != MPI_SUCCESS)
-        throw RanksError("MPI: MPI_Init_thread failed; see what the launcher says");
+    int provided = MPI_THREAD_SINGLE;
+    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
+        throw RanksError("MPI: MPI_Init_thread failed; see the messages of the launcher");
     ranks_ = mpi_ranks(MPI_COMM_WORLD);
     if (ranks_->size() > 1) running = ranks_.get();
 }

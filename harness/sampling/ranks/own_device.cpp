@@ -15,24 +15,24 @@ LocalRank local_rank(Ranks& ranks) {
     const auto name = this_machine();
     const auto all = ranks.gather_to_all(std::as_bytes(std::span(name)));
     const auto& own = all[static_cast<std::size_t>(ranks.rank())];
-    LocalRank place;
+    LocalRank result;
     for (std::size_t rank = 0; rank < all.size(); ++rank) {
         if (all[rank] != own) continue;
-        ++place.count;
-        place.before += rank < static_cast<std::size_t>(ranks.rank()) ? 1 : 0;
+        ++result.count;
+        result.before += rank < static_cast<std::size_t>(ranks.rank()) ? 1 : 0;
     }
-    return place;
+    return result;
 }
 
-std::string device_of_rank(const std::string& names, const LocalRank& place) {
-    const auto count = place.count;
+std::string device_of_rank(const std::string& names, const LocalRank& local) {
+    const auto count = local.count;
     const auto parts = parts_of(names);
     if (parts.size() > count)
         throw InputError(
-            fmt::format("--device {} names {} devices for {} rank{} on a machine, and a rank has one; start "
-                        "as many ranks as devices",
+            fmt::format("--device {} names {} devices for {} rank{} on this machine, but each rank uses one "
+                        "device; start as many ranks as devices",
                         names, parts.size(), count, count == 1 ? "" : "s"));
-    return parts[place.before % parts.size()];
+    return parts[local.before % parts.size()];
 }
 
 std::string shared_gpu(Ranks& ranks, const DeviceInfo& own) {
@@ -48,9 +48,10 @@ std::string shared_gpu(Ranks& ranks, const DeviceInfo& own) {
         if (machine.empty()) continue;
         const auto [first, is_new] = rank_of.try_emplace({std::move(machine), std::move(card)}, rank);
         if (!is_new)
-            return fmt::format("ranks {} and {} have one GPU, {}; name one for each rank of a machine, as in "
-                               "--device cuda:0+cuda:1, or start one rank a GPU",
-                               first->second, rank, first->first.second);
+            return fmt::format(
+                "ranks {} and {} share one GPU, {}; name one GPU for each rank of a machine, as "
+                "in --device cuda:0+cuda:1, or start one rank per GPU",
+                first->second, rank, first->first.second);
     }
     return {};
 }

@@ -8,24 +8,24 @@
 
 namespace tandem {
 
-/// A rank among those of its machine.
+/// The position of a rank among the ranks of its machine.
 struct LocalRank {
-    std::size_t before = 0; ///< ranks of lower numbers
-    std::size_t count = 0;  ///< ranks, this one included
+    std::size_t before = 0; ///< number of local ranks with lower numbers
+    std::size_t count = 0;  ///< number of local ranks, this one included
 };
 
-/// By all ranks together.
+/// Collective: all ranks call it.
 LocalRank local_rank(Ranks& ranks);
 
-/// Which of the devices "cuda:0+cuda:1" is the rank's, by the names that it has there: a launcher may show
-/// every rank another GPU as cuda:0. Throws InputError where there are more devices than ranks.
-std::string device_of_rank(const std::string& names, const LocalRank& place);
+/// The device of this rank in a list such as "cuda:0+cuda:1". Names are local to the rank, because a launcher
+/// may show each rank a different GPU as cuda:0. Throws InputError for more devices than local ranks.
+std::string device_of_rank(const std::string& names, const LocalRank& local);
 
-/// By all ranks together: the sentence against one GPU for two ranks of a machine, whose times would say
-/// nothing; empty where each has its own. Processors can be shared.
+/// Collective. The error message when two ranks of a machine share a GPU, which makes their times
+/// meaningless; empty otherwise. Ranks may share processors.
 std::string shared_gpu(Ranks& ranks, const DeviceInfo& own);
 
-/// By all ranks together: what each has.
+/// Collective: the device of each rank, by rank.
 std::vector<DeviceInfo> devices_of_ranks(Ranks& ranks, const DeviceInfo& own);
 
 } // namespace tandem

@@ -16,11 +16,11 @@ namespace tandem {
 
 namespace {
 
-/// A processor that ranks share is divided among them, unless the launcher has bound each to a part.
-std::int64_t threads_of_a_rank(const LocalRank& place) {
+/// Divides the processor among the machine's ranks, unless the launcher has bound each rank to some cores.
+std::int64_t threads_of_a_rank(const LocalRank& local) {
     const auto usable = static_cast<std::int64_t>(std::thread::hardware_concurrency());
     const bool is_bound = usable < sysconf(_SC_NPROCESSORS_ONLN);
-    return std::max<std::int64_t>(1, is_bound ? usable : usable / static_cast<std::int64_t>(place.count));
+    return std::max<std::int64_t>(1, is_bound ? usable : usable / static_cast<std::int64_t>(local.count));
 }
 
 } // namespace
@@ -29,12 +29,13 @@ std::string RankTeam::own_device(const RunOptions& options) const {
     const auto names = devices_of(plan_of(options));
     if (names.size() > 1)
         throw InputError(fmt::format(
-            "{} are devices of several cells, and all ranks share each cell; name one by --device, "
-            "or one for each rank of a machine joined by +",
+            "{} are devices of several cells, but all ranks share each cell; name one device with --device, "
+            "or join one for each rank of a machine with +",
             fmt::join(names, ", ")));
     if (names.front() == "all")
-        throw InputError("--device all makes several cells; ranks share one, name their devices");
-    return device_of_rank(names.front(), place_);
+        throw InputError(
+            "--device all makes several cells, but all ranks share each cell; name their devices");
+    return device_of_rank(names.front(), local_rank_);
 }
 
 std::string RankTeam::own_of_each(const std::string& name, const std::vector<BackendReport>& backends) const {
@@ -43,7 +44,7 @@ std::string RankTeam::own_of_each(const std::string& name, const std::vector<Bac
         for (const auto& device : backend.devices)
             if (is_among(device->info(), name)) ids.push_back(device->info().id);
     if (ids.empty()) throw InputError(fmt::format("--device {}: there is no device of that back end", name));
-    return ids[place_.before % ids.size()];
+    return ids[local_rank_.before % ids.size()];
 }
 
 void RankTeam::open(const Device& own) {
@@ -55,19 +56,19 @@ void RankTeam::check_same(const std::string& own) {
     const auto first = decided(own);
     together([&] {
         if (own != first)
-            throw InputError("its scene or its cells are not those of rank 0; give all ranks the same files");
+            throw InputError("its scene or cells differ from those of rank 0; give all ranks the same files");
     });
 }
 
 std::unique_ptr<Session> RankTeam::prepare(const Cell& cell, const Scene& scene) {
     auto settings = cell.settings;
     if (settings[parameters::threads] == 0 && cell.devices.front()->info().id == "host")
-        settings.set(parameters::threads(threads_of_a_rank(place_)));
+        settings.set(parameters::threads(threads_of_a_rank(local_rank_)));
     together([&] { cell.algorithm->check(cell.devices, settings); });
     try {
         return std::make_unique<JobSession>(
             ranks_, cell.algorithm->prepare(*cell.devices.front(), scene, settings, ranks_));
-    } catch (const InputError& error) { // of settings, which are the same on all ranks
+    } catch (const InputError& error) { // the settings are the same on all ranks, and so is this error
         throw SharedError<InputError>(error.what());
     }
 }

@@ -13,48 +13,49 @@ namespace tandem {
 struct Cell;
 class Session;
 
-/// The ranks of a job that measure together, each with one device. All run the same program: they open the
-/// same scene, prepare the same sessions and run the same frames. Rank 0 decides what depends on clocks,
-/// checks, prints and records. All ranks call the functions together, in the same order.
+/// The ranks of a job that measure each cell together, with one device each. All run the same program: they
+/// open the same scene, prepare the same sessions and run the same frames. Rank 0 makes decisions that depend
+/// on clocks, and it checks, prints and records. Functions are collective: all ranks call them in the same
+/// order.
 class RankTeam {
 public:
     /// `ranks` must outlive this.
-    explicit RankTeam(Ranks& ranks) : ranks_(ranks), place_(local_rank(ranks)) {}
+    explicit RankTeam(Ranks& ranks) : ranks_(ranks), local_rank_(local_rank(ranks)) {}
     RankTeam(const RankTeam&) = delete;
     RankTeam& operator=(const RankTeam&) = delete;
 
     bool is_first() const { return ranks_.is_first(); }
-    /// An error of one rank becomes one of all.
+    /// Runs `work` on all ranks. An error on one rank is thrown on all.
     void together(const std::function<void()>& work) { run_together(ranks_, work); }
-    /// What rank 0 has.
+    /// Returns the value of rank 0.
     template<class Value>
     Value decided(const Value& own) {
         return of_rank_0(ranks_, own);
     }
 
-    /// The name of this rank's device, of those that the options name for all. Throws InputError where they
-    /// name several cells, or more devices than a machine has ranks.
+    /// The name of this rank's device in the list of the options. Throws InputError when the list makes
+    /// several cells, or has more devices than a machine has ranks.
     std::string own_device(const RunOptions& options) const;
-    /// "cuda:each": of the devices of this machine, the one for this rank.
+    /// The device of this rank for a name such as "cuda:each", which distributes the machine's devices.
     std::string own_of_each(const std::string& name, const std::vector<BackendReport>& backends) const;
-    /// Exchanges what each rank's device is. Throws InputError where two ranks have one GPU.
+    /// Exchanges the ranks' devices. Throws InputError when two ranks share a GPU.
     void open(const Device& own);
-    /// Throws InputError unless all ranks have the same: keys of cells, digests of scenes.
+    /// Throws InputError unless all ranks have the same text: keys of cells and digests of scenes.
     void check_same(const std::string& own);
-    /// A session of all ranks.
+    /// Prepares a session on all ranks.
     std::unique_ptr<Session> prepare(const Cell& cell, const Scene& scene);
-    /// Messages, one from each rank, by rank.
+    /// Gathers one message from each rank, by rank.
     std::vector<Ranks::Bytes> gather(std::span<const std::byte> own) { return ranks_.gather_to_all(own); }
-    /// Those of all ranks, by rank.
+    /// The devices of all ranks, by rank.
     const std::vector<DeviceInfo>& devices() const { return devices_; }
 
 private:
     Ranks& ranks_;
-    LocalRank place_;
+    LocalRank local_rank_;
     std::vector<DeviceInfo> devices_;
 };
 
-// The same for cells that one process measures alone, which have no team.
+// The same functions for any cell; a cell that one process measures alone has no team.
 
 inline bool is_first(const RankTeam* team) { return team == nullptr || team->is_first(); }
 
@@ -69,9 +70,9 @@ Value decided(RankTeam* team, const Value& own) {
     return team == nullptr ? own : team->decided(own);
 }
 
-/// A session of a cell: of this process alone, or of all ranks.
+/// Prepares a session of a cell on this process, or on all ranks of its team.
 std::unique_ptr<Session> prepare_session(const Cell& cell, const Scene& scene);
-/// What a cell runs on: its devices, or those of all ranks.
+/// The devices of a cell, or those of all ranks of its team.
 std::vector<DeviceInfo> infos_of(const Cell& cell);
 
 } // namespace tandem
