@@ -130,9 +130,9 @@ void LocalSampler::check_answer(std::size_t index, const FrameResult& result, co
     }
     if (options.truths != nullptr && result.has_pairs())
         add_errors(*options.truths, index, result, digest, contacts,
-                   [&](double share, std::uint64_t decided) {
+                   [&](double fraction, std::uint64_t decided) {
                        options.progress(fmt::format("truth of {}: {:.0f} %, {} pairs decided", frame,
-                                                    share * 100, decided));
+                                                    fraction * 100, decided));
                    });
     out_.agreement.digest += digest;
     out_.agreement.contact_digest += contacts;

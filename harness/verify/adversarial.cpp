@@ -20,8 +20,8 @@ namespace {
 
 constexpr std::uint32_t leaves_a_chunk = 32;
 constexpr std::uint32_t group_size = 128;
-constexpr std::uint64_t most_of_a_pose = 4096; ///< so that rigid families have many poses
-constexpr std::size_t part_size = 1024;        ///< pairs that a core takes at a time
+constexpr std::uint64_t most_of_a_pose = 4096; ///< limits a batch, so that rigid families have many poses
+constexpr std::size_t part_size = 1024;        ///< pairs of one parallel task
 
 using Clock = std::chrono::steady_clock;
 
@@ -35,7 +35,7 @@ Relation relation_of(Known known) {
                                       : Relation::overlapping;
 }
 
-/// Without rounding.
+/// Converts to double, which is exact.
 TetraCorners widened(const FloatCorners& corners) {
     TetraCorners result;
     for (unsigned i = 0; i < 4; ++i)
@@ -43,26 +43,26 @@ TetraCorners widened(const FloatCorners& corners) {
     return result;
 }
 
-/// What a batch is: vertices or a pose, and the truth of its pairs.
+/// Vertices or a pose, and the truth of the pairs.
 struct Batch {
     Frame frame;
     std::vector<Relation> truth;
     std::atomic<std::uint64_t> decided = 0, clipped = 0, contradictions = 0;
 };
 
-/// One family at one difficulty: its pairs, batch after batch, through every cell.
+/// Tests the pairs of one family at one difficulty, batch by batch, on every cell.
 class Runner {
 public:
     Runner(const HardFamily& family, std::span<const AdversarialCell> cells,
-           const AdversarialOptions& options, double difficulty, std::uint64_t seed, std::uint64_t together)
+           const AdversarialOptions& options, double difficulty, std::uint64_t seed, std::uint64_t batch_size)
         : family_(family),
           options_(options),
           difficulty_(difficulty),
           seed_(seed),
-          together_(together),
-          scene_(hard_pair_scene(family, seed, difficulty, {together, together})) {
-        std::vector<Pair> list(together);
-        for (std::uint32_t i = 0; i < together; ++i) list[i] = {0, i, 1, i};
+          batch_size_(batch_size),
+          scene_(hard_pair_scene(family, seed, difficulty, {batch_size, batch_size})) {
+        std::vector<Pair> list(batch_size);
+        for (std::uint32_t i = 0; i < batch_size; ++i) list[i] = {0, i, 1, i};
         list_ = std::move(list);
         for (const auto& cell : cells) {
             const auto group = std::min(group_size, cell.device->info().max_group_size);
@@ -73,7 +73,7 @@ public:
         }
     }
 
-    /// Batch number `number` of this difficulty.
+    /// Runs batch number `number` of this difficulty.
     void run(std::uint64_t number, AdversarialTally& tally) {
         auto begin = Clock::now();
         Batch batch;
@@ -91,8 +91,8 @@ public:
     }
 
 private:
-    /// Poses move all pairs of a batch alike, so that the truth is decided for the world vertices they give;
-    /// pairs in world coordinates bring their own truth or are decided one by one.
+    /// A pose moves all pairs of a batch, so that the oracle decides their world vertices. Pairs in world
+    /// coordinates have a known relation, or the oracle decides them one by one.
     void make(Batch& batch, std::uint64_t number) {
         if (family_.pose != nullptr)
             make_posed(batch, number);
@@ -109,38 +109,38 @@ private:
 
     void make_pairs(Batch& batch, std::uint64_t number) {
         batch.frame.poses.resize(2);
-        batch.frame.deformed.assign(2, std::vector<Eigen::Vector3d>(4 * together_));
-        batch.truth.resize(together_);
-        parallel_for((together_ + part_size - 1) / part_size, [&](std::size_t index) {
-            const auto end = std::min<std::uint64_t>(together_, (index + 1) * part_size);
+        batch.frame.deformed.assign(2, std::vector<Eigen::Vector3d>(4 * batch_size_));
+        batch.truth.resize(batch_size_);
+        parallel_for((batch_size_ + part_size - 1) / part_size, [&](std::size_t index) {
+            const auto end = std::min<std::uint64_t>(batch_size_, (index + 1) * part_size);
             for (std::uint64_t i = index * part_size; i < end; ++i)
-                make_pair(batch, number * together_ + i, i);
+                make_pair(batch, number * batch_size_ + i, i);
         });
     }
 
-    /// Pair `index` of the family at `place` of the batch. Of pairs known by construction a sample is decided
-    /// as well: a contradiction is an error of the construction or of the oracle.
-    void make_pair(Batch& batch, std::uint64_t index, std::uint64_t place) const {
+    /// Stores pair `index` of the family in `slot` of the batch. The oracle also decides a sample of the
+    /// pairs with a known relation: a contradiction is an error of the construction or of the oracle.
+    void make_pair(Batch& batch, std::uint64_t index, std::uint64_t slot) const {
         const auto pair = hard_pair(family_, seed_, index, difficulty_);
         for (unsigned i = 0; i < 4; ++i)
             for (unsigned axis = 0; axis < 3; ++axis) {
-                batch.frame.deformed[0][4 * place + i][axis] = static_cast<double>(pair.a[i][axis]);
-                batch.frame.deformed[1][4 * place + i][axis] = static_cast<double>(pair.b[i][axis]);
+                batch.frame.deformed[0][4 * slot + i][axis] = static_cast<double>(pair.a[i][axis]);
+                batch.frame.deformed[1][4 * slot + i][axis] = static_cast<double>(pair.b[i][axis]);
             }
         const bool open = pair.known == Known::open;
-        if (!open) batch.truth[place] = relation_of(pair.known);
+        if (!open) batch.truth[slot] = relation_of(pair.known);
         const bool clips = family_.truth == HardTruth::geometry && index < options_.clipped;
         if (!open && !clips && index % options_.sample != 0) return;
         const auto decided = clips ? clipped(batch, pair) : relation(widened(pair.a), widened(pair.b));
         ++batch.decided;
         if (open)
-            batch.truth[place] = decided;
-        else if (decided != batch.truth[place])
+            batch.truth[slot] = decided;
+        else if (decided != batch.truth[slot])
             ++batch.contradictions;
     }
 
-    /// The relation by the exact intersection, which shares nothing with the decision but the facets; invalid
-    /// where the pair has no volume.
+    /// The relation according to the exact intersection, which shares only the facets with the decision.
+    /// Invalid when the pair has no volume.
     static Relation clipped(Batch& batch, const HardPair& pair) {
         const auto truth = contact_truth(widened(pair.a), widened(pair.b));
         ++batch.clipped;
@@ -152,20 +152,20 @@ private:
 
     void compare(const Batch& batch, const std::vector<std::vector<std::uint8_t>>& found,
                  std::uint64_t number, AdversarialTally& tally) const {
-        tally.pairs += together_;
+        tally.pairs += batch_size_;
         tally.decided += batch.decided;
         tally.clipped += batch.clipped;
         tally.contradictions += batch.contradictions;
         for (std::size_t i = 0; i < batch.truth.size(); ++i) {
-            const bool meets = batch.truth[i] != Relation::disjoint;
+            const bool intersects = batch.truth[i] != Relation::disjoint;
             tally.touching += batch.truth[i] == Relation::touching ? 1 : 0;
             tally.overlapping += batch.truth[i] == Relation::overlapping ? 1 : 0;
             for (std::size_t cell = 0; cell < found.size(); ++cell) {
                 const bool reported = found[cell][i] != 0;
-                tally.missed[cell] += meets && !reported ? 1 : 0;
-                tally.false_pairs[cell] += reported && !meets ? 1 : 0;
-                if (meets && !reported && !tally.first)
-                    tally.first = {cell, difficulty_, seed_, number * together_ + i};
+                tally.missed[cell] += intersects && !reported ? 1 : 0;
+                tally.false_pairs[cell] += reported && !intersects ? 1 : 0;
+                if (intersects && !reported && !tally.first)
+                    tally.first = {cell, difficulty_, seed_, number * batch_size_ + i};
             }
         }
     }
@@ -174,7 +174,7 @@ private:
     const AdversarialOptions& options_;
     double difficulty_;
     std::uint64_t seed_;
-    std::uint64_t together_;
+    std::uint64_t batch_size_;
     Scene scene_;
     std::vector<Pair> list_;
     std::vector<std::unique_ptr<Bodies>> bodies_;
@@ -182,8 +182,8 @@ private:
     std::vector<std::unique_ptr<PairList>> lists_;
 };
 
-/// By equal factors where that is possible; never outside, whatever the rounding.
-double between(double low, double high) {
+/// The geometric mean when both are positive; clamped, because rounding could exceed the limits.
+double midpoint(double low, double high) {
     return low > 0 ? std::clamp(std::sqrt(low) * std::sqrt(high), low, high) : 0.5 * (low + high);
 }
 
@@ -217,7 +217,7 @@ bool is_adversarial(const HardFamily& family) {
 
 std::array<double, 5> difficulties_of(const HardFamily& family) {
     const auto& [meaning, least, most, initial] = family.knob;
-    return {least, between(least, initial), initial, between(initial, most), most};
+    return {least, midpoint(least, initial), initial, midpoint(initial, most), most};
 }
 
 AdversarialTally run_adversarial(const HardFamily& family, std::span<const AdversarialCell> cells,
@@ -232,10 +232,10 @@ AdversarialTally run_adversarial(const HardFamily& family, std::span<const Adver
     const auto each = (options.pairs + difficulties.size() - 1) / difficulties.size();
     const auto most = family.pose != nullptr ? std::min(options.batch, most_of_a_pose) : options.batch;
     const auto batches = std::max<std::uint64_t>(1, (each + most - 1) / most);
-    const auto together = std::max<std::uint64_t>(1, (each + batches - 1) / batches);
-    auto seed = options.seed * difficulties.size(); // one each: difficulties may be equal
+    const auto batch_size = std::max<std::uint64_t>(1, (each + batches - 1) / batches);
+    auto seed = options.seed * difficulties.size(); // a seed for each, because difficulties may be equal
     for (const double difficulty : difficulties) {
-        Runner runner(family, cells, options, difficulty, seed++, together);
+        Runner runner(family, cells, options, difficulty, seed++, batch_size);
         for (std::uint64_t number = 0; number < batches; ++number) runner.run(number, tally);
     }
     return tally;

@@ -16,38 +16,38 @@ namespace {
 
 using Vertices = std::vector<Eigen::Vector3d>;
 
-/// A stretch of tetrahedra, what a core takes at a time.
-struct Stretch {
+/// A block of tetrahedra for one parallel task.
+struct Block {
     const Vertices* vertices;
     const std::vector<Tetrahedron>* tetrahedra;
     std::size_t first;
-    FlawedTetrahedra* target; ///< of all of them
+    FlawedTetrahedra* target; ///< the result for all blocks of the body or mesh
     FlawedTetrahedra found;
 };
 
-constexpr std::size_t stretch_length = 4096;
+constexpr std::size_t block_length = 4096;
 
-void add_stretches(std::vector<Stretch>& stretches, const Vertices& vertices, const Mesh& mesh,
-                   FlawedTetrahedra& target) {
-    for (std::size_t first = 0; first < mesh.tetrahedra.size(); first += stretch_length)
-        stretches.push_back({&vertices, &mesh.tetrahedra, first, &target, {}});
+void add_blocks(std::vector<Block>& blocks, const Vertices& vertices, const Mesh& mesh,
+                FlawedTetrahedra& target) {
+    for (std::size_t first = 0; first < mesh.tetrahedra.size(); first += block_length)
+        blocks.push_back({&vertices, &mesh.tetrahedra, first, &target, {}});
 }
 
-/// A tetrahedron is of one kind: with a coordinate that is not finite it has no volume to speak of.
-void look_through(Stretch& stretch) {
-    const auto end = std::min(stretch.tetrahedra->size(), stretch.first + stretch_length);
-    for (auto t = stretch.first; t < end; ++t) {
+/// A tetrahedron counts once: one with a coordinate that is not finite is not tested for zero volume.
+void search_block(Block& block) {
+    const auto end = std::min(block.tetrahedra->size(), block.first + block_length);
+    for (auto t = block.first; t < end; ++t) {
         TetraCorners corners;
         bool finite = true;
         for (unsigned i = 0; i < 4; ++i) {
-            const auto& v = (*stretch.vertices)[(*stretch.tetrahedra)[t][i]];
+            const auto& v = (*block.vertices)[(*block.tetrahedra)[t][i]];
             finite = finite && v.allFinite();
             corners[i] = {v.x(), v.y(), v.z()};
         }
         if (!finite)
-            stretch.found.non_finite.push_back(static_cast<std::uint32_t>(t));
+            block.found.non_finite.push_back(static_cast<std::uint32_t>(t));
         else if (!has_volume(corners))
-            stretch.found.degenerate.push_back(static_cast<std::uint32_t>(t));
+            block.found.degenerate.push_back(static_cast<std::uint32_t>(t));
     }
 }
 
@@ -57,28 +57,28 @@ void append(std::vector<std::uint32_t>& to, const std::vector<std::uint32_t>& fr
 
 bool finite(const Pose& pose) { return pose.rotation.coeffs().allFinite() && pose.translation.allFinite(); }
 
-/// Adds what a body has in one frame; the first frame with any gives the examples.
+/// Adds the flaws of a body in one frame; the examples come from its first flawed frame.
 void count(Flaws& flaws, std::size_t body, const FlawedTetrahedra& found, std::size_t frame) {
     if (!found.any()) return;
-    auto& own = flaws.bodies[body];
-    if (own.degenerate + own.non_finite == 0) {
-        own.frame = frame;
-        own.first = found.all();
-        if (own.first.size() > most_named_flaws) own.first.resize(most_named_flaws);
+    auto& entry = flaws.bodies[body];
+    if (entry.degenerate + entry.non_finite == 0) {
+        entry.frame = frame;
+        entry.first = found.all();
+        if (entry.first.size() > most_named_flaws) entry.first.resize(most_named_flaws);
     }
-    own.degenerate += found.degenerate.size();
-    own.non_finite += found.non_finite.size();
+    entry.degenerate += found.degenerate.size();
+    entry.non_finite += found.non_finite.size();
     flaws.degenerate += found.degenerate.size();
     flaws.non_finite += found.non_finite.size();
 }
 
-/// Without bodies that have none.
+/// Removes bodies without flaws.
 Flaws only_flawed(Flaws flaws) {
     std::erase_if(flaws.bodies, [](const auto& body) { return body.first.empty(); });
     return flaws;
 }
 
-/// Puts a finite vertex of the same body in the place of each that is not.
+/// Replaces vertices that are not finite by a finite one of the same body.
 void make_finite(Vertices& vertices) {
     const auto good =
         std::find_if(vertices.begin(), vertices.end(), [](const auto& v) { return v.allFinite(); });
@@ -87,11 +87,11 @@ void make_finite(Vertices& vertices) {
         if (!v.allFinite()) v = instead;
 }
 
-void search(std::vector<Stretch>& stretches) {
-    parallel_for(stretches.size(), [&](std::size_t i) { look_through(stretches[i]); });
-    for (const auto& stretch : stretches) {
-        append(stretch.target->degenerate, stretch.found.degenerate);
-        append(stretch.target->non_finite, stretch.found.non_finite);
+void search(std::vector<Block>& blocks) {
+    parallel_for(blocks.size(), [&](std::size_t i) { search_block(blocks[i]); });
+    for (const auto& block : blocks) {
+        append(block.target->degenerate, block.found.degenerate);
+        append(block.target->non_finite, block.found.non_finite);
     }
 }
 
@@ -106,10 +106,10 @@ std::vector<std::uint32_t> FlawedTetrahedra::all() const {
 
 FlawSearch::FlawSearch(const Scene& scene, std::size_t first)
     : scene_(scene), next_(first), rigid_(scene.meshes.size()) {
-    std::vector<Stretch> stretches;
+    std::vector<Block> blocks;
     for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh)
-        add_stretches(stretches, scene.meshes[mesh].vertices, scene.meshes[mesh], rigid_[mesh]);
-    search(stretches);
+        add_blocks(blocks, scene.meshes[mesh].vertices, scene.meshes[mesh], rigid_[mesh]);
+    search(blocks);
     all_.bodies.resize(scene.bodies.size());
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) all_.bodies[body].body = body;
     non_finite_ = all_;
@@ -117,20 +117,19 @@ FlawSearch::FlawSearch(const Scene& scene, std::size_t first)
 
 const Mesh& FlawSearch::mesh_of(std::size_t body) const { return scene_.meshes[scene_.bodies[body].mesh]; }
 
-/// Of deformable bodies; nothing of rigid ones.
+/// The flaws of deformable bodies; empty for rigid ones.
 FlawSearch::Found FlawSearch::deformed(std::span<const Frame* const> frames) const {
     const auto bodies = scene_.bodies.size();
     Found found(frames.size() * bodies);
-    std::vector<Stretch> stretches;
+    std::vector<Block> blocks;
     for (std::size_t i = 0; i < found.size(); ++i)
         if (scene_.bodies[i % bodies].deformable)
-            add_stretches(stretches, frames[i / bodies]->deformed[i % bodies], mesh_of(i % bodies), found[i]);
-    search(stretches);
+            add_blocks(blocks, frames[i / bodies]->deformed[i % bodies], mesh_of(i % bodies), found[i]);
+    search(blocks);
     return found;
 }
 
-/// A rigid body has the flaws of its mesh, whatever its pose; one whose pose is not finite has no tetrahedron
-/// that is.
+/// A rigid body has the flaws of its mesh. With a pose that is not finite, none of its tetrahedra is finite.
 FlawedTetrahedra FlawSearch::flaws_of(const Frame& frame, std::size_t body,
                                       const FlawedTetrahedra& deformed) const {
     if (scene_.bodies[body].deformable) return deformed;
@@ -142,12 +141,12 @@ FlawedTetrahedra FlawSearch::flaws_of(const Frame& frame, std::size_t body,
 }
 
 void FlawSearch::add(std::span<const std::shared_ptr<Frame>> frames) {
-    std::vector<const Frame*> looked_at;
-    for (const auto& frame : frames) looked_at.push_back(frame.get());
-    const auto bent = deformed(looked_at);
-    for (std::size_t i = 0; i < bent.size(); ++i) {
+    std::vector<const Frame*> pointers;
+    for (const auto& frame : frames) pointers.push_back(frame.get());
+    const auto of_deformable = deformed(pointers);
+    for (std::size_t i = 0; i < of_deformable.size(); ++i) {
         const auto frame = i / scene_.bodies.size(), body = i % scene_.bodies.size();
-        auto found = flaws_of(*frames[frame], body, bent[i]);
+        auto found = flaws_of(*frames[frame], body, of_deformable[i]);
         count(all_, body, found, next_ + frame);
         found.degenerate.clear();
         count(non_finite_, body, found, next_ + frame);
@@ -170,10 +169,10 @@ Flaws FlawSearch::flaws(Degenerate handling) const {
 }
 
 void FlawSearch::leave_out(Frame& frame) const {
-    const Frame* const looked_at = &frame;
-    const auto bent = deformed({&looked_at, 1});
-    for (std::size_t body = 0; body < bent.size(); ++body) {
-        if (const auto found = flaws_of(frame, body, bent[body]); found.any()) {
+    const Frame* const pointer = &frame;
+    const auto of_deformable = deformed({&pointer, 1});
+    for (std::size_t body = 0; body < of_deformable.size(); ++body) {
+        if (const auto found = flaws_of(frame, body, of_deformable[body]); found.any()) {
             frame.skipped.resize(scene_.bodies.size());
             frame.skipped[body] = found.all();
         }

@@ -8,44 +8,43 @@
 
 namespace tandem {
 
-/// Ascending numbers of a body's flawed tetrahedra in one frame; none is in both lists.
+/// Numbers of a body's flawed tetrahedra in one frame, ascending; the two lists are disjoint.
 struct FlawedTetrahedra {
     std::vector<std::uint32_t> degenerate, non_finite;
 
     bool any() const { return !degenerate.empty() || !non_finite.empty(); }
-    /// Of both kinds, ascending.
+    /// Both kinds, ascending.
     std::vector<std::uint32_t> all() const;
 };
 
-/// Finds the flawed tetrahedra of frames that are handed over one after the other and need not be kept.
-/// Volumes are decided exactly (oracle/volume.h) for the coordinates that are given: those of the mesh for a
-/// rigid body, whose poses change no volume, those of the frame for a deformable one.
+/// Finds the flawed tetrahedra of consecutive frames; it does not store the frames. The exact test of zero
+/// volume (geometry/volume.h) uses the coordinates of the frame for a deformable body. For a rigid body it
+/// uses those of the mesh, because poses preserve volume.
 class FlawSearch {
 public:
-    /// The frame that is added first has number `first`. The scene must outlive this.
+    /// `first` is the number of the first frame to add. The scene must outlive this object.
     FlawSearch(const Scene& scene, std::size_t first);
 
-    /// Counts what the next frames have, which are looked through together, on all cores.
+    /// Searches the next frames in parallel on all cores and counts their flaws.
     void add(std::span<const std::shared_ptr<Frame>> frames);
-    /// Of all frames that were added. Throws InputError for what is refused.
+    /// The flaws of all added frames. Throws InputError when `handling` rejects them.
     Flaws flaws(Degenerate handling) const;
 
-    /// Lists what a frame has as `skipped` and puts something finite of the same body in the place of
-    /// coordinates that are not, which nothing looks at but arithmetic that goes over whole bodies. Searches
-    /// that frame, on all cores.
+    /// Lists the flawed tetrahedra of a frame as `skipped`, and replaces coordinates that are not finite by
+    /// finite ones of the same body. Only arithmetic over whole bodies reads these. Searches on all cores.
     void leave_out(Frame& frame) const;
 
 private:
-    using Found = std::vector<FlawedTetrahedra>; ///< by body, frame after frame; or by mesh
+    using Found = std::vector<FlawedTetrahedra>; ///< by frame, then body; or by mesh
     const Mesh& mesh_of(std::size_t body) const;
     Found deformed(std::span<const Frame* const> frames) const;
     FlawedTetrahedra flaws_of(const Frame& frame, std::size_t body, const FlawedTetrahedra& deformed) const;
 
     const Scene& scene_;
-    std::size_t next_; ///< number of the frame that is added next
+    std::size_t next_; ///< number of the next frame
     Found rigid_;      ///< by mesh
-    Flaws all_;        ///< with one entry for each body, as the next
-    Flaws non_finite_; ///< without those of zero volume
+    Flaws all_;        ///< with one entry for each body
+    Flaws non_finite_; ///< the same without tetrahedra of zero volume
 };
 
 } // namespace tandem

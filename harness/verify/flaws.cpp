@@ -26,18 +26,18 @@ Degenerate degenerate_named(const std::string& name) {
 }
 
 std::string describe(const Flaws& flaws, const Scene& scene) {
-    std::vector<std::string> places;
+    std::vector<std::string> examples;
     for (const auto& body : flaws.bodies) {
-        if (places.size() == most_named_flaws) break;
+        if (examples.size() == most_named_flaws) break;
         const bool more = body.degenerate + body.non_finite > body.first.size();
-        places.push_back(fmt::format("body {} tetrahedron {}{} in frame {}", body.body,
-                                     fmt::join(body.first, ", "), more ? ", ..." : "", body.frame));
+        examples.push_back(fmt::format("body {} tetrahedron {}{} in frame {}", body.body,
+                                       fmt::join(body.first, ", "), more ? ", ..." : "", body.frame));
     }
     std::vector<std::string> counts;
     if (flaws.degenerate > 0) counts.push_back(fmt::format("{} of zero volume", flaws.degenerate));
     if (flaws.non_finite > 0) counts.push_back(fmt::format("{} not finite", flaws.non_finite));
     return fmt::format("{} in {} of {} bodies: {}{}", fmt::join(counts, " and "), flaws.bodies.size(),
-                       scene.bodies.size(), fmt::join(places, "; "),
+                       scene.bodies.size(), fmt::join(examples, "; "),
                        flaws.bodies.size() > most_named_flaws ? "; ..." : "");
 }
 

@@ -8,18 +8,17 @@
 
 namespace tandem {
 
-/// What becomes of tetrahedra of zero volume and of those with a coordinate that is not finite
-/// (--degenerate).
+/// Handling of tetrahedra of zero volume and of those with a coordinate that is not finite (--degenerate).
 enum class Degenerate {
-    flat,  ///< zero volume: a closed convex set like any other; not finite: refused
-    skip,  ///< neither takes part: no answer, no reference and no truth has them
-    reject ///< both are refused
+    flat,  ///< treats zero volume like any closed convex set; rejects coordinates that are not finite
+    skip,  ///< leaves both out of answers, reference and truth
+    reject ///< rejects both
 };
 
 /// "flat", "skip", "reject".
 std::string_view name_of(Degenerate handling);
 
-/// The one of that name; throws InputError.
+/// The handling with that name; throws InputError for any other name.
 Degenerate degenerate_named(const std::string& name);
 
 /// A body with flawed tetrahedra, counted in every frame.
@@ -27,24 +26,24 @@ struct FlawedBody {
     std::uint32_t body = 0;
     std::uint64_t degenerate = 0;     ///< of zero volume
     std::uint64_t non_finite = 0;     ///< with a coordinate that is not finite
-    std::size_t frame = 0;            ///< the first frame it has any in
-    std::vector<std::uint32_t> first; ///< in that frame, ascending, the first few
+    std::size_t frame = 0;            ///< its first frame with a flaw
+    std::vector<std::uint32_t> first; ///< the first few tetrahedra in that frame, ascending
 };
 
-/// Tetrahedra of a body, and bodies in a message, that are named.
+/// Most tetrahedra of a body, and most bodies in a message, that are listed.
 inline constexpr std::size_t most_named_flaws = 4;
 
 /// The flawed tetrahedra of a range of frames.
 struct Flaws {
     Degenerate handling = Degenerate::flat;
     std::uint64_t degenerate = 0, non_finite = 0; ///< sums over bodies and frames
-    std::vector<FlawedBody> bodies;               ///< by number; only those that have any
+    std::vector<FlawedBody> bodies;               ///< only flawed bodies, by number
 
     bool any() const { return degenerate + non_finite > 0; }
 };
 
-/// "3 of zero volume and 1 not finite in 2 of 5 bodies: body 0 tetrahedron 7, 9 in frame 0; body 4
-/// tetrahedron 1, ... in frame 3", with the first few.
+/// Counts and the first few examples: "3 of zero volume and 1 not finite in 2 of 5 bodies: body 0 tetrahedron
+/// 7, 9 in frame 0; body 4 tetrahedron 1, ... in frame 3".
 std::string describe(const Flaws& flaws, const Scene& scene);
 
 } // namespace tandem

@@ -20,7 +20,7 @@ namespace {
 template<class Real>
 struct Bounds {
     std::size_t axes = 0;
-    bool published = false; ///< rounding
+    bool published = false; ///< whether Rounding::published applies
     std::vector<std::array<Real, 3>> vertices;
     std::vector<Real> slabs;
     std::vector<Real> whole; ///< of the body
@@ -28,14 +28,14 @@ struct Bounds {
     const Real* tetrahedron(std::size_t i) const { return &slabs[i * 2 * axes]; }
 };
 
-/// Whether a slab starts after another's end; the paper's test asks for more than its tolerance.
+/// Whether a slab starts after another's end; in the paper's test, by more than its tolerance.
 template<class Real>
 bool apart(Real lower, Real upper, bool published) {
     constexpr Real tolerance = 10 * std::numeric_limits<float>::epsilon();
     return published ? lower - upper > tolerance : lower > upper;
 }
 
-/// Closed: touching overlaps.
+/// Closed test: touching slabs overlap.
 template<class Real>
 bool overlapping(const Real* a, const Real* b, std::size_t axes, bool published) {
     for (std::size_t axis = 0; axis < axes; ++axis)
@@ -44,8 +44,8 @@ bool overlapping(const Real* a, const Real* b, std::size_t axes, bool published)
     return true;
 }
 
-/// Sum of the terms from the first on, to nearest. `partial` adds up the magnitudes of the sums on the way; a
-/// lone term counts as one.
+/// Sum of the terms in order, rounded to nearest. `partial` is the sum of the magnitudes of all partial sums;
+/// a single term counts as one.
 template<class Real>
 Real nearest_sum(std::span<const Real> terms, Real& partial) {
     Real sum = terms[0];
@@ -57,9 +57,8 @@ Real nearest_sum(std::span<const Real> terms, Real& partial) {
     return sum;
 }
 
-/// The same with every addition rounded in a mode of fesetround.
-/// volatile keeps the compiler from moving additions over fesetround, which it takes for a call like any
-/// other.
+/// Sum of the terms in order, with every addition rounded in a mode of fesetround. volatile stops the
+/// compiler from moving additions across fesetround, which it treats as an ordinary call.
 template<class Real>
 Real directed_sum(std::span<const Real> terms, int mode) {
     volatile Real sum = terms[0];
@@ -72,8 +71,8 @@ Real directed_sum(std::span<const Real> terms, int mode) {
     return sum;
 }
 
-/// Projection of a point with what its rounding asks for (algorithms/bounds/README.md); `drift`: of the
-/// point, by axis, null unless the truth is the pose's.
+/// Lower and upper bound of a point's projection for a rounding (algorithms/bounds/README.md). `drift` bounds
+/// the point's error along each axis; null for Placement::rounded.
 template<class Real>
 std::pair<Real, Real> project(const std::array<Real, 3>& point, const std::array<int, 3>& direction,
                               Rounding rounding, const std::array<Real, 3>* drift) {
@@ -85,7 +84,7 @@ std::pair<Real, Real> project(const std::array<Real, 3>& point, const std::array
         terms[count++] = direction[i] > 0 ? point[i] : -point[i];
         if (drift != nullptr) off += (*drift)[i];
     }
-    // The release divides by the length of the direction: sqrt(2) or sqrt(3), as constants.
+    // The paper's release divides by the direction's length, sqrt(2) or sqrt(3), with these constants.
     if (rounding == Rounding::published && count > 1)
         for (auto& term : terms)
             term *=
@@ -105,8 +104,8 @@ std::pair<Real, Real> project(const std::array<Real, 3>& point, const std::array
     return {sum - bound, sum + bound};
 }
 
-/// The bound on a body's drift is an input, as its pose is; a test of its own holds it against the exact
-/// truth.
+/// The bound on a body's drift is an input here, not recomputed independently; a separate test compares it
+/// with the exact truth.
 template<class Real>
 std::array<Real, 3> drift_in(const Scene& scene, const Frame& frame, const Geometry& geometry,
                              std::size_t body) {
@@ -117,8 +116,7 @@ std::array<Real, 3> drift_in(const Scene& scene, const Frame& frame, const Geome
     return {static_cast<Real>(bound[0]), static_cast<Real>(bound[1]), static_cast<Real>(bound[2])};
 }
 
-/// Slabs of all tetrahedra of one body, vertex by vertex and direction by direction: no tree, no sharing
-/// between tetrahedra.
+/// Slabs of all tetrahedra of one body, each computed separately from its own vertices.
 template<class Real>
 Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& geometry, std::size_t body) {
     const auto axes = directions(geometry);
@@ -140,7 +138,7 @@ Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& g
             Real lower = std::numeric_limits<Real>::infinity();
             Real upper = -lower;
             for (const auto vertex : tetrahedra[t]) {
-                if (skipped[t]) break; // an empty slab, apart from all
+                if (skipped[t]) break; // an empty slab overlaps nothing
                 const auto [low, high] = project(bounds.vertices[vertex], axes[axis], geometry.rounding,
                                                  drifts ? &drift : nullptr);
                 lower = std::min(lower, low);
@@ -155,7 +153,7 @@ Bounds<Real> bounds_of(const Scene& scene, const Frame& frame, const Geometry& g
     return bounds;
 }
 
-/// Tetrahedra of one body that overlap the whole of another, sorted by their lower bound on the first axis.
+/// Tetrahedra of one body that overlap the bounds of another body, sorted by lower bound on the first axis.
 template<class Real>
 std::vector<std::uint32_t> near(const Bounds<Real>& body, const Bounds<Real>& other) {
     std::vector<std::uint32_t> result;
@@ -167,8 +165,8 @@ std::vector<std::uint32_t> near(const Bounds<Real>& body, const Bounds<Real>& ot
     return result;
 }
 
-/// Calls hit(ta, tb) for each overlapping pair whose interval on the first axis starts in one of the two
-/// lists.
+/// Calls hit(ta, tb) once for each overlapping pair. The tetrahedron that starts first on the first axis
+/// finds the other one.
 template<class Real, class Hit>
 void sweep(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
     const auto list_a = near(a, b);
@@ -192,7 +190,7 @@ void sweep(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
     }
 }
 
-/// Brute force: every pair of tetrahedra by the test alone.
+/// Brute force: tests every pair of tetrahedra.
 template<class Real, class Hit>
 void test_all(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
     for (std::uint32_t ta = 0; ta < a.slabs.size() / (2 * a.axes); ++ta)
@@ -200,8 +198,8 @@ void test_all(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
             if (overlapping(a.tetrahedron(ta), b.tetrahedron(tb), a.axes, a.published)) hit(ta, tb);
 }
 
-/// Contacts of some of the pairs. Sums of a digest do not depend on the order, so that parts may be added as
-/// they end.
+/// Adds the contacts of some of the pairs. A digest does not depend on the order, so that parallel parts may
+/// finish in any order.
 template<class Real>
 void add_contacts(const Scene& scene, const std::vector<Bounds<Real>>& bounds, std::span<const Pair> pairs,
                   const ContactSettings& settings, ReferenceAnswer& answer, std::mutex& mutex) {

@@ -8,7 +8,8 @@
 
 namespace tandem {
 
-/// The answer of independent serial code that does the cell's own arithmetic: equality with it is exact.
+/// The answer of independent host code with the cell's own arithmetic: a correct cell has exactly this
+/// answer.
 struct ReferenceAnswer {
     std::vector<Pair> pairs; ///< sorted
     Digest digest;
@@ -20,20 +21,20 @@ struct ReferenceAnswer {
 };
 
 enum class Method {
-    brute_force, ///< every tetrahedron of every body against every other: small scenes
-    sweep        ///< bodies, then tetrahedra, sorted along the first direction
+    brute_force, ///< tests all pairs of tetrahedra of two bodies; for small scenes
+    sweep        ///< sorts the tetrahedra of overlapping bodies along the first direction
 };
 
-/// Finds every pair of tetrahedra of different bodies (not both fixed) whose leaf k-DOPs overlap, on all
-/// cores; shares no code with kernels, hierarchies or broad phase.
+/// Finds every pair of tetrahedra of different bodies (not both fixed) whose leaf k-DOPs overlap. Runs on all
+/// cores, and shares no code with kernels, hierarchies or broad phase.
 ReferenceAnswer reference(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
                           Method method, const ContactSettings& settings = {});
 
 /// Brute force for small scenes, sweep otherwise.
 Method reference_method(const Scene& scene);
 
-/// Pairs of `expected` that `found` lacks, and pairs of `found` that `expected` lacks. Both sorted;
-/// duplicates in `found` count as extra.
+/// Number of pairs only in `expected` (missing) and only in `found` (extra). Both must be sorted; duplicates
+/// in `found` count as extra.
 struct Difference {
     std::uint64_t missing = 0;
     std::uint64_t extra = 0;

@@ -10,9 +10,9 @@ namespace tandem {
 
 namespace {
 
-nlohmann::json kept_digest(const Digest& digest) { return {digest.count, digest.a, digest.b}; }
+nlohmann::json digest_json(const Digest& digest) { return {digest.count, digest.a, digest.b}; }
 
-Digest digest_kept_as(const nlohmann::json& words) {
+Digest read_digest(const nlohmann::json& words) {
     return {words.at(0).get<std::uint64_t>(), words.at(1).get<std::uint64_t>(),
             words.at(2).get<std::uint64_t>()};
 }
@@ -22,10 +22,10 @@ Digest digest_kept_as(const nlohmann::json& words) {
 References::References(const Scene& scene, const FrameRange& range, const std::filesystem::path& folder)
     : scene_(scene),
       range_(range),
-      kept_(folder, fmt::format("references of {} {:016x}", scene.key, scene.digest)) {}
+      cache_(folder, fmt::format("references of {} {:016x}", scene.key, scene.digest)) {}
 
-/// The frame by what is in it, whatever its number: flawed tetrahedra may be skipped.
-std::string References::question(const Key& key) const {
+/// Identifies the frame by its content, because its flawed tetrahedra may be skipped or not.
+std::string References::cache_key(const Key& key) const {
     const auto& [geometry, contacts, index] = key;
     return fmt::format(
         "frame {:016x}, k {} {}, precision {}, rounding {}, placement {}, origin {}, rule {}, decision {}",
@@ -39,7 +39,7 @@ const ReferenceAnswer& References::answer(const Geometry& geometry, const Contac
                                           std::size_t index) {
     const Key key{geometry, contacts, index};
     if (last_ && last_->first == key) return last_->second;
-    last_.reset(); // before the next takes memory
+    last_.reset(); // frees memory before the next answer allocates
     const auto frame = range_.frame(index, geometry.origin);
     last_.emplace(key, reference(scene_, *frame, geometry, true, reference_method(scene_), contacts));
     return last_->second;
@@ -48,20 +48,20 @@ const ReferenceAnswer& References::answer(const Geometry& geometry, const Contac
 ReferenceDigests References::digests(const Geometry& geometry, const ContactSettings& contacts,
                                      std::size_t index) {
     const Key key{geometry, contacts, index};
-    const auto found = std::ranges::find(known_, key, &std::pair<Key, ReferenceDigests>::first);
-    if (found != known_.end()) return found->second;
-    const auto asked = question(key);
+    const auto found = std::ranges::find(digests_, key, &std::pair<Key, ReferenceDigests>::first);
+    if (found != digests_.end()) return found->second;
+    const auto text = cache_key(key);
     ReferenceDigests digests;
-    const bool is_kept = kept_.take(asked, [&](const nlohmann::json& value) {
-        digests = {digest_kept_as(value.at("pairs")), digest_kept_as(value.at("contacts"))};
+    const bool is_cached = cache_.take(text, [&](const nlohmann::json& value) {
+        digests = {read_digest(value.at("pairs")), read_digest(value.at("contacts"))};
     });
-    if (!is_kept) {
+    if (!is_cached) {
         const auto& computed = answer(geometry, contacts, index);
         digests = {computed.digest, computed.contact_digest};
-        kept_.keep(asked,
-                   {{"pairs", kept_digest(digests.pairs)}, {"contacts", kept_digest(digests.contacts)}});
+        cache_.keep(text,
+                    {{"pairs", digest_json(digests.pairs)}, {"contacts", digest_json(digests.contacts)}});
     }
-    known_.emplace_back(key, digests);
+    digests_.emplace_back(key, digests);
     return digests;
 }
 

@@ -14,28 +14,28 @@ struct ReferenceDigests {
     Digest pairs, contacts;
 };
 
-/// Answers of the reference per frame, computed once for each geometry: digests, which are kept from one run
-/// of the program to the next, and pairs where an answer is another.
+/// Answers of the reference by frame, computed once for each geometry and contact settings. Digests are
+/// stored between runs of the program; pairs are computed only for a wrong answer.
 class References {
 public:
-    /// Both must outlive this; an empty folder keeps nothing.
+    /// `scene` and `range` must outlive this object. With an empty folder nothing is stored.
     References(const Scene& scene, const FrameRange& range, const std::filesystem::path& folder = {});
 
-    /// Of frame number `index` of the range; serial host code that may take minutes on a large scene.
+    /// Digests for frame number `index` of the range. Host code, which can run for minutes on a large scene.
     ReferenceDigests digests(const Geometry& geometry, const ContactSettings& contacts, std::size_t index);
-    /// The whole answer, computed by this process whatever was kept; of the frame that was asked for last it
-    /// is still there.
+    /// The whole answer, always computed by this process. The reference is valid until the next call; the
+    /// last answer is cached.
     const ReferenceAnswer& answer(const Geometry& geometry, const ContactSettings& contacts,
                                   std::size_t index);
 
 private:
     using Key = std::tuple<Geometry, ContactSettings, std::size_t>;
-    std::string question(const Key& key) const;
+    std::string cache_key(const Key& key) const;
 
     const Scene& scene_;
     const FrameRange& range_;
-    VerificationCache kept_;
-    std::vector<std::pair<Key, ReferenceDigests>> known_;
+    VerificationCache cache_;
+    std::vector<std::pair<Key, ReferenceDigests>> digests_;
     std::optional<std::pair<Key, ReferenceAnswer>> last_;
 };
 

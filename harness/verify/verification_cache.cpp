@@ -10,7 +10,7 @@
 
 namespace tandem {
 
-/// The program's sources are part of the name: what another has found may be found otherwise now.
+/// The digest of the sources is part of the file name, because another version may compute other values.
 VerificationCache::VerificationCache(const std::filesystem::path& folder, const std::string& subject) {
     if (folder.empty()) return;
     const auto digest = digest_of(sources_digest() + "|" + subject);
@@ -36,7 +36,7 @@ bool VerificationCache::take(const std::string& question,
     }
 }
 
-/// Begins with the end of a line, for the one before may be torn.
+/// Writes a newline first, because the previous line may be torn.
 void VerificationCache::keep(const std::string& question, nlohmann::json value) {
     if (file_.empty()) return;
     make_own(file_.parent_path());

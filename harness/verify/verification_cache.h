@@ -9,20 +9,21 @@
 
 namespace tandem {
 
-/// Values that take long to find and are the same in every run of this program: kept in a file of lines, by
-/// the text of a question. Processes may share a file; a line that is torn, or of another program, is as if
-/// it were not there, and a value that cannot be kept is not: nothing fails.
+/// Stores values that are expensive to compute and equal in every run of this program, in a JSON-lines file.
+/// The key of a value is the text of a question. Processes may share a file. Torn lines are ignored, and a
+/// failed write has no effect: no function throws for them.
 class VerificationCache {
 public:
-    /// Keeps nothing.
+    /// Stores nothing.
     VerificationCache() = default;
-    /// One file in the folder for each `subject`, which is part of every question; an empty folder keeps
-    /// nothing.
+    /// Uses one file in the folder for each `subject` and version of the sources. With an empty folder
+    /// nothing is stored.
     VerificationCache(const std::filesystem::path& folder, const std::string& subject);
 
-    /// Hands over what is kept; false when nothing is, or `read` finds (nlohmann::json::exception) that it is
-    /// no such value.
+    /// Passes the stored value to `read`. Returns false when there is none, or when `read` rejects it by
+    /// throwing nlohmann::json::exception.
     bool take(const std::string& question, const std::function<void(const nlohmann::json&)>& read) const;
+    /// Stores a value in the file and in memory.
     void keep(const std::string& question, nlohmann::json value);
 
 private:

@@ -13,7 +13,7 @@ std::vector<std::array<Real, 3>> world_vertices(const Scene& scene, const Frame&
     if (!deformable) {
         const auto& pose = frame.poses[body];
         const auto& p = pose.rotation;
-        // The order of additions is that of algorithms/bodies: bits have to be equal.
+        // The order of additions must be that of algorithms/bodies, so that all bits are equal.
         const double norm = std::sqrt((p.w() * p.w() + p.x() * p.x()) + (p.y() * p.y() + p.z() * p.z()));
         const double w = p.w() / norm, x = p.x() / norm, y = p.y() / norm, z = p.z() / norm;
         const double matrix[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},

@@ -8,9 +8,9 @@
 
 namespace tandem {
 
-/// World vertices of a body with the cell's own arithmetic: the pose's matrix in double, rounded to Real;
+/// World vertices of a body with the cell's own arithmetic: the pose's matrix in double, rounded to Real,
 /// then
-/// ((m0 x + m1 y) + m2 z) + t per row in Real. Real is float or double.
+/// ((m0 x + m1 y) + m2 z) + t for each row in Real. Real is float or double.
 template<class Real>
 std::vector<std::array<Real, 3>> world_vertices(const Scene& scene, const Frame& frame, std::size_t body);
 

@@ -25,21 +25,21 @@ bool finite(const ContactPoint& c) {
 
 /// The contacts of one pair in the sorted list.
 std::span<const ContactPoint> contacts_of(std::span<const ContactPoint> contacts, const Pair& pair) {
-    // Only the pair is compared: one pair may have several contacts.
+    // Compare only the pair, because a pair may have several contacts.
     const auto [first, last] =
         std::equal_range(contacts.begin(), contacts.end(), ContactPoint{pair, 0, {}, {}, 0},
                          [](const auto& a, const auto& b) { return a.pair < b.pair; });
     return {first, last};
 }
 
-/// The same for ascending pairs, by walking along the list.
+/// Finds the contacts of ascending pairs in one pass over the list.
 class ContactCursor {
 public:
-    /// Questions start at `first`.
+    /// `first` is the first pair to find.
     ContactCursor(std::span<const ContactPoint> sorted, const Pair& first)
         : rest_(contacts_of(sorted, first).data(), sorted.data() + sorted.size()) {}
 
-    std::span<const ContactPoint> of(const Pair& pair) {
+    std::span<const ContactPoint> find(const Pair& pair) {
         std::size_t skipped = 0;
         while (skipped < rest_.size() && rest_[skipped].pair < pair) ++skipped;
         rest_ = rest_.subspan(skipped);
@@ -52,8 +52,8 @@ private:
     std::span<const ContactPoint> rest_;
 };
 
-/// 0: no contact, 1: none inside, 2: one inside.
-unsigned answered(std::span<const ContactPoint> contacts) {
+/// Column of the decision matrix: 0 no contact, 1 only without penetration, 2 with penetration.
+unsigned answer_column(std::span<const ContactPoint> contacts) {
     if (contacts.empty()) return 0;
     return std::any_of(contacts.begin(), contacts.end(), [](const auto& c) { return c.depth < 0; }) ? 2 : 1;
 }
@@ -86,9 +86,9 @@ void compare(const ContactTruth& truth, double size, std::span<const ContactPoin
     // Depth is a signed distance, negative inside.
     const auto& deepest = *std::min_element(contacts.begin(), contacts.end(),
                                             [](const auto& a, const auto& b) { return a.depth < b.depth; });
-    const double wrong = std::abs(-deepest.depth - truth.depth);
-    errors.depth_relative.push_back(wrong / truth.depth);
-    errors.depth_ulps.push_back(wrong / (unit * size));
+    const double error = std::abs(-deepest.depth - truth.depth);
+    errors.depth_relative.push_back(error / truth.depth);
+    errors.depth_ulps.push_back(error / (unit * size));
     errors.normal_degrees.push_back(nearest_angle(truth.normals, deepest.normal));
     double farthest = 0;
     std::vector<std::array<double, 3>> points;
@@ -152,26 +152,26 @@ DecisionMatrix decision_matrix(const FrameTruth& truth, std::span<const Pair> ca
                                std::span<const ContactPoint> contacts) {
     DecisionMatrix matrix{};
     const auto count_row = [&](unsigned row, std::span<const Pair> pairs, auto counts) {
-        // Each part starts its cursors by a search and then walks along with its pairs.
+        // Each parallel part positions its cursors by one search; they then follow its pairs.
         const auto parts = in_parts(pairs);
         std::vector<std::array<std::uint64_t, 3>> found(parts.size());
         parallel_for(parts.size(), [&](std::size_t i) {
-            ContactCursor answers(contacts, parts[i].front());
+            ContactCursor cursor(contacts, parts[i].front());
             auto counted = counts(parts[i].front());
             for (const auto& pair : parts[i]) {
-                const auto own = answers.of(pair);
-                if (counted(pair)) ++found[i][answered(own)];
+                const auto answer = cursor.find(pair);
+                if (counted(pair)) ++found[i][answer_column(answer)];
             }
         });
         for (const auto& part : found)
             for (unsigned column = 0; column < 3; ++column) matrix[row][column] += part[column];
     };
-    // A candidate counts in row 0 when neither list has it; the lists are rows 1 and 2 as they are.
+    // A candidate in neither list is in row 0; the two lists are rows 1 and 2.
     const auto every = [](const Pair&) { return [](const Pair&) { return true; }; };
     count_row(0, candidates, [&](const Pair& first) {
         return [touching = PairCursor(truth.touching, first),
                 overlapping = PairCursor(truth.overlapping, first)](const Pair& pair) mutable {
-            return !touching.holds(pair) && !overlapping.holds(pair);
+            return !touching.contains(pair) && !overlapping.contains(pair);
         };
     });
     count_row(1, truth.touching, every);
@@ -186,7 +186,7 @@ ContactTruths contact_truths(const Scene& scene, const Frame& frame, Precision p
     const auto count = most == 0 ? all.size() : std::min(most, all.size());
     result.every = count == all.size();
     std::vector<Pair> chosen;
-    // Evenly over the order, which is by bodies: a part of the list would be a part of the scene.
+    // Choose evenly over the order, which is by bodies: the first pairs would cover only a part of the scene.
     for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
     auto corners = pair_corners(scene, frame, precision, chosen);
     for (auto& pair : corners)
@@ -197,7 +197,7 @@ ContactTruths contact_truths(const Scene& scene, const Frame& frame, Precision p
     parallel_for(chosen.size(),
                  [&](std::size_t i) { truths[i] = contact_truth(corners[i][0], corners[i][1]); });
     for (std::size_t i = 0; i < chosen.size(); ++i) {
-        if (!truths[i]) continue; // no volume: no depth to compare with
+        if (!truths[i]) continue; // a pair without volume has no depth
         result.pairs.push_back(chosen[i]);
         result.truths.push_back(std::move(*truths[i]));
         result.sizes.push_back(std::max(longest_edge(corners[i][0]), longest_edge(corners[i][1])));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Errors as they are kept and sent from process to process; no part of a record.
+// JSON form of errors in caches and between processes; records have another form.
 #pragma once
 
 #include "harness/verify/accuracy/answer_errors.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// tandem accuracy: error beside speed, over the settings that either depends on.
+// tandem accuracy: error and speed over the settings that affect either.
 #include "harness/verify/accuracy/figures.h"
 #include "harness/verify/adversarial.h"
 #include "harness/plans/inputs.h"
@@ -23,39 +23,39 @@ using Axis = std::pair<std::string, std::vector<std::string>>;
 
 constexpr std::size_t default_frames = 10;
 
-/// The words a setting may be, without `left_out`; nothing when the algorithm does not have it.
+/// The values of a setting, without `excluded`; empty when the algorithm does not have the setting.
 std::vector<std::string> choices(const Traversal& traversal, const std::string& name,
-                                 const std::string& left_out = "") {
+                                 const std::string& excluded = "") {
     std::vector<std::string> result;
     for (const auto* parameter : traversal.parameters())
         if (parameter->name == name)
             for (const auto& word : parameter->choices()) result.emplace_back(word.text);
-    std::erase(result, left_out);
+    std::erase(result, excluded);
     return result;
 }
 
-/// What bounds depend on: directions, precision, rounding.
+/// Settings that affect bounds: directions, precision, rounding.
 std::vector<Axis> axes_of_bounds(const Traversal& traversal) {
     return {{"k", {"6", "8", "14", "18", "26"}},
             {"precision", choices(traversal, "precision")},
             {"rounding", choices(traversal, "rounding")}};
 }
 
-/// What contacts depend on: precision, who decides, rule.
+/// Settings that affect contacts: precision, decision, rule.
 std::vector<Axis> axes_of_contacts(const Traversal& traversal) {
     return {{"precision", choices(traversal, "precision")},
             {"decision", choices(traversal, "decision")},
             {"contact_rule", choices(traversal, "contact_rule", "none")}};
 }
 
-/// Both sweeps hold the defaults: such a cell is measured once.
+/// The default settings are in both sweeps; such a cell is measured once.
 bool same(const Cell& a, const Cell& b) {
     return a.algorithm == b.algorithm && a.preset == b.preset && a.settings == b.settings
            && a.devices == b.devices;
 }
 
-/// The cells of a request that names no settings: for each algorithm and device first the bounds, then the
-/// contacts. Combinations that a device or another setting excludes are left out.
+/// The cells of a request without settings. Each algorithm and device has the sweep over bounds, then the one
+/// over contacts, without combinations that a device or another setting excludes.
 std::vector<Cell> sweep(const Request& request, std::span<const DeviceGroup> devices) {
     std::vector<Cell> cells;
     for (const auto& base : plan(request, devices)) {
@@ -72,14 +72,15 @@ std::vector<Cell> sweep(const Request& request, std::span<const DeviceGroup> dev
     return cells;
 }
 
-/// "FIRST:LAST" of ten frames in the middle; empty for a scene with no more.
+/// "FIRST:LAST" of the ten middle frames; empty for a scene with ten frames or fewer.
 std::string middle_frames(const Scene& scene) {
     if (scene.frame_count <= default_frames) return "";
     const auto first = (scene.frame_count - default_frames) / 2;
     return fmt::format("{}:{}", first, first + default_frames - 1);
 }
 
-/// Those of the family, by size; the initial one alone of whole scenes, which grow with it.
+/// The difficulties of the family, ascending. A family of whole scenes has only the initial one, because its
+/// scenes grow with the difficulty.
 std::vector<double> difficulties(const HardFamily& family) {
     if (family.scene != nullptr) return {family.knob.initial};
     const auto all = difficulties_of(family);
@@ -87,8 +88,8 @@ std::vector<double> difficulties(const HardFamily& family) {
     return {sorted.begin(), sorted.end()};
 }
 
-/// hard:all as all families at several difficulties, less the one that is refused unless what is not finite
-/// is skipped; other scenes as they are.
+/// Replaces hard:all by all families at several difficulties. Leaves out not-finite unless `handling` skips
+/// such tetrahedra. Returns other scenes unchanged.
 std::vector<std::string> expand(const std::string& scene, Degenerate handling) {
     const auto families = expand_hard(scene);
     if (families.size() < 2) return {scene};
@@ -103,7 +104,7 @@ std::vector<std::string> expand(const std::string& scene, Degenerate handling) {
     return scenes;
 }
 
-/// Median over the samples of a frame's time, in ms.
+/// Median time of a frame over the samples, in ms.
 double frame_ms(const Measurement& m) {
     return median_ns(m) * 1e-6 / static_cast<double>(m.candidate_pairs.size());
 }
@@ -130,23 +131,23 @@ void print_row(const Cell& cell, const Measurement& m) {
         e.missed() > 0 ? "  MISSES" : "");
 }
 
-/// All cells on one scene, until a record cannot be written; the exit code.
+/// Measures all cells on one scene, until a record cannot be written. Returns the exit code.
 int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, RecordFile& file) {
     auto own = options;
     auto scene = open_scene(own);
     if (own.frames.empty()) own.frames = middle_frames(scene);
     const Job job(std::move(scene), own, cells);
     print_scene(job.scene, job.range);
-    const auto kept = checks_folder(options);
-    References references(job.scene, job.range, kept);
-    Truths truths(job.scene, job.range, TruthAmount::contacts, options.truth_contacts, kept);
+    const auto cache = checks_folder(options);
+    References references(job.scene, job.range, cache);
+    Truths truths(job.scene, job.range, TruthAmount::contacts, options.truth_contacts, cache);
     const Progress progress(options.quiet);
     Measuring measuring;
     measuring.check = {options.check, false, &truths};
     measuring.enough.repeat = options.repeat.value_or(3);
     int code = 0;
     print_header();
-    // Cell after cell: rows come as they are found, and time stands beside error only.
+    // Measure cell by cell, not in rounds: rows appear early, and times are not compared between cells.
     for (const auto& cell : job.cells)
         measure_cells(job, {&cell, 1}, references, measuring, file, progress, [&](const CellResult& result) {
             const auto& m = result.measurement;
@@ -170,7 +171,8 @@ int accuracy_command(const AccuracyOptions& options) {
     const auto devices = open_devices(options.run, backends, request.devices);
     const auto cells = request.sets.empty() ? sweep(request, devices) : plan(request, devices);
     auto scenes = options.scenes;
-    if (scenes.empty()) scenes.emplace_back(); // of --mesh, or the message that there is none
+    // An empty name stands for --mesh; without meshes it causes the error message.
+    if (scenes.empty()) scenes.emplace_back();
     std::optional<Figures> figures;
     if (!options.figures.empty()) figures.emplace(options.figures);
     const auto records =
@@ -184,11 +186,11 @@ int accuracy_command(const AccuracyOptions& options) {
             code = std::max(code, measure_scene(own, cells, file));
             if (file.failed()) return code;
         }
-    put("ms of the whole frame; ratio: candidates per pair that meets; errors of contacts are 99th "
-        "percentiles, u half a unit in the\n"
-        "last place of 1, L the longest edge; volume: of the points' hull against the exact "
-        "intersection's, / exact; MISSES: pairs\n"
-        "that meet are not among the candidates\n");
+    put("ms/frame: the whole frame; ratio: candidates per intersecting pair; errors of contacts are 99th "
+        "percentiles;\n"
+        "u: half a unit in the last place of 1; L: the longest edge; volume: relative error of the volume of "
+        "the contact\n"
+        "points' hull; MISSES: intersecting pairs are missing from the candidates\n");
     if (figures) figures->draw(records);
     return code;
 }

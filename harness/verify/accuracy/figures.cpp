@@ -12,7 +12,7 @@ namespace tandem {
 
 namespace {
 
-constexpr auto figures_program = "figures"; // of libexec/tandem
+constexpr auto figures_program = "figures"; // in libexec/tandem
 
 } // namespace
 

@@ -5,15 +5,15 @@
 
 namespace tandem {
 
-/// Figures of records with their data, by the package python/tandem/error_figures.
+/// Draws figures of records and writes their data, with the Python package python/tandem/error_figures.
 class Figures {
 public:
-    /// Throws InputError when the package or a Python with matplotlib is missing, or the folder cannot be
-    /// made.
+    /// Creates the folder. Throws InputError when that fails, or when the package or a Python with matplotlib
+    /// is missing.
     explicit Figures(std::string folder);
 
-    /// Draws all records of the file that have errors. Throws InputError when that fails; standard error
-    /// then says why.
+    /// Draws all records of the file that have errors. Throws InputError when that fails; the package prints
+    /// the reason to standard error.
     void draw(const std::string& records) const;
 
 private:

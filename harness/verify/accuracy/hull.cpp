@@ -12,7 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// An affinely independent subset of the points, and the convex combination of it that is nearest the origin.
+/// An affinely independent subset of the points, with the weights of its convex combination nearest to the
+/// origin. The term is Wolfe's.
 struct Corral {
     std::vector<Vector3d> points;
     std::vector<double> weights;
@@ -24,9 +25,8 @@ struct Corral {
     }
 };
 
-/// Weights of the point nearest the origin in the affine hull, negative ones too.
-/// Least norm under the constraint that weights sum up to 1: the Gram matrix bordered by ones (Wolfe 1976,
-/// step 2).
+/// Weights, possibly negative, of the point of the affine hull nearest to the origin: the least norm with
+/// weights that sum to 1. Solves the Gram matrix bordered by ones (Wolfe 1976, step 2).
 Eigen::VectorXd affine_weights(const std::vector<Vector3d>& points) {
     const auto n = static_cast<Eigen::Index>(points.size());
     Eigen::MatrixXd system = Eigen::MatrixXd::Ones(n + 1, n + 1);
@@ -39,33 +39,33 @@ Eigen::VectorXd affine_weights(const std::vector<Vector3d>& points) {
     return system.fullPivLu().solve(right).head(n);
 }
 
-/// Moves towards the affine hull's nearest point until it is in the corral's hull; points that end with no
-/// weight leave.
-void settle(Corral& corral) {
+/// Moves towards the nearest point of the affine hull and removes points whose weight reaches 0, until that
+/// point is in the corral's convex hull.
+void minimise(Corral& corral) {
     while (true) {
-        const auto wanted = affine_weights(corral.points);
-        if ((wanted.array() > 0).all()) {
+        const auto affine = affine_weights(corral.points);
+        if ((affine.array() > 0).all()) {
             for (std::size_t i = 0; i < corral.points.size(); ++i)
-                corral.weights[i] = wanted(static_cast<Eigen::Index>(i));
+                corral.weights[i] = affine(static_cast<Eigen::Index>(i));
             return;
         }
-        // The largest step that leaves no weight negative; the point whose weight it brings to 0 leaves
+        // The largest step that keeps all weights non-negative; remove the point whose weight becomes 0
         // (Wolfe's step 3).
         double step = 1;
-        std::size_t leaving = 0;
+        std::size_t removed = 0;
         for (std::size_t i = 0; i < corral.points.size(); ++i) {
-            const double target = wanted(static_cast<Eigen::Index>(i));
+            const double target = affine(static_cast<Eigen::Index>(i));
             if (target > 0) continue;
-            const double own = corral.weights[i] / (corral.weights[i] - target);
-            if (own <= step) {
-                step = own;
-                leaving = i;
+            const double limit = corral.weights[i] / (corral.weights[i] - target);
+            if (limit <= step) {
+                step = limit;
+                removed = i;
             }
         }
         for (std::size_t i = 0; i < corral.points.size(); ++i)
-            corral.weights[i] += step * (wanted(static_cast<Eigen::Index>(i)) - corral.weights[i]);
-        corral.points.erase(corral.points.begin() + static_cast<std::ptrdiff_t>(leaving));
-        corral.weights.erase(corral.weights.begin() + static_cast<std::ptrdiff_t>(leaving));
+            corral.weights[i] += step * (affine(static_cast<Eigen::Index>(i)) - corral.weights[i]);
+        corral.points.erase(corral.points.begin() + static_cast<std::ptrdiff_t>(removed));
+        corral.weights.erase(corral.weights.begin() + static_cast<std::ptrdiff_t>(removed));
         if (corral.points.size() == 1) {
             corral.weights[0] = 1;
             return;
@@ -87,19 +87,21 @@ double distance_to_hull(std::span<const std::array<double, 3>> vertices, const s
     };
     Corral corral{{*std::min_element(points.begin(), points.end(), by_norm)}, {1}};
     auto nearest = corral.points.front();
-    // Wolfe's test for the end: no point is nearer the origin along the nearest one by more than rounding.
+    // Wolfe's stopping criterion: along the nearest point, no other point is nearer to the origin, up to
+    // rounding.
     const double tolerance = 8 * std::numeric_limits<double>::epsilon() * size;
-    // Every turn comes nearer, so it ends; rounding could make it turn for ever among equals.
-    for (std::size_t turn = 0; turn < 16 * points.size(); ++turn) {
+    // Each iteration reduces the distance, so that the loop ends. The limit guards against cycles by
+    // rounding.
+    for (std::size_t iteration = 0; iteration < 16 * points.size(); ++iteration) {
         const auto along = std::min_element(points.begin(), points.end(), [&](const auto& p, const auto& q) {
             return nearest.dot(p) < nearest.dot(q);
         });
         if (nearest.squaredNorm() - nearest.dot(*along) <= tolerance) break;
         if (std::find(corral.points.begin(), corral.points.end(), *along) != corral.points.end()) break;
-        if (corral.points.size() == 4) return 0; // inside a tetrahedron of them
+        if (corral.points.size() == 4) return 0; // inside a tetrahedron of these points
         corral.points.push_back(*along);
         corral.weights.push_back(0);
-        settle(corral);
+        minimise(corral);
         const Vector3d next = corral.nearest();
         if (!(next.squaredNorm() < nearest.squaredNorm())) break;
         nearest = next;

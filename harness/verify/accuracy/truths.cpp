@@ -14,7 +14,7 @@ namespace tandem {
 
 namespace {
 
-/// Refuses early what there will be no room for if the frames to come are like the first.
+/// Throws early when the truth of all frames will not fit in memory, assuming that they are like the first.
 void check_capacity(const FrameTruth& first, std::size_t frames) {
     const auto bytes = (first.touching.size() + first.overlapping.size()) * sizeof(Pair) * (frames - 1);
     const auto memory = free_memory();
@@ -34,47 +34,48 @@ Truths::Truths(const Scene& scene, const FrameRange& range, TruthAmount amount, 
       range_(range),
       amount_(amount),
       most_contacts_(most_contacts),
-      kept_(folder, fmt::format("truths of {} {:016x}", scene.key, scene.digest)) {}
+      cache_(folder, fmt::format("truths of {} {:016x}", scene.key, scene.digest)) {}
 
-/// Found once and kept, for all cells of the same positions.
-const FrameTruth& Truths::truth_of(const FramePosition& place, const Report& report) {
-    if (const auto found = truths_.find(place); found != truths_.end()) return found->second;
-    const auto& [positions, index] = place;
+/// Computed once and cached for all cells with the same positions.
+const FrameTruth& Truths::truth_of(const FramePosition& position, const Report& report) {
+    if (const auto found = truths_.find(position); found != truths_.end()) return found->second;
+    const auto& [positions, index] = position;
     const auto frame = range_.frame(index, positions.origin);
     auto truth = frame_truth(scene_, *frame, positions, report, free_memory());
     if (index == 0) check_capacity(truth, range_.size());
-    return truths_.emplace(place, std::move(truth)).first->second;
+    return truths_.emplace(position, std::move(truth)).first->second;
 }
 
-const ContactTruths& Truths::contact_truths_of(const FramePosition& place, const Report& report) {
-    if (const auto found = contact_truths_.find(place); found != contact_truths_.end()) return found->second;
-    const auto& [positions, index] = place;
+const ContactTruths& Truths::contact_truths_of(const FramePosition& position, const Report& report) {
+    if (const auto found = contact_truths_.find(position); found != contact_truths_.end())
+        return found->second;
+    const auto& [positions, index] = position;
     const auto frame = range_.frame(index, positions.origin);
-    auto truths = contact_truths(scene_, *frame, positions.precision, truth_of(place, report), most_contacts_,
-                                 origin_of(scene_, positions.origin));
-    return contact_truths_.emplace(place, std::move(truths)).first->second;
+    auto truths = contact_truths(scene_, *frame, positions.precision, truth_of(position, report),
+                                 most_contacts_, origin_of(scene_, positions.origin));
+    return contact_truths_.emplace(position, std::move(truths)).first->second;
 }
 
 const AnswerErrors& Truths::errors(const Geometry& geometry, std::size_t index, const FrameAnswer& answer,
                                    const Report& report) {
-    const FramePosition place{{geometry.precision, geometry.placement, geometry.origin}, index};
-    const std::tuple key{geometry.precision, geometry.origin, place,
+    const FramePosition position{{geometry.precision, geometry.placement, geometry.origin}, index};
+    const std::tuple key{geometry.precision, geometry.origin, position,
                          Numbers{answer.pairs.count, answer.pairs.a, answer.pairs.b, answer.contacts.count,
                                  answer.contacts.a, answer.contacts.b}};
     if (const auto found = errors_.find(key); found != errors_.end()) return found->second;
-    const auto asked = question(geometry, place, answer);
-    AnswerErrors known;
-    if (kept_.take(asked, [&](const nlohmann::json& value) { value.get_to(known); }))
-        return errors_.emplace(key, std::move(known)).first->second;
-    const auto& errors = errors_.emplace(key, errors_of(geometry, place, answer, report)).first->second;
-    kept_.keep(asked, errors);
+    const auto text = cache_key(geometry, position, answer);
+    AnswerErrors cached;
+    if (cache_.take(text, [&](const nlohmann::json& value) { value.get_to(cached); }))
+        return errors_.emplace(key, std::move(cached)).first->second;
+    const auto& errors = errors_.emplace(key, errors_of(geometry, position, answer, report)).first->second;
+    cache_.keep(text, errors);
     return errors;
 }
 
-/// The frame by what is in it; the first of a range has its drift besides.
-std::string Truths::question(const Geometry& geometry, const FramePosition& place,
-                             const FrameAnswer& answer) const {
-    const auto& [positions, index] = place;
+/// Identifies the frame by its content. The first frame of a range differs, because its errors include drift.
+std::string Truths::cache_key(const Geometry& geometry, const FramePosition& position,
+                              const FrameAnswer& answer) const {
+    const auto& [positions, index] = position;
     const auto& p = answer.pairs;
     const auto& c = answer.contacts;
     return fmt::format("frame {:016x}{}, precision {}, origin {}, positions {} {}, amount {} {}, "
@@ -93,22 +94,22 @@ const Drift& Truths::drift_of(const Geometry& geometry) {
     return drifts_.emplace(key, vertex_drift(scene_, *first, geometry.precision)).first->second;
 }
 
-/// Kept by the caller only when nothing has thrown: a download may fail, and the next cell asks again.
-AnswerErrors Truths::errors_of(const Geometry& geometry, const FramePosition& place,
+/// A download may throw; the caller then stores nothing, and the next cell tries again.
+AnswerErrors Truths::errors_of(const Geometry& geometry, const FramePosition& position,
                                const FrameAnswer& answer, const Report& report) {
-    const auto& truth = truth_of(place, report);
+    const auto& truth = truth_of(position, report);
     AnswerErrors errors;
     const auto pairs = answer.download();
     errors.frames = 1;
     errors.pairs = pair_errors(truth, pairs);
     errors.decided = truth.decisions;
     errors.invalid_tetrahedra = truth.invalid.size();
-    if (amount_ == TruthAmount::contacts && place.second == 0) errors.drift = drift_of(geometry);
+    if (amount_ == TruthAmount::contacts && position.second == 0) errors.drift = drift_of(geometry);
     if (!answer.makes_contacts) return errors;
     const auto contacts = answer.download_contacts();
     errors.decisions = decision_matrix(truth, pairs, contacts);
     if (amount_ != TruthAmount::contacts) return errors;
-    const auto& exact = contact_truths_of(place, report);
+    const auto& exact = contact_truths_of(position, report);
     errors.every_contact = exact.every;
     errors.contacts =
         contact_errors(exact, contacts, geometry.precision == Precision::fp64 ? 0x1p-53 : 0x1p-24);

@@ -14,12 +14,12 @@ namespace tandem {
 /// How much of an answer is compared with the truth.
 enum class TruthAmount {
     none,
-    pairs,   ///< every pair: missed, false, decisions
-    contacts ///< depths, normals and points as well
+    pairs,   ///< all pairs: missed and false ones, and decisions
+    contacts ///< also depths, normals and points
 };
 
-/// An answer of one frame. The functions bring it to the host; they are called when no equal answer was
-/// compared before.
+/// An answer for one frame. The functions download it; they are called only when no equal answer was compared
+/// before.
 struct FrameAnswer {
     Digest pairs, contacts;
     bool makes_contacts = false;
@@ -27,34 +27,33 @@ struct FrameAnswer {
     std::function<std::vector<ContactPoint>()> download_contacts; ///< sorted
 };
 
-/// The truth of a scene's frames, found once for all cells of the same positions, and the errors of answers,
-/// found once for each answer: cells that give the same have the same errors. Pairs, contacts and decisions
-/// are compared with the truth that the cell's setting `placement` names: with placement=exact what rounding
-/// did to the vertices is an error of contacts as well.
+/// The truth of a scene's frames, computed once for all cells with the same positions, and the errors of
+/// answers, computed once for each distinct answer. The cell's setting `placement` selects the truth. With
+/// placement=exact, errors of contacts include the rounding of vertices.
 class Truths {
 public:
-    /// `scene` and `range` must outlive it. `most_contacts`: of this many pairs of a frame at most the exact
-    /// contact is found, 0 for all.
-    /// Errors are kept in the folder from one run of the program to the next; nowhere when it is empty.
+    /// `scene` and `range` must outlive this object. Exact contacts are computed for at most `most_contacts`
+    /// pairs of a frame; 0: for all. Errors are stored in the folder between runs of the program, unless it
+    /// is empty.
     Truths(const Scene& scene, const FrameRange& range, TruthAmount amount, std::size_t most_contacts,
            const std::filesystem::path& folder = {});
 
     TruthAmount amount() const { return amount_; }
 
-    /// Errors of a cell's answer of frame number `index` of the range. Of its geometry precision, placement
-    /// and origin count. Throws InputError when there is too little
-    /// memory for the truth of that frame, or, with the first, of as many like it.
+    /// Errors of a cell's answer for frame number `index` of the range. They depend on the precision,
+    /// placement and origin of its geometry. Throws InputError without enough memory for the truth of that
+    /// frame. For frame 0 it also throws if all frames together would need too much.
     const AnswerErrors& errors(const Geometry& geometry, std::size_t index, const FrameAnswer& answer,
                                const Report& report = {});
 
 private:
     using FramePosition = std::pair<Positions, std::size_t>;
-    using Numbers = std::array<std::uint64_t, 6>; ///< of the digests
-    const FrameTruth& truth_of(const FramePosition& place, const Report& report);
-    const ContactTruths& contact_truths_of(const FramePosition& place, const Report& report);
-    std::string question(const Geometry& geometry, const FramePosition& place,
-                         const FrameAnswer& answer) const;
-    AnswerErrors errors_of(const Geometry& geometry, const FramePosition& place, const FrameAnswer& answer,
+    using Numbers = std::array<std::uint64_t, 6>; ///< of the two digests
+    const FrameTruth& truth_of(const FramePosition& position, const Report& report);
+    const ContactTruths& contact_truths_of(const FramePosition& position, const Report& report);
+    std::string cache_key(const Geometry& geometry, const FramePosition& position,
+                          const FrameAnswer& answer) const;
+    AnswerErrors errors_of(const Geometry& geometry, const FramePosition& position, const FrameAnswer& answer,
                            const Report& report);
     const Drift& drift_of(const Geometry& geometry);
 
@@ -62,7 +61,7 @@ private:
     const FrameRange& range_;
     TruthAmount amount_;
     std::size_t most_contacts_;
-    VerificationCache kept_;
+    VerificationCache cache_;
     std::map<FramePosition, FrameTruth> truths_;
     std::map<FramePosition, ContactTruths> contact_truths_;
     std::map<std::pair<Precision, Origin>, Drift> drifts_; ///< of the first frame

@@ -23,7 +23,7 @@ struct BodyDrift {
     double of_bound = 0;
 };
 
-/// Where the frame puts it, without rounding.
+/// The vertex in world coordinates, without rounding.
 Vector<mpq_class> exact_vertex(const Scene& scene, const Frame& frame, std::size_t body, std::size_t vertex) {
     if (scene.bodies[body].deformable) {
         const auto& v = frame.deformed[body][vertex];
@@ -33,7 +33,7 @@ Vector<mpq_class> exact_vertex(const Scene& scene, const Frame& frame, std::size
     return posed_point(frame.poses[body], {v.x(), v.y(), v.z()});
 }
 
-/// The distance of the Real next above the one at or below |x|.
+/// The spacing of the numbers of type Real at |x|.
 template<class Real>
 double spacing(double x) {
     const int least = std::numeric_limits<Real>::min_exponent - std::numeric_limits<Real>::digits;
@@ -41,7 +41,7 @@ double spacing(double x) {
                                   : std::max(std::ilogb(x) - std::numeric_limits<Real>::digits + 1, least));
 }
 
-/// Of one body, by vertex: the difference is taken in rationals and rounded once, as its size is.
+/// Drift of one body by vertex. Differences are rationals that are rounded once.
 template<class Real>
 BodyDrift drift_in(const Scene& scene, const Frame& frame, std::size_t body) {
     constexpr auto precision = sizeof(Real) == 8 ? Precision::fp64 : Precision::fp32;
@@ -82,10 +82,10 @@ Drift vertex_drift(const Scene& scene, const Frame& frame, Precision precision) 
         drift.of_bound = std::max(drift.of_bound, body.of_bound);
     }
     drift.vertices = ulps.size();
-    if (const auto of_all = spread(std::move(ulps))) {
-        drift.median = of_all->median;
-        drift.p99 = of_all->p99;
-        drift.max = of_all->maximum;
+    if (const auto summary = spread(std::move(ulps))) {
+        drift.median = summary->median;
+        drift.p99 = summary->p99;
+        drift.max = summary->maximum;
     }
     return drift;
 }

@@ -22,7 +22,7 @@ using namespace oracle;
 /// Corners of all tetrahedra of every body.
 using World = std::vector<std::vector<TetraCorners>>;
 
-/// Widened to double without rounding, whatever the precision.
+/// Converts corners of either precision to double, which is exact.
 template<class Real>
 World world_in(const Scene& scene, const Frame& frame) {
     World world(scene.bodies.size());
@@ -42,7 +42,7 @@ World world_of(const Scene& scene, const Frame& frame, Precision precision) {
     return precision == Precision::fp64 ? world_in<double>(scene, frame) : world_in<float>(scene, frame);
 }
 
-/// What the decision takes.
+/// The input of the decision.
 class Bodies {
 public:
     Bodies(const Scene& scene, const Frame& frame, Positions positions)
@@ -75,7 +75,7 @@ private:
 
     Posed posed(std::uint32_t body, std::uint32_t tetrahedron) const {
         Posed result{world_[body][tetrahedron], off_[body], {}, nullptr};
-        result.own = result.near; // of a deformable body: world vertices in double are the frame's own
+        result.own = result.near; // a deformable body's vertices in the frame are world vertices in double
         if (!is_rigid(body)) return result;
         result.pose = &frame_.poses[body];
         for (unsigned i = 0; i < 4; ++i) {
@@ -88,7 +88,7 @@ private:
     const Scene& scene_;
     const Frame& frame_;
     World world_;
-    std::vector<double> off_; ///< by body, of its coordinates in `world_`
+    std::vector<double> off_; ///< by body: error bound of its coordinates in `world_`
     bool posed_;
 };
 
@@ -104,20 +104,20 @@ std::vector<Decision> decide_all(const Bodies& bodies, std::span<const Pair> pai
 
 using BodyNumbers = std::array<std::uint32_t, 2>;
 
-/// Pairs of bodies, not both fixed, whose boxes meet.
+/// Pairs of bodies, not both fixed, whose boxes overlap.
 std::vector<BodyNumbers> near_bodies(const Scene& scene, const std::vector<Boxes>& boxes) {
     std::vector<BodyNumbers> result;
     for (std::uint32_t a = 0; a < boxes.size(); ++a)
         for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
             if (!(scene.bodies[a].fixed && scene.bodies[b].fixed)
-                && boxes_meet(boxes[a].whole, boxes[b].whole))
+                && boxes_overlap(boxes[a].whole, boxes[b].whole))
                 result.push_back({a, b});
     return result;
 }
 
-/// Decides pairs in blocks and keeps those that meet.
-void keep_meeting(const Bodies& bodies, std::span<const Pair> pairs, FrameTruth& truth,
-                  const std::function<void(std::size_t)>& after) {
+/// Decides pairs in blocks and stores those that intersect. Calls `report` with the number of decided pairs.
+void add_intersecting(const Bodies& bodies, std::span<const Pair> pairs, FrameTruth& truth,
+                      const std::function<void(std::size_t)>& report) {
     constexpr std::size_t block = 1 << 18;
     for (std::size_t first = 0; first < pairs.size(); first += block) {
         const auto part = pairs.subspan(first, std::min(block, pairs.size() - first));
@@ -127,12 +127,12 @@ void keep_meeting(const Bodies& bodies, std::span<const Pair> pairs, FrameTruth&
             if (decisions[i].relation == Relation::touching) truth.touching.push_back(part[i]);
             if (decisions[i].relation == Relation::overlapping) truth.overlapping.push_back(part[i]);
         }
-        after(first + part.size());
+        report(first + part.size());
     }
 }
 
-/// Of each pair of bodies how many pairs of tetrahedra are near each other. Ends early with too few once they
-/// are more than `most` together.
+/// Number of near pairs of tetrahedra for each pair of bodies. Stops early, with incomplete counts, once the
+/// total exceeds `most`.
 std::vector<std::uint64_t> count_near(const std::vector<Boxes>& boxes, std::span<const BodyNumbers> bodies,
                                       std::uint64_t most) {
     std::vector<std::uint64_t> counts(bodies.size());
@@ -140,7 +140,7 @@ std::vector<std::uint64_t> count_near(const std::vector<Boxes>& boxes, std::span
     parallel_for(bodies.size(), [&](std::size_t i) {
         if (total > most) return;
         const auto [a, b] = bodies[i];
-        std::uint64_t count = 0; // not in the vector: other threads write beside
+        std::uint64_t count = 0; // a local variable, because other threads write to neighbouring elements
         for_near_pairs(boxes[a], boxes[b], [&](auto, auto) { ++count; });
         counts[i] = count;
         total += counts[i];
@@ -148,7 +148,7 @@ std::vector<std::uint64_t> count_near(const std::vector<Boxes>& boxes, std::span
     return counts;
 }
 
-/// The near pairs of some pairs of bodies, which have so many each.
+/// The near pairs of some pairs of bodies; `counts` has their number for each.
 std::vector<Pair> near_pairs(const std::vector<Boxes>& boxes, std::span<const BodyNumbers> bodies,
                              std::span<const std::uint64_t> counts) {
     std::vector<std::uint64_t> starts(bodies.size() + 1);
@@ -162,7 +162,7 @@ std::vector<Pair> near_pairs(const std::vector<Boxes>& boxes, std::span<const Bo
     return pairs;
 }
 
-/// A near pair as it is decided, and as it is kept when it meets, in a list that grows by doubling.
+/// Memory of a near pair: one copy to decide, and up to two in a result list that grows by doubling.
 constexpr std::uint64_t pair_bytes = 3 * sizeof(Pair);
 
 [[noreturn]] void refuse(std::uint64_t tetrahedra, std::string_view more, std::uint64_t pairs,
@@ -175,7 +175,7 @@ constexpr std::uint64_t pair_bytes = 3 * sizeof(Pair);
                                  static_cast<double>(memory) / gib));
 }
 
-/// `candidates` ascending.
+/// `candidates` must be ascending.
 PairErrors errors_of(const FrameTruth& truth, std::span<const Pair> candidates) {
     PairErrors errors;
     const auto invalid = [&](std::uint32_t body, std::uint32_t tetrahedron) {
@@ -184,9 +184,9 @@ PairErrors errors_of(const FrameTruth& truth, std::span<const Pair> candidates) 
     PairCursor touching(truth.touching, candidates.front()),
         overlapping(truth.overlapping, candidates.front());
     for (const auto& pair : candidates) {
-        if (touching.holds(pair))
+        if (touching.contains(pair))
             ++errors.touching;
-        else if (overlapping.holds(pair))
+        else if (overlapping.contains(pair))
             ++errors.overlapping;
         else if (invalid(pair.body_a, pair.tet_a) || invalid(pair.body_b, pair.tet_b))
             ++errors.invalid;
@@ -201,9 +201,9 @@ PairErrors errors_of(const FrameTruth& truth, std::span<const Pair> candidates) 
 FrameTruth frame_truth(const Scene& scene, const Frame& frame, Positions positions, const Report& report,
                        std::uint64_t memory) {
     const auto tetrahedra = tetrahedron_count(scene);
-    // What is taken before the number of near pairs is known.
-    const auto own = tetrahedra * (sizeof(TetraCorners) + sizeof(Box));
-    if (own > memory) refuse(tetrahedra, "at least ", 0, own, memory);
+    // Allocated before the number of near pairs is known.
+    const auto fixed_bytes = tetrahedra * (sizeof(TetraCorners) + sizeof(Box));
+    if (fixed_bytes > memory) refuse(tetrahedra, "at least ", 0, fixed_bytes, memory);
     FrameTruth truth;
     const Bodies world(scene, frame, positions);
     std::vector<Boxes> boxes(world.count());
@@ -211,20 +211,20 @@ FrameTruth frame_truth(const Scene& scene, const Frame& frame, Positions positio
     for (std::uint32_t body = 0; body < boxes.size(); ++body)
         for (const auto tetrahedron : boxes[body].invalid) truth.invalid.push_back({body, tetrahedron});
     const auto bodies = near_bodies(scene, boxes);
-    const auto most = (memory - own) / pair_bytes;
+    const auto most = (memory - fixed_bytes) / pair_bytes;
     const auto counts = count_near(boxes, bodies, most);
     const auto total = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
-    if (total > most) refuse(tetrahedra, "at least ", total, own + total * pair_bytes, memory);
-    constexpr std::size_t round =
-        256; // pairs of bodies at a time, so that not all their pairs are kept at once
+    if (total > most) refuse(tetrahedra, "at least ", total, fixed_bytes + total * pair_bytes, memory);
+    // Pairs of bodies in one batch, so that not all near pairs are in memory at once.
+    constexpr std::size_t batch = 256;
     std::uint64_t decided = 0;
-    for (std::size_t first = 0; first < bodies.size(); first += round) {
-        const auto count = std::min(round, bodies.size() - first);
+    for (std::size_t first = 0; first < bodies.size(); first += batch) {
+        const auto count = std::min(batch, bodies.size() - first);
         const auto pairs = near_pairs(boxes, std::span(bodies).subspan(first, count),
                                       std::span(counts).subspan(first, count));
-        keep_meeting(world, pairs, truth, [&](std::size_t done) {
-            const auto share = static_cast<double>(decided + done) / static_cast<double>(total);
-            if (report) report(share, decided + done);
+        add_intersecting(world, pairs, truth, [&](std::size_t done) {
+            const auto fraction = static_cast<double>(decided + done) / static_cast<double>(total);
+            if (report) report(fraction, decided + done);
         });
         decided += pairs.size();
     }

@@ -13,15 +13,15 @@
 
 namespace tandem {
 
-/// Where the vertices are. Placement::rounded: where a cell's precision has them, moved by world_vertices and
-/// then taken as they are. Placement::exact: where the poses put the scene's own doubles exactly, whatever
-/// the precision.
+/// The vertices that the truth is for. Placement::rounded: those of world_vertices() in a cell's precision,
+/// treated as exact. Placement::exact: the scene's vertices in double, posed without rounding, for every
+/// precision.
 struct Positions {
     Precision precision = Precision::fp32;
     Placement placement = Placement::rounded;
-    Origin origin = Origin::world; ///< that Placement::rounded rounds from
+    Origin origin = Origin::world; ///< of coordinates that Placement::rounded rounds
 
-    // NOLINTNEXTLINE(*-explicit-*): most questions are about the vertices of a precision
+    // NOLINTNEXTLINE(*-explicit-*): most callers pass only a precision
     Positions(Precision cell, Placement level = Placement::rounded, Origin from = Origin::world)
         : precision(level == Placement::exact ? Precision::fp64 : cell),
           placement(level),
@@ -29,41 +29,40 @@ struct Positions {
     auto operator<=>(const Positions&) const = default;
 };
 
-/// Which tetrahedra of a frame meet, exactly. Worth keeping: it is the same for all cells of the same
-/// positions.
+/// The exact relation of a frame's tetrahedra; the same for all cells with the same positions.
 struct FrameTruth {
     std::vector<Pair> touching, overlapping; ///< sorted
-    /// (body, tetrahedron) with a coordinate that is not finite, sorted; they are in no pair above.
+    /// (body, tetrahedron) with a coordinate that is not finite, sorted; in no pair above.
     std::vector<std::array<std::uint32_t, 2>> invalid;
-    DecisionCounts decisions; ///< of the pairs whose boxes meet
+    DecisionCounts decisions; ///< of the pairs whose boxes overlap
 };
 
-/// Called on the calling thread, now and then; `share` of the work done, in 0..1.
-using Report = std::function<void(double share, std::uint64_t decided)>;
+/// Progress, reported from the calling thread; `fraction` of the work in 0..1.
+using Report = std::function<void(double fraction, std::uint64_t decided)>;
 
-/// Decides every pair of tetrahedra of different bodies (not both fixed) on all cores, those that the frame
-/// skips left out. A pair it does not list does not meet: pairs are left out only where boxes, found without
-/// rounding or wide enough for it, are apart. Throws InputError before it takes more than `memory` bytes, as
-/// far as pairs whose boxes meet tell.
+/// Decides every pair of tetrahedra of different bodies (not both fixed), except those that the frame skips,
+/// on all cores. Pairs that are not listed are disjoint: only pairs with disjoint boxes are not decided, and
+/// boxes are exact or wide enough for rounding. Throws InputError when the estimated memory exceeds `memory`
+/// bytes.
 FrameTruth frame_truth(const Scene& scene, const Frame& frame, Positions positions, const Report& report = {},
                        std::uint64_t memory = ~std::uint64_t{0});
 
-/// The same decision for a list of pairs, in its order.
+/// The same decisions for a list of pairs, in its order.
 std::vector<Decision> decide_pairs(const Scene& scene, const Frame& frame, Positions positions,
                                    std::span<const Pair> pairs);
 
-/// The corners of the pairs' tetrahedra, in their order: as the decision of Placement::rounded takes them.
+/// The corners of the pairs' tetrahedra, in the order of the list and with Placement::rounded.
 std::vector<std::array<TetraCorners, 2>> pair_corners(const Scene& scene, const Frame& frame,
                                                       Precision precision, std::span<const Pair> pairs);
 
-/// Answers ascending questions by walking along a sorted list, which is much faster than a search for each.
+/// Looks up ascending pairs in one pass over a sorted list, which is much faster than a search for each.
 class PairCursor {
 public:
-    /// Questions start at `first`.
+    /// `first` is the first pair to look up.
     PairCursor(std::span<const Pair> sorted, const Pair& first)
         : next_(std::lower_bound(sorted.begin(), sorted.end(), first)), end_(sorted.end()) {}
 
-    bool holds(const Pair& pair) {
+    bool contains(const Pair& pair) {
         while (next_ != end_ && *next_ < pair) ++next_;
         return next_ != end_ && *next_ == pair;
     }
@@ -72,7 +71,7 @@ private:
     std::span<const Pair>::iterator next_, end_;
 };
 
-/// How right a set of candidate pairs is.
+/// Errors of a set of candidate pairs.
 struct PairErrors {
     std::uint64_t candidates = 0;
     std::uint64_t disjoint = 0; ///< false pairs
@@ -84,7 +83,7 @@ struct PairErrors {
     bool operator==(const PairErrors&) const = default;
 };
 
-/// `candidates` sorted, without repetition, of the frame and positions of `truth`.
+/// `candidates` must be sorted, without duplicates, and for the frame and positions of `truth`.
 PairErrors pair_errors(const FrameTruth& truth, std::span<const Pair> candidates);
 
 } // namespace tandem

@@ -10,7 +10,7 @@ namespace tandem::oracle {
 
 namespace {
 
-/// Both in units of 1 / the least common multiple of all denominators.
+/// Scales both to integers by the least common multiple of all denominators.
 std::array<Points<mpz_class>, 2> on_lattice(const Points<mpq_class>& a, const Points<mpq_class>& b) {
     mpz_class unit = 1;
     for (const auto* points : {&a, &b})
@@ -25,7 +25,7 @@ std::array<Points<mpz_class>, 2> on_lattice(const Points<mpq_class>& a, const Po
     return result;
 }
 
-/// Doubles are rationals: nothing is rounded here.
+/// Every double is a rational, so that nothing is rounded.
 Points<mpq_class> exactly(const Posed& posed) {
     if (posed.pose != nullptr) return posed_corners(*posed.pose, posed.own);
     Points<mpq_class> result;
@@ -39,8 +39,7 @@ Points<mpq_class> exactly(const Posed& posed) {
 Vector<mpq_class> posed_point(const Pose& pose, const Vector<double>& point) {
     const mpq_class w(pose.rotation.w()), x(pose.rotation.x()), y(pose.rotation.y()), z(pose.rotation.z());
     const Vector<mpq_class> p{mpq_class(point[0]), mpq_class(point[1]), mpq_class(point[2])};
-    // M(q) / (q . q): dividing once takes the place of the square root of a unit quaternion, which is
-    // irrational.
+    // M(q) / (q . q): one division avoids the irrational square root that normalises q.
     const mpq_class square = w * w + x * x + y * y + z * z;
     const Vector<mpq_class> rows[3]{
         {w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)},
@@ -59,7 +58,7 @@ Points<mpq_class> posed_corners(const Pose& pose, const TetraCorners& corners) {
 
 Decision decide(const Points<mpq_class>& a, const Points<mpq_class>& b, FacetSet unsure) {
     const auto [p, q] = on_lattice(a, b);
-    // Facets of the difference need two solids; flat ones are a linear program.
+    // The facets of the difference need two solids. For flat tetrahedra solve a linear program.
     if (orientation(p) == 0 || orientation(q) == 0)
         return {hulls_meet(p, q) ? Relation::touching : Relation::disjoint, Tier::program};
     auto found = Relation::overlapping;
@@ -75,7 +74,7 @@ Decision decide(const Posed& a, const Posed& b) {
     if (!all_finite(a.near) || !all_finite(b.near)) return {Relation::invalid, Tier::screen};
     const auto filtered = filter(a.near, b.near, std::max(a.off, b.off));
     if (filtered.disjoint) return {Relation::disjoint, Tier::filter};
-    // No facet is unsure and both have a volume: the origin is inside all of them.
+    // All facets are certain and both tetrahedra have a volume: the origin is inside all facets.
     if (filtered.unsure == 0 && filtered.volume[0] && filtered.volume[1])
         return {Relation::overlapping, Tier::filter};
     return decide(exactly(a), exactly(b), filtered.unsure);

@@ -9,31 +9,30 @@
 
 namespace tandem::oracle {
 
-/// Where a pose puts a point, without rounding: the rotation of q / |q| is M(q) / (q . q), rational in the
-/// four numbers of q, which need not be of unit length but finite and not all zero.
+/// The image of a point under a pose, without rounding. The rotation of q / |q| is M(q) / (q . q), which is
+/// rational in the four numbers of q. q need not have unit length; it must be finite and not zero.
 Vector<mpq_class> posed_point(const Pose& pose, const Vector<double>& point);
 
 Points<mpq_class> posed_corners(const Pose& pose, const TetraCorners& corners);
 
-/// How two closed tetrahedra with rational corners lie to each other; those of no volume as in decision.h.
-/// `unsure`: what a filter left; other facets have a negative gap. About 50 us for corners that doubles were
-/// posed to.
+/// The relation of two closed tetrahedra with rational corners; decision.h defines it for zero volume.
+/// `unsure` lists the facets that a filter left undecided; the others must have a negative gap. About 50 us
+/// for posed corners in double.
 Decision decide(const Points<mpq_class>& a, const Points<mpq_class>& b, FacetSet unsure = all_facets);
 
 inline Relation relation(const Points<mpq_class>& a, const Points<mpq_class>& b) {
     return decide(a, b).relation;
 }
 
-/// A tetrahedron that is known exactly as a pose and corners in its body's frame.
+/// A tetrahedron that a pose and corners in the body's frame define exactly.
 struct Posed {
-    TetraCorners near;          ///< about where its corners are in the world
-    double off = 0;             ///< a coordinate of `near` is off by so much at most
-    TetraCorners own;           ///< its corners in the body's frame, in the same order
-    const Pose* pose = nullptr; ///< null: `own` is in the world
+    TetraCorners near;          ///< approximate corners in the world
+    double off = 0;             ///< error bound of the coordinates of `near`
+    TetraCorners own;           ///< exact corners in the body's frame, in the same order
+    const Pose* pose = nullptr; ///< null: `own` is in world coordinates
 };
 
-/// How they lie to each other where the poses put them exactly: by the filter with the slack of `near`, then
-/// by rationals.
+/// The relation of two exactly posed tetrahedra: a filter with the error bound of `near`, then rationals.
 Decision decide(const Posed& a, const Posed& b);
 
 } // namespace tandem::oracle

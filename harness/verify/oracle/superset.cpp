@@ -19,7 +19,7 @@ void add(Box& box, const std::array<double, 3>& point) {
     }
 }
 
-/// By `off` and, where that is rounded, a little more.
+/// Widens by at least `off`, rounding outwards.
 void widen(Box& box, double off) {
     for (unsigned axis = 0; axis < 3; ++axis) {
         box[axis] = std::nextafter(box[axis] - off, -infinity);
@@ -48,11 +48,11 @@ Boxes::Boxes(std::span<const TetraCorners> corners, std::span<const std::uint32_
     }
 }
 
-/// Empty boxes meet nothing, so that invalid and skipped tetrahedra need no case of their own.
+/// Empty boxes overlap nothing, so that invalid and skipped tetrahedra need no special case.
 std::vector<std::uint32_t> near(const Boxes& body, const Box& other) {
     std::vector<std::uint32_t> result;
     for (std::uint32_t i = 0; i < body.tetrahedra.size(); ++i)
-        if (boxes_meet(body.tetrahedra[i], other)) result.push_back(i);
+        if (boxes_overlap(body.tetrahedra[i], other)) result.push_back(i);
     std::sort(result.begin(), result.end(),
               [&](auto i, auto j) { return body.tetrahedra[i][0] < body.tetrahedra[j][0]; });
     return result;
