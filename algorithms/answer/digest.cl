@@ -8,7 +8,7 @@ KERNEL void digest_pairs(GLOBAL const uint* found, uint count, GLOBAL const uint
                          GLOBAL const uint* ids, GLOBAL uint* sums) {
     Tally tally = empty_tally();
     for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) { // 64 bits, because 32 overflow near 2^32
-        const Members pair = members_of(found, i, owners);
+        const PairMembers pair = members_of(found, i, owners);
         tally_term(&tally, term_of(&pair, ids));
     }
     add_to_sums(sums, tally.a, tally.b);
@@ -19,7 +19,7 @@ KERNEL void digest_pairs(GLOBAL const uint* found, uint count, GLOBAL const uint
 KERNEL void expand_pairs(GLOBAL const uint* found, uint first, uint count, GLOBAL const uint* owners,
                          GLOBAL const uint* ids, GLOBAL uint* expanded) {
     for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
-        const Members pair = members_of(found, first + i, owners);
+        const PairMembers pair = members_of(found, first + i, owners);
         ((GLOBAL WordRow*)expanded)[i] = named(&pair, ids);
     }
 }
@@ -42,7 +42,7 @@ KERNEL void count_by_body(GLOBAL const uint* found, uint count, GLOBAL const uin
         uint of_a = 0;
         uint of_b = 0;
         NO_UNROLL for (uint i = 0; i < rows; ++i) {
-            const Members pair = members_of(found, first + i, owners);
+            const PairMembers pair = members_of(found, first + i, owners);
             if (pair.a.body != a) {
                 add_count(counts, a, of_a);
                 a = pair.a.body;

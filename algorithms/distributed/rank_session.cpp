@@ -284,7 +284,7 @@ void RankSession::repartition(const Frame& frame, FrameResult& result) {
         work.push_back(partitioner_.work_of(i, result.shared[i].pairs));
     balancer_.add_sample(result.shared, work);
     if (!balancer_.should_repartition()) return;
-    const HostWork timed(*devices_.front(), Stage::exchange, "deal bodies");
+    const HostWork timed(*devices_.front(), Stage::exchange, "partition bodies");
     std::vector<std::uint64_t> counts(scene_.bodies.size());
     const auto all = ranks_.gather_to_all(calibration_message(frame, result));
     for (std::size_t rank = 0; rank < all.size(); ++rank) {

@@ -77,7 +77,7 @@ SplitSession::SplitSession(const Traversal& traversal, std::span<Device* const> 
 bool SplitSession::repartition_if_needed(const Frame& frame) {
     const bool is_new = !partitioner_.is_valid(frame) || balancer_.should_repartition();
     if (is_new) {
-        const HostWork work(*devices_.front(), Stage::broad, "deal bodies");
+        const HostWork work(*devices_.front(), Stage::broad, "partition bodies");
         partitioner_.partition(frame, balancer_.speeds());
         balancer_.repartitioned();
         for (std::size_t i = 0; i < sessions_.size(); ++i) {

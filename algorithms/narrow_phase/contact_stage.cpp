@@ -135,7 +135,7 @@ void ContactStage::launch(const AnswerBuffers& answer, std::uint64_t first, std:
     if (at_once) {
         auto shape = few_shape_;
         const auto size = shape.group_size;
-        if (few) shape.groups = groups_.enough_for((*expected_ + size - 1) / size, shape.groups);
+        if (few) shape.groups = groups_.groups_for((*expected_ + size - 1) / size, shape.groups);
         generate(at_once_, shape, answer, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end),
                  status);
         return;

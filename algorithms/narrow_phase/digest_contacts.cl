@@ -23,7 +23,7 @@ KERNEL void digest_contacts(GLOBAL const uint* found, GLOBAL const uint* owners,
     ulong b = 0;
     for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         GLOBAL const uint* contact = contact_ids + i * CONTACT_WORDS;
-        const Members pair = members_of(found, contact[0], owners);
+        const PairMembers pair = members_of(found, contact[0], owners);
         const ulong term = contact_term(term_of(&pair, ids), contact[1], value_bits + i * CONTACT_BITS);
         a += term;
         b += digest_b(term);

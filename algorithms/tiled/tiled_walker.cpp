@@ -44,7 +44,7 @@ Grid TiledWalker::grid(std::uint32_t level) {
     // Groups that only test roots finish early, because most roots are apart.
     const auto most =
         trees_.begins(level) > 1 ? std::max<std::uint64_t>(shape_.groups, wanted) : shape_.groups;
-    return {groups.enough_for(wanted, static_cast<std::uint32_t>(most)), shape_.group_size};
+    return {groups.groups_for(wanted, static_cast<std::uint32_t>(most)), shape_.group_size};
 }
 
 bool TiledWalker::do_grow(const Status& status) {
