@@ -15,10 +15,11 @@ namespace {
 
 using tandem::InputError;
 
-/// Exit codes: 0 ok, 1 a check failed (from the command), 2 bad use or bad input, 3 a device or the machine
-/// failed.
+/// Runs `work` and turns exceptions into exit codes: 0 ok, 1 a check failed (the command returns it), 2 bad
+/// use or bad input, 3 a device or the machine failed. No std::function: it allocates, and memory may be
+/// short.
 template<class Work>
-int guarded(const Work& work) { // memory may be short before it begins: no std::function
+int guarded(const Work& work) {
     try {
         return work();
     } catch (const InputError& error) {
@@ -37,7 +38,7 @@ int run(int argc, char** argv) {
     const auto read = [=] { return tandem::read_command_line(argc, argv); };
     return guarded([&] {
         const tandem::MemoryReserve reserve;
-        const tandem::MpiEnvironment launched;
+        const tandem::MpiEnvironment mpi_environment;
         auto* ranks = tandem::job_ranks();
         if (ranks == nullptr) return guarded([&] { return read()(); });
         return tandem::run_on_ranks(*ranks, {argv + std::min(argc, 1), argv + argc}, read,
@@ -47,7 +48,7 @@ int run(int argc, char** argv) {
 
 } // namespace
 
-/// 3 as well when what was printed could not be written.
+/// Also returns 3 when standard output could not be written.
 int main(int argc, char** argv) {
     tandem::prepare_standard_streams();
     return tandem::finish_output(run(argc, argv));

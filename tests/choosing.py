@@ -41,7 +41,7 @@ class Choosing(Case):
         self.assertEqual(len(candidates), chosen["of"])
         self.assertEqual((candidates[0]["algorithm"], candidates[0]["preset"]), (record["algorithm"], record["preset"]))
         self.assertLessEqual(candidates[0]["settings"].items(), record["settings"].items())
-        self.assertEqual({c["algorithm"] for c in candidates}, {a["name"] for a in json.loads(tandem("algorithms", "--json")[1]) if not a.get("peer")})
+        self.assertEqual({c["algorithm"] for c in candidates}, {a["name"] for a in json.loads(tandem("algorithms", "--json")[1]) if not a.get("baseline")})
         self.assertEqual(chosen["runner_up"], candidates[1])
         self.assertAlmostEqual(chosen["margin"], candidates[1]["median_ns"] / candidates[0]["median_ns"] - 1)
         self.assertFalse(chosen["from_cache"])

@@ -21,7 +21,7 @@ class Extension(Case):
         status, out, errors = tandem("algorithms", "--json")
         self.assertEqual((status, errors), (0, []))
         entries = {entry["name"]: entry for entry in json.loads(out)}
-        self.assertEqual([name for name, entry in entries.items() if not entry["peer"]],
+        self.assertEqual([name for name, entry in entries.items() if not entry["baseline"]],
                          ["chunked", "gproximity", "tiled", "lbvh"])
         self.assertEqual([counter["name"] for counter in entries["lbvh"]["counters"]], ["bvtt_nodes", "seeds", OWN])
         self.assertNotIn("residency", [parameter["name"] for parameter in entries["lbvh"]["parameters"]])

@@ -46,7 +46,7 @@ class Flawed(Case):
                      command, *meshes, "--degenerate", "reject", "--device", "host", "--out", out)
         self.assertEqual(out.read_text() if out.exists() else "", "")
         self.bad("--degenerate some: give flat, skip or reject", "run", "plates", "--degenerate", "some")
-        self.bad("--set degenerate=skip: it is said of frames, for all cells; give --degenerate skip", "run", "plates", "--set",
+        self.bad("--set degenerate=skip: degenerate is no setting of a cell but of the frames, for all cells; give --degenerate skip", "run", "plates", "--set",
                  "degenerate=skip")
 
     def test_many_flawed_bodies_are_counted_and_the_first_named(self):

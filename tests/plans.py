@@ -106,14 +106,14 @@ class Plans(PlanCase):
         """What an option of the line wants may stand in the plan, and what it says no to there gives way."""
         path = self.plan(algorithms="auto", settings=None, scenes=SMALL, measure={"repeat": 1, "truth": "none", "isolate": True})
         self.assertEqual(tandem("run", path, "--threads", 1, "--choose-seconds", 1, "--dry-run")[0], 0)
-        self.bad("--threads goes with --device host", "run", path, "--threads", 1, "--device", "opencl:0")
-        self.bad("--choose-seconds goes with --algorithm auto", "run", path, "--choose-seconds", 1, "--algorithm", "tiled")
+        self.bad("--threads requires --device host", "run", path, "--threads", 1, "--device", "opencl:0")
+        self.bad("--choose-seconds requires --algorithm auto", "run", path, "--choose-seconds", 1, "--algorithm", "tiled")
         path = self.plan(algorithms="tiled", settings=None, scenes=SMALL, measure={"repeat": 1, "truth": "pairs", "isolate": True})
         status, text, errors = tandem("run", path, "--profile", 1)
         self.assertEqual((status, errors), (0, []))
         self.assertIn("replayed frames", text)
-        self.refused(["/measure", "--repeat does not go with --noise"], measure={"repeat": 1, "noise": "1%"}, schema_agrees=False)
-        for option, said in (("--dump-pairs", "dumps are of one scene"), ("--dump-contacts", "dumps are of one scene"), ("--trace", "--trace is of one scene")):
+        self.refused(["/measure", "--repeat cannot be combined with --noise"], measure={"repeat": 1, "noise": "1%"}, schema_agrees=False)
+        for option, said in (("--dump-pairs", "dumps need one scene"), ("--dump-contacts", "dumps need one scene"), ("--trace", "--trace needs one scene")):
             self.bad(said, "run", self.plan(settings=None), option, self.work / "of-both")
             self.bad(said, "run", self.plan(settings=None, scenes=SMALL, frames=["0", "1"]), option, self.work / "of-both")
 

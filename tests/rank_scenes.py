@@ -92,8 +92,8 @@ class RankScenes(Case):
     def test_what_is_refused_in_one_line(self):
         self.one_line("names 3 devices for 2 ranks", PILE, "--device", "host+opencl:0+opencl:1")
         self.one_line("--device all makes several cells", PILE, "--device", "all")
-        self.one_line("--isolate makes a process of each cell", PILE, "--device", "host", "--isolate")
-        self.one_line("--algorithm auto chooses on one process", PILE, "--device", "host", "--algorithm", "auto")
+        self.one_line("--isolate runs each cell in a process of its own", PILE, "--device", "host", "--isolate")
+        self.one_line("--algorithm auto needs one process", PILE, "--device", "host", "--algorithm", "auto")
         self.one_line("choose broad=device", PILE, "--device", "host", "--algorithm", "tiled", "--set", "broad=tight", "--truth", "none", "--no-check")
         self.one_line("unknown scene 'pil'", "pil", "--device", "host")
         self.one_line("frames", PILE, "--device", "host", "--frames", "5:9")

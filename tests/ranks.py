@@ -79,7 +79,7 @@ class Plans(RanksCase):
                 self.assertEqual(record["work"][part], expected[which]["work"][part], part)
         status, text, errors = launch(of(2)("run", self.plan(), "--out", shared, "--resume"))
         self.assertEqual((status, errors), (0, []), text)
-        self.assertIn(f"8 cells are in {shared} already", text)
+        self.assertIn(f"8 cells are already in {shared}", text)
 
     def test_ranks_take_one_shard_together(self):
         out = self.work / "shard.jsonl"
@@ -111,8 +111,8 @@ class Refusals(RanksCase):
 
     def test_what_ranks_cannot_do_together(self):
         self.one_line(of(2)("run", self.plan(devices=["host", "opencl:0"])), "host, opencl:0 are devices of several cells")
-        self.one_line(of(2)("run", self.plan(algorithms="auto")), "--algorithm auto chooses on one process")
-        self.one_line(of(2)("run", self.plan(), "--isolate"), "--isolate makes a process of each cell")
+        self.one_line(of(2)("run", self.plan(algorithms="auto")), "--algorithm auto needs one process")
+        self.one_line(of(2)("run", self.plan(), "--isolate"), "--isolate runs each cell in a process of its own")
         self.one_line(of(2)("run", self.plan(scenes="plate")), "unknown scene 'plate'")
 
     def test_other_commands(self):

@@ -175,8 +175,8 @@ class Recordings(Case):
 
     def test_bad_geometry(self):
         file = self.work / "bad.json"
-        for said, *arguments in (("--csv makes a table", "--csv", self.work / "x.csv"), ("name one file", "--glb", file),
-                                 ("name one file", "--chunks", file), ("frames 3:900", "--frames", "3:900"), ("--device requires --contacts", "--device", "host")):
+        for said, *arguments in (("--csv makes a table", "--csv", self.work / "x.csv"), ("name the same file", "--glb", file),
+                                 ("name the same file", "--chunks", file), ("frames 3:900", "--frames", "3:900"), ("--device requires --contacts", "--device", "host")):
             self.bad(said, "export", "plates", "--geometry", file, *arguments)
         self.bad("cannot be written", "export", "plates", "--frames", 0, "--geometry", self.work / "no/x.json")
         self.assertFalse(file.exists())
@@ -240,19 +240,19 @@ class Recordings(Case):
         table = self.work / "bad.csv"
         for said, *arguments in (("setting builder=zebra is impossible", "--builder", "zebra"), ("setting k=7 is impossible", "--k", 7),
                                  ("--chunk-bytes", "--chunk-bytes", 0), ("--chunk-bytes", "--chunk-bytes", "much"),
-                                 ("--frames and --every go with --vtu", "--frames", 0), ("--frames and --every go with --vtu", "--every", 2),
-                                 ("name one file", "--glb", table), ("--chunks does not go with --csv", "--csv", self.work / "x.csv"),
+                                 ("--frames and --every require --vtu", "--frames", 0), ("--frames and --every require --vtu", "--every", 2),
+                                 ("name the same file", "--glb", table), ("--chunks cannot be combined with --csv", "--csv", self.work / "x.csv"),
                                  ("frames 3:900", "--frames", "3:900", "--glb", self.work / "x.glb")):
             self.bad(said, "export", "plates", "--chunks", table, *arguments)
         for option, value in (("--builder", "sah"), ("--chunk-bytes", 100), ("--k", 18)):
-            self.bad(f"{option} goes with --chunks FILE", "export", "plates", "--glb", self.work / "x.glb", option, value)
+            self.bad(f"{option} requires --chunks FILE", "export", "plates", "--glb", self.work / "x.glb", option, value)
         self.bad("cannot be written", "export", "plates", "--chunks", self.work / "no/x.csv")
         self.assertFalse(table.exists() or (self.work / "x.glb").exists())
 
     def test_bad_exports(self):
         self.bad("--every", "export", "plates", "--every", 0, "--glb", self.work / "x.glb")
         self.bad("--vtu FOLDER, --glb FILE", "export", "plates")
-        self.bad("--contacts goes with --vtu", "export", "plates", "--glb", self.work / "x.glb", "--contacts")
+        self.bad("--contacts requires --vtu", "export", "plates", "--glb", self.work / "x.glb", "--contacts")
         self.bad("--device", "export", "plates", "--vtu", self.work / "x", "--device", "host")
         self.bad("the nearest is 'opencl:0'", "export", "plates", "--vtu", self.work / "x", "--contacts", "--device", "opencl:7")
         self.bad("the nearest is 'plates'", "export", "plats", "--vtu", self.work / "x")
@@ -260,7 +260,7 @@ class Recordings(Case):
         self.bad("frames 3:900", "export", "plates", "--frames", "3:900", "--glb", self.work / "x.glb")
         self.bad("--frames x", "export", "plates", "--frames", "x", "--glb", self.work / "x.glb")
         self.bad("cannot be written", "export", "plates", "--frames", "0", "--glb", self.work / "no/x.glb")
-        self.bad("cannot be made a folder", "export", "plates", "--frames", "0", "--vtu", self.good)
+        self.bad("cannot make this folder", "export", "plates", "--frames", "0", "--vtu", self.good)
         self.assertFalse((self.work / "x").exists() or (self.work / "x.glb").exists())
 
 

@@ -77,12 +77,12 @@ class Running(Case):
         status, text, errors = tandem(*arguments, "--resume", "--dry-run")
         self.assertEqual((status, errors), (0, []), text)
         self.assertIn("5 cells, about ", text)
-        self.assertIn("; 3 more are in ", text)
+        self.assertIn("; 3 more are already in ", text)
         self.assertEqual(tandem(*arguments, "--resume")[0], 0)
         self.assertEqual(len(self.records(out)), 11)
         self.assertEqual(self.cells(out), sorted(whole + [whole_of(other), whole_of(failed), whole_of(short)]))
         status, text, _ = tandem(*arguments, "--resume")
-        self.assertIn("8 cells are in ", text)
+        self.assertIn("8 cells are already in ", text)
         self.assertEqual((status, len(self.records(out))), (0, 11))
         self.bad("--resume requires --out", "run", *CELLS, "--resume")
         out.write_text(lines[0].replace('"schema":4', '"schema":2', 1))
@@ -101,7 +101,7 @@ class Running(Case):
                 process.send_signal(number)
             text, errors = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 3, errors)
-            self.assertRegex(errors, r"^tandem: interrupted; 2 cells are measured; to go on: tandem run .* --resume\n$")
+            self.assertRegex(errors, r"^tandem: interrupted; 2 cells are measured; to continue: tandem run .* --resume\n$")
             self.assertIn("ms/frame", text)
             records = self.records(out)
             self.assertEqual([r["status"] for r in records], ["ok", "ok"])
@@ -126,7 +126,7 @@ class Running(Case):
 
     def test_scenes_are_opened_before_they_are_measured(self):
         self.bad("unknown scene", "run", "plates:count=2", "plaits", "--frames", 0, "--device", "host", "--algorithm", "tiled")
-        self.bad("dumps are of one scene", "run", *CELLS, "--dump-pairs", self.work / "pairs.csv")
+        self.bad("dumps need one scene", "run", *CELLS, "--dump-pairs", self.work / "pairs.csv")
         self.bad("exclude each other", "run", *SCENES, "--mesh", self.good)
 
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// tandem algorithms: all of them in short, or those that are named at length.
+// tandem algorithms: lists all algorithms in short, or explains the named ones at length.
 #include "algorithms/traversal.h"
 #include "harness/commands/commands.h"
 #include "harness/commands/standard_streams.h"
@@ -22,20 +22,20 @@ std::vector<std::string> words_of(const Parameter& parameter) {
     return words;
 }
 
-/// What auto tries of it.
+/// The values that auto tries.
 std::vector<std::string> alternatives_of(const Parameter& parameter) {
     std::vector<std::string> texts;
     for (const auto value : parameter.alternatives()) texts.push_back(parameter.text(value));
     return texts;
 }
 
-/// "1..1024", or its words.
+/// "1..1024", or the list of choices.
 std::string values_of(const Parameter& parameter) {
     return parameter.choices().empty() ? fmt::format("{}..{}", parameter.least, parameter.most)
                                        : fmt::format("{}", fmt::join(words_of(parameter), ", "));
 }
 
-/// All settings as they take effect in a preset.
+/// The resolved values of all settings in a preset.
 Settings settings_of(const Traversal& traversal, const Preset& preset) {
     return resolve(traversal.parameters(), preset.values, {}, traversal.name());
 }
@@ -50,8 +50,8 @@ std::vector<std::string> changed_by(const Traversal& traversal, const Preset& pr
     return changed;
 }
 
-/// "device in resident; sphere in published": the values of a setting that presets change, and its own where
-/// none of them has that; empty when none changes it.
+/// "device in resident; sphere in published": the values of a setting by preset. The initial value is added
+/// when no preset has it. Empty when no preset changes the setting.
 std::string by_preset(const Traversal& traversal, const Parameter& parameter) {
     std::vector<std::pair<std::string, std::vector<std::string_view>>> values;
     for (const auto& preset : traversal.presets()) {
@@ -103,19 +103,20 @@ Json algorithm_json(const Traversal& traversal, bool baseline) {
                            {"values", p.texts()},
                            {"settings", settings_of(traversal, p).texts()}});
     return {{"name", traversal.name()},
-            {"peer", baseline},
+            {"baseline", baseline},
             {"summary", traversal.summary()},
             {"parameters", parameters_json(traversal.parameters())},
             {"counters", counters_json(traversal.counters())},
             {"presets", presets}};
 }
 
-/// Text in lines that fit a terminal, those after the first below the column `indent`.
+/// Prints a text wrapped to a terminal. Lines after the first begin at column `indent`.
 void put_lines(const std::string& text, std::size_t indent) { put("{}", paragraph(text, indent)); }
 
 void print_heading(const Traversal& traversal, bool baseline) {
     put_lines(fmt::format("{}{}: {}", traversal.name(),
-                          baseline ? ", a peer, which runs where it is named only" : "", traversal.summary()),
+                          baseline ? " (baseline, opt-in: runs only when --algorithm names it)" : "",
+                          traversal.summary()),
               2);
 }
 
@@ -125,7 +126,7 @@ void print_counters(const Traversal& traversal) {
         put_lines(fmt::format("    {:<22} {} [{}]", c.name, c.meaning, c.unit), 27);
 }
 
-/// In short: a setting has the value that it has where no preset is named.
+/// The short form. Settings have the values of the first preset, which is the default.
 void print_algorithm(const Traversal& traversal, bool baseline) {
     print_heading(traversal, baseline);
     put("  presets\n");
@@ -144,7 +145,7 @@ void print_algorithm(const Traversal& traversal, bool baseline) {
     print_counters(traversal);
 }
 
-/// Everything that is known of a setting, a line each.
+/// Prints everything about a setting, one line for each fact.
 void explain_setting(const Traversal& traversal, const Parameter& parameter, const std::string& value) {
     constexpr std::size_t indent = 8;
     const auto line = [&](std::string_view label, const std::string& text) {
@@ -161,10 +162,9 @@ void explain_setting(const Traversal& traversal, const Parameter& parameter, con
                            : fmt::format("{}, unless {} is given", tried, parameter.alternative_setting));
 }
 
-/// At length.
 void explain_algorithm(const Traversal& traversal, bool baseline) {
     print_heading(traversal, baseline);
-    put("  presets; the first is taken where none is named\n");
+    put("  presets; the first is the default\n");
     for (const auto& p : traversal.presets()) {
         const auto changed = changed_by(traversal, p);
         put_lines(fmt::format("    {}: {}", p.name, p.help), 8);

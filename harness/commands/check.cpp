@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// tandem check: do all algorithms on all devices agree with the reference, and what do they miss of the
-// truth?
+// tandem check: compares every algorithm on every device with the reference, and counts the pairs of the
+// exact truth that it misses.
 #include "harness/plans/inputs.h"
 #include "harness/plans/job.h"
 #include "harness/commands/standard_streams.h"
@@ -15,15 +15,15 @@ namespace tandem {
 
 namespace {
 
-/// Checks every cell until a record cannot be written; `print` is given each that finished. Returns the exit
-/// code.
+/// Checks every cell and calls `print` for each that finished. Stops when a record cannot be written. Returns
+/// the exit code.
 int check_cells(const Job& job, const RunOptions& options, RecordFile& file, const Progress& progress,
                 const std::function<void(const Cell&, const Measurement&)>& print) {
     References references(job.scene, job.range);
     Truths truths(job.scene, job.range, options.truth, options.truth_contacts);
     Measuring measuring;
     measuring.check.truths = options.truth == TruthAmount::none ? nullptr : &truths;
-    measuring.enough.repeat = 0;
+    measuring.stopping.repeat = 0;
     int code = 0;
     measure_cells(job, job.cells, references, measuring, file, progress, [&](const CellResult& result) {
         const auto& m = result.measurement;
@@ -33,7 +33,7 @@ int check_cells(const Job& job, const RunOptions& options, RecordFile& file, con
     return code;
 }
 
-/// One line a cell: its answer against the reference, then against the truth.
+/// One line for each cell: its answer compared with the reference, then with the truth.
 void print_matrix_header() {
     put("{:<10} {:<12} {:<18} {:>10} {:>9} {:>8} {:>6} {:>9} {:<14} {:>8} {:>10}\n", "device", "algorithm",
         "preset", "pairs", "missing", "extra", "retry", "contacts", "contacts equal", "missed", "false");
@@ -49,33 +49,35 @@ void print_matrix_row(const Cell& cell, const Measurement& m) {
 }
 
 void print_family_header() {
-    put("{:<26} {:>6} {:>9} {:>11} {:>7} {:>9} {:>6} {:>10}\n", "family", "frames", "touching", "overlapping",
-        "missed", "by others", "cells", "that differ");
+    put("{:<26} {:>6} {:>9} {:>11} {:>12} {:>13} {:>6} {:>6}\n", "family", "frames", "touching",
+        "overlapping", "missed: safe", "missed: other", "cells", "wrong");
 }
 
-/// One family of hard:all, on one line.
+/// Checks one family of hard:all and prints one line. Pairs that cells miss are counted apart for
+/// rounding=safe and for the other roundings.
 int check_family(const Job& job, const RunOptions& options, RecordFile& file, const Progress& progress) {
     std::uint64_t wrong = 0;
-    std::uint64_t safe = 0;
-    std::uint64_t others = 0;
-    PairErrors meeting;
+    std::uint64_t missed_safe = 0;
+    std::uint64_t missed_other = 0;
+    PairErrors errors;
     const int code = check_cells(job, options, file, progress, [&](const Cell&, const Measurement& m) {
         wrong += m.agreement.ok() ? 0 : 1;
         if (!m.errors) return;
-        meeting = m.errors->pairs;
-        (m.settings[parameters::rounding] == Rounding::safe ? safe : others) += m.errors->missed();
+        errors = m.errors->pairs;
+        (m.settings[parameters::rounding] == Rounding::safe ? missed_safe : missed_other) +=
+            m.errors->missed();
     });
     const auto& flaws = job.range.flaws();
-    put("{:<26} {:>6} {:>9} {:>11} {:>7} {:>9} {:>6} {:>10}{}\n", job.scene.name, job.range.size(),
-        meeting.touching + meeting.missed_touching, meeting.overlapping + meeting.missed_overlapping, safe,
-        others, job.cells.size(), wrong,
+    put("{:<26} {:>6} {:>9} {:>11} {:>12} {:>13} {:>6} {:>6}{}\n", job.scene.name, job.range.size(),
+        errors.touching + errors.missed_touching, errors.overlapping + errors.missed_overlapping, missed_safe,
+        missed_other, job.cells.size(), wrong,
         flaws.any() && flaws.handling == Degenerate::skip
             ? fmt::format("  skipped: {}", flaws.degenerate + flaws.non_finite)
             : "");
     return code;
 }
 
-/// Whether the family with numbers that are not finite is refused, as it has to be unless they are skipped.
+/// The family with non-finite coordinates must be refused unless they are skipped. Returns 1 when it is not.
 int check_refusal(RunOptions options, const std::vector<Cell>& cells) {
     options.degenerate = Degenerate::flat;
     std::string refusal;
@@ -89,8 +91,8 @@ int check_refusal(RunOptions options, const std::vector<Cell>& cells) {
     return refusal.empty() ? 1 : 0;
 }
 
-/// `tandem check hard:all`. The family with numbers that are not finite has to be refused, and to be right
-/// when they are skipped.
+/// `tandem check hard:all`. The family with non-finite coordinates must be refused, and must be right when
+/// its flawed tetrahedra are skipped.
 int check_hard(const RunOptions& options, const std::vector<Cell>& cells,
                const std::vector<std::string>& scenes) {
     RecordFile file(options.out);
@@ -107,8 +109,9 @@ int check_hard(const RunOptions& options, const std::vector<Cell>& cells,
         code = std::max(code, check_family(open_job(one, cells), one, file, progress));
         if (file.failed()) return code;
     }
-    put("{}\n", code == 0 ? "all agree with the reference; with rounding=safe nothing that meets is missed"
-                          : "NOT all agree with the reference and the truth");
+    put("{}\n", code == 0
+                    ? "all agree with the reference; rounding=safe misses no pair that touches or overlaps"
+                    : "NOT all agree with the reference and the truth");
     return code;
 }
 
@@ -135,7 +138,7 @@ int check_command(const RunOptions& options) {
     });
     if (file.failed()) return code;
     put("{}\n", code == 0 ? "all agree with the reference" : "NOT all agree with the reference");
-    if (broken > 0) put("{} cells with safe rounding MISS pairs that meet\n", broken);
+    if (broken > 0) put("{} cells with safe rounding MISS pairs that touch or overlap\n", broken);
     return code;
 }
 

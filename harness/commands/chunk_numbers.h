@@ -5,7 +5,7 @@
 
 namespace tandem {
 
-/// The chunk over each tetrahedron, numbered from 0, of the tree with the paper's 32 leaves.
+/// The chunk number of each tetrahedron, from 0. Chunks have 32 leaves, as in the paper, in Morton order.
 std::vector<std::uint32_t> chunk_numbers(const Mesh& mesh);
 
 } // namespace tandem

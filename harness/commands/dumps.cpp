@@ -12,7 +12,7 @@ namespace tandem {
 
 namespace {
 
-/// Lines are written in pieces of about so many bytes: a frame can have millions.
+/// Lines are written in pieces of about this size, because a frame can have millions of them.
 constexpr std::size_t piece_bytes = 1 << 20;
 
 } // namespace

@@ -9,19 +9,20 @@
 
 namespace tandem {
 
-/// A text file that is written line by line and opened before anything is measured, which throws InputError.
+/// A CSV file of pairs, contacts or chunks. The constructor opens it, before anything is measured, and throws
+/// InputError.
 class DumpFile {
 public:
-    /// An empty path writes nowhere.
+    /// With an empty path nothing is written.
     DumpFile(const std::string& path, std::string_view header);
 
     explicit operator bool() const { return file_ != nullptr; }
-    /// Appends a line each, in the order given. Coordinates are in the scene's units, the shortest decimals
-    /// that read back as the same numbers. Throws OutputError when the file cannot take them.
+    /// Appends one line for each, in the given order. Coordinates are in the scene's units, as the shortest
+    /// decimals that read back as the same numbers. Throws OutputError when the file cannot be written.
     void pairs(std::size_t frame, std::span<const Pair> pairs);
     void contacts(std::size_t frame, std::span<const ContactPoint> contacts);
-    /// The tetrahedra of a scene's mesh, in its own coordinates, in an order (position -> tetrahedron) of
-    /// which `leaves` after one another are a chunk, and as many chunks a super chunk.
+    /// Appends the tetrahedra of mesh `number`, in mesh coordinates. `order` maps position to tetrahedron:
+    /// `leaves` successive positions form a chunk, and `leaves` successive chunks form a super chunk.
     void chunks(std::size_t number, const Mesh& mesh, std::span<const std::uint32_t> order,
                 std::uint32_t leaves);
 

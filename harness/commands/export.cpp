@@ -22,7 +22,7 @@ namespace tandem {
 
 namespace {
 
-/// By the same rules as of `tandem run`.
+/// Opens the scene by the rules of `tandem run`.
 Scene open_scene(const ExportOptions& options) {
     RunOptions run;
     run.scene = options.scene;
@@ -31,7 +31,7 @@ Scene open_scene(const ExportOptions& options) {
     return open_scene(run);
 }
 
-/// Of the chunk over each tetrahedron, body after body.
+/// The chunk number of each tetrahedron, body after body.
 CellNumbers chunks_of(const Scene& scene) {
     std::vector<std::vector<std::uint32_t>> by_mesh;
     for (const auto& mesh : scene.meshes) by_mesh.push_back(chunk_numbers(mesh));
@@ -45,7 +45,7 @@ void make_folder(const std::string& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (!std::filesystem::is_directory(folder))
-        throw InputError(fmt::format("{}: cannot be made a folder ({}); choose another", folder,
+        throw InputError(fmt::format("{}: cannot make this folder ({}); choose another", folder,
                                      error ? error.message() : "a file has this name"));
 }
 
@@ -84,7 +84,7 @@ void export_geometry(const ExportOptions& options, const Scene& scene, std::span
     write_geometry(options.geometry, scene, frames, parts);
 }
 
-/// Meshes do not move: frames have no part in it.
+/// Chunks depend on the meshes only, so frames do not matter.
 void export_chunks(const ExportOptions& options, const Scene& scene) {
     const auto builder = static_cast<Builder>(parameters::builder.parse(options.builder));
     const auto k = static_cast<int>(parameters::k.parse(options.k));
@@ -105,34 +105,33 @@ void export_chunks(const ExportOptions& options, const Scene& scene) {
 int export_csv(const ExportOptions& options) {
     if (!options.vtu.empty() || !options.glb.empty() || !options.geometry.empty() || !options.meshes.empty()
         || !options.poses.empty() || !options.frames.empty())
-        throw InputError(
-            "--csv makes a table of a file of records; --vtu, --glb, --geometry, --mesh, --pose and --frames "
-            "are of scenes, so leave them out");
+        throw InputError("--csv makes a table of a file of records; leave out --vtu, --glb, --geometry, "
+                         "--mesh, --pose and --frames, which need a scene");
     if (options.scene.empty()) throw InputError("--csv: no file of records; name it before --csv");
     std::vector<std::string> words{"--records=" + options.scene};
     if (!options.csv.empty()) words.push_back("--output=" + options.csv);
     return run_external("export-csv", words);
 }
 
-/// Refuses combinations that name nothing to write, or one file twice.
+/// Refuses options that name no output, or the same file twice.
 void check_outputs(const ExportOptions& options) {
-    const bool moves = !options.vtu.empty() || !options.glb.empty() || !options.geometry.empty();
-    if (!moves && options.chunks.empty())
-        throw InputError(
-            "nothing to export to; give --vtu FOLDER, --glb FILE, --geometry FILE, --chunks FILE or several, "
-            "or --csv for a file of records");
-    if (!moves && (!options.frames.empty() || options.every != 1))
-        throw InputError("--frames and --every go with --vtu FOLDER, --glb FILE or --geometry FILE; chunks "
+    const bool exports_frames = !options.vtu.empty() || !options.glb.empty() || !options.geometry.empty();
+    if (!exports_frames && options.chunks.empty())
+        throw InputError("no output; give at least one of --vtu FOLDER, --glb FILE, --geometry FILE and "
+                         "--chunks FILE, or --csv for a file of records");
+    if (!exports_frames && (!options.frames.empty() || options.every != 1))
+        throw InputError("--frames and --every require --vtu FOLDER, --glb FILE or --geometry FILE; chunks "
                          "are the same in every frame");
     if (options.contacts && options.vtu.empty() && options.geometry.empty())
-        throw InputError("--contacts goes with --vtu FOLDER or --geometry FILE; a .glb has surfaces only");
+        throw InputError(
+            "--contacts requires --vtu FOLDER or --geometry FILE; a .glb file has surfaces only");
     const std::pair<const char*, std::string> files[] = {
         {"--chunks", options.chunks}, {"--glb", options.glb}, {"--geometry", options.geometry}};
     for (const auto& one : files)
         for (const auto& other : files)
             if (&one < &other && !one.second.empty() && one.second == other.second)
-                throw InputError(
-                    fmt::format("{} and {} name one file, {}; name two", one.first, other.first, one.second));
+                throw InputError(fmt::format("{} and {} name the same file, {}; choose another file",
+                                             one.first, other.first, one.second));
 }
 
 } // namespace

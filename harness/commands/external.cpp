@@ -24,25 +24,24 @@ fs::path own_path() { return fs::read_symlink("/proc/self/exe"); }
 
 std::string external_program(const std::string& name) {
     const auto folder = own_path().parent_path();
-    for (const auto& place : {folder, folder.parent_path()})
-        if (const auto path = place / "libexec/tandem" / name; fs::is_regular_file(path))
-            return path.string();
-    throw InputError(
-        fmt::format("tandem {} is not part of this installation: no {}; install it by cmake --install", name,
-                    (folder.parent_path() / "libexec/tandem" / name).string()));
+    for (const auto& root : {folder, folder.parent_path()})
+        if (const auto path = root / "libexec/tandem" / name; fs::is_regular_file(path)) return path.string();
+    throw InputError(fmt::format("tandem {} is not part of this installation: {} does not exist; install it "
+                                 "with cmake --install",
+                                 name, (folder.parent_path() / "libexec/tandem" / name).string()));
 }
 
 int run_external(const std::string& name, const std::vector<std::string>& words) {
     const auto path = external_program(name);
     setenv("TANDEM_PROGRAM", own_path().c_str(), 1);
-    // What has been printed comes before what it prints. It works as well where that cannot be read.
-    const ProgramStreams place{"", flush_output() ? "" : "/dev/null", ""};
+    // Flush first, so that earlier output precedes the program's. If that fails, nobody can read its output.
+    const ProgramStreams streams{"", flush_output() ? "" : "/dev/null", ""};
     const Interrupt interrupt;
-    // The system's first, which has the system's packages.
+    // The system's Python comes first, because it has the system's packages.
     for (const char* python : {"/usr/bin/python3", "python3"}) {
         std::vector<std::string> line{python, path};
         line.insert(line.end(), words.begin(), words.end());
-        if (const int code = run_program(line, place); code != not_found) return code;
+        if (const int code = run_program(line, streams); code != not_found) return code;
     }
     throw InputError(fmt::format("tandem {} needs python3; install it", name));
 }

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The device before `info` that is the same piece of hardware; empty when there is none.
+/// The id of an earlier device in the list that is the same piece of hardware; empty when there is none.
 std::string same_as(const std::vector<BackendReport>& backends, const DeviceInfo& info) {
     for (const auto& backend : backends) {
         for (const auto& device : backend.devices) {
@@ -28,13 +28,13 @@ std::string same_as(const std::vector<BackendReport>& backends, const DeviceInfo
     return {};
 }
 
-/// Certain once clocks have been on.
+/// The name of the clock that times commands. It is known only after clocks have been on.
 std::string clock_of(Device& device) {
     try {
         device.set_clocks(Clocks::on);
         device.set_clocks(Clocks::off);
     } catch (const DeviceError&) {
-        // The device is listed all the same; measuring says what it lacks.
+        // The device is listed nevertheless; a measurement reports the error.
     }
     return device.clock();
 }
@@ -84,13 +84,13 @@ int measure_devices(const DevicesOptions& options) {
 
 void print_scene(const SceneKind& kind, const Scene& scene) {
     put("{}: {}\n", kind.name, kind.models);
-    put("  {}\n", scene.dynamics ? fmt::format("{} steps of {} s by simulation; its frame is the start",
+    put("  {}\n", scene.dynamics ? fmt::format("simulated: {} steps of {} s; its only frame is the start",
                                                scene.dynamics->steps, scene.dynamics->stepping.step)
-                                 : fmt::format("{} frames by script", scene.frame_count));
+                                 : fmt::format("scripted: {} frames", scene.frame_count));
     for (const auto& p : kind.parameters) put("    {:<12} {:<12} {}\n", p.name, p.value, p.help);
 }
 
-/// The first columns of the paper's Table 1, for the defaults.
+/// The first columns of the paper's Table 1, for the default parameters.
 void print_scene_table(const Json& scenes) {
     put("\n{:<10} {:>7} {:>10} {:>11}\n", "scene", "bodies", "vertices", "tetrahedra");
     for (const auto& row : scenes)
@@ -98,7 +98,7 @@ void print_scene_table(const Json& scenes) {
             row["vertices"].get<std::size_t>(), row["tetrahedra"].get<std::size_t>());
 }
 
-/// The settings of a scene's motion with its own values; null when its motion is scripted.
+/// The dynamics settings with the values of this scene; null when its motion is scripted.
 Json dynamics_json(const Scene& scene) {
     if (!scene.dynamics) return nullptr;
     Json json = Json::object();
@@ -122,7 +122,7 @@ Json scene_json(const SceneKind& kind, const Scene& scene) {
             {"dynamics", dynamics_json(scene)}};
 }
 
-/// What else there is to know of a family of hard cases.
+/// The additional fields of a family of hard cases.
 Json hard_json(const HardFamily& family) {
     return {{"row", family.row},
             {"group", std::string(1, family.group)},
@@ -136,7 +136,7 @@ Json hard_json(const HardFamily& family) {
 
 void print_hard() {
     put("\nhard cases, hard:NAME:difficulty=X,seed=N,pairs=N,together=N; 'tandem check hard:all' "
-        "takes all\n");
+        "checks all\n");
     for (const auto& family : hard_families())
         put("    {} {:<20} {}\n      {:<20} difficulty {}: {}, {}..{}\n", family.group, family.name,
             family.summary, "", family.knob.initial, family.knob.meaning, family.knob.least,
@@ -144,15 +144,15 @@ void print_hard() {
 }
 
 void print_dynamics() {
-    put("\nmotion by simulation, --dynamics NAME=VALUE; a scene may have other defaults (--json)\n");
+    put("\nsettings of simulated motion, --dynamics NAME=VALUE; a scene may have other defaults (--json)\n");
     for (const auto& setting : dynamics_settings())
         put("    {:<20} {:<13} {}\n", setting.name, setting.value(Dynamics{}), setting.help);
 }
 
 } // namespace
 
-/// Backends without devices are listed with their reason; --require is looked at last, so that the list is
-/// there to see.
+/// Backends without devices are listed with the reason. --require is checked last, so that the list is
+/// printed before the error.
 int devices_command(const DevicesOptions& options) {
     if (options.measure) return measure_devices(options);
     const auto backends = discover();

@@ -3,10 +3,10 @@
 
 namespace tandem {
 
-/// Memory set aside for when there is no more: the first allocation that finds none takes it, so that what
-/// may not fail (destructors, of JSON for one, allocate) does not, and what is under way ends in order.
-/// `operator new` fails as ever once it is spent (Meyers, Effective C++, 3rd ed. 2005, item 49). One a
-/// program.
+/// Memory set aside for the case that no more is available. The first allocation that fails frees the reserve
+/// and tries again, so that work in progress can end in order: JSON destructors, for example, allocate. Once
+/// the reserve is spent, `operator new` fails as usual (Meyers, Effective C++, 3rd ed. 2005, item 49). A
+/// program has one instance.
 class MemoryReserve {
 public:
     MemoryReserve();
@@ -14,8 +14,8 @@ public:
     MemoryReserve(const MemoryReserve&) = delete;
     MemoryReserve& operator=(const MemoryReserve&) = delete;
 
-    /// Sets it aside again where it was spent; throws std::bad_alloc where there still is not as much. Called
-    /// before work that may stop there. Nothing where no MemoryReserve lives.
+    /// Allocates the reserve again if it was spent; throws std::bad_alloc when memory is still short. Call it
+    /// where the work can be stopped safely. Does nothing while no MemoryReserve exists.
     static void refill();
 };
 

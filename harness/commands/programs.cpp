@@ -20,14 +20,14 @@ namespace tandem {
 
 namespace {
 
-/// What posix_spawn does between fork and exec.
+/// The file actions of posix_spawn, which run between fork and exec.
 class Actions {
 public:
-    explicit Actions(const ProgramStreams& place) {
+    explicit Actions(const ProgramStreams& streams) {
         posix_spawn_file_actions_init(&actions_);
-        open(STDOUT_FILENO, place.output);
-        open(STDERR_FILENO, place.errors);
-        if (!place.folder.empty()) posix_spawn_file_actions_addchdir_np(&actions_, place.folder.c_str());
+        open(STDOUT_FILENO, streams.output);
+        open(STDERR_FILENO, streams.errors);
+        if (!streams.folder.empty()) posix_spawn_file_actions_addchdir_np(&actions_, streams.folder.c_str());
     }
     ~Actions() { posix_spawn_file_actions_destroy(&actions_); }
     Actions(const Actions&) = delete;
@@ -48,33 +48,33 @@ int code_of(int status) { return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : 
 
 } // namespace
 
-int run_program(const std::vector<std::string>& words, const ProgramStreams& place) {
+int run_program(const std::vector<std::string>& words, const ProgramStreams& streams) {
     std::vector<char*> arguments;
     arguments.reserve(words.size() + 1);
     for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
-    const Actions actions(place);
+    const Actions actions(streams);
     pid_t process = 0;
     const auto environment = environment_without_launcher();
     if (posix_spawnp(&process, arguments[0], actions.get(), nullptr, arguments.data(), environment.data())
         != 0)
         return 127;
-    // Signals interrupt no call here (Interrupt), so that its end is asked for again and again.
-    bool told = false;
+    // Signals do not interrupt system calls here (see Interrupt), so the loop polls.
+    bool signalled = false;
     for (int status = 0;;) {
         const auto ended = waitpid(process, &status, WNOHANG);
         if (ended == process) return code_of(status);
         if (ended < 0 && errno != EINTR) return 127;
-        if (Interrupt::asked() && !std::exchange(told, true)) kill(process, SIGTERM);
+        if (Interrupt::asked() && !std::exchange(signalled, true)) kill(process, SIGTERM);
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
 }
 
-std::string python_with(const std::string& module, const std::string& package, const std::string& who) {
+std::string python_with(const std::string& module, const std::string& package, const std::string& user) {
     for (const char* python : {"/usr/bin/python3", "python3"})
         if (run_program({python, "-c", "import " + module}, {"", "/dev/null", "/dev/null"}) == 0)
             return python;
-    throw InputError(fmt::format("{} needs python3 with {}; install {}", who, module, package));
+    throw InputError(fmt::format("{} needs python3 with {}; install {}", user, module, package));
 }
 
 } // namespace tandem

@@ -6,20 +6,20 @@
 
 namespace tandem {
 
-/// Where a program runs and what becomes of what it prints; a file is appended to, empty is as this process
-/// has it.
+/// The working folder of a program and the files that its output is appended to. An empty text means: as this
+/// process.
 struct ProgramStreams {
     std::string folder;
     std::string output, errors;
 };
 
-/// Runs a program of PATH, outside of any job of MPI, or of a path, and waits until it ends. A signal that
-/// asks this process to end while an Interrupt lives is handed to it. Returns its exit code, 127 where there
-/// is no such program, or 128 and the signal that ended it.
-int run_program(const std::vector<std::string>& words, const ProgramStreams& place = {});
+/// Runs a program, found in PATH or by its path, outside of any MPI job, and waits until it ends. While an
+/// Interrupt exists, a signal that asks this process to end is forwarded. Returns its exit code, 127 when
+/// there is no such program, or 128 plus the number of the signal that ended it.
+int run_program(const std::vector<std::string>& words, const ProgramStreams& streams = {});
 
-/// A Python 3 that has a module, the system's first, which has the system's packages. Throws InputError:
-/// `who`, and the package to install.
-std::string python_with(const std::string& module, const std::string& package, const std::string& who);
+/// A Python 3 that can import `module`; the system's Python is tried first. Throws InputError that names
+/// `user`, the option or command that needs it, and the package to install.
+std::string python_with(const std::string& module, const std::string& package, const std::string& user);
 
 } // namespace tandem

@@ -8,7 +8,7 @@
 
 namespace tandem {
 
-/// One line on a terminal's standard error that is written over; silent elsewhere.
+/// One line on standard error that is overwritten in place. Prints nothing when that is no terminal.
 class Progress {
 public:
     explicit Progress(bool quiet) : on_(!quiet && isatty(STDERR_FILENO) != 0) {}

@@ -28,13 +28,13 @@ namespace tandem {
 
 namespace {
 
-/// Writes what was asked for in a replay of its own: files take longer than frames.
+/// Writes the dumps in a separate replay, because writing files takes longer than running frames.
 void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts) {
     if (job.options.dump_pairs.empty() && job.options.dump_contacts.empty()) return;
     const auto session = prepare_session(cell, job.scene);
     for (std::size_t i = 0; i < job.range.size(); ++i) {
         const auto result = session->run(*job.range.frame(i));
-        // Ranks download together, and the first one writes.
+        // Collective: all ranks download; only rank 0 writes.
         if (!job.options.dump_pairs.empty())
             if (const auto found = result.download(); pairs) pairs.pairs(job.range.first() + i, found);
         if (!job.options.dump_contacts.empty())
@@ -43,8 +43,8 @@ void dump(const Cell& cell, const Job& job, DumpFile& pairs, DumpFile& contacts)
     }
 }
 
-/// Replays the frames and does nothing else, so that a profiler sees only the algorithm: it is told to begin
-/// once kernels are compiled and buffers have grown.
+/// Replays the frames and does nothing else, so that a profiler records only the algorithm. Profiling starts
+/// after a first replay, which compiles kernels and grows buffers.
 int profile(const Job& job, std::size_t times) {
     for (const auto& cell : job.cells) {
         Replays replays(cell, job.scene, job.range);
@@ -59,7 +59,7 @@ int profile(const Job& job, std::size_t times) {
     return 0;
 }
 
-/// Decides the cells of auto.
+/// Chooses the algorithm and settings of each `auto` cell.
 void choose_cells(Job& job, const RunOptions& options, const Progress& progress) {
     ChoosingOptions choosing;
     choosing.seconds = options.choose_seconds;
@@ -72,7 +72,7 @@ void choose_cells(Job& job, const RunOptions& options, const Progress& progress)
     }
 }
 
-/// What the cells of a job measure, in their order.
+/// The keys of the cells of a job, in order.
 std::string keys_of(const Job& job) {
     std::string keys;
     for (const auto& cell : job.cells) keys += key_of(cell, cell.settings, job.scene, job.range) + "\n";
@@ -81,15 +81,18 @@ std::string keys_of(const Job& job) {
 
 void refuse_what_ranks_cannot(const RunOptions& options) {
     if (options.isolate)
-        throw InputError("--isolate makes a process of each cell, and ranks share one; leave it out");
-    if (!options.trace.empty()) throw InputError("--trace shows one process; run it without the launcher");
+        throw InputError("--isolate runs each cell in a process of its own, but MPI ranks share each cell; "
+                         "leave --isolate out");
+    if (!options.trace.empty())
+        throw InputError("--trace records one process; run it without the MPI launcher");
     for (const auto& product : plan_of(options).products)
         for (const auto& name : product.request.algorithms)
             if (name == automatic)
-                throw InputError("--algorithm auto chooses on one process; name what it chose there");
+                throw InputError("--algorithm auto needs one process; run it without the MPI launcher, then "
+                                 "name the algorithm that it chose");
 }
 
-/// A run of the command: its groups of cells, one after the other.
+/// One run of the command: measures its groups of cells one after another.
 class Run {
 public:
     Run(const RunOptions& options, RankTeam* team);
@@ -107,7 +110,7 @@ private:
     void list(const Job& job);
 
     void open_team();
-    bool is_over() const;
+    bool must_stop() const;
 
     const RunOptions& options_;
     RankTeam* const team_; ///< null: one process
@@ -137,7 +140,7 @@ Run::Run(const RunOptions& options, RankTeam* team)
             return choose_devices(backends_, std::array{team_->own_of_each(asked[0], backends_)});
         };
         all_ = make_groups(plan, choose, options_.shard);
-        tell_left_out(all_);
+        print_left_out(all_);
         if (options_.shard.of > 1)
             put("shard {}/{}: {} of {} groups\n", options_.shard.index, options_.shard.of, all_.groups.size(),
                 all_.numbered);
@@ -146,23 +149,23 @@ Run::Run(const RunOptions& options, RankTeam* team)
     if (team_ != nullptr && !all_.groups.empty()) open_team();
 }
 
-/// All cells have one device on each rank.
+/// Opens the team with the one device of this rank: all cells use the same.
 void Run::open_team() {
     for (auto& group : all_.groups)
         for (auto& cell : group.cells) cell.team = team_;
     team_->open(*all_.groups.front().cells.front().devices.front());
 }
 
-/// Of what is written of the first finished cell.
+/// Dumps and traces are written for the first finished cell, so there must be only one group.
 void Run::check_one_group() const {
     if (all_.groups.size() <= 1) return;
     if (!options_.dump_pairs.empty() || !options_.dump_contacts.empty())
-        throw InputError("dumps are of one scene and one range of its frames; name one of each");
+        throw InputError("dumps need one scene and one range of its frames; name one of each");
     if (!options_.trace.empty())
-        throw InputError("--trace is of one scene and one range of its frames; name one of each");
+        throw InputError("--trace needs one scene and one range of its frames; name one of each");
 }
 
-/// Once nothing is wrong with what was asked for: a mistake leaves no empty files behind.
+/// Called only after the input was checked, so that a mistake leaves no empty files behind.
 void Run::open_files() {
     if (file_) return;
     together(team_, [&] {
@@ -178,8 +181,8 @@ void Run::open_files() {
     });
 }
 
-/// An interrupt, or a file that cannot be written.
-bool Run::is_over() const { return decided(team_, interrupted_ || file_->failed()); }
+/// Whether there was an interrupt, or the record file cannot be written.
+bool Run::must_stop() const { return decided(team_, interrupted_ || file_->failed()); }
 
 void Run::leave_out_finished(Job& job) {
     left_out_ += std::erase_if(job.cells, [&](const Cell& cell) {
@@ -190,7 +193,7 @@ void Run::leave_out_finished(Job& job) {
     });
 }
 
-/// Of cells that were measured before the time that they took then; of others that of --seconds.
+/// Lists the cells and estimates their time: the earlier time where known, else --seconds.
 void Run::list(const Job& job) {
     for (const auto& cell : job.cells) {
         const auto known = finished_.seconds(cell, job.scene, job.range);
@@ -218,12 +221,12 @@ int Run::measure(Job& job) {
                                  });
     measured_ += results.size();
     print(job, results);
-    // Last, for a file that cannot be written ends the run.
+    // Dumps come last, because a dump that cannot be written ends the run.
     for (const auto& cell : job.cells)
         if (const auto found = results.find(&cell); found != results.end() && found->second.measured) {
-            const bool goes_on = !decided(team_, file_->failed());
-            if (goes_on) dump(cell, job, *pairs_, *contacts_);
-            if (goes_on && !options_.trace.empty()) trace_->write(trace_frame(cell, job));
+            const bool continues = !decided(team_, file_->failed());
+            if (continues) dump(cell, job, *pairs_, *contacts_);
+            if (continues && !options_.trace.empty()) trace_->write(trace_frame(cell, job));
             break;
         }
     return code;
@@ -237,16 +240,17 @@ void Run::print(const Job& job, const std::map<const Cell*, CellResult>& results
     print_results(in_order);
 }
 
-/// What is said last.
+/// Prints the last messages and returns the exit code.
 int Run::end(int code) {
-    if (left_out_ > 0) put("{} cells are in {} already\n", left_out_, options_.out);
+    if (left_out_ > 0) put("{} cells are already in {}\n", left_out_, options_.out);
     if (!options_.out.empty()) put("{} records appended to {}\n", file_->appended(), options_.out);
     if (!interrupted_ && !file_->failed()) unfinished_.remove();
     if (!interrupted_ || file_->failed()) return code;
-    const bool can_go_on = !options_.out.empty();
-    print_message(
-        "tandem: interrupted; {} cells are measured{}\n", measured_,
-        can_go_on ? fmt::format("; to go on: {}{}", command_line(), options_.resume ? "" : " --resume") : "");
+    const bool can_resume = !options_.out.empty();
+    print_message("tandem: interrupted; {} cells are measured{}\n", measured_,
+                  can_resume
+                      ? fmt::format("; to continue: {}{}", command_line(), options_.resume ? "" : " --resume")
+                      : "");
     return 3;
 }
 
@@ -266,29 +270,29 @@ std::unique_ptr<Job> Run::open(const CellGroup& group, const Unfit& unfit) const
 int Run::go() {
     if (options_.dry_run) return list_all();
     if (all_.groups.empty()) return 0;
-    // A mistake in the last scene had better be known before the first is measured.
+    // Open all groups first, so that a mistake in the last scene is found before the first is measured.
     if (all_.groups.size() > 1)
         for (const auto& group : all_.groups) open(group, leave_out);
     const Interrupt interrupt;
     int code = 0;
     for (const auto& group : all_.groups) {
-        const auto job = open(group, tell_skipped);
+        const auto job = open(group, print_skipped);
         open_files();
         leave_out_finished(*job);
         if (job->cells.empty()) continue;
         print_scene(job->scene, job->range);
         choose_cells(*job, options_, progress_);
         code = std::max(code, options_.profile > 0 ? profile(*job, options_.profile) : measure(*job));
-        if (is_over()) break;
+        if (must_stop()) break;
     }
     return decided(team_, options_.profile > 0 ? code : end(code));
 }
 
-/// --dry-run: what cannot be opened yet, such as a recording that is to be made, leaves the rest to be seen.
+/// --dry-run. A scene that cannot be opened yet, such as a missing recording, does not hide the other groups.
 int Run::list_all() {
     std::size_t unopened = 0;
     for (const auto& group : all_.groups) try {
-            const auto job = open(group, tell_skipped);
+            const auto job = open(group, print_skipped);
             open_files();
             leave_out_finished(*job);
             print_scene(job->scene, job->range);
@@ -298,16 +302,16 @@ int Run::list_all() {
             print_message("tandem: {} cells cannot be listed: {}\n", group.cells.size(), error.what());
             ++unopened;
         }
-    put("{} cells, about {:.0f} s of rounds{}{}; checks against the reference and the truth come on top\n",
-        listed_, seconds_,
-        unknown_ > 0 ? fmt::format(" and {} cells of which nothing is known", unknown_) : "",
-        left_out_ > 0 ? fmt::format("; {} more are in {} already", left_out_, options_.out) : "");
+    put("{} cells, about {:.0f} s of rounds{}{}; checks against the reference and the truth take extra "
+        "time\n",
+        listed_, seconds_, unknown_ > 0 ? fmt::format(" and {} cells of unknown duration", unknown_) : "",
+        left_out_ > 0 ? fmt::format("; {} more are already in {}", left_out_, options_.out) : "");
     return unopened > 0 ? 2 : 0;
 }
 
 } // namespace
 
-/// Ranks of a job measure the cells one after another, each on all of them.
+/// Under MPI, all ranks measure each cell together, one cell after another.
 int run_command(const RunOptions& options) {
     auto* ranks = job_ranks();
     if (ranks == nullptr) {

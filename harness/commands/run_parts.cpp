@@ -10,11 +10,11 @@
 
 namespace tandem {
 
-/// The plan of the options, or one of a single product.
 PlanFile plan_of(const RunOptions& options) {
     Product given{options.scenes, {}, options.request};
     if (!options.frames.empty()) given.frames = {options.frames};
-    if (given.scenes.empty()) given.scenes.emplace_back(); // of --mesh, or the message that there is none
+    // An empty name stands for --mesh; without it open_scene() reports that there is no scene.
+    if (given.scenes.empty()) given.scenes.emplace_back();
     PlanFile plan;
     if (options.plan) {
         plan = *options.plan;
@@ -25,20 +25,20 @@ PlanFile plan_of(const RunOptions& options) {
     return plan;
 }
 
-/// What is not measured, and why.
-void tell_left_out(const CellGroups& all) {
+void print_left_out(const CellGroups& all) {
     if (all.repeated > 0)
         print_message("tandem: {} cells are named more than once; each is measured once\n", all.repeated);
-    for (const auto& [why, count] : all.impossible)
-        print_message("tandem: skipped {} impossible combination{}: {}\n", count, count == 1 ? "" : "s", why);
+    for (const auto& [reason, count] : all.impossible)
+        print_message("tandem: skipped {} impossible combination{}: {}\n", count, count == 1 ? "" : "s",
+                      reason);
 }
 
-void tell_skipped(const InputError& error) { print_message("tandem: skipped a cell: {}\n", error.what()); }
+void print_skipped(const InputError& error) { print_message("tandem: skipped a cell: {}\n", error.what()); }
 
 Measuring measuring_of(const RunOptions& options) {
     Measuring measuring;
     measuring.check = {options.check, options.count, nullptr};
-    measuring.enough = {options.repeat, options.noise, options.seconds};
+    measuring.stopping = {options.repeat, options.noise, options.seconds};
     measuring.seed = options.seed ? *options.seed : std::random_device{}();
     return measuring;
 }

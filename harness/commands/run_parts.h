@@ -10,14 +10,14 @@ namespace tandem {
 /// The plan of the options, or one of a single product.
 PlanFile plan_of(const RunOptions& options);
 
-/// What of the options says how cells are measured; truths are the caller's.
+/// How cells are measured according to the options. The caller sets the truths.
 Measuring measuring_of(const RunOptions& options);
 
-/// Says what is not measured, and why.
-void tell_left_out(const CellGroups& all);
-void tell_skipped(const InputError& error);
+/// Prints which cells are not measured, and why, on standard error.
+void print_left_out(const CellGroups& all);
+void print_skipped(const InputError& error);
 
-/// The tables of the cells that were measured, and what is to be thought of each.
+/// Prints the tables of the measured cells and the verdict on each.
 void print_results(std::span<const CellResult* const> results);
 
 } // namespace tandem

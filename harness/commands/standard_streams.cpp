@@ -13,14 +13,15 @@ namespace tandem {
 
 namespace {
 
-/// Of the first write to standard output that failed; 0: none.
+/// errno of the first write to standard output that failed; 0: none.
 int output_error = 0;
 bool is_silent = false;
 
 void do_nothing(int) {}
 
-/// A handler, for programs that this one starts begin without it; an ignored signal is inherited.
-void make_an_error_of(int signal) {
+/// Makes a write fail with an error where it would raise the signal. Installs a handler: child processes
+/// inherit an ignored signal, but not a handler.
+void turn_into_error(int signal) {
     struct sigaction action {};
     action.sa_handler = do_nothing;
     action.sa_flags = SA_RESTART;
@@ -32,16 +33,16 @@ void make_an_error_of(int signal) {
 void prepare_standard_streams() {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         if (fcntl(stream, F_GETFD) >= 0) continue;
-        // The lowest free number is this one. Standard output cannot be written to then, as if it were closed
-        // still; messages that nobody wants go nowhere.
+        // open() returns the lowest free number, which is `stream`. Standard output is opened read-only, so
+        // that writing to it fails as if it were closed. Messages to a closed standard error are discarded.
         (void)open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
     }
-    for (const int signal : {SIGPIPE, SIGXFSZ}) make_an_error_of(signal);
+    for (const int signal : {SIGPIPE, SIGXFSZ}) turn_into_error(signal);
 }
 
 bool prints_colour() {
-    const char* no = std::getenv("NO_COLOR");
-    return isatty(STDOUT_FILENO) != 0 && (no == nullptr || *no == '\0');
+    const char* no_color = std::getenv("NO_COLOR");
+    return isatty(STDOUT_FILENO) != 0 && (no_color == nullptr || *no_color == '\0');
 }
 
 void put_text(std::string_view text) {

@@ -7,13 +7,13 @@
 
 namespace tandem {
 
-/// To be called first in main(). Descriptors 0 to 2 that were closed are taken by ones that nothing can be
-/// read from, or written to where that is an error, so that no file that is opened later becomes standard
-/// output. A closed pipe and a file at its limit are errors of a write from then on, not signals that end the
-/// program.
+/// Call this first in main(). Descriptors 0 to 2 that are closed are opened on /dev/null, so that no file
+/// that is opened later becomes a standard stream; writing to such a standard output stays an error. From
+/// then on a closed pipe and a file at its size limit make a write fail and do not end the program by a
+/// signal.
 void prepare_standard_streams();
 
-/// Prints to standard output. Never fails: the first error is kept for finish_output(), and nothing more is
+/// Prints to standard output. Never fails: finish_output() reports the first error, and nothing more is
 /// printed after it, so that measuring goes on without a reader.
 void put_text(std::string_view text);
 
@@ -22,7 +22,7 @@ void put(fmt::format_string<Values...> format, Values&&... values) {
     put_text(fmt::format(format, std::forward<Values>(values)...));
 }
 
-/// Whether standard output is a terminal whose user has not set NO_COLOR (no-color.org).
+/// Whether standard output is a terminal and NO_COLOR is not set (no-color.org).
 bool prints_colour();
 
 /// Prints to standard error; never fails.
@@ -33,10 +33,10 @@ void print_message(fmt::format_string<Values...> format, Values&&... values) {
     print_message_text(fmt::format(format, std::forward<Values>(values)...));
 }
 
-/// From now on this process prints nothing by the functions above: another one prints the same.
+/// From now on the functions above print nothing. For ranks: another process prints the same text.
 void silence_streams();
 
-/// Prints to standard error, also where streams are silenced; never fails.
+/// Prints to standard error, even after silence_streams(); never fails.
 void print_message_text_from_every_rank(std::string_view text);
 
 template<class... Values>
@@ -44,11 +44,11 @@ void print_message_from_every_rank(fmt::format_string<Values...> format, Values&
     print_message_text_from_every_rank(fmt::format(format, std::forward<Values>(values)...));
 }
 
-/// Hands over what put() still holds. False when something that was put could not be written.
+/// Writes the buffered output of put(). Returns false when any of the output could not be written.
 bool flush_output();
 
-/// The exit code of a program that would end with `code`: 3, and a line on standard error, when something
-/// that was put could not be written.
+/// The exit code of a program that would end with `code`. Returns 3 and prints an error message when any of
+/// the output of put() could not be written.
 int finish_output(int code);
 
 } // namespace tandem

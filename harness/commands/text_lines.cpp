@@ -8,14 +8,14 @@ namespace tandem {
 
 namespace {
 
-/// Of UTF-8: bytes that go on with a character.
-bool goes_on(char byte) { return (static_cast<unsigned char>(byte) & 0xc0u) == 0x80u; }
+/// Whether the byte continues a UTF-8 character.
+bool is_continuation(char byte) { return (static_cast<unsigned char>(byte) & 0xc0u) == 0x80u; }
 
-/// Bytes of the first characters of a text, `count` of them or all.
+/// The length in bytes of the first `count` characters of a text, or of the whole text if it is shorter.
 std::size_t bytes_of(std::string_view text, std::size_t count) {
     std::size_t bytes = 0;
     for (; bytes < text.size(); ++bytes)
-        if (!goes_on(text[bytes]) && count-- == 0) return bytes;
+        if (!is_continuation(text[bytes]) && count-- == 0) return bytes;
     return bytes;
 }
 
@@ -26,7 +26,7 @@ std::size_t width_of(std::string_view text) {
     bool escape = false;
     for (const char byte : text) {
         if (byte == '\033') escape = true;
-        if (!escape && !goes_on(byte)) ++count;
+        if (!escape && !is_continuation(byte)) ++count;
         if (escape && byte == 'm') escape = false;
     }
     return count;

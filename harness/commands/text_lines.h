@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Text in lines of a terminal. A character is a code point of UTF-8 and one column wide; escapes of colours
-// have no width.
+// Text in lines of a terminal. A character is a UTF-8 code point and one column wide; colour escapes have no
+// width.
 #pragma once
 
 #include <string>
@@ -11,17 +11,17 @@ namespace tandem {
 
 constexpr std::size_t line_columns = 100;
 
-/// Characters of a text.
+/// The number of characters of a text.
 std::size_t width_of(std::string_view text);
 
-/// Lines of at most `width` characters, broken at spaces, and inside words that are longer. At least one
-/// line.
+/// Splits a text into lines of at most `width` characters. Lines break at spaces, and inside a word only when
+/// the word is longer than a line. Returns at least one line.
 std::vector<std::string> wrap(std::string_view text, std::size_t width);
 
-/// wrap() to a line's columns; lines after the first begin with `indent` spaces. Each line ends.
+/// wrap() to `line_columns`. Lines after the first begin with `indent` spaces. Each line ends with a newline.
 std::string paragraph(std::string_view text, std::size_t indent);
 
-/// A text with its control characters written out (\\n, \\x1b): what a file's own words make of a message.
+/// The text with control characters written as \\n or \\x1b, for messages that contain text from a file.
 std::string visible(std::string_view text);
 
 } // namespace tandem

@@ -147,7 +147,7 @@ bool measure_cells(const Job& job, std::span<const Cell> cells, References& refe
     };
     auto check = measuring.check;
     check.progress = listener.progress;
-    return sample_group(group, check, measuring.enough, measuring.seed, listener);
+    return sample_group(group, check, measuring.stopping, measuring.seed, listener);
 }
 
 std::filesystem::path checks_folder(const RunOptions& options) {

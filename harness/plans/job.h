@@ -31,7 +31,7 @@ Job open_job(const RunOptions& options, std::vector<Cell> cells, const Unfit& un
 /// How the cells of a job are measured.
 struct Measuring {
     CheckOptions check;
-    StoppingCriterion enough;
+    StoppingCriterion stopping;
     std::uint64_t seed = 0;
     Unfinished* unfinished = nullptr; ///< where rounds are kept; null: nowhere
     std::function<bool()> stop = [] { return false; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The subcommands of the program: each function adds a command's options and returns what to do with them.
+// The subcommands of the program: each function adds the options of a command and returns its action.
 #pragma once
 
 #include <functional>
@@ -10,12 +10,13 @@ class App;
 
 namespace tandem {
 
-/// What a command does once the whole line has been read; returns the exit code. Bad use throws InputError.
+/// Runs a command after the whole line has been read, and returns the exit code. Throws InputError on bad
+/// use.
 using Action = std::function<int()>;
 
 Action add_run(CLI::App& app);
 Action add_check(CLI::App& app);
-Action add_isolated(CLI::App& app); ///< for --isolate: see isolated_command()
+Action add_isolated(CLI::App& app); ///< internal, the child process of --isolate: see isolated_command()
 Action add_accuracy(CLI::App& app);
 Action add_profile(CLI::App& app);
 Action add_compare(CLI::App& app);

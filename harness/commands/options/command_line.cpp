@@ -17,7 +17,7 @@ namespace tandem {
 
 namespace {
 
-/// A subcommand: its name and summary in the help, and what adds its options.
+/// A subcommand: its name and summary in the help, and the function that adds its options.
 struct Subcommand {
     const char* name;
     const char* summary;
@@ -27,20 +27,20 @@ struct Subcommand {
 constexpr Subcommand subcommands[] = {
     {"run", "measure; print a table, append records", add_run},
     {"check", "device x algorithm agreement matrix; exit 1 on any difference", add_check},
-    {"accuracy", "error beside speed over settings, for several scenes", add_accuracy},
+    {"accuracy", "error against the exact truth beside speed, over scenes and settings", add_accuracy},
     {"profile", "per kernel: time, registers, occupancy, bytes, operations, share of the ceilings",
      add_profile},
     {"compare", "which cells changed, by how much, how sure; exit 1 beyond --threshold", add_compare},
     {"simulate", "move a scene with dynamics; record its frames", add_simulate},
     {"export", "frames as files for ParaView and other viewers, records as a table", add_export},
     {"paper", "every table and figure of the paper beside ours, with verdicts", add_paper},
-    {"report", "records, and a scene, as one page for a browser: words, tables, charts", add_report},
-    {"view", "a scene in three dimensions as a page for a browser", add_view},
-    {"devices", "what there is, or why there is not", add_devices},
-    {"scenes", "scenes the program makes, with their parameters", add_scenes},
-    {"algorithms", "algorithms with their presets and settings; one at length", add_algorithms},
-    {"completion", "completion of lines by a shell", add_completion},
-    {"isolated", "what a process of --isolate does", add_isolated}};
+    {"report", "records, and a scene, as one HTML page with text, tables and charts", add_report},
+    {"view", "a scene in three dimensions as an HTML page", add_view},
+    {"devices", "available devices, or the reason why there are none", add_devices},
+    {"scenes", "built-in scenes with their parameters", add_scenes},
+    {"algorithms", "algorithms with their presets and settings; explains the named ones", add_algorithms},
+    {"completion", "the completion script for a shell", add_completion},
+    {"isolated", "the child process of --isolate", add_isolated}};
 
 using Actions = std::vector<std::pair<CLI::App*, Action>>;
 
@@ -55,7 +55,7 @@ Actions add_commands(CLI::App& app) {
     for (const auto& command : subcommands) {
         auto* subcommand = app.add_subcommand(command.name, command.summary);
         actions.emplace_back(subcommand, command.add(*subcommand));
-        add_version(*subcommand)->group(""); // in the program's own help only
+        add_version(*subcommand)->group(""); // hidden: only the help of the program shows it
     }
     return actions;
 }
@@ -63,9 +63,9 @@ Actions add_commands(CLI::App& app) {
 } // namespace
 
 Action read_command_line(int argc, const char* const* argv) {
-    // Actions look at the options, which are the app's.
+    // The actions share ownership of the app, because they read its options later.
     const auto app = std::make_shared<CLI::App>(
-        "tandem: ways of walking bounding-volume hierarchies in tandem, measured and checked");
+        "tandem: measures and checks ways of walking bounding-volume hierarchies in tandem");
     const auto actions = add_commands(*app);
     const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
     if (asks_for_completion(words)) return [app, words] { return complete(*app, words); };

@@ -5,8 +5,8 @@
 
 namespace tandem {
 
-/// What the words of a line ask for, nothing of which has been done: a command's action, or to print help,
-/// the version or what a word may become. Throws InputError, one line, for every mistake in the line.
+/// Parses a command line without running anything. Returns the action of the command, or an action that
+/// prints help, the version or completions. Throws InputError, a message of one line, for any mistake.
 Action read_command_line(int argc, const char* const* argv);
 
 } // namespace tandem

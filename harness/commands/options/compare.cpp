@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// compare: records of two times or commits.
+// compare: records of two runs or commits.
 #include "harness/commands/options/external_options.h"
 
 #include <CLI/CLI.hpp>
@@ -7,23 +7,25 @@
 namespace tandem {
 
 Action add_compare(CLI::App& app) {
-    add_external_option(app, "old", "FILE.jsonl of records, or FILE.jsonl@COMMIT for those of one commit")
+    add_external_option(app, "old",
+                        "FILE.jsonl of records, or FILE.jsonl@COMMIT for the records of one commit")
         ->required();
-    add_external_option(app, "new", "likewise; the same file with two commits will do")->required();
-    add_external_option(app, "--threshold",
-                        "percent by which a cell has to change; 1 on GPUs and 3 on processors when left out")
+    add_external_option(app, "new", "as OLD; may be the same file with another commit")->required();
+    add_external_option(
+        app, "--threshold",
+        "least change of a cell that counts, in percent (default: 1 on GPUs, 3 on processors)")
         ->check(CLI::Range(0.0, 1e6))
         ->option_text("P");
     add_external_option(app, "--level",
-                        "probability of any false alarm, all cells together; 0.05 when left out")
+                        "probability of any false alarm over all cells together (default: 0.05)")
         ->check(CLI::Range(1e-9, 0.5))
         ->option_text("A");
-    add_external_option(app, "--format", "text, json or markdown; text when left out")
+    add_external_option(app, "--format", "format of the output (default: text)")
         ->check(CLI::IsMember({"text", "json", "markdown"}))
         ->option_text("text|json|markdown");
-    add_external_option(app, "--commit-old", "of OLD only records of the commit that begins so")
+    add_external_option(app, "--commit-old", "use only the records of OLD whose commit begins with this text")
         ->option_text("C");
-    add_external_option(app, "--commit-new", "of NEW only records of the commit that begins so")
+    add_external_option(app, "--commit-new", "use only the records of NEW whose commit begins with this text")
         ->option_text("D");
     return run_external_action(app);
 }

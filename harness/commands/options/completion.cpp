@@ -14,15 +14,16 @@ namespace tandem {
 
 namespace {
 
-/// Prints what an offer has that begins as the text ends and is not in it yet, with what stays of the text.
+/// Prints the offered words that begin like the last entry of the text and are not in the text yet. Each word
+/// follows `prefix` and the unchanged beginning of the text.
 void print(const Offer& offer, const std::string& prefix, const std::string& text) {
     const auto last = text.find_last_of(offer.separators);
     const auto begin = std::max(last == std::string::npos ? 0 : last + 1, offer.kept);
-    auto written = text.substr(0, begin);
-    for (auto& letter : written)
+    auto earlier = text.substr(0, begin);
+    for (auto& letter : earlier)
         if (offer.separators.find(letter) != std::string_view::npos) letter = ',';
-    const auto taken = CLI::detail::split(written, ',');
-    std::set<std::string> used(taken.begin(), taken.end());
+    const auto entries = CLI::detail::split(earlier, ',');
+    std::set<std::string> used(entries.begin(), entries.end());
     for (const auto& word : offer.words)
         if (word.starts_with(text.substr(begin)) && used.insert(word).second)
             put("{}{}{}\n", prefix, text.substr(0, begin), word);
@@ -39,14 +40,14 @@ std::vector<const CLI::App*> every_command(const CLI::App& app) {
     return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }
 
-/// What may stand before any command.
+/// Prints the completions of a word before any command.
 void print_commands(const CLI::App& app, const std::string& text) {
     std::vector<std::string> names;
     for (const auto* each : every_command(app)) names.push_back(each->get_name());
     print({text.starts_with('-') ? long_options(app) : names}, "", text);
 }
 
-/// The option whose value is written, and where in the word that begins; null when none is.
+/// The option whose value is being typed, and where in the word the value begins; null when there is none.
 std::pair<const CLI::Option*, std::size_t> option_before(const LineBefore& before, const std::string& word) {
     const auto equals = word.starts_with("--") ? word.find('=') : std::string::npos;
     const bool joined = equals != std::string::npos;
@@ -56,7 +57,7 @@ std::pair<const CLI::Option*, std::size_t> option_before(const LineBefore& befor
     return {option, joined ? equals + 1 : 0};
 }
 
-/// Prints what may stand behind a command.
+/// Prints the completions of a word after a command.
 void print_next(const LineBefore& before, const std::string& word) {
     if (const auto [option, begin] = option_before(before, word); option != nullptr) {
         const auto text = word.substr(begin);
@@ -88,7 +89,8 @@ int complete(const CLI::App& app, std::span<const std::string> line) {
 Action add_completion(CLI::App& app) {
     auto shell = std::make_shared<std::string>();
     app.add_option("shell", *shell,
-                   "bash or zsh: print its script, which cmake --install puts where it is found")
+                   "bash or zsh: print the script that completes tandem's commands (cmake --install "
+                   "installs it)")
         ->required()
         ->check(CLI::IsMember({"bash", "zsh"}));
     return [shell] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Completion of lines by a shell: its script asks the program, which answers from its own tables.
+// Shell completion: the script of the shell calls the program, which answers from its own tables.
 #pragma once
 
 #include <span>
@@ -14,14 +14,14 @@ namespace tandem {
 
 enum class Shell { bash, zsh };
 
-/// The text of scripts/completion.
+/// The script of scripts/completion for this shell.
 std::string_view completion_script(Shell shell);
 
-/// Whether a script is asking: "completion --words WORD...".
+/// Whether a completion script calls the program: "completion --words WORD...".
 bool asks_for_completion(std::span<const std::string> line);
 
-/// Prints what the last WORD of such a line may become, one a line: nothing where that is a file or the
-/// user's to think of. Devices are looked for where one is wanted only. Returns 0.
+/// Prints the completions of the last WORD of such a line, one for each line. Prints nothing for files and
+/// free text. Devices are searched only when the word is a device. Returns 0.
 int complete(const CLI::App& app, std::span<const std::string> line);
 
 } // namespace tandem

@@ -11,60 +11,63 @@ namespace tandem {
 
 namespace {
 
-/// Whether the first of two options wants the second or cannot be with it.
-enum class Together { must, must_not };
+/// Whether the first of two options requires the second or excludes it.
+enum class OptionRule { requires_other, excludes_other };
 
-/// Options are "--name", "--name WHAT" as it is to be said, or "--name=value" where one value of several
-/// matters: of lists an entry, of settings what stands before the '='.
+/// Options are "--name", "--name WHAT" for the message, or "--name=value" when the rule is about one value.
+/// That is an entry of a list, or the name before '=' of a setting.
 struct Rule {
     std::string_view option;
-    Together together;
+    OptionRule relation;
     std::string_view other;
-    std::string_view why;
+    std::string_view reason;
 };
 
-constexpr std::string_view only_replays = "a profile only replays frames, and nothing is measured";
-constexpr std::string_view only_chunks = "nothing else that is exported is made of it";
-constexpr std::string_view only_auto = "nothing else has a choice to make";
+constexpr std::string_view only_replays = "--profile only replays frames and measures nothing";
+constexpr std::string_view only_chunks = "only exported chunks depend on it";
+constexpr std::string_view only_auto = "only auto makes a choice";
 
 constexpr Rule rules[] = {
-    {"--repeat", Together::must_not, "--noise", "N samples are taken however they scatter"},
-    {"--repeat", Together::must_not, "--seconds", "N samples are taken however long that takes"},
-    {"--truth-contacts", Together::must, "--truth=contacts", "no other truth has contacts"},
-    {"--choose-seconds", Together::must, "--algorithm=auto", only_auto},
-    {"--choose-afresh", Together::must, "--algorithm=auto", only_auto},
-    {"--threads", Together::must_not, "--set=threads", "both say how many threads device host has"},
-    {"--profile", Together::must_not, "--dry-run", "one replays frames and the other only lists cells"},
-    {"--profile", Together::must_not, "--resume", only_replays},
-    {"--profile", Together::must_not, "--repeat", only_replays},
-    {"--profile", Together::must_not, "--noise", only_replays},
-    {"--profile", Together::must_not, "--seconds", only_replays},
-    {"--profile", Together::must_not, "--seed", only_replays},
-    {"--profile", Together::must_not, "--isolate", only_replays},
-    {"--profile", Together::must_not, "--truth=pairs", only_replays},
-    {"--profile", Together::must_not, "--truth=contacts", only_replays},
-    {"--dry-run", Together::must_not, "--dump-pairs", "no cell is measured whose pairs could be written"},
-    {"--dry-run", Together::must_not, "--dump-contacts",
-     "no cell is measured whose contacts could be written"},
-    {"--draw-only", Together::must_not, "--measure-only", "nothing would be left to do"},
-    {"--draw-only", Together::must_not, "--again", "nothing is measured"},
-    {"--draw-only", Together::must_not, "--steps", "nothing is measured"},
-    {"--pose", Together::must, "--mesh FILE", "a scene brings its own poses"},
-    {"--resume", Together::must, "-o FILE", "that recording is what it goes on with"},
-    {"--checkpoint", Together::must, "-o FILE", "checkpoints are kept beside a recording"},
-    {"--pictures", Together::must, "-o FILE", "that recording is what they show"},
-    {"--chunks", Together::must_not, "--csv", "a file of records has no chunks"},
-    {"--builder", Together::must, "--chunks FILE", only_chunks},
-    {"--chunk-bytes", Together::must, "--chunks FILE", only_chunks},
-    {"--k", Together::must, "--chunks FILE", only_chunks},
+    {"--repeat", OptionRule::excludes_other, "--noise", "exactly N samples are taken, whatever their noise"},
+    {"--repeat", OptionRule::excludes_other, "--seconds", "exactly N samples are taken, whatever their time"},
+    {"--truth-contacts", OptionRule::requires_other, "--truth=contacts", "only that truth has contacts"},
+    {"--choose-seconds", OptionRule::requires_other, "--algorithm=auto", only_auto},
+    {"--choose-afresh", OptionRule::requires_other, "--algorithm=auto", only_auto},
+    {"--threads", OptionRule::excludes_other, "--set=threads",
+     "both set the number of threads of device host"},
+    {"--profile", OptionRule::excludes_other, "--dry-run",
+     "one replays frames and the other only lists cells"},
+    {"--profile", OptionRule::excludes_other, "--resume", only_replays},
+    {"--profile", OptionRule::excludes_other, "--repeat", only_replays},
+    {"--profile", OptionRule::excludes_other, "--noise", only_replays},
+    {"--profile", OptionRule::excludes_other, "--seconds", only_replays},
+    {"--profile", OptionRule::excludes_other, "--seed", only_replays},
+    {"--profile", OptionRule::excludes_other, "--isolate", only_replays},
+    {"--profile", OptionRule::excludes_other, "--truth=pairs", only_replays},
+    {"--profile", OptionRule::excludes_other, "--truth=contacts", only_replays},
+    {"--dry-run", OptionRule::excludes_other, "--dump-pairs",
+     "no cell is measured, so there are no pairs to write"},
+    {"--dry-run", OptionRule::excludes_other, "--dump-contacts",
+     "no cell is measured, so there are no contacts to write"},
+    {"--draw-only", OptionRule::excludes_other, "--measure-only", "nothing would be left to do"},
+    {"--draw-only", OptionRule::excludes_other, "--again", "nothing is measured"},
+    {"--draw-only", OptionRule::excludes_other, "--steps", "nothing is measured"},
+    {"--pose", OptionRule::requires_other, "--mesh FILE", "a scene has its own poses"},
+    {"--resume", OptionRule::requires_other, "-o FILE", "it continues that recording"},
+    {"--checkpoint", OptionRule::requires_other, "-o FILE", "checkpoints are stored beside a recording"},
+    {"--pictures", OptionRule::requires_other, "-o FILE", "the pictures show that recording"},
+    {"--chunks", OptionRule::excludes_other, "--csv", "a file of records has no chunks"},
+    {"--builder", OptionRule::requires_other, "--chunks FILE", only_chunks},
+    {"--chunk-bytes", OptionRule::requires_other, "--chunks FILE", only_chunks},
+    {"--k", OptionRule::requires_other, "--chunks FILE", only_chunks},
 };
 
-/// Null where the command has no such option.
+/// The option that a rule names; null when the command has no such option.
 const CLI::Option* option_of(const CLI::App& command, std::string_view text) {
     return command.get_option_no_throw(std::string(text.substr(0, text.find_first_of("= "))));
 }
 
-/// Values apart by commas are one result each, or one together, as the option has it.
+/// Values separated by commas are one result or several, depending on the option.
 bool has_value(const CLI::Option& option, std::string_view value) {
     return std::ranges::any_of(option.results(), [&](const std::string& result) {
         const auto entries = CLI::detail::split(result, ',');
@@ -79,14 +82,14 @@ bool is_given(const CLI::Option& option, std::string_view text) {
            && (equals == std::string_view::npos || has_value(option, text.substr(equals + 1)));
 }
 
-/// As it would be written: "--truth contacts".
-std::string written(std::string_view text) {
+/// The option as on a command line: "--truth contacts".
+std::string as_typed(std::string_view text) {
     std::string result(text);
     std::ranges::replace(result, '=', ' ');
     return result;
 }
 
-/// Other devices have no threads of ours. Commands that take all where none is named have some.
+/// --threads applies to device host only. `check` uses all devices by default, so it includes the host.
 void refuse_idle_threads(const CLI::App& command) {
     const auto* threads = option_of(command, "--threads");
     if (threads == nullptr || threads->count() == 0) return;
@@ -99,23 +102,23 @@ void refuse_idle_threads(const CLI::App& command) {
         });
     };
     if (!all && std::ranges::none_of(devices, is_host))
-        throw InputError("--threads goes with --device host; other devices have none to set");
+        throw InputError("--threads requires --device host; other devices have no such threads");
 }
 
-/// Whether an option of a rule is this one, whatever its value where the rule names none.
-bool is_about(std::string_view of_rule, std::string_view option) {
-    return of_rule == option || of_rule == option.substr(0, option.find('='));
+/// Whether an option of a rule is `option`. A rule without a value applies to every value.
+bool is_about(std::string_view rule_option, std::string_view option) {
+    return rule_option == option || rule_option == option.substr(0, option.find('='));
 }
 
 } // namespace
 
-bool line_speaks_against(const CLI::App& command, std::string_view option) {
+bool conflicts_with_line(const CLI::App& command, std::string_view option) {
     const auto gives = [&](std::string_view text) {
         const auto* given = option_of(command, text);
         return given != nullptr && is_given(*given, text);
     };
     return std::ranges::any_of(rules, [&](const Rule& rule) {
-        return rule.together == Together::must_not
+        return rule.relation == OptionRule::excludes_other
                && ((is_about(rule.option, option) && gives(rule.other))
                    || (is_about(rule.other, option) && gives(rule.option)));
     });
@@ -126,11 +129,11 @@ void refuse_contradictions(const CLI::App& command) {
         const auto* option = option_of(command, rule.option);
         const auto* other = option_of(command, rule.other);
         if (option == nullptr || other == nullptr || !is_given(*option, rule.option)) continue;
-        const bool must = rule.together == Together::must;
-        if (is_given(*other, rule.other) != must)
-            throw InputError(fmt::format("{} {} {}; {}", written(rule.option),
-                                         must ? "goes with" : "does not go with", written(rule.other),
-                                         rule.why));
+        const bool required = rule.relation == OptionRule::requires_other;
+        if (is_given(*other, rule.other) != required)
+            throw InputError(fmt::format("{} {} {}; {}", as_typed(rule.option),
+                                         required ? "requires" : "cannot be combined with",
+                                         as_typed(rule.other), rule.reason));
     }
     refuse_idle_threads(command);
 }

@@ -9,11 +9,11 @@ class App;
 
 namespace tandem {
 
-/// Options of a command that say no to each other, or that say nothing without another: throws InputError for
-/// the first that the line has, so that none is silently left out. After the line has been read.
+/// Throws InputError for the first given option that excludes another given one, or that requires an absent
+/// one. So no option is silently ignored. Call it after the line has been read.
 void refuse_contradictions(const CLI::App& command);
 
-/// Whether an option that the line gives does not go with `option`, which is "--name" or "--name=value".
-bool line_speaks_against(const CLI::App& command, std::string_view option);
+/// Whether an option of the line excludes `option`, which is "--name" or "--name=value".
+bool conflicts_with_line(const CLI::App& command, std::string_view option);
 
 } // namespace tandem

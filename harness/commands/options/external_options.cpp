@@ -31,7 +31,7 @@ std::vector<std::string> given_words(const CLI::App& app) {
         for (const auto& value : values)
             if (!is_flag) words.push_back(fmt::format("{}={}", name, value));
     }
-    if (!arguments.empty()) words.emplace_back("--"); // they may begin with a dash
+    if (!arguments.empty()) words.emplace_back("--"); // arguments may begin with a dash
     words.insert(words.end(), arguments.begin(), arguments.end());
     return words;
 }

@@ -23,7 +23,7 @@ std::vector<const Traversal*> every_algorithm() {
     return all;
 }
 
-/// Those that --algorithm names in the line; all when it names none.
+/// The algorithms that --algorithm names in the line; all when it names none.
 std::vector<const Traversal*> named_algorithms(const LineBefore& before) {
     std::set<std::string> names;
     for (std::size_t i = 0; i < before.words.size(); ++i) {
@@ -70,55 +70,55 @@ Words requirable_names(const LineBefore&) {
     return names;
 }
 
-/// NAME= of every setting, or NAME=VALUE where the name is written.
-Words settings(const LineBefore& before, const std::string& written) {
-    const auto equals = written.find('=');
+/// "NAME=" of every setting, or the values of the setting whose name is already typed.
+Words settings(const LineBefore& before, const std::string& typed) {
+    const auto equals = typed.find('=');
     std::set<std::string> texts;
     for (const auto* each : named_algorithms(before))
         for (const auto* parameter : each->parameters()) {
             const auto name = std::string(parameter->name) + "=";
             if (equals == std::string::npos) texts.insert(name);
-            if (written.substr(0, equals + 1) != name) continue;
+            if (typed.substr(0, equals + 1) != name) continue;
             for (const auto& word : parameter->choices()) texts.emplace(word.text);
             for (const auto value : parameter->alternatives()) texts.insert(parameter->text(value));
         }
     return {texts.begin(), texts.end()};
 }
 
-Words dynamics(const std::string& written) {
-    const auto equals = written.find('=');
+Words dynamics(const std::string& typed) {
+    const auto equals = typed.find('=');
     Words texts;
     for (const auto& setting : dynamics_settings()) {
         const auto name = std::string(setting.name) + "=";
         if (equals == std::string::npos) texts.push_back(name);
-        if (written.substr(0, equals + 1) == name) texts = setting.words;
+        if (typed.substr(0, equals + 1) == name) texts = setting.words;
     }
     return texts;
 }
 
-/// The kind of scene whose parameters are being written; null before its colon.
-const SceneKind* kind_in(const std::string& written) {
+/// The scene kind whose parameters are being typed; null before the colon.
+const SceneKind* kind_in(const std::string& typed) {
     for (const auto& kinds : {scene_kinds(), hard_kinds()})
         for (const auto& kind : kinds)
-            if (written.starts_with(kind.name + ":")) return &kind;
+            if (typed.starts_with(kind.name + ":")) return &kind;
     return nullptr;
 }
 
-/// Kinds of scene. Hard ones, which are many, once they are begun.
-Words scene_names(const std::string& written) {
+/// The scene kinds. The hard ones are many, so they are offered only after "hard".
+Words scene_names(const std::string& typed) {
     Words names;
     for (const auto& kind : scene_kinds()) names.push_back(kind.name);
-    if (written.starts_with("hard"))
+    if (typed.starts_with("hard"))
         for (const auto& kind : hard_kinds()) names.push_back(kind.name);
     return names;
 }
 
-Offer offer_scenes(const std::string& written) {
-    const auto* kind = kind_in(written);
-    if (kind == nullptr) return {scene_names(written)};
+Offer offer_scenes(const std::string& typed) {
+    const auto* kind = kind_in(typed);
+    if (kind == nullptr) return {scene_names(typed)};
     Words names;
     for (const auto& parameter : kind->parameters) names.push_back(parameter.name + "=");
-    return {names, ",", kind->name.size() + 1}; // hard kinds have a colon in their names
+    return {names, ",", kind->name.size() + 1}; // names of hard kinds contain a colon
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// report and view: pages for a browser, made by the package python/tandem/report.
+// report and view: HTML pages, written by the package python/tandem/report.
 #include "harness/commands/options/external_options.h"
 
 #include <CLI/CLI.hpp>
@@ -8,17 +8,17 @@ namespace tandem {
 
 namespace {
 
-/// Which frames of a scene, and whether contacts.
+/// The frames of a scene to show, and whether to show contacts.
 void add_scene_options(CLI::App& app, CLI::Option* scene) {
     const auto with = [&](CLI::Option* option) {
         if (scene) option->needs(scene);
         return option;
     };
-    with(add_external_option(app, "--frames", "FIRST:LAST, both inclusive; all when left out"));
-    with(add_external_option(app, "--every", "every so many of these frames only"))
+    with(add_external_option(app, "--frames", "FIRST:LAST, both inclusive (default: all)"));
+    with(add_external_option(app, "--every", "show every Nth of these frames only (default: 1)"))
         ->check(CLI::Range(1, 1000000));
-    auto* contacts = with(add_external_flag(app, "--contacts", "contacts of every frame, with normals"));
-    add_external_option(app, "--device", "the device that finds them; host when left out")->needs(contacts);
+    auto* contacts = with(add_external_flag(app, "--contacts", "show contacts and normals in every frame"));
+    add_external_option(app, "--device", "the device that finds contacts (default: host)")->needs(contacts);
 }
 
 } // namespace
@@ -28,20 +28,23 @@ Action add_report(CLI::App& app) {
                         "records of cells, profiles, simulations or ceilings (.jsonl, .jsonl.xz)")
         ->expected(CLI::detail::expected_max_vector_size)
         ->required();
-    add_external_option(app, "-o,--output", "the page; report.html when left out");
+    add_external_option(app, "-o,--output", "the HTML file to write (default: report.html)");
     add_external_option(
         app, "--against",
-        "OLD.jsonl or OLD.jsonl@COMMIT: show by how much the one FILE differs, as 'tandem compare' does");
-    add_scene_options(app, add_external_option(app, "--scene", "show this scene or recording as well"));
+        "OLD.jsonl or OLD.jsonl@COMMIT: compare the one FILE with it, as 'tandem compare' does");
+    add_scene_options(app, add_external_option(app, "--scene", "also show this scene or recording"));
     return run_external_action(app);
 }
 
 Action add_view(CLI::App& app) {
     add_external_option(app, "scene",
                         "NAME, NAME:par=value,..., a scene description (.json) or a recording (.frames)");
-    add_external_option(app, "--mesh", "a scene of mesh files instead")->take_all();
-    add_external_option(app, "--pose", "\"tx ty tz qw qx qy qz\", one per --mesh, in order")->take_all();
-    add_external_option(app, "-o,--output", "the page; named after the scene when left out");
+    add_external_option(app, "--mesh", "a mesh file of the scene, instead of SCENE; may be repeated")
+        ->take_all();
+    add_external_option(app, "--pose",
+                        "\"tx ty tz qw qx qy qz\", one per --mesh, in order (default: identity)")
+        ->take_all();
+    add_external_option(app, "-o,--output", "the HTML file to write (default: named after the scene)");
     add_scene_options(app, nullptr);
     return run_external_action(app);
 }

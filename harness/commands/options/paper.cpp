@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// paper: measured and drawn by the package python/tandem/paper.
+// paper: the package python/tandem/paper measures and draws.
 #include "harness/commands/options/external_options.h"
 #include "harness/plans/device_groups.h"
 #include "harness/commands/external.h"
@@ -14,13 +14,14 @@ namespace tandem {
 
 namespace {
 
-/// Bytes of the array that the paper's release allocates for queues: a quarter of the device's memory, at
-/// most what one buffer holds. Throws InputError where there is no such device.
+/// The size in bytes of the array that the paper's release allocates for queues: a quarter of the device's
+/// memory, limited to one buffer. Throws InputError when there is no such device.
 std::uint64_t queue_bytes_on(const std::string& device) {
     const auto backends = open_backends(std::array{device}, {});
     const auto group = choose_devices(backends, std::array{device});
     if (group.size() != 1 || group.front().size() != 1)
-        throw InputError(fmt::format("--device {}: the paper's scenes are on one device; name it", device));
+        throw InputError(
+            fmt::format("--device {}: the paper's scenes run on one device; name exactly one", device));
     const auto& info = group.front().front()->info();
     return std::min(info.global_bytes / 4, info.max_allocation);
 }
@@ -37,19 +38,19 @@ int run_paper(const CLI::App& app, const std::string& device) {
 
 Action add_paper(CLI::App& app) {
     auto device = std::make_shared<std::string>("opencl:0");
-    add_external_option(app, "-o,--output", "the folder of tables, figures, records and index.html");
-    app.add_option("--device", *device, "where; opencl:0 when left out");
+    add_external_option(app, "-o,--output", "the folder for tables, figures, records and index.html");
+    app.add_option("--device", *device, "the device to measure on (default: opencl:0)");
     add_external_option(app, "--size",
-                        "small|full: scenes for a processor, within 15 minutes on two cores, or those of the "
-                        "paper, for a GPU; small when left out")
+                        "scenes: small, for a processor (15 minutes on two cores), or full, those of the "
+                        "paper, for a GPU (default: small)")
         ->option_text("small|full");
-    add_external_option(app, "--steps", "FIRST:LAST or N of those that --dry-run lists; all when left out");
-    add_external_flag(app, "--again", "measure anew what is done already");
-    add_external_flag(app, "--measure-only",
-                      "draw nothing; --draw-only does so later, also on another machine");
+    add_external_option(app, "--steps",
+                        "FIRST:LAST or N: only these of the steps that --dry-run lists (default: all)");
+    add_external_flag(app, "--again", "measure again what is already done");
+    add_external_flag(app, "--measure-only", "draw nothing; draw later with --draw-only, on any machine");
     add_external_flag(app, "--draw-only",
-                      "tables, figures and verdicts of what the folder has; measure nothing");
-    add_external_flag(app, "--dry-run", "list the steps and how long they take; measure none");
+                      "draw tables, figures and verdicts from the records of the folder; measure nothing");
+    add_external_flag(app, "--dry-run", "list the steps and their times; measure nothing");
     return [&app, device] { return run_paper(app, *device); };
 }
 

@@ -18,8 +18,9 @@ parse_sets(const std::vector<std::string>& texts) {
             throw InputError(fmt::format("--set {}: give NAME=VALUE or NAME=VALUE,VALUE", text));
         if (text.starts_with("degenerate="))
             throw InputError(
-                fmt::format("--set {0}: it is said of frames, for all cells; give --degenerate {1}", text,
-                            text.substr(equals + 1)));
+                fmt::format("--set {0}: degenerate is no setting of a cell but of the frames, for all cells; "
+                            "give --degenerate {1}",
+                            text, text.substr(equals + 1)));
         auto& values = sets.emplace_back(text.substr(0, equals), std::vector<std::string>{}).second;
         for (const auto& part : CLI::detail::split(text.substr(equals + 1), ','))
             for (auto& value : expand_range(part, "--set " + text)) values.push_back(std::move(value));

@@ -7,12 +7,12 @@
 
 namespace tandem {
 
-/// Settings and the values of each, in order, from texts "NAME=V1,V2", where a value may be a range
-/// (ranges.h). Throws InputError.
+/// The settings and their values, in order, from texts "NAME=V1,V2". A value may be a range (see ranges.h).
+/// Throws InputError.
 std::vector<std::pair<std::string, std::vector<std::string>>>
 parse_sets(const std::vector<std::string>& texts);
 
-/// Options of a command and the texts of its --set, which are read after the line.
+/// The options of a command and the texts of its --set, which are parsed after the line has been read.
 template<class Options>
 struct Given {
     Options options;

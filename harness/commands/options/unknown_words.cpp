@@ -11,7 +11,7 @@ namespace tandem {
 
 namespace {
 
-/// Options of a command without their dashes, as a mistake in dashes is none in the name.
+/// The option names of a command without dashes, because a mistake in the dashes does not change the name.
 std::vector<std::string> option_names(const CLI::App& app) {
     std::vector<std::string> names;
     for (const auto* option : app.get_options())
@@ -19,18 +19,18 @@ std::vector<std::string> option_names(const CLI::App& app) {
     return names;
 }
 
-/// An option that begins as the word does is meant before one that takes fewer letters to reach.
+/// The option that begins with `name`, else the one with the smallest edit distance.
 std::string nearest_option(const std::string& name, const std::vector<std::string>& names) {
     const auto begun = std::ranges::find_if(names, [&](const auto& n) { return n.starts_with(name); });
     return name.size() > 1 && begun != names.end() ? *begun : nearest(name, names);
 }
 
-/// Those of the help.
+/// The commands that the help lists.
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {
     return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }
 
-/// "--algoritm=x" behind a command, or before any.
+/// The message for "--algoritm=x" after a command, or before any.
 std::string unknown_option(const CLI::App& app, const CLI::App* command, const std::string& word) {
     const auto text = word.substr(0, word.find('='));
     const auto name = text.substr(std::min(text.find_first_not_of('-'), text.size()));
@@ -41,7 +41,7 @@ std::string unknown_option(const CLI::App& app, const CLI::App* command, const s
     for (const auto* each : commands_of(app)) {
         const auto more = option_names(*each);
         if (std::ranges::find(more, name) != more.end())
-            return fmt::format("option {} belongs behind a command: tandem {} {}; see 'tandem --help'", text,
+            return fmt::format("option {} must come after a command: tandem {} {}; see 'tandem --help'", text,
                                each->get_name(), text);
         names.insert(names.end(), more.begin(), more.end());
     }
@@ -58,7 +58,7 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
 } // namespace
 
 std::string unknown_word(const CLI::App& app, std::span<const std::string> line) {
-    // Behind "--" nothing is an option.
+    // After "--" nothing is an option.
     const auto dashes = std::ranges::find(line, "--");
     const auto is_option = [&](const std::string& word) {
         return word.size() > 1 && word.starts_with('-') && std::find(line.begin(), dashes, word) != dashes;
@@ -72,14 +72,15 @@ std::string unknown_word(const CLI::App& app, std::span<const std::string> line)
         return unknown_command(app, words.front());
     if (before != words.end()) return unknown_option(app, nullptr, *before);
     if (command == nullptr) return {};
-    auto behind = command->remaining();
-    std::erase(behind, "--");
-    // A value of an option that is unknown itself is left over as well.
-    if (const auto option = std::ranges::find_if(behind, is_option); option != behind.end())
+    auto rest = command->remaining();
+    std::erase(rest, "--");
+    // The value of an unknown option is also left over, so the option is reported first.
+    if (const auto option = std::ranges::find_if(rest, is_option); option != rest.end())
         return unknown_option(app, command, *option);
-    behind.insert(behind.end(), words.begin(), words.end());
-    if (behind.empty()) return {};
-    return fmt::format("'{0}' is too much; see 'tandem {1} --help'", behind.front(), command->get_name());
+    rest.insert(rest.end(), words.begin(), words.end());
+    if (rest.empty()) return {};
+    return fmt::format("unexpected argument '{0}'; see 'tandem {1} --help'", rest.front(),
+                       command->get_name());
 }
 
 } // namespace tandem

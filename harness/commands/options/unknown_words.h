@@ -10,8 +10,8 @@ class App;
 
 namespace tandem {
 
-/// Once the words of a line could not be read: which command or option of it there is not, with the nearest
-/// that there is; empty when that is not what is wrong with it.
+/// The message for a line that could not be parsed: it names the unknown command or option and the nearest
+/// known one. Empty when the line has another mistake.
 std::string unknown_word(const CLI::App& app, std::span<const std::string> line);
 
 } // namespace tandem

@@ -144,7 +144,7 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
     const Progress progress(options.quiet);
     Measuring measuring;
     measuring.check = {options.check, false, &truths};
-    measuring.enough.repeat = options.repeat.value_or(3);
+    measuring.stopping.repeat = options.repeat.value_or(3);
     int code = 0;
     print_header();
     // Measure cell by cell, not in rounds: rows appear early, and times are not compared between cells.
