@@ -33,7 +33,7 @@ class Choosing(Case):
         record, errors = self.choose()
         chosen = record["chosen"]
         self.assertEqual(len(errors), 1, errors)
-        for word in (f"auto: {record['algorithm']} {record['preset']}", f"best of {chosen['of']} candidates", "% before",
+        for word in (f"auto: {record['algorithm']} {record['preset']}", f"best of {chosen['of']} candidates", "% ahead of",
                      "frames 0:0", "s of replays (at most 0.3)"):
             self.assertIn(word, errors[0])
         self.assertTrue(record["key"].startswith(record["algorithm"] + "|host:"))
@@ -65,7 +65,7 @@ class Choosing(Case):
         self.assertEqual(second["chosen"], {**first["chosen"], "from_cache": True})
         self.assertEqual(second["key"], first["key"])
         self.assertEqual(len(errors), 1)
-        self.assertIn(f"as {self.files()[0]} says: best of", errors[0])
+        self.assertIn(f"stored in {self.files()[0]}: best of", errors[0])
         self.assertFalse(self.choose("--choose-afresh")[0]["chosen"]["from_cache"])
         self.assertFalse(self.choose(given={"k": 6})[0]["chosen"]["from_cache"])
         self.assertEqual(len(self.files()), 2)
@@ -86,7 +86,7 @@ class Choosing(Case):
             record, errors = self.choose()
             self.assertFalse(record["chosen"]["from_cache"])
             self.assertEqual(len(errors), 2, errors)
-            self.assertIn(f"tandem: {self.files()[0]}: no choice can be read from it", errors[0])
+            self.assertIn(f"tandem: {self.files()[0]}: contains no valid choice", errors[0])
             self.assertTrue(self.choose()[0]["chosen"]["from_cache"])
         record, errors = self.choose(environment={"TANDEM_KERNEL_CACHE": "/dev/null/choices"})
         self.assertIn("tandem: /dev/null/choices/choice-", errors[0])
@@ -142,7 +142,7 @@ class Choosing(Case):
 
     def test_other_commands_do_not_choose(self):
         for arguments in (("check", "plates"), ("accuracy", "plates"), ("simulate", "tower", "-o", self.work / "x.frames")):
-            self.bad("auto chooses for 'tandem run' only", *arguments, "--algorithm", "auto", "--device", "host")
+            self.bad("auto is for 'tandem run' only", *arguments, "--algorithm", "auto", "--device", "host")
         self.bad("--help", "check", "plates", "--choose-afresh")
         self.bad("impossible", "run", "plates", "--algorithm", "auto", "--device", "host", "--set", "k=10")
         self.bad("goes with k=8 only", "run", "plates", "--algorithm", "auto", "--device", "host", "--set", "axes=coordinate")

@@ -203,7 +203,7 @@ class Shards(PlanCase):
         for change in ({"SLURM_ARRAY_TASK_ID": "8"}, {"SLURM_ARRAY_TASK_ID": "13"}, {"SLURM_ARRAY_TASK_COUNT": "no"}):
             status, _, errors = tandem("run", path, "--shard", "slurm", "--dry-run", environment={**task, **change})
             self.assertEqual((status, len(errors)), (2, 1), errors)
-        self.bad("--shard slurm: this is no task of a job array", "run", path, "--shard", "slurm", "--dry-run")
+        self.bad("--shard slurm: this process is not a task of a job array", "run", path, "--shard", "slurm", "--dry-run")
 
     def test_bad_shards(self):
         for text in ("2/2", "a/2", "1", "-1/2", "1/0", "1/2/3", "/", "0/", "1/-2", "18446744073709551616/2"):
@@ -214,7 +214,7 @@ class Shards(PlanCase):
         status, text, _ = tandem("run", plan, "--dry-run", environment={"OCL_ICD_VENDORS": "/nonexistent/"})
         self.assertEqual((status, text.count(" on host\n")), (0, 1), text)
         self.bad(["no device host:no such", "there are: host ("], "run", self.plan(devices="host:no such"), "--dry-run")
-        self.bad("cuda:each: there is no device of that back end", "run", self.plan(devices="cuda:each"), "--dry-run")
+        self.bad("cuda:each: there is no device of that backend", "run", self.plan(devices="cuda:each"), "--dry-run")
         status, text, errors = tandem("run", self.plan(devices=["host", "cuda:H100"], impossible="skip"), "--dry-run")
         self.assertEqual(status, 0, errors)
         self.assertTrue(any("skipped 1 impossible combination: no device cuda:H100" in line for line in errors), errors)

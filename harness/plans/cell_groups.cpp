@@ -8,19 +8,19 @@ namespace tandem {
 
 namespace {
 
-constexpr const char* usual_device = "opencl:0";
+constexpr const char* default_device = "opencl:0";
 
 std::vector<std::string> devices_of(const Product& product) {
-    if (product.request.devices.empty()) return {usual_device};
+    if (product.request.devices.empty()) return {default_device};
     return product.request.devices;
 }
 
-/// Whether a field of an exclusion, which is empty where it does not matter, has the value.
+/// Whether a field of an exclusion matches the value. An empty field matches every value.
 bool has(const std::vector<std::string>& field, std::string_view value) {
     return field.empty() || std::ranges::find(field, value) != field.end();
 }
 
-/// A setting that the cell does not have is not matched by any value.
+/// Whether the settings of an exclusion match the cell. A setting that the cell does not have never matches.
 bool has_settings(const Cell& cell, const Request& request) {
     const auto texts = cell.settings.texts();
     return std::ranges::all_of(request.sets, [&](const auto& set) {
@@ -29,14 +29,14 @@ bool has_settings(const Cell& cell, const Request& request) {
     });
 }
 
-/// Whether a list of devices, which is empty where it does not matter, has those of the cell.
+/// Whether a list of devices matches those of the cell. An empty list matches all.
 bool has_devices(const std::vector<std::string>& names, const Cell& cell, const ChooseDevices& choose) {
     return names.empty() || std::ranges::any_of(names, [&](const std::string& name) {
                try {
                    const auto named = choose({name});
                    return std::ranges::find(named, cell.devices) != named.end();
                } catch (const InputError&) {
-                   return false; // not here
+                   return false; // this machine has no such device
                }
            });
 }
@@ -55,7 +55,7 @@ CellGroup& group_of(std::vector<CellGroup>& groups, const std::string& scene, co
     return groups.emplace_back(CellGroup{scene, frames, {}});
 }
 
-/// Those of all names, each once; names of what there is not are unfit.
+/// The devices of all names, each once. Names of absent devices go to `unfit`.
 std::vector<DeviceGroup> chosen(const std::vector<std::string>& names, const ChooseDevices& choose,
                                 const Unfit& unfit) {
     std::vector<DeviceGroup> all;
@@ -87,7 +87,7 @@ void exclude(CellGroups& all, const Exclusion& exclusion, const ChooseDevices& c
             group.cells, [&](const Cell& cell) { return matches(exclusion.product, group, cell, choose); });
     if (matched == 0 && !exclusion.may_be_empty)
         throw InputError(
-            fmt::format("{}: matches no cell of the plan; mend it or leave it out", exclusion.place));
+            fmt::format("{}: matches no cell of the plan; correct it or leave it out", exclusion.location));
     all.excluded += matched;
 }
 

@@ -23,8 +23,8 @@ bool declares(const Traversal& traversal, const std::string& name) {
     return std::any_of(parameters.begin(), parameters.end(), [&](const auto* p) { return p->name == name; });
 }
 
-/// Every combination of the values of the settings that the algorithm declares; of all for auto, whose
-/// candidates take each what they have.
+/// Every combination of values of the settings that the algorithm declares. For auto (null) all settings
+/// count, because each candidate uses those that it declares.
 std::vector<SettingTexts> combinations(const Request& request, const Traversal* traversal) {
     std::vector<SettingTexts> all{{}};
     for (const auto& [name, values] : request.sets) {
@@ -47,12 +47,12 @@ bool names_all(const Request& request) {
            || std::ranges::find(request.algorithms, "all") != request.algorithms.end();
 }
 
-/// Null stands for auto.
+/// The algorithms of the request; null stands for auto.
 std::vector<const Traversal*> choose_algorithms(const Request& request) {
     std::vector<const Traversal*> chosen;
     for (const auto& name : request.algorithms) {
         if (name == automatic && !request.may_choose)
-            throw InputError("--algorithm auto chooses for 'tandem run' only; name one of those that 'tandem "
+            throw InputError("--algorithm auto is for 'tandem run' only; name an algorithm that 'tandem "
                              "algorithms' lists");
         if (name == "all")
             for (const auto* each : algorithms()) add_once(chosen, each);
@@ -63,14 +63,14 @@ std::vector<const Traversal*> choose_algorithms(const Request& request) {
     return chosen;
 }
 
-/// Those whose settings and presets may be named: auto has those of all.
+/// The algorithms whose settings and presets the request may name: for auto all algorithms.
 std::vector<const Traversal*> named_by(std::span<const Traversal* const> chosen) {
     if (std::find(chosen.begin(), chosen.end(), nullptr) == chosen.end())
         return {chosen.begin(), chosen.end()};
     return {algorithms().begin(), algorithms().end()};
 }
 
-/// A setting that only some of the algorithms have is no mistake: the others go without it.
+/// Checks the names of settings. It is no mistake when only some of the algorithms have a setting.
 void check_sets(const Request& request, std::span<const Traversal* const> chosen) {
     std::set<std::string> known;
     for (const auto* traversal : chosen)

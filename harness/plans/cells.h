@@ -14,58 +14,59 @@ namespace tandem {
 struct Choice;  // choosing/choice.h
 class RankTeam; // ranks/rank_team.h
 
-/// algorithm x settings x devices; the scene and frames are those of the run.
+/// A cell: algorithm x settings x devices. The run adds the scene and frames.
 struct Cell {
     const Traversal* algorithm = nullptr;
     std::string preset;
-    Settings settings; ///< resolved
+    Settings settings; ///< resolved: every setting has a value
     DeviceGroup devices;
     RankTeam* team = nullptr; ///< the ranks of a job that measure it together; null: this process alone
-    /// Of `auto`: the cells it may become, which give the same answer; until one is chosen it is the first.
+    /// Only for `auto`: the cells to choose from, which give the same answer. Until the choice, this cell
+    /// equals the first of them.
     std::vector<Cell> candidates{};
-    std::shared_ptr<const Choice> chosen{}; ///< how it was chosen; null where the user did
+    std::shared_ptr<const Choice> chosen{}; ///< how auto chose it; null when the user named it
 };
 
-/// What stands for the fastest of all algorithms where one may be named.
+/// The algorithm name that stands for the fastest of all algorithms.
 inline constexpr std::string_view automatic = "auto";
 
-/// What the user asked for.
+/// The cells that the user asked for.
 struct Request {
     std::vector<std::string> algorithms; ///< empty or "all": all, without auto
-    std::vector<std::string> presets;    ///< empty: each algorithm's first; "all"
-    std::vector<std::string> devices;    ///< "all": every one by itself; D+E: one cell on both
+    std::vector<std::string> presets;    ///< empty: the first of each algorithm; "all": all
+    std::vector<std::string> devices;    ///< "all": one cell on each device; D+E: one cell on both
     std::vector<std::pair<std::string, std::vector<std::string>>> sets; ///< --set NAME=V1,V2
-    bool may_choose = false;                                            ///< whether `auto` may be named
+    bool may_choose = false;                                            ///< whether `auto` is allowed
 };
 
-/// What becomes of a combination that fits no device, no scene or not itself: refused by throwing the error
-/// again; left out by doing nothing.
+/// Called with the error of a combination that does not fit its device, its scene or itself: refuse() throws
+/// the error again, leave_out() does nothing.
 using Unfit = std::function<void(const InputError&)>;
 [[noreturn]] void refuse(const InputError& error);
 inline void leave_out(const InputError&) {}
 
-/// All cells: devices x algorithms x presets x every combination of values; of auto, devices x every
-/// combination. InputErrors: a preset that none of the chosen algorithms has, an algorithm chosen by name
-/// that has none of the presets, a setting that none declares or that is given twice, settings that do not
-/// fit a device or each other, and auto where nothing is chosen.
+/// All cells: devices x algorithms x presets x every combination of values; for auto, devices x every
+/// combination. Throws InputError for a preset that no chosen algorithm has, an algorithm chosen by name that
+/// has none of the presets, an unknown or repeated setting, and auto where it is not allowed. Settings that
+/// do not fit a device or each other go to `unfit`.
 std::vector<Cell> plan(const Request& request, std::span<const DeviceGroup> devices,
                        const Unfit& unfit = refuse);
 
-/// Leaves out cells that stand there already; returns how many. Cells of auto stay.
+/// Removes repeated cells and returns their number. Cells of auto are kept.
 std::size_t drop_repeated(std::vector<Cell>& cells);
 
-/// The presets of `traversal` that the request names; its first when it names none at all. Throws InputError
-/// when it has none of them and was itself named.
+/// The presets of `traversal` that the request names; the first preset when the request names none. Throws
+/// InputError when the request names this algorithm but none of its presets.
 std::vector<const Preset*> choose_presets(const Request& request, const Traversal& traversal);
 
-/// One cell. Throws InputError when the settings do not fit its devices.
+/// Makes one cell. Throws InputError when the settings do not fit the devices.
 Cell make_cell(const Traversal& traversal, const Preset& preset, const SettingTexts& given,
                const DeviceGroup& devices);
 
-/// The settings that are not as the preset has them: equal cells have the same however they were asked for.
+/// The settings that differ from the preset. Equal cells have equal changes, however the user named them.
 SettingTexts changes(const Cell& cell);
 
-/// "chunked resident on opencl:0", with the settings that differ from the preset.
+/// "chunked resident on opencl:0", with the settings that differ from the preset after "resident".
 std::string describe(const Cell& cell);
 
 } // namespace tandem

@@ -24,7 +24,7 @@ std::vector<std::string> parts_of(const std::string& name) {
 
 namespace {
 
-/// Why backends have no devices, in brackets; empty when all have some.
+/// The reasons why backends have no devices, in brackets; empty when all have some.
 std::string reasons(const std::vector<BackendReport>& backends) {
     std::string text;
     for (const auto& backend : backends)
@@ -48,8 +48,8 @@ std::vector<std::string> models_of(const std::vector<BackendReport>& backends) {
     return models;
 }
 
-/// The first device that the word asks for and that the group has not; throws InputError that names the
-/// reason of absence and what there is.
+/// The first device that matches the word. A model matches only devices that are not in the group yet. Throws
+/// InputError that names the reason of absence and the available devices.
 Device* asked_device(const std::vector<BackendReport>& backends, const std::string& word,
                      const DeviceGroup& group) {
     const bool by_model = asks_for_model(word);
@@ -61,7 +61,7 @@ Device* asked_device(const std::vector<BackendReport>& backends, const std::stri
                 return device.get();
         }
     if (!by_model) throw InputError(unknown("device", word, ids_of(backends)) + reasons(backends));
-    throw InputError(fmt::format("no {}device {}: no such model of that back end; there are: {}{}",
+    throw InputError(fmt::format("no {}device {}: the backend has no such model; there are: {}{}",
                                  group.empty() ? "" : "other ", word, fmt::join(models_of(backends), ", "),
                                  reasons(backends)));
 }
@@ -72,16 +72,16 @@ DeviceGroup named_group(const std::vector<BackendReport>& backends, const std::s
     for (const auto& part : parts_of(name)) {
         auto* device = asked_device(backends, part, group);
         if (std::find(group.begin(), group.end(), device) != group.end())
-            throw InputError(fmt::format("device {}: {} is named twice; a device works for a cell once", name,
-                                         device->info().id));
+            throw InputError(fmt::format("device {}: {} is named twice; name each device of a cell once",
+                                         name, device->info().id));
         group.push_back(device);
     }
     return group;
 }
 
-/// Whether every device of "D+E+..." is there.
-bool all_there(const std::string& group, const std::vector<BackendReport>& backends) {
-    const auto is_there = [&](const std::string& part) {
+/// Whether every device of "D+E+..." is available.
+bool all_available(const std::string& group, const std::vector<BackendReport>& backends) {
+    const auto is_known = [&](const std::string& part) {
         return part == "all" || part == each_model || std::ranges::any_of(backends, [&](const auto& backend) {
                    return std::ranges::any_of(backend.devices, [&](const auto& device) {
                        const auto& info = device->info();
@@ -90,14 +90,14 @@ bool all_there(const std::string& group, const std::vector<BackendReport>& backe
                    });
                });
     };
-    return std::ranges::all_of(parts_of(group), is_there);
+    return std::ranges::all_of(parts_of(group), is_known);
 }
 
 void add_once(std::vector<DeviceGroup>& groups, DeviceGroup group) {
     if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(std::move(group));
 }
 
-/// The first device of each model. Throws InputError where there is none.
+/// Adds the first device of each model. Throws InputError when there is none.
 void add_each_model(std::vector<DeviceGroup>& chosen, const std::vector<BackendReport>& backends,
                     const std::string& name) {
     std::set<std::string> models;
@@ -106,8 +106,8 @@ void add_each_model(std::vector<DeviceGroup>& chosen, const std::vector<BackendR
             if (is_among(device->info(), name) && models.insert(model_of(device->info())).second)
                 add_once(chosen, DeviceGroup{device.get()});
     if (models.empty())
-        throw InputError(fmt::format("--device {}: there is no device of that back end; there are: {}{}",
-                                     name, fmt::join(models_of(backends), ", "), reasons(backends)));
+        throw InputError(fmt::format("--device {}: there is no device of that backend; there are: {}{}", name,
+                                     fmt::join(models_of(backends), ", "), reasons(backends)));
 }
 
 } // namespace
@@ -124,9 +124,9 @@ std::vector<BackendReport> open_backends(std::span<const std::string> names,
     wanted.insert(wanted.end(), require.begin(), require.end());
     auto backends = discover(wanted);
     const bool known =
-        std::ranges::all_of(names, [&](const auto& name) { return all_there(name, backends); })
-        && std::ranges::all_of(require, [&](const auto& name) { return is_there(name, backends); });
-    return known ? std::move(backends) : with_others(std::move(backends)); // whoever complains names all
+        std::ranges::all_of(names, [&](const auto& name) { return all_available(name, backends); })
+        && std::ranges::all_of(require, [&](const auto& name) { return is_available(name, backends); });
+    return known ? std::move(backends) : with_others(std::move(backends)); // the error message lists all
 }
 
 std::vector<DeviceGroup> choose_devices(const std::vector<BackendReport>& backends,
@@ -145,11 +145,11 @@ std::vector<DeviceGroup> choose_devices(const std::vector<BackendReport>& backen
     return chosen;
 }
 
-bool is_there(const std::string& name, const std::vector<BackendReport>& backends) {
+bool is_available(const std::string& name, const std::vector<BackendReport>& backends) {
     const auto is_backend = [&](const auto& backend) {
         return backend.name == name && !backend.devices.empty();
     };
-    return std::ranges::any_of(backends, is_backend) || all_there(name, backends);
+    return std::ranges::any_of(backends, is_backend) || all_available(name, backends);
 }
 
 } // namespace tandem

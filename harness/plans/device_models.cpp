@@ -15,8 +15,8 @@ bool same_letter(char a, char b) {
     return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
 }
 
-/// What stands behind the first colon; empty without one.
-std::string_view behind_backend(std::string_view word) {
+/// The text after the first colon; empty without one.
+std::string_view after_backend(std::string_view word) {
     const auto colon = word.find(':');
     return colon == std::string_view::npos ? std::string_view() : word.substr(colon + 1);
 }
@@ -28,7 +28,7 @@ std::string model_name(const DeviceInfo& info) { return info.id == "host" ? proc
 std::string_view backend_of(std::string_view name) { return name.substr(0, name.find(':')); }
 
 bool asks_for_model(std::string_view word) {
-    const auto text = behind_backend(word);
+    const auto text = after_backend(word);
     const bool is_number = std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
     return !text.empty() && !is_number && text != each_model;
 }
@@ -36,21 +36,21 @@ bool asks_for_model(std::string_view word) {
 bool is_of_model(const DeviceInfo& info, std::string_view word) {
     if (!asks_for_model(word) || backend_of(info.id) != backend_of(word)) return false;
     const auto model = model_name(info);
-    const auto text = behind_backend(word);
-    // Not that of std::ranges: clang 14 does not compile g++ 12's.
+    const auto text = after_backend(word);
+    // No std::ranges::search: clang 14 does not compile the one of g++ 12.
     return std::search(model.begin(), model.end(), text.begin(), text.end(), same_letter) != model.end();
 }
 
-bool asks_for_each(std::string_view word) { return word == each_model || behind_backend(word) == each_model; }
+bool asks_for_each(std::string_view word) { return word == each_model || after_backend(word) == each_model; }
 
 bool is_among(const DeviceInfo& info, std::string_view each) {
     return each == each_model || backend_of(each) == backend_of(info.id);
 }
 
-/// A bar would end the part.
+/// Replaces '|', which separates the parts of a key.
 std::string model_of(const DeviceInfo& info) {
     const auto backend = info.id.substr(0, info.id.find(':'));
-    const bool is_host = backend == "host"; // which is no product of anyone
+    const bool is_host = backend == "host"; // has no driver: the compiler stands for it
     auto model = fmt::format("{}:{}{}, {}", backend, model_name(info),
                              info.is_gpu ? "" : fmt::format(" x{}", info.compute_units),
                              is_host ? info.compiler : info.driver);

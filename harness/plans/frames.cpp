@@ -11,7 +11,7 @@ namespace tandem {
 
 namespace {
 
-/// Of any frame of the scene, without lists of skipped tetrahedra.
+/// The bytes of any frame of the scene, without lists of skipped tetrahedra.
 std::uint64_t bytes_of_frame(const Scene& scene) {
     constexpr std::uint64_t lists =
         sizeof(decltype(Frame::deformed)::value_type) + sizeof(decltype(Frame::skipped)::value_type);
@@ -25,14 +25,14 @@ std::uint64_t bytes_of_frame(const Scene& scene) {
 
 void check_frames(const Scene& scene, std::size_t first, std::size_t last) {
     if (first <= last && last < scene.frame_count) return;
-    const auto wanted = fmt::format("frames {}:{} are impossible", first, last);
+    const auto message = fmt::format("frames {}:{} are impossible", first, last);
     if (first <= last && scene.dynamics)
         throw InputError(
             fmt::format("{}; scene {} moves by simulation and has its start only, frame 0: record it "
                         "with 'tandem simulate {} -o FILE.frames' and name FILE.frames",
-                        wanted, scene.name, scene.name));
-    if (first <= last && !scene.end.empty()) throw InputError(fmt::format("{}; {}", wanted, scene.end));
-    throw InputError(fmt::format("{}; scene {} has frames 0:{}", wanted, scene.name, scene.frame_count - 1));
+                        message, scene.name, scene.name));
+    if (first <= last && !scene.end.empty()) throw InputError(fmt::format("{}; {}", message, scene.end));
+    throw InputError(fmt::format("{}; scene {} has frames 0:{}", message, scene.name, scene.frame_count - 1));
 }
 
 FrameRange::FrameRange(const Scene& scene, std::size_t first, std::size_t last, Degenerate handling,
@@ -41,7 +41,7 @@ FrameRange::FrameRange(const Scene& scene, std::size_t first, std::size_t last, 
     check_frames(scene, first, last);
     const auto bytes = bytes_of_frame(scene);
     FlawSearch search(scene, first);
-    auto frames = look_through(search, std::clamp<std::uint64_t>(budget / bytes, 1, size()));
+    auto frames = search_flaws(search, std::clamp<std::uint64_t>(budget / bytes, 1, size()));
     flaws_ = search.flaws(handling);
     auto all_bytes = bytes * size();
     if (handling == Degenerate::skip && flaws_.any()) {
@@ -49,16 +49,16 @@ FrameRange::FrameRange(const Scene& scene, std::size_t first, std::size_t last, 
         left_out_.emplace(std::move(search));
     }
     if (all_bytes > budget) return;
-    held_ = std::move(frames);
+    stored_ = std::move(frames);
     if (left_out_)
-        for (auto& frame : held_) left_out_->leave_out(*frame);
+        for (auto& frame : stored_) left_out_->leave_out(*frame);
 }
 
-/// Every frame, `most` at a time, which are searched on all cores together; returns the last of them.
-FrameRange::Frames FrameRange::look_through(FlawSearch& search, std::size_t most) const {
+/// Searches every frame for flaws, `most` frames at a time on all cores. Returns the last batch of frames.
+FrameRange::Frames FrameRange::search_flaws(FlawSearch& search, std::size_t most) const {
     Frames frames;
     for (std::size_t begin = 0; begin < size(); begin += most) {
-        frames.clear(); // before the next take memory
+        frames.clear(); // frees memory before the next batch takes some
         for (auto i = begin; i < std::min(size(), begin + most); ++i)
             frames.push_back(std::make_shared<Frame>(scene_.frame(first_ + i)));
         search.add(frames);
@@ -66,18 +66,18 @@ FrameRange::Frames FrameRange::look_through(FlawSearch& search, std::size_t most
     return frames;
 }
 
-std::shared_ptr<Frame> FrameRange::made(std::size_t index) const {
+std::shared_ptr<Frame> FrameRange::make_frame(std::size_t index) const {
     auto frame = std::make_shared<Frame>(scene_.frame(first_ + index));
     if (left_out_) left_out_->leave_out(*frame);
     return frame;
 }
 
 std::shared_ptr<const Frame> FrameRange::frame(std::size_t index) const {
-    if (!held_.empty()) return held_.at(index);
+    if (!stored_.empty()) return stored_.at(index);
     const std::lock_guard lock(mutex_);
     if (recent_ && recent_index_ == index) return recent_;
-    recent_.reset(); // before the next takes memory
-    recent_ = made(index);
+    recent_.reset(); // frees memory before the next frame takes some
+    recent_ = make_frame(index);
     recent_index_ = index;
     return recent_;
 }

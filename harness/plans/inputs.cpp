@@ -17,7 +17,8 @@ namespace tandem {
 
 namespace {
 
-/// "tx ty tz qw qx qy qz". The bounds on the squared norm keep normalising clear of overflow and of 0 / 0.
+/// Parses "tx ty tz qw qx qy qz". The bounds on the squared norm prevent overflow and 0 / 0 in the
+/// normalization.
 Pose parse_pose(const std::string& text) {
     std::istringstream in(text);
     std::array<double, 7> v{};
@@ -31,7 +32,7 @@ Pose parse_pose(const std::string& text) {
     return {Eigen::Quaterniond(v[3], v[4], v[5], v[6]).normalized(), Eigen::Vector3d(v[0], v[1], v[2])};
 }
 
-/// One number of `whole`, which the message repeats as it was given.
+/// Parses one number of `whole`, the text of the option, which the error message quotes.
 std::size_t parse_number(std::string_view text, const std::string& whole) {
     std::size_t value = 0;
     const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -46,13 +47,13 @@ Scene open_scene(const RunOptions& options) {
     if (options.meshes.empty()) {
         if (options.scene.empty())
             throw InputError("no scene; name one (see 'tandem scenes') or give --mesh FILE");
-        if (!options.poses.empty()) throw InputError("--pose goes with --mesh; a scene brings its own poses");
+        if (!options.poses.empty()) throw InputError("--pose requires --mesh; a scene has its own poses");
         return make_scene(options.scene);
     }
     if (!options.scene.empty() || options.scenes.size() > 1)
         throw InputError("a scene and --mesh exclude each other; leave one out");
     if (options.poses.size() > options.meshes.size())
-        throw InputError("more --pose than --mesh; give one pose a mesh at most");
+        throw InputError("more --pose than --mesh; give at most one pose for each mesh");
     std::vector<Pose> poses;
     for (const auto& text : options.poses) poses.push_back(parse_pose(text));
     return scene_from_meshes(options.meshes, poses);
@@ -86,16 +87,16 @@ void limit_memory(const RunOptions& options, const std::vector<BackendReport>& b
 }
 
 void check_required(const std::vector<BackendReport>& backends, const std::vector<std::string>& require) {
-    std::vector<std::string> there;
+    std::vector<std::string> available;
     for (const auto& backend : backends)
-        for (const auto& device : backend.devices) there.push_back(device->info().id);
-    for (const auto& wanted : require) {
-        if (is_there(wanted, backends)) continue;
+        for (const auto& device : backend.devices) available.push_back(device->info().id);
+    for (const auto& name : require) {
+        if (is_available(name, backends)) continue;
         const auto backend = std::find_if(backends.begin(), backends.end(),
-                                          [&](const auto& report) { return report.name == wanted; });
+                                          [&](const auto& report) { return report.name == name; });
         const auto reason = backend != backends.end() ? backend->reason : "no such backend or device";
         throw InputError(
-            fmt::format("--require {}: {} (there are: {})", wanted, reason, fmt::join(there, ", ")));
+            fmt::format("--require {}: {} (there are: {})", name, reason, fmt::join(available, ", ")));
     }
 }
 

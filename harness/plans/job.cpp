@@ -20,7 +20,7 @@ namespace tandem {
 
 namespace {
 
-/// Cells whose precision cannot hold the coordinates of a frame; asked once for each precision.
+/// Removes cells whose precision cannot represent the coordinates of a frame. Each precision is checked once.
 void fit_coordinates(Job& job, const Unfit& unfit) {
     std::map<Precision, std::optional<InputError>> known;
     std::erase_if(job.cells, [&](const Cell& cell) {
@@ -52,20 +52,21 @@ Job::Job(Scene opened, const RunOptions& given, std::vector<Cell> planned, const
 
 namespace {
 
-/// Where results go: records to a file, and rounds of cells that need more to the file beside it.
+/// Writes results: records to a file, and the rounds of unfinished cells to the file beside it.
 class ResultSink {
 public:
     ResultSink(RecordFile& file, Unfinished* unfinished) : file_(file), unfinished_(unfinished) {}
 
-    /// What was measured of a cell before, by the key of what was asked for.
+    /// The earlier state of a cell, by the key of the requested settings.
     CellState state(const Cell& cell, const std::string& key) {
         return unfinished_ == nullptr ? CellState() : unfinished_->state(cell, key);
     }
-    /// Keeps a cell that needs more rounds: its whole state, or its last round.
+    /// Stores a cell that needs more rounds: its whole state, or its last round.
     void keep(const CellSampler& sampler, const std::string& key, bool whole) {
         if (unfinished_ != nullptr) unfinished_->keep(key, sampler.state(), whole);
     }
-    /// Appends a record and reports why its cell failed, if it did. False when it could not be written.
+    /// Appends a record and prints the failure of its cell, if any. Returns false when it could not be
+    /// written.
     bool end(const CellResult& result, const nlohmann::ordered_json& record, const std::string& failure) {
         const bool recorded = file_.append_or_report(record);
         if (!failure.empty()) print_message("tandem: {}: {}\n", describe(*result.cell), failure);
@@ -78,7 +79,8 @@ private:
     Unfinished* unfinished_;
 };
 
-/// A device that fails costs its own cell: the record says why, and the others go on.
+/// Ends a cell. A failed device affects only its own cell: the record names the failure, and other cells
+/// continue.
 CellResult end_cell(const Outcome& outcome, const Sampling& sampling, const Job& job, ResultSink& sink) {
     CellResult result;
     result.cell = &outcome.sampler->cell();
@@ -97,11 +99,11 @@ CellResult end_cell(const Outcome& outcome, const Sampling& sampling, const Job&
     return result;
 }
 
-std::string asked_key(const Cell& cell, const Job& job) {
+std::string requested_key(const Cell& cell, const Job& job) {
     return key_of(cell, cell.settings, job.scene, job.range);
 }
 
-/// What rank 0 has of a cell that an earlier run began; of one process its own.
+/// The state of a cell that an earlier run began. Collective: all ranks get the state of rank 0.
 CellState shared_state(const Cell& cell, CellState own) {
     if (cell.team == nullptr || !cell.team->decided(own.is_checked())) return own;
     const auto text = cell.team->decided(
@@ -116,7 +118,7 @@ CellState shared_state(const Cell& cell, CellState own) {
 
 std::unique_ptr<CellSampler> make_sampler(const Cell& cell, const Job& job, References& references,
                                           ResultSink& sink) {
-    auto state = shared_state(cell, sink.state(cell, asked_key(cell, job)));
+    auto state = shared_state(cell, sink.state(cell, requested_key(cell, job)));
     if (job.options.isolate) return std::make_unique<IsolatedSampler>(cell, job.options, std::move(state));
     return std::make_unique<LocalSampler>(cell, job.scene, job.range, references, std::move(state));
 }
@@ -138,7 +140,7 @@ bool measure_cells(const Job& job, std::span<const Cell> cells, References& refe
     };
     listener.stop = [&] { return sink.failed() || measuring.stop(); };
     listener.kept = [&](const CellSampler& sampler, bool is_first) {
-        sink.keep(sampler, asked_key(sampler.cell(), job), is_first);
+        sink.keep(sampler, requested_key(sampler.cell(), job), is_first);
     };
     listener.finished = [&](const Outcome& outcome, const Sampling& sampling) {
         ++done;

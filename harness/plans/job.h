@@ -10,22 +10,22 @@
 
 namespace tandem {
 
-/// What is measured: a scene's frames and cells; the devices belong to whoever found them. It stays in its
-/// place, since its frames are made of its scene.
+/// The work of a measurement: a scene with its frames and cells. The caller owns the devices. A job cannot
+/// move, because its frames refer to its scene.
 struct Job {
-    /// Opens the frames and handles their flaws; throws InputError when they, the outputs or the cells do not
-    /// fit each other; cells that the scene does not fit are `unfit`.
+    /// Opens the frames and handles their flaws. Throws InputError when frames, outputs and cells do not fit
+    /// each other. Cells that do not fit the scene go to `unfit`.
     Job(Scene opened, const RunOptions& given, std::vector<Cell> planned, const Unfit& unfit = refuse);
     Job(const Job&) = delete;
     Job& operator=(const Job&) = delete;
 
-    RunOptions options; ///< with this scene and its frames
+    RunOptions options; ///< for this scene and its frames
     Scene scene;
     FrameRange range;
     std::vector<Cell> cells;
 };
 
-/// Of the scene that the options name, which it opens; throws as the job's constructor.
+/// Opens the scene of the options and makes its job. Throws as the constructor of Job.
 Job open_job(const RunOptions& options, std::vector<Cell> cells, const Unfit& unfit = refuse);
 
 /// How the cells of a job are measured.
@@ -33,27 +33,27 @@ struct Measuring {
     CheckOptions check;
     StoppingCriterion stopping;
     std::uint64_t seed = 0;
-    Unfinished* unfinished = nullptr; ///< where rounds are kept; null: nowhere
+    Unfinished* unfinished = nullptr; ///< stores the rounds of unfinished cells; null: they are not stored
     std::function<bool()> stop = [] { return false; };
 };
 
-/// What became of a cell.
+/// The result of a cell.
 struct CellResult {
     const Cell* cell = nullptr;
     Measurement measurement;
-    int code = 0; ///< 0 right, 1 the answer is wrong, 3 the device failed or the record was not written
-    bool measured = false;  ///< also without a record
-    bool converged = false; ///< or sampled as often as asked for
+    int code = 0; ///< 0: right; 1: the answer is wrong; 3: the device failed or the record was not written
+    bool measured = false;  ///< the device did not fail; the record may still be missing
+    bool converged = false; ///< precise enough, or sampled as often as requested
 };
 
-/// Measures cells of the job as one group, appends a record for each as it ends, also when its device failed,
-/// which is then said, and hands it over. A record that cannot be written ends it. Returns whether it was
-/// interrupted: cells that had not begun then have no record.
+/// Measures the cells as one group. Appends a record for each cell as it ends, also when its device failed,
+/// and calls `ended`. Stops when a record cannot be written. Returns whether the measurement was interrupted:
+/// then cells that had not begun have no record.
 bool measure_cells(const Job& job, std::span<const Cell> cells, References& references,
                    const Measuring& measuring, RecordFile& file, const Progress& progress,
                    const std::function<void(const CellResult&)>& ended);
 
-/// Where digests of references and errors against the truth are kept; empty with --check-afresh.
+/// The folder for stored digests of references and errors against the truth; empty with --check-afresh.
 std::filesystem::path checks_folder(const RunOptions& options);
 
 /// A line that says what scene it is, one for tetrahedra of negative volume and one for flawed ones.

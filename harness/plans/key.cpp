@@ -25,7 +25,7 @@ std::string settings_key(const SettingTexts& settings) {
     return key;
 }
 
-/// What was done with flawed tetrahedra, where that changes the answer.
+/// The handling of flawed tetrahedra, when it changes the answer.
 std::string handling_key(const Flaws& flaws) {
     return flaws.handling == Degenerate::skip && flaws.any() ? ",degenerate=skip" : "";
 }

@@ -7,14 +7,13 @@
 
 namespace tandem {
 
-/// What a cell measures, in one line:
+/// The key of a cell, in one line:
 ///   algorithm|backend:model, driver[+...]|scene with parameters@digest|first:last|settings
-/// with ",degenerate=skip" behind the frames where tetrahedra were skipped. Records of equal keys are
-/// comparable: they measured the same thing on the same model of device with the same driver, whichever card
-/// it was and whenever.
+/// ",degenerate=skip" follows the frames when tetrahedra were skipped. Records with equal keys are
+/// comparable: they measured the same work on the same model of device with the same driver.
 std::string key_of(const Cell& cell, const Settings& settings, const Scene& scene, const FrameRange& range);
 
-/// The same with other settings behind the last bar, "name=value,..." in the order of names.
+/// A key from the part before the settings. Settings are added as "name=value,..." in the order of names.
 std::string with_settings(const std::string& before_settings, const SettingTexts& settings);
 
 } // namespace tandem

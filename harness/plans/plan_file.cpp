@@ -19,12 +19,12 @@ using Texts = std::vector<std::string>;
 
 const Texts product_fields{"scenes", "frames", "algorithms", "presets", "settings", "devices"};
 
-/// Options of `tandem run` that take a value and that a plan may give.
+/// Options with a value of `tandem run` that a plan may give.
 const Texts valued{"noise",          "seconds",    "repeat", "seed",   "truth",
                    "truth-contacts", "degenerate", "memory", "timeout"};
 const Texts flags{"no-check", "no-count", "check-afresh", "isolate"};
 
-/// A number as a user would write it, or the string.
+/// The string, or a number as a user would write it.
 std::string scalar(const Json& json, const JsonLocation& location) {
     if (json.is_string()) {
         if (json.get<std::string>().empty()) location.fail("is empty");
@@ -35,10 +35,10 @@ std::string scalar(const Json& json, const JsonLocation& location) {
     return fmt::format("{}", number(json, location));
 }
 
-/// One string or number, or a list of them, which is not empty.
+/// One string or number, or a non-empty list of them.
 Texts scalars(const Json& json, const JsonLocation& location) {
     if (!json.is_array()) return {scalar(json, location)};
-    if (json.empty()) location.fail("is empty, and so would be the plan; leave it out or name something");
+    if (json.empty()) location.fail("is an empty list; add a value or leave the field out");
     Texts texts;
     for (std::size_t i = 0; i < json.size(); ++i) texts.push_back(scalar(json[i], location / i));
     return texts;
@@ -51,7 +51,7 @@ Texts expanded(const Texts& values, const JsonLocation& location) {
     return all;
 }
 
-/// Values by name over those of the plan; null takes a setting of the plan away.
+/// Replaces settings by name; null removes a setting of the plan.
 void read_sets(const Json& json, const JsonLocation& location, Request& request) {
     if (!json.is_object()) location.fail("must be an object: a value, or a list of them, for each setting");
     for (const auto& [name, value] : json.items()) {
@@ -70,19 +70,19 @@ Texts scene_texts(const Texts& given, const std::filesystem::path& folder) {
     return scenes;
 }
 
-/// The fields of a product over those of `base`.
+/// A copy of `base` with the fields of the JSON object replaced.
 Product read_product(const Json& json, const JsonLocation& location, const Product& base) {
     auto product = base;
-    const auto take = [&](const char* name, Texts& texts) {
+    const auto read = [&](const char* name, Texts& texts) {
         if (json.contains(name)) texts = scalars(json[name], location / name);
     };
     if (json.contains("scenes"))
         product.scenes = scene_texts(scalars(json["scenes"], location / "scenes"),
                                      std::filesystem::path(location.file).parent_path());
-    take("frames", product.frames);
-    take("algorithms", product.request.algorithms);
-    take("presets", product.request.presets);
-    take("devices", product.request.devices);
+    read("frames", product.frames);
+    read("algorithms", product.request.algorithms);
+    read("presets", product.request.presets);
+    read("devices", product.request.devices);
     if (json.contains("settings")) read_sets(json["settings"], location / "settings", product.request);
     return product;
 }
@@ -103,7 +103,8 @@ void read_products(const Json& json, const JsonLocation& root, PlanFile& plan) {
         const auto location = root / "include" / i;
         check_names(more[i], location, product_fields);
         plan.products.push_back(read_product(more[i], location, base));
-        if (plan.products.back().scenes.empty()) location.fail("has no scenes, and neither has the plan");
+        if (plan.products.back().scenes.empty())
+            location.fail("has no scenes, and the plan has none; add \"scenes\"");
     }
     if (plan.products.empty()) root.fail("has no scenes; name some in \"scenes\", or in \"include\"");
 }
@@ -133,7 +134,7 @@ void read_measure(const Json& json, const JsonLocation& location, PlanFile& plan
 
 } // namespace
 
-/// A file that is no JSON is left to whom it is for, who says what is wrong with it.
+/// Invalid JSON is no error here: the reader of scenes reports it.
 bool is_plan(const std::string& path) {
     if (!path.ends_with(".json") || std::filesystem::is_directory(path)) return false;
     try {
@@ -152,7 +153,7 @@ PlanFile read_plan(const std::string& path) {
     check_names(json, root, known);
     PlanFile plan;
     plan.name = text(json.at("plan"), root / "plan");
-    if (plan.name.empty()) (root / "plan").fail("is empty; say in a few words what is measured");
+    if (plan.name.empty()) (root / "plan").fail("is empty; describe in a few words what is measured");
     read_products(json, root, plan);
     read_exclusions(json, root, plan);
     if (json.contains("impossible"))

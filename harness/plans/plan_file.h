@@ -5,35 +5,35 @@
 
 namespace tandem {
 
-/// scenes x frames x what a request names: cells, before any device is looked at.
+/// A product scenes x frames x request: cells, before any device is opened.
 struct Product {
     std::vector<std::string> scenes; ///< as on the command line
     std::vector<std::string> frames; ///< "FIRST:LAST" or "N"; empty: all of the scene
     Request request;
 };
 
-/// Cells that are not wanted: those that match every field of `product` that is not empty.
+/// Excludes the cells that match every field of `product` that is not empty.
 struct Exclusion {
     Product product;
-    std::string place;         ///< in the file, for messages
-    bool may_be_empty = false; ///< it may match no cell: the plan's own were replaced
+    std::string location;      ///< in the file, for messages
+    bool may_be_empty = false; ///< may match no cell, because options replaced fields of the plan
 };
 
-/// What is measured, as a file of results/plan.schema.json says it.
+/// A plan, as in a file of results/plan.schema.json.
 struct PlanFile {
-    std::string name; ///< what stands behind "plan"
+    std::string name; ///< the value of "plan"
     std::vector<Product> products;
     std::vector<Exclusion> exclusions;
-    bool skips_impossible = false; ///< instead of refusing what fits no device, scene or not itself
-    /// Options of `tandem run` under their names without dashes, and their values; "" of flags.
+    bool skips_impossible = false; ///< skips cells that do not fit a device, a scene or themselves
+    /// Options of `tandem run`: names without dashes, and values; "" for flags.
     std::vector<std::pair<std::string, std::string>> measure;
 };
 
-/// Whether the path is that of a JSON file whose top level has a "plan"; false where it cannot be read.
+/// Whether the path is a JSON file with "plan" at the top level; false when it cannot be read.
 bool is_plan(const std::string& path);
 
-/// Scenes that are files are found relative to the plan. Throws InputError that names the place: what is no
-/// JSON, unknown fields, values of other types, empty lists, ranges that never end.
+/// Reads a plan. Paths of scene files are relative to the plan. Throws InputError that names the location:
+/// invalid JSON, unknown fields, values of wrong types, empty lists, ranges that never end.
 PlanFile read_plan(const std::string& path);
 
 } // namespace tandem

@@ -13,7 +13,7 @@ namespace tandem {
 namespace {
 
 constexpr std::size_t most_values = 10000;
-/// Below this every whole number is a double.
+/// Below this bound a double represents every whole number exactly.
 constexpr double largest_whole = 9007199254740992.0; // 2^53
 
 std::optional<double> number(std::string_view text) {
@@ -48,7 +48,8 @@ std::vector<std::string> expand_range(std::string_view text, const std::string& 
                         whole, text));
     std::vector<std::string> values;
     for (std::size_t i = 0;; ++i) {
-        // Each from the first, so that roundings do not add up; the last one in spite of them.
+        // Each value is computed from the first, so that rounding errors do not add up. The tolerance keeps
+        // B.
         const auto n = static_cast<double>(i);
         const double value = times ? *first * std::pow(*step, n) : *first + *step * n;
         if (value > *last * (1 + 1e-12)) return values;

@@ -13,7 +13,7 @@ namespace tandem {
 
 namespace {
 
-/// A number of the whole text; nothing where it is none.
+/// The number that is the whole text; none when it is no number.
 std::optional<std::size_t> number_of(std::string_view text) {
     std::size_t value = 0;
     const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -27,7 +27,7 @@ std::optional<std::size_t> number_in_environment(const char* name) {
     return text != nullptr ? number_of(text) : std::nullopt;
 }
 
-/// Tasks of an array may begin at any number, and be any number apart.
+/// Task numbers of an array may start at any number and have any constant step.
 Shard shard_of_slurm() {
     const auto task = number_in_environment("SLURM_ARRAY_TASK_ID");
     const auto first = number_in_environment("SLURM_ARRAY_TASK_MIN");
@@ -36,8 +36,8 @@ Shard shard_of_slurm() {
     if (!task || !first || !count || step == 0 || *task < *first || (*task - *first) % step != 0
         || (*task - *first) / step >= *count)
         throw InputError(
-            "--shard slurm: this is no task of a job array whose numbers are evenly spaced; submit it "
-            "by sbatch --array=0-N, or give I/N");
+            "--shard slurm: this process is not a task of a job array with evenly spaced numbers; submit it "
+            "with sbatch --array=0-N, or give I/N");
     return {(*task - *first) / step, *count};
 }
 

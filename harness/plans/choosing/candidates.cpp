@@ -14,13 +14,13 @@ namespace tandem {
 
 namespace {
 
-/// Settings over those that were given, and of how many a preset has another value.
+/// The given settings with alternatives, and the number of settings that differ from the preset.
 struct Variant {
     SettingTexts settings;
     std::size_t changes = 0;
 };
 
-/// Those of the settings that the algorithm declares.
+/// The given settings that the algorithm declares.
 SettingTexts declared(const Traversal& traversal, const SettingTexts& given) {
     SettingTexts own;
     for (const auto* parameter : traversal.parameters())
@@ -34,7 +34,7 @@ bool is_free(const Parameter& parameter, const SettingTexts& given) {
            && !given.contains(std::string(parameter.alternative_setting));
 }
 
-/// Every combination of the alternatives of the settings that nobody gave; the preset's own values too.
+/// Every combination of alternatives of the settings that are not given, with the preset's own values.
 std::vector<Variant> variants(const Traversal& traversal, const Preset& preset, const SettingTexts& given) {
     const auto base = resolve(traversal.parameters(), preset.values, given, traversal.name());
     std::vector<Variant> all{{given}};
@@ -60,18 +60,19 @@ bool same_answer(const Cell& a, const Cell& b) {
            && a.settings[parameters::output] == b.settings[parameters::output];
 }
 
-/// What the devices make of a cell: on the host work-groups of any size are of one work-item.
-std::string as_taken(const Cell& cell) {
+/// How the devices run a cell: on the host, for example, a work-group has one work-item whatever its size.
+std::string as_run(const Cell& cell) {
     std::string text(cell.algorithm->name());
     for (const auto* device : cell.devices)
         text += fmt::format("|{}", cell.algorithm->fitted(cell.settings, device->info()).texts());
     return text;
 }
 
-/// Cells with the changes that each takes.
+/// Cells with the number of settings that differ from the preset.
 using Changed = std::vector<std::pair<std::size_t, Cell>>;
 
-/// Adds what of one preset fits the devices. `refusal` keeps why the first that does not fit does not.
+/// Adds the variants of one preset that fit the devices. `refusal` receives the first reason for an unfit
+/// one.
 void add_fitting(Changed& cells, const Traversal& traversal, const Preset& preset, const SettingTexts& given,
                  const DeviceGroup& devices, std::string& refusal) {
     for (const auto& variant : variants(traversal, preset, declared(traversal, given))) {
@@ -85,7 +86,7 @@ void add_fitting(Changed& cells, const Traversal& traversal, const Preset& prese
 
 Changed fitting(const Request& request, const SettingTexts& given, const DeviceGroup& devices,
                 std::string& refusal) {
-    auto any = request; // an algorithm without the presets is no mistake here
+    auto any = request; // names no algorithm, so that one without the presets is no error
     any.algorithms.clear();
     Changed cells;
     for (const auto* traversal : algorithms())
@@ -101,9 +102,9 @@ Changed fitting(const Request& request, const SettingTexts& given, const DeviceG
 std::vector<Cell> candidates(const Request& request, const SettingTexts& given, const DeviceGroup& devices) {
     std::string refusal;
     std::vector<Cell> chosen;
-    std::set<std::string> taken;
+    std::set<std::string> seen;
     for (auto& [changes, cell] : fitting(request, given, devices, refusal))
-        if ((chosen.empty() || same_answer(cell, chosen.front())) && taken.insert(as_taken(cell)).second)
+        if ((chosen.empty() || same_answer(cell, chosen.front())) && seen.insert(as_run(cell)).second)
             chosen.push_back(std::move(cell));
     if (chosen.empty()) throw InputError(refusal);
     return chosen;

@@ -5,13 +5,13 @@
 
 namespace tandem {
 
-/// What `auto` may choose from on these devices: every algorithm with the presets of the request, by default
-/// its first, and of every setting with alternatives each of these, unless it is among `given`, which all
-/// have. Only cells with the answer of the first are among them, and of cells that a device takes alike one.
-/// Those that differ least from their presets come first. Throws InputError when none fits the devices.
+/// The cells that `auto` chooses from on these devices: every algorithm with the presets of the request
+/// (default: its first) and every alternative of its settings. Settings in `given` are fixed. All candidates
+/// give the same answer as the first, and the devices run no two of them alike. Those with the fewest changes
+/// to their preset come first. Throws InputError when none fits the devices.
 std::vector<Cell> candidates(const Request& request, const SettingTexts& given, const DeviceGroup& devices);
 
-/// The cell that is to become one of them.
+/// A cell with these candidates, before the choice.
 Cell undecided_cell(const Request& request, const SettingTexts& given, const DeviceGroup& devices);
 
 } // namespace tandem

@@ -58,7 +58,7 @@ Json choice_json(const Choice& choice) {
 
 Choice choice_of(const Json& json) {
     Choice choice;
-    json.at("candidates").at(0); // there is a chosen one
+    json.at("candidates").at(0); // throws when there is no chosen candidate
     for (const auto& candidate : json.at("candidates")) choice.candidates.push_back(candidate_of(candidate));
     json.at("scene").get_to(choice.scene);
     json.at("frames").at("first").get_to(choice.first);

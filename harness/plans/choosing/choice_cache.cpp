@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
 
-/// n as 4 to the power of the result, rounded down.
+/// The logarithm of n to base 4, rounded down; null for 0.
 Json power_of_4(std::uint64_t n) { return n == 0 ? Json() : Json((std::bit_width(n) - 1) / 2); }
 
 Json device_json(const Device& device) {
@@ -45,17 +45,17 @@ fs::path path_in(const char* variable) {
     return text == nullptr || *text != '/' ? fs::path() : fs::path(text);
 }
 
-/// All of `text` in `file` or what was there before; whoever reads sees no part of it.
+/// Replaces a file atomically: readers get the whole old or the whole new text.
 bool replace(const fs::path& file, const std::string& text) {
-    auto beside = file;
-    beside += fmt::format(".{}", ::getpid());
-    std::ofstream out(beside);
+    auto temporary = file;
+    temporary += fmt::format(".{}", ::getpid());
+    std::ofstream out(temporary);
     out << text;
     out.close();
     std::error_code code;
-    if (out) fs::rename(beside, file, code);
+    if (out) fs::rename(temporary, file, code);
     if (out && !code) return true;
-    fs::remove(beside, code);
+    fs::remove(temporary, code);
     return false;
 }
 
@@ -84,7 +84,7 @@ fs::path ChoiceCache::default_folder() {
             throw InputError(fmt::format("TANDEM_KERNEL_CACHE: {}", why));
         return given;
     }
-    // Nobody has asked for these: where they are not this user's own, nothing is kept.
+    // The user did not name these folders: if one is not this user's own, nothing is stored.
     fs::path folder;
     if (const auto cache = path_in("XDG_CACHE_HOME"); !cache.empty())
         folder = cache / "tandem";
@@ -108,8 +108,7 @@ std::optional<Choice> ChoiceCache::find(const Json& question, std::string& warni
             return std::nullopt;
         return choice_of(json.at("choice"));
     } catch (const Json::exception&) {
-        warning =
-            fmt::format("{}: no choice can be read from it; it is made again", file_of(question).string());
+        warning = fmt::format("{}: contains no valid choice; choosing again", file_of(question).string());
     }
     return std::nullopt;
 }
@@ -118,7 +117,7 @@ std::string ChoiceCache::keep(const Json& question, const Choice& choice) const 
     if (folder_.empty()) return {};
     const auto code = make_own(folder_);
     const Json json{{"program", program_}, {"question", question}, {"choice", choice_json(choice)}};
-    // File names in keys of scenes need not be UTF-8; JSON must be.
+    // Keys of scenes may contain file names that are not UTF-8, which JSON requires.
     if (!code && replace(file_of(question), json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"))
         return {};
     return fmt::format("{}: cannot be written; the next run chooses again", file_of(question).string());

@@ -7,28 +7,29 @@
 
 namespace tandem {
 
-/// What a choice depends on, as JSON: the devices' models, drivers and limits of memory; the class of the
-/// scene, bodies, tetrahedra and `pairs`, candidate pairs a frame, each as a power of 4 rounded down (null:
-/// none), and whether bodies are deformable; a digest of all candidates and so of what the user fixed.
+/// Everything that a choice depends on, as JSON. Devices: models, drivers, memory limits. Scene: numbers of
+/// bodies, tetrahedra and `pairs` (candidate pairs a frame) as powers of 4 rounded down (null: none), and
+/// whether bodies are deformable. Candidates: a digest of all, which includes the settings that the user
+/// fixed.
 nlohmann::ordered_json question_of(const Cell& cell, const Scene& scene, std::uint64_t pairs);
 
-/// Choices kept in JSON files, one a question, from one process to the next. Processes may share a folder.
+/// Stores choices in JSON files, one for each question, across processes. Processes may share a folder.
 class ChoiceCache {
 public:
-    /// $TANDEM_KERNEL_CACHE, else $XDG_CACHE_HOME/tandem, else ~/.cache/tandem; empty, which keeps nothing,
-    /// where none of these is there or others can write to it; throws InputError where that is so of the
-    /// first.
+    /// $TANDEM_KERNEL_CACHE, else $XDG_CACHE_HOME/tandem, else ~/.cache/tandem. Empty when none of these is
+    /// set, or when other users can write to the folder; throws InputError when they can write to the first.
     static std::filesystem::path default_folder();
 
-    /// `program`: what a choice goes out of date with. An empty folder keeps nothing.
+    /// `program` identifies this build: choices of other builds are ignored. With an empty folder nothing is
+    /// stored.
     ChoiceCache(std::filesystem::path folder, std::string program)
         : folder_(std::move(folder)), program_(std::move(program)) {}
 
     std::filesystem::path file_of(const nlohmann::ordered_json& question) const;
-    /// None when there is none, or one of another program. `warning`: why a file cannot be used, one line;
-    /// empty otherwise.
+    /// The stored choice; none when there is none of this program. `warning` receives one line when the file
+    /// cannot be used, else it is empty.
     std::optional<Choice> find(const nlohmann::ordered_json& question, std::string& warning) const;
-    /// Replaces what was there. Returns why it could not be kept, one line; empty when it was.
+    /// Stores a choice and replaces an earlier one. Returns an error message of one line; empty on success.
     std::string keep(const nlohmann::ordered_json& question, const Choice& choice) const;
 
 private:

@@ -13,7 +13,8 @@ namespace tandem {
 
 namespace {
 
-/// Compiling a candidate takes a GPU's compiler a second or two, a frame a millisecond.
+/// Preparation gets more time than replays: a GPU compiler takes a second or two, a frame about a
+/// millisecond.
 constexpr double preparing_per_measuring = 6;
 
 Choice::Candidate timed(const Cell& cell, const std::vector<std::int64_t>& replays, std::string failure) {
@@ -24,7 +25,7 @@ Choice::Candidate timed(const Cell& cell, const std::vector<std::int64_t>& repla
     return candidate;
 }
 
-/// Candidates in the order of a Choice.
+/// The candidates in the order of Choice::candidates.
 std::vector<Choice::Candidate> ordered(const Cell& cell, const SearchResult& found, const Trials& trials) {
     auto order = found.ranking;
     for (const bool failed : {true, false})
@@ -38,7 +39,7 @@ std::vector<Choice::Candidate> ordered(const Cell& cell, const SearchResult& fou
     return all;
 }
 
-/// Nothing when every candidate failed.
+/// Searches for the fastest candidate; none when every candidate failed.
 std::optional<Choice> compare(const Cell& cell, Trials& trials, const ChoosingOptions& options) {
     SearchSteps steps;
     steps.replay = [&](std::size_t i) {
@@ -59,7 +60,7 @@ std::optional<Choice> compare(const Cell& cell, Trials& trials, const ChoosingOp
     return choice;
 }
 
-/// Puts the chosen candidate in the cell's place. False when there is none of that name any more.
+/// Replaces the cell by the chosen candidate. Returns false when no candidate has that name any more.
 bool settle(Cell& cell, const Choice& choice) {
     const auto chosen =
         std::find_if(cell.candidates.begin(), cell.candidates.end(),
@@ -81,25 +82,26 @@ std::string describe(const Choice::Candidate& candidate) {
     return text;
 }
 
-/// "best of 14 candidates, 12 % before NEXT".
+/// "best of 14 candidates, 12 % ahead of NEXT".
 std::string lead(const Choice& choice) {
     const auto margin = choice.margin();
     const auto tried = std::count_if(choice.candidates.begin(), choice.candidates.end(),
                                      [](const auto& candidate) { return candidate.median_ns.has_value(); });
     auto text = fmt::format("best of {} candidates", choice.candidates.size());
     if (static_cast<std::size_t>(tried) < choice.candidates.size()) text += fmt::format(" ({} timed)", tried);
-    return margin ? fmt::format("{}, {:.1f} % before {}", text, *margin * 100, describe(*choice.runner_up()))
-                  : text;
+    return margin
+               ? fmt::format("{}, {:.1f} % ahead of {}", text, *margin * 100, describe(*choice.runner_up()))
+               : text;
 }
 
-void say(const Cell& cell, double limit, const std::filesystem::path& file) {
+void print_choice(const Cell& cell, double limit, const std::filesystem::path& file) {
     const auto& choice = *cell.chosen;
     if (choice.from_cache)
-        print_message("auto: {}, as {} says: {} on {}; --choose-afresh measures again\n", describe(cell),
+        print_message("auto: {}, stored in {}: {} on {}; --choose-afresh measures again\n", describe(cell),
                       file.string(), lead(choice), choice.scene);
     else
         print_message("auto: {}: {} on frames {}:{}, in {:.1f} s of replays (at most {:g}) and {:.1f} s of "
-                      "preparing\n",
+                      "preparation\n",
                       describe(cell), lead(choice), choice.first, choice.last, choice.seconds, limit,
                       choice.preparing);
 }
@@ -108,7 +110,7 @@ void warn(const std::string& line) {
     if (!line.empty()) print_message("tandem: {}\n", line);
 }
 
-/// Candidate pairs a frame, of the first candidate that works: the same for all of them.
+/// Candidate pairs a frame, from the first candidate that works: all candidates find the same number.
 std::uint64_t pairs_of_a_frame(const Cell& cell, Trials& trials, std::size_t frames) {
     for (std::size_t i = 0; i < cell.candidates.size(); ++i)
         if (trials.prepare(i)) break;
@@ -121,7 +123,7 @@ void choose(Cell& cell, const Scene& scene, const FrameRange& range, const Choos
     if (cell.candidates.empty()) return;
     const auto frames = std::min(range.size(), most_choosing_frames);
     const ChoiceCache cache(options.folder, program_version());
-    const auto undecided = cell; // sessions refer to its candidates
+    const auto undecided = cell; // a copy, because sessions refer to its candidates
     options.progress(fmt::format("auto: {} candidates", undecided.candidates.size()));
     Trials trials(undecided.candidates, scene, range, frames);
     const auto question = question_of(undecided, scene, pairs_of_a_frame(undecided, trials, frames));
@@ -141,7 +143,7 @@ void choose(Cell& cell, const Scene& scene, const FrameRange& range, const Choos
     warn(warning);
     if (!cell.chosen) return;
     if (!cell.chosen->from_cache) warn(cache.keep(question, *cell.chosen));
-    say(cell, options.seconds, cache.file_of(question));
+    print_choice(cell, options.seconds, cache.file_of(question));
 }
 
 } // namespace tandem

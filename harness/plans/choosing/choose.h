@@ -8,19 +8,19 @@
 
 namespace tandem {
 
-/// Frames that candidates are compared on, the first of those asked for.
+/// Maximum number of frames that candidates are compared on: the first of the range.
 inline constexpr std::size_t most_choosing_frames = 4;
 
 struct ChoosingOptions {
-    double seconds = 10; ///< of replays; preparing may take six times as long
-    bool afresh = false; ///< look for no choice that was kept
+    double seconds = 10; ///< limit of the replays; preparation may take six times as long
+    bool afresh = false; ///< ignore a stored choice
     std::filesystem::path folder = ChoiceCache::default_folder();
-    std::function<void(std::string_view)> progress = [](std::string_view) {}; ///< given "" at the end
+    std::function<void(std::string_view)> progress = [](std::string_view) {}; ///< called with "" at the end
 };
 
-/// Makes a cell with candidates the one that was kept, or else the fastest of them, which is then kept. Says
-/// in one line on standard error which, and in one each what became of the file. Where every candidate
-/// fails, the cell stays its first, whose measurement will say why.
+/// Replaces a cell with candidates by the stored choice, or else by the fastest candidate, which is then
+/// stored. Prints the choice on standard error in one line, and one line for each problem with the file. When
+/// every candidate fails, the cell stays equal to the first, and its measurement reports the failure.
 void choose(Cell& cell, const Scene& scene, const FrameRange& range, const ChoosingOptions& options);
 
 } // namespace tandem

@@ -10,13 +10,13 @@ namespace tandem {
 
 namespace {
 
-/// After one replay: processes beside this one have been seen to double a replay, not to take four times as
-/// long.
-constexpr std::int64_t hopeless = 4;
-/// Replays of a candidate in a round that tell what they can.
+/// A candidate is dropped after one replay that takes so many times the best median. Background processes
+/// have doubled the time of a replay in measurements, but never quadrupled it.
+constexpr std::int64_t hopeless_factor = 4;
+/// Maximum number of replays of a candidate in a round; more replays add no information.
 constexpr std::size_t most_sweeps = 32;
-/// Replays from which on candidates whose times do not overlap are told apart before the round ends.
-constexpr std::size_t telling = 5;
+/// After so many replays, candidates whose times do not overlap are separated before the round ends.
+constexpr std::size_t least_replays = 5;
 
 class SuccessiveHalving {
 public:
@@ -30,9 +30,9 @@ public:
 private:
     void try_all();
     void play_round();
-    /// One replay of each; false when time ran out.
+    /// Replays each remaining candidate once; false when time ran out.
     bool sweep(bool backwards);
-    /// Another replay; the candidate is dropped when it fails.
+    /// Replays a candidate, which is removed when it fails.
     void replay(std::size_t candidate);
     void drop_hopeless();
     void drop_behind();
@@ -45,7 +45,7 @@ private:
     SearchLimits limits_;
     SearchResult result_;
     std::vector<std::size_t> alive_;
-    std::vector<std::size_t> dropped_; ///< in that order
+    std::vector<std::size_t> dropped_; ///< in the order of dropping
 };
 
 void SuccessiveHalving::replay(std::size_t candidate) {
@@ -58,7 +58,7 @@ void SuccessiveHalving::replay(std::size_t candidate) {
     steps_.drop(candidate);
 }
 
-/// Half of the time is left for those that are worth it.
+/// Replays each candidate once. At least half of the time is left for the best ones.
 void SuccessiveHalving::try_all() {
     for (std::size_t candidate = 0; candidate < result_.replays.size(); ++candidate) {
         const bool late =
@@ -75,7 +75,7 @@ void SuccessiveHalving::sort_by_median() {
                      [&](auto a, auto b) { return median(result_.replays[a]) < median(result_.replays[b]); });
 }
 
-/// Of the sorted ones those from `position` on, the slowest first.
+/// Drops the sorted candidates from `position` on, the slowest first.
 void SuccessiveHalving::drop_from(std::size_t position) {
     while (alive_.size() > position) {
         dropped_.push_back(alive_.back());
@@ -87,19 +87,20 @@ void SuccessiveHalving::drop_from(std::size_t position) {
 void SuccessiveHalving::drop_hopeless() {
     sort_by_median();
     const auto behind = std::find_if(alive_.begin(), alive_.end(), [&](auto candidate) {
-        return median(times(candidate)) > static_cast<double>(hopeless) * median(times(alive_.front()));
+        return median(times(candidate))
+               > static_cast<double>(hopeless_factor) * median(times(alive_.front()));
     });
     drop_from(static_cast<std::size_t>(behind - alive_.begin()));
 }
 
-/// Those whose fastest replay is slower than the slowest of the best.
+/// Drops the candidates whose fastest replay is slower than the slowest replay of the best candidate.
 void SuccessiveHalving::drop_behind() {
     sort_by_median();
     const auto& best = times(alive_.front());
-    if (best.size() < telling) return;
+    if (best.size() < least_replays) return;
     const auto slowest = *std::max_element(best.begin(), best.end());
     const auto overlaps = [&](auto candidate) {
-        return std::ranges::min(times(candidate)) <= slowest || times(candidate).size() < telling;
+        return std::ranges::min(times(candidate)) <= slowest || times(candidate).size() < least_replays;
     };
     drop_from(static_cast<std::size_t>(std::stable_partition(alive_.begin(), alive_.end(), overlaps)
                                        - alive_.begin()));
@@ -115,7 +116,7 @@ bool SuccessiveHalving::sweep(bool backwards) {
     return has_time();
 }
 
-/// There and back: what grows steadily, such as heat, then weighs on all alike.
+/// Sweeps alternate in direction, so that a steady drift, such as heat, affects all candidates alike.
 void SuccessiveHalving::play_round() {
     const auto rounds = std::bit_width(alive_.size() - 1); // halvings until one is left
     const auto now = steps_.measured();

@@ -16,8 +16,8 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point begin) { return static_cast<double>(since(begin)) * 1e-9; }
 
 bool is_crowded(const Device& device) {
-    const auto room = std::min<std::uint64_t>(device.info().global_bytes, device.memory_limit());
-    return device.bytes_allocated() > room / 4;
+    const auto capacity = std::min<std::uint64_t>(device.info().global_bytes, device.memory_limit());
+    return device.bytes_allocated() > capacity / 4;
 }
 
 } // namespace
@@ -43,8 +43,8 @@ void Trials::make_session(std::size_t candidate) {
     run(candidate);
 }
 
-/// Alone on its devices when memory does not suffice for it and what is there.
-void Trials::make_room_and_session(std::size_t candidate) {
+/// Frees the other sessions first when device memory is short.
+void Trials::make_session_in_free_memory(std::size_t candidate) {
     const auto& devices = candidates_.front().devices;
     if (std::any_of(devices.begin(), devices.end(), [](const auto* device) { return is_crowded(*device); }))
         free_sessions();
@@ -80,7 +80,7 @@ bool Trials::prepare(std::size_t candidate) {
     if (sessions_[candidate]) return true;
     const auto begin = Clock::now();
     try {
-        make_room_and_session(candidate);
+        make_session_in_free_memory(candidate);
     } catch (const DeviceError& error) {
         failures_[candidate] = error.what();
     } catch (const InputError& error) {

@@ -9,35 +9,35 @@
 
 namespace tandem {
 
-/// Replays frames with the candidates of a cell, timed as samples are. Sessions stay as long as they take no
-/// more than a quarter of a device's memory, since what is short of it runs in batches; those that had to go
-/// are prepared again.
+/// Replays frames with the candidates of a cell, timed like samples. Sessions are kept while they use at most
+/// a quarter of a device's memory, because a session that lacks memory runs in batches. Freed sessions are
+/// prepared again when needed.
 class Trials {
 public:
-    /// The first `frames` frames of the range. All must outlive this.
+    /// Replays use the first `frames` frames of the range. All arguments must outlive this object.
     Trials(std::span<const Cell> candidates, const Scene& scene, const FrameRange& range, std::size_t frames);
 
-    /// Makes the candidate's session, unless it is there, and replays the frames once: kernels compile and
-    /// buffers grow. False when it failed, now or before.
+    /// Makes the candidate's session, if it is missing, and replays the frames once, so that kernels are
+    /// compiled and buffers grow. Returns false when the candidate failed, in this call or earlier.
     bool prepare(std::size_t candidate);
-    /// Nanoseconds of one replay; none when the candidate failed: a device did, its settings do not fit the
-    /// scene, or it found another number of pairs than the first.
+    /// Nanoseconds of one replay. None when the candidate failed: a device failed, the settings do not fit
+    /// the scene, or the number of pairs differs from the first candidate's.
     std::optional<std::int64_t> replay(std::size_t candidate);
-    /// Frees what its session holds.
+    /// Frees the candidate's session.
     void drop(std::size_t candidate) { sessions_[candidate].reset(); }
 
-    /// Candidate pairs of all frames, once one was prepared.
+    /// Candidate pairs of all frames; 0 before a candidate was prepared.
     std::uint64_t pairs() const { return pairs_.value_or(0); }
-    /// One line; empty when it did not fail.
+    /// The failure in one line; empty when the candidate did not fail.
     const std::string& failure(std::size_t candidate) const { return failures_[candidate]; }
     double measured_seconds() const { return measured_; }
     double preparing_seconds() const { return preparing_; }
 
 private:
     void make_session(std::size_t candidate);
-    void make_room_and_session(std::size_t candidate);
+    void make_session_in_free_memory(std::size_t candidate);
     void free_sessions();
-    /// Nanoseconds of the frames and nothing else. Throws DeviceError.
+    /// Nanoseconds of the frames only. Throws DeviceError.
     std::int64_t run(std::size_t candidate);
 
     std::span<const Cell> candidates_;
