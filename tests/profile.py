@@ -114,7 +114,7 @@ class Profile(Case):
         self.bad("no ceilings of opencl:0", "profile", *self.cell("--device", "opencl:0", "--ceilings", ceilings))
         measured["device"]["clock"] = "CUPTI 13.0 activity records"
         ceilings.write_text(json.dumps(measured) + "\n")
-        self.bad("were timed by CUPTI 13.0 activity records, kernels are now by steady clock", "profile", *self.cell("--device", "host", "--ceilings", ceilings))
+        self.bad("were timed by CUPTI 13.0 activity records, but kernels are timed by steady clock", "profile", *self.cell("--device", "host", "--ceilings", ceilings))
         measured["launch_timed_s"] = None # nothing that a clock has taken
         ceilings.write_text(json.dumps(measured) + "\n")
         self.assertEqual(tandem("profile", *self.cell("--device", "host", "--ceilings", ceilings, "--no-check"))[0], 0)

@@ -21,8 +21,8 @@ using Samples = std::vector<double>;
 constexpr int repeats = 9;
 constexpr std::string_view file = "algorithms/bounds/ceilings.cl";
 
-/// One device with its sizes: large buffers that no cache holds, small ones that every GPU's second level
-/// does.
+/// The measurements on one device, with its buffer sizes. Large buffers exceed every cache, small ones fit
+/// the second-level cache of every GPU.
 class Bench {
 public:
     explicit Bench(Device& device)
@@ -35,14 +35,14 @@ public:
     Ceilings run();
 
 private:
-    /// Rounded down to whole turns of the grid: 8 words of 8 bytes a work-item.
+    /// Rounds down to whole rounds of the grid, in which each work-item moves 8 words of 8 bytes.
     std::size_t fitted(std::size_t bytes) const {
-        const std::size_t turn = std::size_t{groups_} * group_ * 64;
+        const std::size_t round = std::size_t{groups_} * group_ * 64;
         return std::max<std::size_t>(1,
-                                     std::min<std::size_t>(bytes, device_.info().max_allocation / 4) / turn)
-               * turn;
+                                     std::min<std::size_t>(bytes, device_.info().max_allocation / 4) / round)
+               * round;
     }
-    /// k matters to the overlap test alone; the others are the same for all.
+    /// Only the overlap test depends on k.
     Kernel kernel(std::string_view entry, int k = 18) {
         return device_.compile(kernel_source(file), entry, geometry_defines({.k = k}, group_));
     }
@@ -64,7 +64,8 @@ private:
     std::size_t small_;
 };
 
-/// Host seconds of `work` and the wait for it, over `count`, once to warm up and then `repeats` times.
+/// Host seconds of `work` and the wait for it, divided by `count`. Runs once to warm up, then `repeats`
+/// times.
 template<class Work>
 Samples Bench::seconds(double count, const Work& work) {
     Samples samples;
@@ -79,7 +80,7 @@ Samples Bench::seconds(double count, const Work& work) {
     return samples;
 }
 
-/// `amount` over the device's time of the one command of `work`; empty when the device tells no times.
+/// `amount` divided by the device time of the one command of `work`. Empty when the device reports no times.
 template<class Work>
 Samples Bench::per_second(double amount, const Work& work) {
     device_.set_clocks(Clocks::on);
@@ -95,8 +96,8 @@ Samples Bench::per_second(double amount, const Work& work) {
     return samples;
 }
 
-/// Every work-item tests boxes that it holds in registers, `turns` times in a row: no memory is in the way. A
-/// device with few lanes takes a twentieth of the turns, to end in about the same time.
+/// Overlap tests a second. Every work-item tests boxes in its registers, `turns` times in a row, so that
+/// memory does not limit the rate. A processor does a twentieth of the turns, to take about the same time.
 Samples Bench::overlaps(int k) {
     constexpr std::uint32_t rounds = 2000;
     const auto nodes = device_.allocate(static_cast<std::size_t>(k) * 8, "nodes");
@@ -111,13 +112,13 @@ Samples Bench::overlaps(int k) {
     return per_second(tests, [&] { launch(entry, arguments); });
 }
 
-/// Only the device can time it: the host copies to page-locked memory and goes on.
+/// Uses device times, because the host only copies to page-locked memory and does not wait for the transfer.
 Samples Bench::upload_pinned(const Buffer& buffer, std::span<const std::byte> bytes) {
     if (!device_.info().stages_pinned) return {};
     return per_second(static_cast<double>(bytes.size()), [&] { device_.upload(buffer, bytes); });
 }
 
-/// What a clock around a command makes of nothing: no kernel's time is shorter.
+/// Device seconds of an empty launch that is timed alone: the time of any kernel is at least as long.
 Samples Bench::timed_launch(const Kernel& nothing, const Buffer& buffer) {
     const std::array<Argument, 1> one{buffer};
     auto samples = per_second(1, [&] { device_.launch(nothing, {1, group_}, one); });
@@ -126,7 +127,7 @@ Samples Bench::timed_launch(const Kernel& nothing, const Buffer& buffer) {
 }
 
 Ceilings Bench::run() {
-    const StageScope scope(device_, Stage::traverse); // nothing of a frame: no one looks at the stage
+    const StageScope scope(device_, Stage::traverse); // a trace needs a stage; which one does not matter here
     Ceilings c;
     const auto from = device_.allocate(large_, "source");
     const auto to = device_.allocate(large_, "target");
@@ -188,12 +189,13 @@ constexpr CeilingRow rows[] = {
     {"overlap_tests_k18_per_s", "overlap tests from registers, k = 18", &Ceilings::overlaps18, 1e-9, "G/s"},
 };
 
-/// 0 is unknown.
+/// Null for 0, which means unknown.
 nlohmann::ordered_json known(std::uint64_t number) {
     return number == 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(number);
 }
 
-nlohmann::ordered_json told_json(const DeviceInfo& info) {
+/// The numbers that the driver reports, as opposed to the measured ones.
+nlohmann::ordered_json reported_json(const DeviceInfo& info) {
     nlohmann::ordered_json json{{"cores", known(info.cores)},
                                 {"clock_mhz", known(info.clock_mhz)},
                                 {"local_bytes", known(info.local_bytes)},
@@ -219,7 +221,7 @@ nlohmann::ordered_json ceilings_record(const Device& device, const Ceilings& cei
                              ? nlohmann::ordered_json()
                              : nlohmann::ordered_json{{"median", median(samples)}, {"samples", samples}};
     }
-    json["told"] = told_json(device.info());
+    json["told"] = reported_json(device.info());
     json["environment"] = record_environment();
     return json;
 }

@@ -21,13 +21,13 @@ namespace tandem {
 
 namespace {
 
-/// Pairs of a frame that are looked at for what they touch: more take long to sort, and 16 bytes each.
-constexpr std::uint64_t most_pairs_looked_at = std::uint64_t{1} << 27;
+/// Frames with more pairs are not examined: sorting them takes long, and each pair takes 16 bytes.
+constexpr std::uint64_t most_examined_pairs = std::uint64_t{1} << 27;
 
-/// What the candidate pairs of the mean frame touch, in a replay of its own.
-void look_at_pairs(profile::Profile& profile, const Cell& cell, const Job& job, const Measurement& m) {
+/// Counts the data that the candidate pairs of the mean frame touch, in a separate replay.
+void count_touched(profile::Profile& profile, const Cell& cell, const Job& job, const Measurement& m) {
     if (m.candidate_pairs.empty() || m.settings[parameters::output] != Output::pairs
-        || *std::ranges::max_element(m.candidate_pairs) > most_pairs_looked_at)
+        || *std::ranges::max_element(m.candidate_pairs) > most_examined_pairs)
         return;
     auto& facts = profile.facts;
     Replays replays(cell, job.scene, job.range);
@@ -38,7 +38,7 @@ void look_at_pairs(profile::Profile& profile, const Cell& cell, const Job& job, 
     for (auto* sum : {&facts.touched, &facts.touched_rows, &facts.touched_vertices}) *sum /= frames;
 }
 
-/// Measured ones, of all of the device: its limit of memory is for cells.
+/// Measures the ceilings without the memory limit, which is meant for cells.
 nlohmann::ordered_json measured_ceilings(Device& device) {
     const auto limit = device.memory_limit();
     device.set_memory_limit(Device::no_memory_limit);
@@ -47,7 +47,7 @@ nlohmann::ordered_json measured_ceilings(Device& device) {
     return record;
 }
 
-/// A profile of every cell of a job.
+/// Profiles every cell of a job.
 class Profiling {
 public:
     explicit Profiling(const ProfileOptions& options);
@@ -81,11 +81,11 @@ Profiling::Profiling(const ProfileOptions& options)
     for (const auto& cell : cells)
         if (cell.devices.size() > 1)
             throw InputError(
-                fmt::format("{}: a profile is of one device; name them apart, D,E", describe(cell)));
+                fmt::format("{}: a profile needs one device; name devices separately, D,E", describe(cell)));
     job_.emplace(open_scene(run_), run_, std::move(cells));
 }
 
-/// Before cells are measured: a file that has none had better be known then.
+/// Called before cells are measured, so that a file without ceilings is reported early.
 void Profiling::find_ceilings() {
     for (const auto& cell : job_->cells) {
         auto* device = cell.devices.front();
@@ -107,12 +107,12 @@ void Profiling::print(const Cell& cell, const Measurement& m, const profile::Pro
     const auto frames = static_cast<double>(m.breakdowns.back().frame_ns.size());
     double device = 0;
     for (const auto& kernel : profile.kernels) device += kernel.ns.median;
-    put("\n{}\n{:.4g} us a frame; {:.4g} us in kernels, where each has a clock around it\n\n{}answer: {}\n",
+    put("\n{}\n{:.4g} us a frame; {:.4g} us in kernels when each is timed alone\n\n{}answer: {}\n",
         describe(cell), median_ns(m) * 1e-3 / frames, device * 1e-3, profile_table(profile, options_.all),
         a.frames == 0 ? "not checked" : (a.ok() ? "right" : "WRONG"));
 }
 
-/// A cell that needs no more rounds, or has failed.
+/// Ends a cell that needs no more rounds, or has failed: prints and records its profile.
 void Profiling::end(const Outcome& outcome, const Sampling& sampling) {
     progress_.clear();
     const auto& cell = outcome.sampler->cell();
@@ -127,7 +127,7 @@ void Profiling::end(const Outcome& outcome, const Sampling& sampling) {
     profile.limits = profile::limits_of(ceilings, static_cast<int>(settings[parameters::k]));
     profile.facts = profile::mean_frame(m);
     if (measured && !m.breakdowns.empty()) {
-        look_at_pairs(profile, cell, *job_, m);
+        count_touched(profile, cell, *job_, m);
         profile.kernels =
             profile_kernels(m, profile.facts, cell.algorithm->costs(job_->scene, settings), profile.limits);
         print(cell, m, profile);

@@ -14,12 +14,12 @@ double mean(const std::vector<std::uint64_t>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Of a term of the floor; none without both.
+/// A term of the floor; none when the amount or the ceiling is unknown.
 std::optional<double> nanoseconds(std::optional<double> amount, double per_second) {
     return amount && per_second > 0 ? std::optional(*amount * 1e9 / per_second) : std::nullopt;
 }
 
-/// Of every instrumented replay, a frame.
+/// Summary of the device time a frame, over all instrumented replays.
 Summary times_of(const Measurement& m, const std::string& entry, double frames) {
     std::vector<std::int64_t> sums;
     for (const auto& replay : m.breakdowns) {
@@ -53,7 +53,7 @@ KernelProfile profile_of(const std::string& entry, const Measurement& m, const F
     if (cost != nullptr) {
         kernel.how = cost->how;
         if (cost->bytes) kernel.bytes = cost->bytes(facts);
-        // What was not counted would count as no operation.
+        // Without counters the operations would be 0.
         if (cost->operations && !facts.work.empty()) kernel.operations = cost->operations(facts);
     }
     kernel.floor = floor_of(kernel, limits);
@@ -73,7 +73,7 @@ std::optional<double> KernelProfile::rate(std::optional<double> amount) const {
     return amount && ns.median > 0 ? std::optional(*amount * 1e9 / ns.median) : std::nullopt;
 }
 
-std::optional<double> KernelProfile::part(std::optional<double> term) const {
+std::optional<double> KernelProfile::fraction(std::optional<double> term) const {
     return term && ns.median > 0 ? std::optional(*term / ns.median) : std::nullopt;
 }
 
@@ -86,7 +86,7 @@ std::optional<std::string_view> KernelProfile::bound() const {
     const auto times = over_floor();
     if (!times) return std::nullopt;
     if (*times >= latency_from) {
-        // Of a kernel whose arithmetic is not counted it may be that.
+        // Undeclared bytes or operations may take the time.
         if (!floor.bytes || !operations) return std::nullopt;
         return "latency";
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the kernels of a cell took, and what they had to.
+// The time that the kernels of a cell took, and the floor below which they cannot get.
 #pragma once
 
 #include "algorithms/cost.h"
@@ -12,53 +12,53 @@
 
 namespace tandem::profile {
 
-/// A kernel that takes so many times its floor is bound by none of its terms.
+/// From this multiple of its floor on, no term of the floor limits a kernel.
 inline constexpr double latency_from = 3;
 
-/// The terms of a floor, nanoseconds a frame; none where nothing is declared or the ceiling is not known.
+/// The terms of a floor in nanoseconds a frame. None when nothing is declared or the ceiling is unknown.
 struct Floor {
     std::optional<double> bytes, operations, launches;
-    bool cached = false; ///< bytes are held against the cache: all of a frame's fit it
+    bool cached = false; ///< the bytes of a frame fit the cache, so its rate is the ceiling
 
-    /// The largest; none without any.
+    /// The largest term; none without any.
     std::optional<double> ns() const;
 };
 
-/// One kernel, by its entry point; of a frame.
+/// The profile of one kernel, by its entry point. Numbers are for one frame.
 struct KernelProfile {
     std::string entry;
-    Summary ns;          ///< device time, over the rounds' instrumented replays
-    KernelSample sample; ///< of the last replay, over its frames
+    Summary ns;          ///< device time over the instrumented replays of all rounds
+    KernelSample sample; ///< sum over the frames of the last replay
     double launches = 0;
-    double share = 0;                        ///< of the device time of all kernels
-    std::optional<double> bytes, operations; ///< declared ones (algorithms/cost.h)
-    std::string_view how;                    ///< what of it is declared; empty: nothing
+    double share = 0;                        ///< fraction of the device time of all kernels
+    std::optional<double> bytes, operations; ///< declared costs (algorithms/cost.h)
+    std::string_view how;                    ///< how the declared costs are counted; empty: none declared
     Floor floor;
 
     /// Bytes and operations a second.
     std::optional<double> bytes_per_s() const { return rate(bytes); }
     std::optional<double> operations_per_s() const { return rate(operations); }
-    /// Shares of the ceilings.
-    std::optional<double> of_bytes() const { return part(floor.bytes); }
-    std::optional<double> of_operations() const { return part(floor.operations); }
-    /// Measured over floor.
+    /// Fractions of the ceilings.
+    std::optional<double> of_bytes() const { return fraction(floor.bytes); }
+    std::optional<double> of_operations() const { return fraction(floor.operations); }
+    /// Measured time divided by the floor.
     std::optional<double> over_floor() const;
-    /// "memory", "cache", "operations" or "launches": the largest term of the floor. "latency" where it takes
-    /// `latency_from` times that or more and both bytes and operations are declared: its work-items wait for
-    /// each other, or for data that they ask for one after the other. None otherwise: what is not declared
-    /// may be what it takes.
+    /// The largest term of the floor: "memory", "cache", "operations" or "launches". "latency" when the time
+    /// is at least `latency_from` times the floor and both bytes and operations are declared: work-items then
+    /// wait for each other, or for dependent loads. None otherwise, because undeclared work may take the
+    /// time.
     std::optional<std::string_view> bound() const;
 
 private:
     std::optional<double> rate(std::optional<double> amount) const;
-    std::optional<double> part(std::optional<double> term) const;
+    std::optional<double> fraction(std::optional<double> term) const;
 };
 
-/// Those of all its instrumented replays, the longest first.
+/// The kernels of all instrumented replays, the longest first.
 std::vector<KernelProfile> profile_kernels(const Measurement& measurement, const FrameFacts& facts,
                                            std::span<const KernelCost> costs, const Limits& limits);
 
-/// The mean frame of what was measured; what it touches is the caller's to add.
+/// The mean frame of the measurement. The caller adds the data that its pairs touch.
 FrameFacts mean_frame(const Measurement& measurement);
 
 } // namespace tandem::profile

@@ -14,13 +14,13 @@ namespace tandem::profile {
 
 namespace {
 
-/// 0 where it is null, or where the record is from before there was such a field.
+/// The median of a field; 0 when it is null or missing.
 double median_at(const nlohmann::ordered_json& ceilings, const char* name) {
     const auto found = ceilings.find(name);
     return found == ceilings.end() || found->is_null() ? 0 : found->at("median").get<double>();
 }
 
-/// The fastest sample, for what is to be a floor; 0 as above.
+/// The fastest sample of a field, for a floor; 0 as above.
 double least_at(const nlohmann::ordered_json& ceilings, const char* name) {
     const auto found = ceilings.find(name);
     if (found == ceilings.end() || found->is_null()) return 0;
@@ -31,7 +31,7 @@ double least_at(const nlohmann::ordered_json& ceilings, const char* name) {
 bool is_of(const nlohmann::ordered_json& ceilings, const nlohmann::ordered_json& device) {
     const auto found = ceilings.find("device");
     if (found == ceilings.end()) return false;
-    // One piece of hardware does not do the same through two backends.
+    // The same hardware has different ceilings through different backends.
     const auto backend = [](const nlohmann::ordered_json& json) {
         const auto id = json.at("id").get<std::string>();
         return id.substr(0, id.find(':'));
@@ -52,8 +52,8 @@ Limits limits_of(const nlohmann::ordered_json& ceilings, int k) {
     limits.cached_bytes = static_cast<double>(cached_bytes(info));
     const auto few = 8 * median_at(ceilings, "overlap_tests_k8_per_s");
     const auto many = 18 * median_at(ceilings, "overlap_tests_k18_per_s");
-    const auto place = std::clamp((k - 8) / 10.0, 0.0, 1.0);
-    limits.operations_per_s = few > 0 && many > 0 ? few + place * (many - few) : 0;
+    const auto fraction = std::clamp((k - 8) / 10.0, 0.0, 1.0);
+    limits.operations_per_s = few > 0 && many > 0 ? few + fraction * (many - few) : 0;
     const auto timed = least_at(ceilings, "launch_timed_s");
     limits.launch_s = timed > 0 ? timed : least_at(ceilings, "launch_queued_s");
     return limits;
@@ -86,14 +86,15 @@ nlohmann::ordered_json read_ceilings(const std::string& path, const DeviceInfo& 
 
 void check_clock(const std::string& path, const nlohmann::ordered_json& ceilings, Device& device) {
     if (median_at(ceilings, "launch_timed_s") == 0) return;
-    device.set_clocks(Clocks::on); // what takes the times is certain then
+    device.set_clocks(Clocks::on); // device.clock() is known only after this
     device.set_clocks(Clocks::off);
-    const auto then = ceilings.at("device").value("clock", "a clock that is not known");
+    const auto recorded = ceilings.at("device").value("clock", "an unknown clock");
     const auto kind = [](const std::string& clock) { return clock.substr(0, clock.find(' ')); };
-    if (kind(then) != kind(device.clock()))
-        throw InputError(fmt::format("{}: launches on {} were timed by {}, kernels are now by {}; leave "
-                                     "--ceilings out to measure them",
-                                     path, device.info().id, then, device.clock()));
+    if (kind(recorded) != kind(device.clock()))
+        throw InputError(
+            fmt::format("{}: launches on {} were timed by {}, but kernels are timed by {}; leave "
+                        "--ceilings out to measure them",
+                        path, device.info().id, recorded, device.clock()));
 }
 
 } // namespace tandem::profile

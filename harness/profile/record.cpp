@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int schema = 2; ///< of results/profile.schema.json
+constexpr int schema = 2; ///< version of results/profile.schema.json
 
 Json known(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 Json known(std::int64_t value) { return value < 0 ? Json() : Json(value); }
@@ -79,7 +79,8 @@ Json limits_json(const Profile& profile) {
 
 } // namespace
 
-/// Its key has another name: to `tandem compare` and --resume it is no record of a cell.
+/// The key field is named "profile_of", so that `tandem compare` and --resume do not read it as a record of a
+/// cell.
 Json profile_record(const Json& record, const Profile& profile) {
     Json json{{"schema", schema}, {"profile_of", record.at("key")}};
     for (const char* name :

@@ -11,12 +11,12 @@ namespace tandem::profile {
 
 namespace {
 
-constexpr double least_share = 0.01; ///< for a row of its own
+constexpr double least_share = 0.01; ///< least fraction of the device time for a separate row
 constexpr const char* unknown = "-";
 
 using Text = std::function<std::string(const KernelProfile&)>;
 
-/// Three digits, whatever the size.
+/// At least three significant digits, without an exponent for large values.
 std::string digits(double value) {
     if (value >= 1000) return fmt::format("{:.0f}", value);
     return value >= 100 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
@@ -57,20 +57,20 @@ std::string floor_us(const KernelProfile& kernel) {
 }
 
 std::string occupancy(const KernelProfile& kernel) {
-    const auto share = kernel.sample.facts.occupancy;
-    return share < 0 ? unknown : fmt::format("{:.0f} %", share * 100);
+    const auto fraction = kernel.sample.facts.occupancy;
+    return fraction < 0 ? unknown : fmt::format("{:.0f} %", fraction * 100);
 }
 
 std::string bound(const KernelProfile& kernel) {
-    const auto word = kernel.bound();
-    return word ? std::string(*word) : unknown;
+    const auto limit = kernel.bound();
+    return limit ? std::string(*limit) : unknown;
 }
 
 std::string half_width(const KernelProfile& kernel) {
     return "± " + digits((kernel.ns.high - kernel.ns.low) / 2 * 1e-3);
 }
 
-/// Heads and texts; the first block says what a kernel took, the second against what.
+/// Heads and texts of the columns.
 std::vector<std::pair<const char*, Text>> columns_of() {
     return {{"us/frame", [](const auto& k) { return digits(k.ns.median * 1e-3); }},
             {"95 %", half_width},
@@ -93,7 +93,7 @@ std::vector<std::pair<const char*, Text>> columns_of() {
             {"occupancy", occupancy}};
 }
 
-/// What the small ones took together.
+/// The sum of the kernels that share one row.
 KernelProfile sum_of(std::span<const KernelProfile> kernels) {
     KernelProfile sum;
     for (const auto& kernel : kernels) {
@@ -119,12 +119,13 @@ std::string ceilings_text(const Profile& profile) {
 } // namespace
 
 std::string profile_legend() {
-    return fmt::format("floor: the largest of bytes, comparisons and launches of nothing over the ceilings\n"
-                       "bytes (MB): each input read once, each output written once\n"
-                       "comparisons (Mop): of two ends of slabs, k an overlap test\n"
-                       "bound: the largest of them; latency where a kernel takes {} times that\n"
-                       "-: not declared, or not told\n",
-                       latency_from);
+    return fmt::format(
+        "floor: the largest of the times of bytes, comparisons and empty launches at the ceilings\n"
+        "bytes (MB): each input read once, each output written once\n"
+        "comparisons (Mop): of slab bounds, k in an overlap test\n"
+        "bound: the largest term of the floor; latency when a kernel takes {} times the floor\n"
+        "-: not declared, or unknown\n",
+        latency_from);
 }
 
 std::string profile_table(const Profile& profile, bool all) {
@@ -139,13 +140,13 @@ std::string profile_table(const Profile& profile, bool all) {
     for (std::size_t i = 0; i < rows.size(); ++i)
         labels.push_back(i < count ? rows[i].entry : fmt::format("{} below 1 %", rest.size()));
     std::vector<Column> columns;
-    std::size_t before_rates = 4; // of a sum nothing else is said
+    std::size_t before_rates = 4; // a sum has only the first four columns
     for (const auto& [head, text] : columns_of()) {
         Column column{head, {}};
         for (std::size_t i = 0; i < rows.size(); ++i)
             column.texts.push_back(i < count || before_rates > 0 ? text(rows[i]) : "");
         before_rates -= before_rates > 0 ? 1 : 0;
-        // A backend that does not tell, or a sum alone.
+        // Hides a column without values: the backend does not report them, or the only row is a sum.
         if (std::ranges::all_of(column.texts, [](const auto& t) { return t.empty() || t == unknown; }))
             column.texts.assign(rows.size(), "");
         columns.push_back(std::move(column));

@@ -18,12 +18,13 @@ constexpr std::pair<Lane, const char*> lane_names[] = {
     {stages, "device: stages"}, {kernels, "device: kernels"},  {transfers, "device: transfers"}};
 constexpr const char* command_names[] = {"launch", "upload", "download", "clear", "wait", "host work"};
 
-/// Clocks of events tell half a microsecond: what overlaps by less does not.
+/// Event clocks have a resolution of half a microsecond, so an overlap of up to this length is a rounding
+/// error.
 constexpr std::int64_t rounding_ns = 1000;
 
 bool has_device_times(const Event& event) { return event.begin_ns >= 0 && event.device_ns >= 0; }
 
-/// What device times are moved by, and the most that calls which waited for the device leave room for.
+/// The least offset of device times that no call contradicts, and the greatest that blocking calls allow.
 struct Offset {
     std::optional<std::int64_t> least, most;
 };
@@ -62,7 +63,8 @@ public:
     void device_of(const Trace& trace, std::int64_t offset);
 
 private:
-    /// Nanoseconds of the host's clock; a begin within the rounding of the lane's last end is that end.
+    /// Adds an event, in nanoseconds of the host's clock. A begin that overlaps the last end of the lane by a
+    /// rounding error is set to that end.
     void add(Lane lane, const std::string& name, std::int64_t begin, std::int64_t length, Json arguments);
 
     Json& events_;
@@ -117,7 +119,7 @@ void Writer::calls_of(const Event& event) {
         add(waits, text + " " + event.label, event.host_begin_ns, event.host_ns, arguments_of(event));
 }
 
-/// Commands run in order, so that those of one stage which follow each other are one stretch of it.
+/// Commands run in order, so consecutive commands of one stage form one event of the stage lane.
 void Writer::device_of(const Trace& trace, std::int64_t offset) {
     std::optional<Stage> stage;
     std::int64_t first = 0, last = 0;
@@ -175,9 +177,9 @@ Json timeline_json(std::span<const DeviceTimeline> devices, const std::string& c
              {{"cell", cell},
               {"frame", frame},
               {"clocks",
-               "device times + offset_ns = the host's: the least offset with which no command begins before "
-               "the call that submitted it; calls that waited leave room for at_most_ns"},
-              {"commands", "one by one, each with a clock around it: slower than a frame that is timed"},
+               "host time = device time + offset_ns, the least offset with which no command begins before "
+               "the call that submitted it; blocking calls allow an offset up to at_most_ns"},
+              {"commands", "each command is timed alone, so this frame is slower than a measured one"},
               {"devices", clocks}}},
             {"traceEvents", events}};
 }

@@ -21,9 +21,9 @@ TimelineFile::TimelineFile(const std::string& path) : path_(path) {
     if (path.empty()) return;
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
-        throw InputError(fmt::format("{}: is no file; choose another place for the timeline", path));
-    part_ = fmt::format("{}.{}", path, getpid());
-    file_ = std::fopen(part_.c_str(), "wx");
+        throw InputError(fmt::format("{}: is no regular file; choose another file for the timeline", path));
+    temporary_ = fmt::format("{}.{}", path, getpid());
+    file_ = std::fopen(temporary_.c_str(), "wx");
     if (file_ == nullptr)
         throw InputError(fmt::format("{}: cannot be written ({}); choose another file", path, reason()));
 }
@@ -31,7 +31,7 @@ TimelineFile::TimelineFile(const std::string& path) : path_(path) {
 TimelineFile::~TimelineFile() {
     if (file_ == nullptr) return;
     std::fclose(file_);
-    std::remove(part_.c_str());
+    std::remove(temporary_.c_str());
 }
 
 void TimelineFile::write(const nlohmann::ordered_json& timeline) {
@@ -41,10 +41,10 @@ void TimelineFile::write(const nlohmann::ordered_json& timeline) {
                  && fsync(fileno(file_)) == 0;
     whole = std::fclose(file_) == 0 && whole;
     file_ = nullptr;
-    if (whole && std::rename(part_.c_str(), path_.c_str()) == 0) return;
-    const auto why = reason();
-    std::remove(part_.c_str());
-    throw OutputError(fmt::format("{}: writing failed ({})", path_, why));
+    if (whole && std::rename(temporary_.c_str(), path_.c_str()) == 0) return;
+    const auto failure = reason();
+    std::remove(temporary_.c_str());
+    throw OutputError(fmt::format("{}: writing failed ({})", path_, failure));
 }
 
 } // namespace tandem

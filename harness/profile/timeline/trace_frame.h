@@ -6,8 +6,8 @@
 
 namespace tandem {
 
-/// One more replay of a cell, up to the frame in the middle, which is run twice, the second time with a clock
-/// around every command: its timeline. May throw DeviceError.
+/// The timeline of the middle frame of a cell. Replays the frames up to it and runs it twice, the second time
+/// with a clock around every command. May throw DeviceError.
 nlohmann::ordered_json trace_frame(const Cell& cell, const Job& job);
 
 } // namespace tandem
