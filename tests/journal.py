@@ -215,7 +215,7 @@ class Journal(Case):
         self.assertGreater(done, 10)
         status, text, errors = run(*arguments, "--resume", "--steps", done + 5)
         self.assertEqual((status, len(errors)), (0, 1), (text, errors))
-        self.assertIn("goes on after step", text)
+        self.assertIn("continues after step", text)
         lines = steps()
         self.assertEqual(lines[:others + done], steps_of)
         self.assertEqual([s["step"] for s in lines[others:]], list(range(done + 5)))

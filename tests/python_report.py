@@ -369,7 +369,7 @@ class Commands(Case):
         self.bad("the nearest is 'plates'", "view", "plats", *out)
         self.bad("no scene; name one", "view", *out)
         self.bad("frames 3:900", "report", H200 / "ceilings.jsonl", "--scene", "plates", "--frames", "3:900", *out)
-        self.bad("--device all: one device finds contacts", "view", "plates", "--contacts", "--device", "all", *out)
+        self.bad("--device all: contacts need one device", "view", "plates", "--contacts", "--device", "all", *out)
         self.bad("more --pose than --mesh", "view", "--mesh", self.good, "--pose", "1 0 0 1 0 0 0", "--pose", "0 0 0 1 0 0 0", *out)
         self.bad("--every", "view", "plates", "--every", 0, *out)
         self.bad("--frames requires --scene", "report", H200 / "ceilings.jsonl", "--frames", 0, *out)

@@ -181,7 +181,7 @@ class Simulations(Case):
         self.told(*arguments, "-o", broken, *(["--resume"] if broken.exists() else []))
         self.assertEqual(broken.read_bytes(), whole.read_bytes())
         text, _ = self.told(*arguments, "-o", broken, "--resume")
-        self.assertIn("goes on after step 60", text)
+        self.assertIn("continues after step 60", text)
         self.assertEqual(broken.read_bytes(), whole.read_bytes())
         for other in (("--dynamics", "iterations=10"), ("--set", "contact_rule=clip")):
             self.bad("was simulated with other settings", "simulate", ARCH, "--device", "host", "-o", broken, "--resume", *other)

@@ -64,7 +64,7 @@ std::size_t export_vtu(const ExportOptions& options, const Scene& scene,
         bodies.push_back({time, fmt::format("bodies_{:06}.vtu", i)});
         write_vtu(options.vtu + "/" + bodies.back().file, scene, frame, {&chunks, 1});
         if (!finder) continue;
-        const auto points = finder->of(frame);
+        const auto points = finder->find(frame);
         found += points.size();
         contacts.push_back({time, fmt::format("contacts_{:06}.vtp", i)});
         write_contacts_vtp(options.vtu + "/" + contacts.back().file, points);
@@ -79,7 +79,7 @@ void export_geometry(const ExportOptions& options, const Scene& scene, std::span
     GeometryParts parts{.chunks = chunk_numbers};
     if (options.contacts) {
         finder.emplace(options.device, scene);
-        parts.contacts = [&](const Frame& frame) { return finder->of(frame); };
+        parts.contacts = [&](const Frame& frame) { return finder->find(frame); };
     }
     write_geometry(options.geometry, scene, frames, parts);
 }

@@ -4,7 +4,7 @@
 
 namespace tandem {
 
-void tell_not_converged(const StepReport& report) {
+void warn_not_converged(const StepReport& report) {
     print_message(
         "tandem: step {}: the contact solver has not converged after {} iterations: residual {:.3g} N s "
         "above {:.3g}, energy changed by {:+.3g} J; raise iterations, shorten step or raise "
@@ -12,7 +12,7 @@ void tell_not_converged(const StepReport& report) {
         report.step, report.iterations, report.residual, report.tolerance, report.energy_change);
 }
 
-void tell_not_converged(const RunTotals& totals) {
+void warn_not_converged(const RunTotals& totals) {
     if (totals.not_converged < 2) return;
     print_message(
         "tandem: the contact solver has not converged in {} of {} steps; the worst is step {}: residual "

@@ -14,12 +14,12 @@ FrameContacts::FrameContacts(const std::string& device, const Scene& scene)
     request.devices = {device};
     const auto devices = choose_devices(backends_, request.devices);
     if (devices.size() != 1)
-        throw InputError(fmt::format("--device {}: one device finds contacts; name it", device));
+        throw InputError(fmt::format("--device {}: contacts need one device; name exactly one", device));
     cell_ = plan(request, devices).front();
     session_ = cell_.algorithm->prepare(cell_.devices, scene, cell_.settings);
 }
 
-std::vector<ContactPoint> FrameContacts::of(const Frame& frame) {
+std::vector<ContactPoint> FrameContacts::find(const Frame& frame) {
     check_coordinates(cell_, scene_, frame);
     return session_->run(frame).download_contacts();
 }

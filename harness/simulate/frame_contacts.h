@@ -9,14 +9,15 @@
 
 namespace tandem {
 
-/// Finds the contacts of one frame after the other, on one device, by the first algorithm as it comes.
+/// Finds the contacts of frames on one device, with the first algorithm and its default settings.
 class FrameContacts {
 public:
-    /// The scene must outlive it. Throws InputError.
+    /// The scene must outlive this object. Throws InputError.
     FrameContacts(const std::string& device, const Scene& scene);
 
-    /// Coordinates are checked frame by frame: who exports opens them one at a time, however many there are.
-    std::vector<ContactPoint> of(const Frame& frame);
+    /// Checks the coordinates of this frame, because an export opens only one frame at a time. Throws
+    /// InputError.
+    std::vector<ContactPoint> find(const Frame& frame);
 
 private:
     const Scene& scene_;

@@ -37,10 +37,12 @@ void Pictures::draw(const std::string& recording) const {
     std::vector<std::size_t> frames{0, last / 2, last};
     frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
     write_glb(glb, scene, frames);
-    const ProgramStreams place{"", flush_output() ? "" : "/dev/null", ""};
-    if (run_program({python_, script_, glb, out_}, place) != 0)
+    const ProgramStreams streams{"", flush_output() ? "" : "/dev/null", ""};
+    if (run_program({python_, script_, glb, out_}, streams) != 0)
         throw InputError(
-            fmt::format("--pictures: nothing drawn; draw them of {} with 'tandem export'", recording));
+            fmt::format("--pictures: no pictures drawn; export {} with 'tandem export --glb' and "
+                        "draw the file with scripts/render",
+                        recording));
 }
 
 } // namespace tandem

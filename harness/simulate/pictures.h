@@ -5,15 +5,15 @@
 
 namespace tandem {
 
-/// Pictures of a recording's begin, middle and end, drawn by scripts/render with a Python.
+/// Pictures of the first, middle and last frame of a recording. The Python script scripts/render draws them.
 class Pictures {
 public:
-    /// `out`: files are OUT-0.png, OUT-1.png and OUT-2.png; its folder is made. Throws InputError where there
-    /// is no Python with numpy and Pillow, or no such folder can be made.
+    /// The files are OUT-0.png, OUT-1.png and OUT-2.png; their folder is made. Throws InputError when there
+    /// is no Python with numpy and Pillow, or the folder cannot be made.
     explicit Pictures(std::string out);
 
-    /// Draws and prints the paths. Throws InputError: nothing drawn; what the script says is on standard
-    /// error.
+    /// Draws the pictures and prints their paths. Throws InputError when the script fails; its messages are
+    /// on standard error.
     void draw(const std::string& recording) const;
 
 private:

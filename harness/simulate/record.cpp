@@ -19,12 +19,12 @@ std::int64_t device_ns(const ContactSearch& search, Stage stage) {
     return search.stages[static_cast<std::size_t>(stage)].device_ns;
 }
 
-/// What the paper's Table 3 calls initialization: transform and refit.
+/// The initialization of the paper's Table 3: transform and refit.
 std::int64_t initialize_ns(const ContactSearch& search) {
     return device_ns(search, Stage::transform) + device_ns(search, Stage::refit);
 }
 
-/// Stages in which nothing happened are left out, so that lines stay short: there is one for each step.
+/// Leaves out unused stages to keep the lines short, because there is one line for each step.
 Json stages_json(const StageSamples& stages) {
     auto json = Json::object();
     for (std::size_t i = 0; i < stages.size(); ++i) {
@@ -43,7 +43,6 @@ Json energies_json(const StepReport& report) {
     return {{"kinetic", report.kinetic}, {"potential", report.potential}, {"elastic", report.elastic}};
 }
 
-/// 0 of none.
 double median_or_0(const std::vector<std::size_t>& values) { return values.empty() ? 0 : median(values); }
 
 /// The settings of a simulation by name.
@@ -133,8 +132,7 @@ Json run_record(const Cell& cell, const Scene& scene, const RunTotals& t, const 
     return json;
 }
 
-/// Untimed runs cannot tell initialization from the narrow phase: both are one row then, and its own is left
-/// out.
+/// Without device times, initialization is part of the row of the narrow phase and has no row of its own.
 std::string run_table(const RunTotals& t, bool timed) {
     const auto other =
         t.wall_ns - t.broad_ns - t.narrow_ns - t.reduce_ns - t.assemble_ns - t.solve_ns - t.move_ns;

@@ -15,7 +15,7 @@ namespace tandem {
 
 namespace {
 
-/// Behind the digest in the state of a checkpoint, before the number; older ones have neither.
+/// Follows the digest in a checkpoint and precedes the number. Checkpoints of earlier programs have neither.
 constexpr std::string_view session_mark = "session:";
 
 std::uint64_t new_number() {
@@ -32,7 +32,7 @@ void append_bytes(std::vector<std::byte>& bytes, const void* data, std::size_t s
 
 SimulationSession::SimulationSession(const SimulateOptions& options, const Scene& scene, const Cell& cell)
     : settings_(describe(*scene.dynamics)), number_(new_number()) {
-    // What contacts depend on; devices and schedules find the same ones.
+    // The settings that contacts depend on. Devices and schedules do not change them.
     for (const auto* name :
          {"k", "axes", "precision", "rounding", "placement", "origin", "contact_rule", "decision"})
         settings_ += fmt::format(" {}={}", name, cell.settings.text(name));
@@ -45,20 +45,20 @@ SimulationSession::SimulationSession(const SimulateOptions& options, const Scene
 void SimulationSession::restore(Simulation& simulation) {
     if (!writer_) return;
     const auto checkpoint = writer_->restore();
-    // A new recording: the state before the first step is the first to go back to.
+    // A new recording starts with a checkpoint of the state before the first step.
     if (!checkpoint) {
         save(simulation);
         return;
     }
     const auto own = digest_of(settings_);
     if (checkpoint->state.size() < sizeof own || std::memcmp(checkpoint->state.data(), &own, sizeof own) != 0)
-        throw InputError(fmt::format("{}: was simulated with other settings than {}; resume it with those "
-                                     "it was begun with",
+        throw InputError(fmt::format("{}: was simulated with other settings than {}; resume it with its "
+                                     "original settings",
                                      writer_->path(), settings_));
     simulation.restore(read_number(std::span(checkpoint->state).subspan(sizeof own)));
 }
 
-/// Takes the number from the beginning of a state; the rest is the simulation's.
+/// Reads the number at the beginning of a state and returns the rest, the state of the simulation.
 std::span<const std::byte> SimulationSession::read_number(std::span<const std::byte> state) {
     constexpr auto bytes = session_mark.size() + sizeof number_;
     if (state.size() < bytes || std::memcmp(state.data(), session_mark.data(), session_mark.size()) != 0)

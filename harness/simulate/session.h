@@ -15,22 +15,23 @@
 
 namespace tandem {
 
-/// A run of a simulation, which several processes may do one after the other: its recording, if there is to
-/// be one, with the state that goes into its checkpoints. That is the simulation's, behind a digest of its
-/// settings, so that nothing goes on with other settings, and a number that tells the run from any other.
+/// One run of a simulation, which successive processes may continue: its recording, if any, with checkpoints.
+/// A checkpoint has a digest of the settings, a number that identifies the run, and the state of the
+/// simulation. The digest prevents that a run continues with other settings.
 class SimulationSession {
 public:
-    /// Begins a recording or opens one to go on with. Throws InputError when it cannot.
+    /// Begins a recording, or opens one to continue it. Throws InputError when it cannot.
     SimulationSession(const SimulateOptions& options, const Scene& scene, const Cell& cell);
 
-    /// Brings the simulation to the last checkpoint. Throws InputError when that has other settings.
+    /// Restores the simulation from the last checkpoint. Throws InputError when that has other settings.
     void restore(Simulation& simulation);
-    /// The frame of a step, and a checkpoint after it. Throw OutputError when they cannot be written.
+    /// Records the frame of a step. Throws OutputError when it cannot be written.
     void append(const StepReport& report, const Frame& frame);
+    /// Writes a checkpoint. Throws OutputError when it cannot be written.
     void save(const Simulation& simulation);
 
     std::size_t frames() const { return writer_ ? writer_->frames() : 0; }
-    /// After restore() that of the checkpoint.
+    /// The number that identifies the run; after restore() the number in the checkpoint.
     std::uint64_t number() const { return number_; }
 
 private:
@@ -41,10 +42,10 @@ private:
     std::optional<RecordingWriter> writer_;
 };
 
-/// How lines name a session.
+/// The name of a session in records.
 std::string session_name(std::uint64_t number);
 
-/// The steps of a session that a file has lines of.
+/// The steps of a session that have a line in the file.
 std::set<std::size_t> steps_recorded(const RecordFile& file, std::uint64_t session);
 
 } // namespace tandem

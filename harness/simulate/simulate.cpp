@@ -25,12 +25,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The first compiles what a device compiles at a first launch, sends what does not move and makes buffers
-/// grow; the second is the sequence of every later frame, and the third makes a graph of it where there are
-/// such.
+/// The first replay compiles kernels, uploads static data and grows buffers. The second runs the command
+/// sequence of all later frames. The third captures it as a graph, on devices with graphs.
 constexpr int warming_replays = 3;
 
-/// A scene with dynamics, with the settings of --dynamics over its own.
+/// Opens a scene with dynamics and applies the settings of --dynamics.
 Scene open_scene(const SimulateOptions& options) {
     if (options.scene.empty()) throw InputError("no scene; name one, see 'tandem scenes'");
     auto scene = make_scene(options.scene);
@@ -44,8 +43,9 @@ Scene open_scene(const SimulateOptions& options) {
     return scene;
 }
 
-/// A body moves by its contacts: unless asked for others, the least translation for pairs that surely meet.
-/// What cells are measured with is the paper's rule, which pushes bodies that only touch metres sideways.
+/// Chooses contact settings for a simulation, unless the user set them: the least translation (sat), for
+/// pairs that certainly overlap. The default of measurements is the paper's rule, which pushes touching
+/// bodies metres sideways.
 void prefer_certain_contacts(Request& request, std::span<const DeviceGroup> devices) {
     const auto prefer = [&](const char* name, const char* value) {
         const auto given = std::any_of(request.sets.begin(), request.sets.end(),
@@ -67,14 +67,14 @@ Request contacts_request(const SimulateOptions& options) {
     return request;
 }
 
-/// The one cell that finds contacts. Throws InputError when more are asked for, or one that makes no
+/// The one cell that finds contacts. Throws InputError when the request has several cells, or a cell without
 /// contacts.
 Cell only_cell(Request request, const std::vector<BackendReport>& backends) {
     const auto devices = choose_devices(backends, request.devices);
     prefer_certain_contacts(request, devices);
     const auto cells = plan(request, devices);
     if (cells.size() != 1)
-        throw InputError(fmt::format("a simulation takes one algorithm, preset, device and value of each "
+        throw InputError(fmt::format("a simulation needs one algorithm, preset, device and value of each "
                                      "setting; this asks for {} cells",
                                      cells.size()));
     if (cells.front().settings[parameters::output] != Output::pairs
@@ -83,13 +83,13 @@ Cell only_cell(Request request, const std::vector<BackendReport>& backends) {
     return cells.front();
 }
 
-/// Books the simulation's own work on the host under its stage.
-void book(ContactSearch& search, Stage stage, std::int64_t host_ns) {
+/// Adds host work of the simulation itself to its stage.
+void add_host_time(ContactSearch& search, Stage stage, std::int64_t host_ns) {
     search.stages[static_cast<std::size_t>(stage)].host_ns += host_ns;
 }
 
-/// Steps until `last` are done; totals and records get each as it ends, but no step after the checkpoint is
-/// recorded again.
+/// Runs steps until `last` are done. Adds each to the totals and the records, except steps that an earlier
+/// process recorded after the checkpoint.
 void run_steps(const SimulateOptions& options, std::size_t last, Simulation& simulation,
                ContactFinder& finder, SimulationSession& session, RecordFile& file, RunTotals& totals) {
     const Progress progress(options.quiet);
@@ -103,13 +103,13 @@ void run_steps(const SimulateOptions& options, std::size_t last, Simulation& sim
         const auto report = simulation.step(detect);
         const auto wall = since(begin);
         auto search = finder.take();
-        // The device does not see what the host does between searches.
-        book(search, Stage::reduce, report.reduce_ns);
-        book(search, Stage::solve, report.solve_ns);
+        // The traces of devices do not contain the host's work between searches.
+        add_host_time(search, Stage::reduce, report.reduce_ns);
+        add_host_time(search, Stage::solve, report.solve_ns);
         totals.add(report, search, wall);
         if (!report.converged && totals.not_converged == 1) {
             progress.clear();
-            tell_not_converged(report);
+            warn_not_converged(report);
         }
         session.append(report, simulation.midway());
         if (!recorded.contains(report.step)) file.append(step_record(report, search, wall, totals.session));
@@ -144,8 +144,8 @@ void ContactFinder::find(const Frame& frame, std::vector<ContactPoint>& contacts
     for (auto* device : session_->devices()) {
         const auto stages = by_stage(device->finish());
         for (std::size_t i = 0; i < stages.size(); ++i) search_.stages[i] += stages[i];
-        // The host finds body pairs inside run(): its share is taken out of the narrow phase, as the paper
-        // splits them.
+        // The host finds body pairs inside run(). Their time is moved from the narrow to the broad phase, as
+        // in the paper.
         if (!host_broad_) continue;
         const auto broad = stages[static_cast<std::size_t>(Stage::broad)].host_ns;
         search_.broad_ns += broad;
@@ -157,7 +157,7 @@ ContactSearch ContactFinder::take() { return std::exchange(search_, {}); }
 
 int simulate_command(const SimulateOptions& options) {
     const auto scene = open_scene(options);
-    // What they need is looked for before hours are spent.
+    // The tools for pictures are checked first, before hours of simulation.
     std::optional<Pictures> pictures;
     if (!options.pictures.empty()) pictures.emplace(options.pictures);
     const auto request = contacts_request(options);
@@ -166,17 +166,17 @@ int simulate_command(const SimulateOptions& options) {
     const auto cell = only_cell(request, backends);
     check_coordinates(cell, scene, scene.frame(0));
     Simulation simulation(scene);
-    // Before a recording is made, which a second try would find there.
+    // Opened before the recording is made: if this fails, no recording remains to block a second try.
     RecordFile file(options.record);
     SimulationSession session(options, scene, cell);
     session.restore(simulation);
     const auto last = options.steps > 0 ? options.steps : scene.dynamics->steps;
     put("scene {}: {} bodies, {} vertices, {} tetrahedra; {}\n", scene.key, scene.bodies.size(),
         vertex_count(scene), tetrahedron_count(scene), describe(cell));
-    if (simulation.steps_done() > 0) put("goes on after step {}\n", simulation.steps_done());
+    if (simulation.steps_done() > 0) put("continues after step {}\n", simulation.steps_done());
     RunTotals totals;
     totals.session = session.number();
-    // A run that breaks off leaves a line that says how far it came and why it ended.
+    // A run that fails also leaves a line, with its number of steps and the reason.
     try {
         ContactFinder finder(cell, scene, simulation.frame(), !options.record.empty());
         totals.warm_up_ns = finder.warm_up_ns();
@@ -189,7 +189,7 @@ int simulate_command(const SimulateOptions& options) {
         throw;
     }
     put("{}", run_table(totals, !options.record.empty()));
-    tell_not_converged(totals);
+    warn_not_converged(totals);
     if (!options.recording.empty())
         put("{}: {} frames; measure them with 'tandem run {}'\n", options.recording, session.frames(),
             options.recording);

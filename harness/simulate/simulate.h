@@ -8,25 +8,25 @@
 
 namespace tandem {
 
-/// One search for contacts: what was found and host nanoseconds it took.
+/// The counts and host times of the searches for contacts in one step.
 struct ContactSearch {
     std::uint64_t body_pairs = 0, candidate_pairs = 0;
-    std::int64_t broad_ns = 0;  ///< body pairs, where the host finds them and stages are measured
-    std::int64_t narrow_ns = 0; ///< transform to contacts, with all transfers and waits
-    StageSamples stages{};      ///< of the searches only where they are measured
+    std::int64_t broad_ns = 0;  ///< time to find body pairs, when the host finds them and stages are measured
+    std::int64_t narrow_ns = 0; ///< time from transform to contacts, with all transfers and waits
+    StageSamples stages{};      ///< stages of the searches, when they are measured
 };
 
-/// Finds the contacts of frames with one cell. `timed`: with device times of every stage, which cost some
-/// time themselves.
+/// Finds the contacts of frames with one cell. `timed` measures device times of every stage, which takes some
+/// time itself.
 class ContactFinder {
 public:
-    /// Warms up: prepares a session and finds the contacts of `start` a few times, so that no step is timed
-    /// that compiles or makes buffers grow to what `start` needs. Nothing of it is part of a search.
+    /// Prepares a session and warms up: finds the contacts of `start` a few times, so that no timed step
+    /// compiles kernels or grows buffers to the size for `start`. The warm-up is not part of any search.
     ContactFinder(const Cell& cell, const Scene& scene, const Frame& start, bool timed);
 
-    /// A Detect; what it did is added to search() until that is taken.
+    /// Finds the contacts of a frame, for Simulation::step(). Adds counts and times until take() is called.
     void find(const Frame& frame, std::vector<ContactPoint>& contacts);
-    /// What was done since the last call: all searches of one step.
+    /// Returns and resets the counts and times since the last call: all searches of one step.
     ContactSearch take();
     std::int64_t warm_up_ns() const { return warm_up_ns_; }
 
@@ -39,35 +39,35 @@ private:
 
 /// Sums over the steps of a run.
 struct RunTotals {
-    std::size_t first = 0, steps = 0; ///< of this process, which may have gone on from a checkpoint
-    std::int64_t warm_up_ns = 0;      ///< before the first step, in no other time
+    std::size_t first = 0, steps = 0; ///< first step and number of steps of this process
+    std::int64_t warm_up_ns = 0;      ///< before the first step; not part of any other time
     std::int64_t wall_ns = 0, initialize_ns = 0, broad_ns = 0, narrow_ns = 0;
     std::int64_t reduce_ns = 0, assemble_ns = 0, solve_ns = 0, move_ns = 0;
-    std::vector<std::size_t> found, kept; ///< by step
+    std::vector<std::size_t> found, kept; ///< number of contacts in each step
     double deepest = 0;
-    std::size_t not_converged = 0; ///< steps
-    StepReport worst;              ///< of these the one of the largest residual
+    std::size_t not_converged = 0; ///< number of steps whose contact solver did not converge
+    StepReport worst;              ///< among these, the step with the largest residual
     StepReport last;
-    std::uint64_t session = 0; ///< the same for all processes that went on with a recording
+    std::uint64_t session = 0; ///< identifies the run; the same for all processes that continue a recording
 
-    /// `wall_ns`: of the whole step, searches included.
+    /// `wall_ns` is the time of the whole step, including the searches.
     void add(const StepReport& report, const ContactSearch& search, std::int64_t wall_ns);
 };
 
-/// Lines of results/simulation.schema.json: of one step, and of a run once it has ended, with `failure` when
-/// it did not reach its last step.
+/// Lines of results/simulation.schema.json: for one step, and for a run after its end. `failure` is the
+/// reason why the run did not reach its last step; empty: it did.
 nlohmann::ordered_json step_record(const StepReport& report, const ContactSearch& search,
                                    std::int64_t wall_ns, std::uint64_t session);
 nlohmann::ordered_json run_record(const Cell& cell, const Scene& scene, const RunTotals& totals,
                                   const std::string& failure);
 
-/// Says on standard error, the first time that a step of a run does not converge, what and what to do.
-void tell_not_converged(const StepReport& report);
-/// Says how many did not, where there was more than that one.
-void tell_not_converged(const RunTotals& totals);
+/// Prints on standard error that a step did not converge, and what to do. For the first such step of a run.
+void warn_not_converged(const StepReport& report);
+/// Prints the number of steps that did not converge, if there was more than one.
+void warn_not_converged(const RunTotals& totals);
 
-/// The paper's Table 3 for this run, contacts and energies; initialization only when device times were
-/// measured.
+/// The paper's Table 3 for this run, with contacts and energies. Initialization has a row only when device
+/// times were measured.
 std::string run_table(const RunTotals& totals, bool timed);
 
 } // namespace tandem

@@ -188,7 +188,7 @@ class Power(Case):
         self.assertEqual((code, said), (0, []), text)
         for path, kept in lines.items():
             self.assertTrue(set(kept) <= set(whole_lines((folder / path).read_bytes())), f"{path}: a promised record is gone")
-        if steps and (said := re.search(r"goes on after step (\d+)", text)):
+        if steps and (said := re.search(r"continues after step (\d+)", text)):
             self.assertGreaterEqual(int(said[1]), steps)
         for path, content in whole.items():
             self.assertEqual(self.lasting(path, (folder / path).read_bytes()), content, path)
