@@ -73,7 +73,7 @@ std::string by_preset(const Traversal& traversal, const Parameter& parameter) {
     return fmt::to_string(fmt::join(texts, "; "));
 }
 
-/// Numbers have a range, words their choices.
+/// A numeric parameter has a range; a parameter of words has choices.
 Json parameters_json(std::span<const Parameter* const> parameters) {
     Json json = Json::array();
     for (const auto* p : parameters) {

@@ -56,12 +56,12 @@ bool measure_cells(const Job& job, std::span<const Cell> cells, References& refe
 /// The folder for stored digests of references and errors against the truth; empty with --check-afresh.
 std::filesystem::path checks_folder(const RunOptions& options);
 
-/// A line that says what scene it is, one for tetrahedra of negative volume and one for flawed ones.
+/// One line that describes the scene, one for inverted tetrahedra and one for flawed ones, if there are any.
 std::string scene_text(const Scene& scene, const FrameRange& range);
 void print_scene(const Scene& scene, const FrameRange& range);
 
-/// Safe and directed bounds miss nothing that meets (theorems of algorithms/bounds); the others promise
-/// nothing.
+/// Whether a cell missed pairs although its rounding is safe or directed. These roundings miss no pair that
+/// touches or overlaps (theorems of algorithms/bounds); other roundings guarantee nothing.
 bool misses_against_its_promise(const Measurement& m);
 
 } // namespace tandem

@@ -27,7 +27,7 @@ Limits limits_of(const nlohmann::ordered_json& ceilings, int k);
 nlohmann::ordered_json read_ceilings(const std::string& path, const DeviceInfo& info);
 
 /// Throws InputError when the launches of the record, read from `path`, were timed by another kind of clock
-/// (CUPTI, events) than `device` uses: the time of an empty launch is mostly the cost of the clock itself.
+/// (CUPTI, events) than `device` uses. The time of an empty launch is mostly the cost of the clock itself.
 void check_clock(const std::string& path, const nlohmann::ordered_json& ceilings, Device& device);
 
 } // namespace tandem::profile

@@ -17,7 +17,7 @@ namespace tandem {
 
 /// One run of a simulation, which successive processes may continue: its recording, if any, with checkpoints.
 /// A checkpoint has a digest of the settings, a number that identifies the run, and the state of the
-/// simulation. The digest prevents that a run continues with other settings.
+/// simulation. The digest prevents a run from continuing with other settings.
 class SimulationSession {
 public:
     /// Begins a recording, or opens one to continue it. Throws InputError when it cannot.
