@@ -132,7 +132,7 @@ class Plans(PlanCase):
         self.refused(["/measure", "--noise"], measure={"noise": "much"}, schema_agrees=False)
         self.refused(["/measure", "unknown name 'repeats'; the nearest is 'repeat'"], measure={"repeats": 3})
         self.refused(["/measure/no-check", "must be true or false"], measure={"no-check": 1})
-        self.bad("give no others beside it", "run", self.plan(), SMALL)
+        self.bad("give no other scene or mesh with it", "run", self.plan(), SMALL)
         self.bad("is a plan, not a scene", "check", self.plan())
         self.bad("unknown scene 'plate'", "run", self.plan(scenes="plate"))
         self.bad("unknown setting 'kk'", "run", self.plan(settings={"kk": 8}))
