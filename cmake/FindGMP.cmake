@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# GMP::gmpxx: GMP's integers and rationals with their C++ classes. Used by the build and by the installed package.
-find_path(GMP_INCLUDE_DIR gmp.h) # Debian has it in the architecture's folder, gmpxx.h in the common one
+# GMP::gmpxx: integers and rationals of GMP with their C++ classes. The build and the installed package use it.
+find_path(GMP_INCLUDE_DIR gmp.h) # in Debian in the architecture's folder; gmpxx.h is in the common one
 find_path(GMPXX_INCLUDE_DIR gmpxx.h)
 find_library(GMP_LIBRARY gmp)
 find_library(GMPXX_LIBRARY gmpxx)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Writes commit.h when the commit, the state of the tree or the sources changed. COMMIT overrides, for trees without git;
-# VERSION and PARTS are what `tandem --version` says.
+# Writes commit.h when the commit, the state of the tree or the sources change. COMMIT overrides the commit of git, for
+# trees without git. `tandem --version` prints VERSION and PARTS.
 if(COMMIT STREQUAL "")
   execute_process(COMMAND git rev-parse --short=12 HEAD WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE COMMIT
                   OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
@@ -13,7 +13,8 @@ if("${changes}" STREQUAL "" AND clean STREQUAL COMMIT)
 else()
   set(dirty true)
 endif()
-# Of what decides times and answers, path by path: equal on every machine, and without git.
+# Digest of the files that determine times and answers, in the order of their paths. It is equal on every machine and
+# needs no git.
 set(sources)
 file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/backends/*.cpp ${SOURCE}/backends/*.h ${SOURCE}/algorithms/*.c* ${SOURCE}/algorithms/*.h
      ${SOURCE}/scenes/*.cpp ${SOURCE}/scenes/*.h ${SOURCE}/harness/sampling/* ${SOURCE}/cmake/embed_kernels.py)

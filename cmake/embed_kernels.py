@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Flattens kernel files with their headers, writes them as C++ strings, and as host C++ per geometry."""
+"""Flattens kernel files with their headers, and writes them as C++ strings and as host C++ for each geometry."""
 import argparse
 import pathlib
 import re
@@ -9,31 +9,31 @@ ENTRY = re.compile(r"^KERNEL void (\w+)\(", re.M)
 DEFAULT = re.compile(r"^#ifndef (\w+)\n#define \1 (\d+)$", re.M)
 
 
-def flatten(root, name, seen):
-    """The text of `name` with each header included once, with #line marks for the compilers' messages."""
+def flatten(root, name, included):
+    """Text of `name` with each header included once, and #line directives for compiler messages. Extends `included`."""
     lines = [f'#line 1 "{name}"']
     for number, line in enumerate((root / name).read_text().splitlines(), 1):
         match = INCLUDE.match(line)
         if not match:
             lines.append(line)
             continue
-        if match[1] not in seen:
-            seen.add(match[1])
-            lines += flatten(root, match[1], seen)
+        if match[1] not in included:
+            included.add(match[1])
+            lines += flatten(root, match[1], included)
         lines.append(f'#line {number + 1} "{name}"')
     return lines
 
 
 def write(path, text):
-    """Writes only what changed, so that ccache and ninja have less to do."""
+    """Writes the file where its text differs. Otherwise only touches it, so that ninja takes it as new."""
     if not path.exists() or path.read_text() != text:
         path.write_text(text)
     else:
         path.touch()
 
 
-def handed_out(row, names, function, own):
-    """How rows reach those who look for them: the library's by a function, a program's own by adding themselves."""
+def table_code(row, names, function, own):
+    """Code that publishes rows: a function returns the library's; those of another target add themselves at program start."""
     table = f"static const {row} all[] = {{{', '.join(names)}}};"
     if own:
         return f"{table}\n[[maybe_unused]] static const bool added = (add_{function}(all), true);"
@@ -45,28 +45,28 @@ def sources(kernels, own):
     for index, (name, text) in enumerate(kernels.items()):
         out.append(f'constexpr KernelSource source_{index}{{"{name}",\nR"KERNEL({text})KERNEL"}};')
     names = [f"source_{index}" for index in range(len(kernels))]
-    out += ["} // namespace", handed_out("KernelSource", names, "kernel_sources", own), "} // namespace tandem", ""]
+    out += ["} // namespace", table_code("KernelSource", names, "kernel_sources", own), "} // namespace tandem", ""]
     return "\n".join(out)
 
 
 def named(text, geometry):
-    """The part of a geometry that the text names."""
+    """Those defines of a geometry that occur in the text."""
     return [pair for pair in geometry.split(",") if re.search(rf"\b{pair.split('=')[0]}\b", text)]
 
 
 def choices(text):
-    """What a text is compiled for besides its geometry: SLABS decides of the size of arrays."""
+    """Defines, besides the geometry, for which a text is compiled separately: SLABS determines sizes of arrays."""
     return [["SLABS=0"], ["SLABS=1"]] if re.search(r"^#if SLABS\b", text, re.M) else [[]]
 
 
 def has_lanes(text):
-    """Whether a kernel file has loops over lanes, which the compiler turns into vector code."""
+    """Whether a kernel file has loops over lanes, which the compiler vectorises."""
     return re.search(r"^(?!#define|//).*\bFOR_LANES\b", text, re.M) is not None
 
 
 def host_variant(kernels, geometry, geometries, identifier, level, levels):
-    """Kernels of one geometry; one that does not name all of it is in the first variant of what it does name. `level`: of
-    the instructions that the file is compiled for, x86-64-v2, -v3 or -v4, one of `levels`; 0: of any processor."""
+    """Code of the kernels of one geometry. A kernel that names only some of its defines is in the first geometry with these values.
+    `level`: x86-64-v2, -v3 or -v4, for which the file is compiled, one of `levels`; 0: any processor."""
     out, rows = [], []
     variants = [(name, text, choice) for name, text in kernels.items() for choice in choices(text)]
     for index, (name, text, choice) in enumerate(variants):
@@ -74,15 +74,15 @@ def host_variant(kernels, geometry, geometries, identifier, level, levels):
         if geometry != next(g for g in geometries if named(text, g) == own):
             continue
         own = own + choice
-        # The higher levels have what is measured most: the lowest one serves the rest everywhere.
+        # Higher levels contain only the variants that are measured most. The lowest level has all of them.
         if level and level != min(levels) and ("PRECISION=64" in own or "SLABS=1" in own):
             continue
         fixed = dict(pair.split("=") for pair in own)
         defaults = {key: value for key, value in DEFAULT.findall(text) if key not in fixed and key != "GROUP_SIZE"}
         names = sorted(defaults)
-        # Local memory of known size: nothing is shared with files that are compiled for other processors.
+        # Local memory on the stack, so that nothing is shared with files that are compiled for other processors.
         stack = ["#define LOCAL_ON_STACK"] if has_lanes(text) else []
-        # A namespace of this variant's own: types of one name differ between variants.
+        # A namespace for each variant: types of one name differ between variants.
         scope = f"{identifier}_kernel_{index}"
         out += [f"namespace {scope} {{", "#undef TANDEM_PORTABLE_H"]
         out += [f"#define {key} {value}" for key, value in fixed.items()] + ["#define GROUP_SIZE 1"] + stack
@@ -108,7 +108,7 @@ def host_table(identifiers, own):
     out = ['#include "backends/host/dialect.h"']
     out += [f"extern const std::span<const tandem::host::HostKernel> {name};" for name in identifiers]
     names = ["::" + name for name in identifiers]
-    out += ["namespace tandem::host {", handed_out("std::span<const HostKernel>", names, "host_kernels", own),
+    out += ["namespace tandem::host {", table_code("std::span<const HostKernel>", names, "host_kernels", own),
             "} // namespace tandem::host", ""]
     return "\n".join(out)
 
@@ -118,10 +118,10 @@ def main():
     parser.add_argument("--root", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path)
     parser.add_argument("--geometries", nargs="+")
-    parser.add_argument("--each", type=int, default=1, help="geometries in a file")
+    parser.add_argument("--each", type=int, default=1, help="geometries per file")
     parser.add_argument("--kernels", nargs="+")
-    parser.add_argument("--levels", nargs="*", type=int, default=[], help="that files with lanes are compiled for instead")
-    parser.add_argument("--own", default="", help="the target whose own these are; left out for the library")
+    parser.add_argument("--levels", nargs="*", type=int, default=[], help="levels of x86-64 for which files with lanes are compiled")
+    parser.add_argument("--own", default="", help="the target that contains the kernels; left out for the library")
     parser.add_argument("--flatten", help="only print this kernel file with its headers")
     arguments = parser.parse_args()
     if arguments.flatten:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""embed_meshes.py FOLDER OUT.cpp: TetGen meshes as C++ strings."""
+"""embed_meshes.py FOLDER OUT.cpp: writes TetGen meshes as C++ strings."""
 import pathlib
 import sys
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-# The library, its few public headers and an exported package: find_package(tandem), tandem::tandem.
+# Installs the library, its public headers and a CMake package: find_package(tandem), tandem::tandem.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# Strangers write <tandem/backends/device.h>; the headers name each other from the tree's root.
+# Users include <tandem/backends/device.h>. The headers include each other relative to the tree's root.
 target_include_directories(tandem INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 install(TARGETS tandem EXPORT tandem-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(TANDEM_HAS_MPI)
@@ -12,7 +12,8 @@ endif()
 install(TARGETS tandem-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES scripts/completion/tandem.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME tandem)
 install(FILES scripts/completion/_tandem DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
-# What converts records and draws exports, under names that are the project's own; cmake/external.cmake has those in Python's package.
+# Programs that convert records and draw exports, with the project's name as prefix. cmake/external.cmake installs those of the
+# Python package.
 foreach(script render convert_records)
   string(REPLACE _ - name tandem-${script})
   install(PROGRAMS scripts/${script} DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME ${name})
@@ -32,19 +33,19 @@ foreach(header ${public_headers})
   install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tandem/${folder})
 endforeach()
 install(EXPORT tandem-targets NAMESPACE tandem:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/tandem)
-set(of_peers)
+set(embree_dependency)
 if(TANDEM_HAS_MPI)
-  set(of_mpi "find_dependency(MPI COMPONENTS CXX)\n")
+  set(mpi_dependency "find_dependency(MPI COMPONENTS CXX)\n")
 endif()
 if(embree_FOUND)
-  set(of_peers "find_dependency(embree 3)\n")
+  set(embree_dependency "find_dependency(embree 3)\n")
 endif()
 file(WRITE ${PROJECT_BINARY_DIR}/tandem-config.cmake "include(CMakeFindDependencyMacro)
 list(APPEND CMAKE_MODULE_PATH \${CMAKE_CURRENT_LIST_DIR})
 foreach(package Eigen3 fmt nlohmann_json OpenCL ZLIB Threads TBB GMP)
   find_dependency(\${package})
 endforeach()
-${of_peers}${of_mpi}include(\${CMAKE_CURRENT_LIST_DIR}/tandem-targets.cmake)
+${embree_dependency}${mpi_dependency}include(\${CMAKE_CURRENT_LIST_DIR}/tandem-targets.cmake)
 ")
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/tandem-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/tandem-config.cmake ${PROJECT_BINARY_DIR}/tandem-config-version.cmake

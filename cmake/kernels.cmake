@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-set(TANDEM_LEVELS 2 3 4 CACHE STRING "Levels of x86-64 that the host's kernels with lanes are compiled for; native: this processor's")
+set(TANDEM_LEVELS 2 3 4 CACHE STRING "Levels of x86-64 that host kernels with lanes are compiled for; native: the level of this processor")
 
-# The levels of TANDEM_LEVELS, native as what this processor has, each once.
+# Sets `result` to the levels of TANDEM_LEVELS without duplicates, with `native` replaced by the level of this processor.
 function(tandem_levels result)
   set(levels ${TANDEM_LEVELS})
   if(native IN_LIST levels)
@@ -20,16 +20,16 @@ function(tandem_levels result)
   list(REMOVE_DUPLICATES levels)
   foreach(level ${levels})
     if(NOT level MATCHES "^[234]$")
-      message(FATAL_ERROR "TANDEM_LEVELS=${TANDEM_LEVELS}: give some of 2, 3, 4 and native")
+      message(FATAL_ERROR "TANDEM_LEVELS=${TANDEM_LEVELS}: give a list of 2, 3, 4 and native")
     endif()
   endforeach()
   set(${result} ${levels} PARENT_SCOPE)
 endfunction()
 
-# tandem_kernels(TARGET K:AXES... [FOLDER F]): flattens each kernel file of algorithms/ with its headers, embeds the texts,
-# and compiles them for the host backend in every listed geometry, in both precisions. With a FOLDER of the project its
-# files instead, which add themselves to the library's in a program that TARGET is, or whose objects it is. Called where
-# the target is made: generated sources are known in one directory only.
+# tandem_kernels(TARGET K:AXES... [FOLDER F]): flattens each kernel file of algorithms/ with its headers and embeds the
+# texts. It also compiles them for the host backend in every listed geometry, in both precisions. With FOLDER it takes
+# the kernel files of that folder instead. They register themselves beside the library's at program start, where TARGET
+# is a program or its objects. Call it in the directory of the target, because generated sources are known only there.
 function(tandem_kernels target)
   cmake_parse_arguments(PARSE_ARGV 1 given "" "FOLDER" "")
   set(folder algorithms)
@@ -53,13 +53,13 @@ function(tandem_kernels target)
       list(APPEND geometries "AXES=${axes},K=${k},PRECISION=${precision}")
     endforeach()
   endforeach()
-  # Some geometries a file: reading the headers takes as long as compiling one.
+  # Several geometries per file: reading the headers takes as long as compiling one geometry.
   list(LENGTH geometries count)
   set(generated ${out}/sources.cpp ${out}/host_table.cpp)
   set(each 4)
   math(EXPR last "(${count} - 1) / ${each}")
-  # Kernels with lanes are compiled for several levels of x86-64, of which the host device takes the highest that the
-  # processor has; elsewhere, and where sanitizers are what matters, for what everything is compiled for.
+  # Kernels with lanes are compiled for several levels of x86-64. The host device uses the highest that the processor
+  # supports. For other processors and with sanitizers they are compiled with the options of all other files.
   set(levels)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT given_FOLDER AND NOT TANDEM_SANITIZE)
     tandem_levels(levels)
@@ -79,8 +79,8 @@ function(tandem_kernels target)
   target_sources(${target} PRIVATE ${generated})
   set(options -Wno-unused-function -Wno-unused-variable -Wno-unused-parameter -Wno-unknown-pragmas -Wno-type-limits)
   if(TANDEM_SANITIZE)
-    # g++ 12 with -fsanitize=bounds reads temporaries in certainty.clh that it has not written: it warns of them, and
-    # verdicts then differ from those of every other build. Addresses are still checked.
+    # With -fsanitize=bounds, g++ 12 reads uninitialised temporaries in certainty.clh: it reports them, and the decisions
+    # differ from those of all other builds. Addresses are still checked.
     list(APPEND options -fno-sanitize=bounds)
   endif()
   set_source_files_properties(${generated} PROPERTIES COMPILE_OPTIONS "${options}" SKIP_PRECOMPILE_HEADERS ON)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# tandem_meshes(TARGET): the meshes of scenes/meshes as part of the library.
+# tandem_meshes(TARGET): embeds the meshes of scenes/meshes in the library.
 function(tandem_meshes target)
   file(GLOB meshes CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scenes/meshes/*.node ${PROJECT_SOURCE_DIR}/scenes/meshes/*.ele)
   set(script ${PROJECT_SOURCE_DIR}/cmake/embed_meshes.py)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# tandem_unity(TARGET [EXPRESSION...]): compiles the files of a folder together, which takes a third of the time. Unnamed
-# namespaces of files that are compiled together are one: files whose names there are others' as well make a unit of
-# their own for each EXPRESSION that their path, from the root and without .cpp, matches. Scenes are compiled one by one:
-# each has a make() of its own.
+# tandem_unity(TARGET [EXPRESSION...]): compiles the files of a folder together, which takes a third of the time.
+# Files of one unit share one unnamed namespace, where names can clash. Files whose path matches EXPRESSION form a unit
+# of their own; the path is relative to the root and without .cpp. Scenes are compiled one by one, because each defines
+# make().
 function(tandem_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   get_target_property(sources ${target} SOURCES)
