@@ -39,7 +39,7 @@ foreach(library chart.js/chart.min.js three/three.min.js three/examples/js/contr
     cmake_path(GET library PARENT_PATH folder)
     install(FILES ${PROJECT_BINARY_DIR}/libexec/tandem/javascript/${library} DESTINATION libexec/tandem/javascript/${folder})
   else()
-    message(STATUS "no /usr/share/javascript/${library}: tandem report and view will name its package (Debian: libjs-three, libjs-chart.js)")
+    message(STATUS "no /usr/share/javascript/${library}: tandem report and view name its package (Debian: libjs-three, libjs-chart.js)")
   endif()
 endforeach()
 # simulate --pictures draws with it.

@@ -225,9 +225,9 @@ class There(ColliderCase):
                 mixed = self.collider(device=device, deformable=[1])
                 for dtype in (float, numpy.float32):
                     rows, points = numpy.array(POSES, dtype), [part.astype(dtype) for part in moved]
-                    for mine, here in ((collider._core.run_there(rows, []), collider.run(rows)), (soft._core.run_there(None, points), soft.run(vertices=points)),
-                                       (soft._core.run_there(None, [None, points[1]]), soft.run(vertices={1: points[1]})),
-                                       (mixed._core.run_there(rows, [None, points[1]]), mixed.run(rows, [points[1]]))):
+                    for mine, here in ((collider._core.run_device_input(rows, []), collider.run(rows)), (soft._core.run_device_input(None, points), soft.run(vertices=points)),
+                                       (soft._core.run_device_input(None, [None, points[1]]), soft.run(vertices={1: points[1]})),
+                                       (mixed._core.run_device_input(rows, [None, points[1]]), mixed.run(rows, [points[1]]))):
                         self.assertGreater(here.contact_count, 10)
                         self.assertEqual(mine.digest(), tuple(here.digest()))
                         self.assertEqual(mine.contact_digest(), tuple(here.contact_digest()))
@@ -241,7 +241,7 @@ class There(ColliderCase):
             rows = numpy.array(POSES)
             rows[at] = value
             said = []
-            for run in (collider.run, lambda given: collider._core.run_there(given, [])):
+            for run in (collider.run, lambda given: collider._core.run_device_input(given, [])):
                 with self.assertRaises(ValueError) as caught:
                     run(rows)
                 said.append(str(caught.exception))
@@ -249,8 +249,8 @@ class There(ColliderCase):
         points = self.meshes[1][0].copy()
         points[3, 2] = numpy.nan
         with self.assertRaisesRegex(ValueError, "body 1: vertex 3 is not finite"):
-            soft._core.run_there(None, [None, points])
-        self.assertEqual(soft._core.run_there(None, [None, self.meshes[1][0]]).digest(), tuple(soft.digest()))
+            soft._core.run_device_input(None, [None, points])
+        self.assertEqual(soft._core.run_device_input(None, [None, self.meshes[1][0]]).digest(), tuple(soft.digest()))
 
 
 class Memory(ColliderCase):
@@ -320,7 +320,7 @@ class Memory(ColliderCase):
                 self.assertEqual(tensor.data_ptr(), address(numpy.from_dlpack(answer.pairs(on_device=True))))
                 poses = taken.tensor(POSES, dtype=taken.float64)
                 self.expect_digest(answer, poses, ByDlpack(poses), poses.repeat_interleave(2, 1)[:, ::2])
-                with self.assertRaisesRegex(ValueError, "poses: is not given by DLPack: .*grad"):
+                with self.assertRaisesRegex(ValueError, "poses: __dlpack__ failed: .*grad"):
                     self.collider().run(poses.requires_grad_())
                 if hasattr(taken.Tensor, "__dlpack_c_exchange_api__"):
                     with unittest.mock.patch.object(taken.Tensor, "__dlpack__", side_effect=BufferError("not by the table")):
@@ -416,26 +416,26 @@ class BadInput(ColliderCase):
         nan = points.copy()
         nan[2, 1] = float("nan")
         for kind, words, mesh in (
-                (ValueError, "meshes[0]: vertices: shape (20, 2), and (n, 3) is wanted", (points[:, :2], tets)),
-                (ValueError, "meshes[0]: tetrahedra: shape (24, 3), and (n, 4) is wanted", (points, tets[:, :3])),
-                (TypeError, "meshes[0]: tetrahedra: type float64, and integers are wanted", (points, tets.astype(float))),
-                (TypeError, "meshes[0]: vertices: type complex128, and real numbers are wanted", (points.astype(complex), tets)),
-                (ValueError, "meshes[0]: vertices: is no array; give rows of equal lengths", ([[0, 0, 0], [1, 2]], tets)),
+                (ValueError, "meshes[0]: vertices: shape (20, 2); expected (n, 3)", (points[:, :2], tets)),
+                (ValueError, "meshes[0]: tetrahedra: shape (24, 3); expected (n, 4)", (points, tets[:, :3])),
+                (TypeError, "meshes[0]: tetrahedra: type float64; expected integers", (points, tets.astype(float))),
+                (TypeError, "meshes[0]: vertices: type complex128; expected real numbers", (points.astype(complex), tets)),
+                (ValueError, "meshes[0]: vertices: is not an array; give rows of equal lengths", ([[0, 0, 0], [1, 2]], tets)),
                 (ValueError, "numbers from -1 to", (points, tets - 1)),
                 (ValueError, "meshes[0]: tetrahedron 0 names vertex", (points, tets + 1000)),
                 (ValueError, "meshes[0]: vertex 2 is not finite", (nan, tets)),
                 (ValueError, "meshes[0]: no tetrahedra", (points, tets[:0])),
                 (ValueError, "nowhere.msh: No such file or directory", "nowhere.msh"),
-                (ValueError, "is in CUDA's memory, and the host's is wanted; copy it there (.cpu() or .get())", (OnDevice(), tets)),
-                (TypeError, "meshes[0]: type int, and a tandem.Mesh, a path or (vertices, tetrahedra) is wanted", 7)):
+                (ValueError, "is in CUDA's memory; copy it to the host's memory (.cpu() or .get())", (OnDevice(), tets)),
+                (TypeError, "meshes[0]: type int; expected a tandem.Mesh, a path or (vertices, tetrahedra)", 7)):
             with self.subTest(words):
                 self.expect(kind, words, tandem.Collider, [mesh, self.files[1]])
-        self.expect(TypeError, "meshes: type str, and a list is wanted", tandem.Collider, "a.msh")
+        self.expect(TypeError, "meshes: type str; expected a list", tandem.Collider, "a.msh")
         self.expect(ValueError, "has no bodies", tandem.Collider, [])
         self.expect(ValueError, "bodies: body 1 is of mesh 5 of 2", tandem.Collider, self.meshes, bodies=[0, 5])
-        self.expect(ValueError, "bodies[0]: -1 is no number of a mesh", tandem.Collider, self.meshes, bodies=[-1])
+        self.expect(ValueError, "bodies[0]: -1 is not the number of a mesh", tandem.Collider, self.meshes, bodies=[-1])
         self.expect(TypeError, "bodies[0]: type float", tandem.Collider, self.meshes, bodies=[0.5])
-        self.expect(ValueError, "deformable[0]: 2 is no body; there are 2", tandem.Collider, self.meshes, deformable=[2])
+        self.expect(ValueError, "deformable[0]: 2 is not the number of a body; there are 2", tandem.Collider, self.meshes, deformable=[2])
         self.expect(ValueError, "broken.msh", tandem.read_mesh, gmsh(self.work / "broken.msh", [(0, 0, 0)] * 3, [[0, 1, 2, 9]]))
 
     def test_settings_are_the_programs_sentences(self):
@@ -444,8 +444,8 @@ class BadInput(ColliderCase):
                                ("unknown preset of tiled 'fairest'", {"preset": "fairest"}), ("named twice", {"device": "host+host"}), ("device=all", {"device": "all"})):
             with self.subTest(words):
                 self.expect(ValueError, words, tandem.Collider, self.meshes, **options)
-        self.expect(TypeError, "setting k: type float, and a word or an integer is wanted", tandem.Collider, self.meshes, k=8.0)
-        self.expect(TypeError, "device: type int, and a name is wanted", tandem.Collider, self.meshes, device=0)
+        self.expect(TypeError, "setting k: type float; expected a word or an integer", tandem.Collider, self.meshes, k=8.0)
+        self.expect(TypeError, "device: type int; expected a name", tandem.Collider, self.meshes, device=0)
         for options, words in (({"k": 7}, ("--set", "k=7")), ({"device": "cuda:9"}, ("--device", "cuda:9")), ({"rounding": "directed"}, ("--set", "rounding=directed"))):
             with self.assertRaises(ValueError) as caught:
                 tandem.Collider(self.meshes, **options)
@@ -458,7 +458,7 @@ class BadInput(ColliderCase):
         points = self.meshes[1][0]
         poses = numpy.array(POSES)
         for kind, words, value in (
-                (ValueError, "poses: shape (2, 6), and (n, 7) is wanted", poses[:, :6]), (ValueError, "poses: shape (7,), and (n, 7) is wanted", poses[0]),
+                (ValueError, "poses: shape (2, 6); expected (n, 7)", poses[:, :6]), (ValueError, "poses: shape (7,); expected (n, 7)", poses[0]),
                 (ValueError, "poses: 1 rows for 2 bodies", poses[:1]), (TypeError, "poses: type bool", poses > 0), (TypeError, "poses: type <U", [["identity"] * 7] * 2),
                 (TypeError, "poses: type object", [[None] * 7] * 2), (ValueError, "poses: row 1 has no rotation", poses * [[1], [0]]),
                 (ValueError, "poses: row 0 is not finite", poses + [float("inf"), 0, 0, 0, 0, 0, 0]),
@@ -469,10 +469,10 @@ class BadInput(ColliderCase):
         bad = points.copy()
         bad[3, 2] = float("nan")
         for kind, words, value in (
-                (ValueError, "vertices: 2 arrays for 1 deformable bodies", [points, points]), (ValueError, "vertices: 0 is no deformable body (there are: 1)", {0: points}),
+                (ValueError, "vertices: 2 arrays for 1 deformable bodies", [points, points]), (ValueError, "vertices: 0 is not a deformable body (those are: 1)", {0: points}),
                 (ValueError, "vertices of body 1: shape (16, 2)", [points[:, :2]]), (ValueError, "vertices: 15 rows for body 1, whose mesh has 16 vertices", [points[1:]]),
                 (ValueError, "body 1: vertex 3 is not finite", [bad]), (TypeError, "vertices of body 1: type complex128", [points.astype(complex)]),
-                (TypeError, "vertices: type int, and a list is wanted", 5)):
+                (TypeError, "vertices: type int; expected a list", 5)):
             with self.subTest(words):
                 self.expect(kind, words, soft.pairs, vertices=value)
         self.expect(ValueError, "no body is deformable; make the collider with deformable=True", collider.pairs, vertices=[points])

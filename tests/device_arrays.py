@@ -200,7 +200,7 @@ class Arrays(Case):
         self.assertEqual((rows[1].streams, rows[1].asked > 0), ([soft._core.queue, None], True))
         self.assertNotEqual(soft._core.addresses[2], rows[1].address)
         for words, array in (("is in CUDA's memory of GPU 1, and the collider works on cuda:0", OnGpu(second, device=(2, 1))), ("shape (1, 3, 3)", OnGpu([second[:3]])),
-                             ("vertices of body 1: its rows are not beside each other", OnGpu(second))):
+                             ("vertices of body 1: its rows are not contiguous", OnGpu(second))):
             if "beside" in words:
                 array.array = numpy.repeat(second, 2, axis=1)[:, ::2]
             with self.assertRaisesRegex(ValueError, words.replace("(", "\\(").replace(")", "\\)")):
@@ -358,17 +358,17 @@ class Arrays(Case):
         odd.array = numpy.frombuffer(odd.array.tobytes() + b"    ", numpy.uint8)[4:4 + 112].view(numpy.float64).reshape(2, 7)
         table, both = with_table(), type("Both", (WithBoth,), {"changes": {"stream": 1}})
         for kind, words, value in (
-                (ValueError, "poses: shape (2, 6), and (n, 7) is wanted", table(array[:, :6])), (TypeError, "poses: numbers of 64 bits that are neither", table(array, numpy.int64)),
+                (ValueError, "poses: shape (2, 6); expected (n, 7)", table(array[:, :6])), (TypeError, "poses: numbers of 64 bits that are neither", table(array, numpy.int64)),
                 (ValueError, "poses: is in CUDA's memory of GPU 1, and the collider works on cuda:0", table(array, device=(2, 1))),
-                (ValueError, "poses: shape (2, 6), and (n, 7) is wanted", both(array[:, :6])), (TypeError, "poses: numbers of 64 bits that are neither", both(array, numpy.int64)),
+                (ValueError, "poses: shape (2, 6); expected (n, 7)", both(array[:, :6])), (TypeError, "poses: numbers of 64 bits that are neither", both(array, numpy.int64)),
                 (ValueError, "poses: is in CUDA's memory of GPU 1, and the collider works on cuda:0", both(array, device=(2, 1))),
-                (ValueError, "poses: shape (2, 6), and (n, 7) is wanted", OnGpu(array[:, :6])), (ValueError, "poses: shape (7,), and (n, 7) is wanted", OnGpu(array[0])),
+                (ValueError, "poses: shape (2, 6); expected (n, 7)", OnGpu(array[:, :6])), (ValueError, "poses: shape (7,); expected (n, 7)", OnGpu(array[0])),
                 (ValueError, "poses: 1 rows for 2 bodies", OnGpu(array[:1])), (TypeError, "poses: numbers of 16 bits that are neither", OnGpu(array, numpy.float16)),
-                (TypeError, "poses: numbers of 64 bits that are neither", OnGpu(array, numpy.int64)), (ValueError, "rows are not beside each other", wide),
+                (TypeError, "poses: numbers of 64 bits that are neither", OnGpu(array, numpy.int64)), (ValueError, "rows are not contiguous", wide),
                 (ValueError, "poses: is in CUDA's memory of GPU 1, and the collider works on cuda:0", OnGpu(array, device=(2, 1))),
-                (ValueError, "poses: begins at no multiple of 8 bytes", odd),
-                (ValueError, "poses: shape (2, 6), and (n, 7) is wanted", ByInterface(array[:, :6])), (TypeError, "poses: type <i8 on a GPU", ByInterface(array.astype(int))),
-                (ValueError, "rows are not beside each other", ByInterface(array, strides=(112, 16)))):
+                (ValueError, "poses: its address is not a multiple of 8 bytes", odd),
+                (ValueError, "poses: shape (2, 6); expected (n, 7)", ByInterface(array[:, :6])), (TypeError, "poses: type <i8 on a GPU", ByInterface(array.astype(int))),
+                (ValueError, "rows are not contiguous", ByInterface(array, strides=(112, 16)))):
             with self.subTest(words):
                 self.expect(kind, words, collider.pairs, value)
         self.expect(ValueError, "vertices: 15 rows for body 1, whose mesh has 16 vertices", soft.run, vertices=[OnGpu(self.parts[1][0][1:])])
@@ -379,14 +379,14 @@ class Arrays(Case):
             for there in (OnGpu(array), with_table()(array)):
                 self.expect(ValueError, f"poses: is in CUDA's memory, and the collider works on {device}", self.collider(device=device).run, there)
         self.expect(ValueError, "stream: device host is not one of CUDA's", self.collider, "host", stream=0)
-        self.expect(TypeError, "stream: type str, and a CUDA stream or its address is wanted", self.collider, stream="main")
+        self.expect(TypeError, "stream: type str; expected a CUDA stream or its address", self.collider, stream="main")
         self.expect(tandem.DeviceError, "cuda:4: the driver has 1 devices", self.collider, "cuda:4", stream=0)
         collider.run(OnGpu(array))
 
         class Ungiven(OnGpu):
             def __dlpack__(self, **_):
                 raise BufferError("not while it\nis differentiated")
-        self.expect(ValueError, "poses: is not given by DLPack: not while it is differentiated", collider.run, Ungiven(array))
+        self.expect(ValueError, "poses: __dlpack__ failed: not while it is differentiated", collider.run, Ungiven(array))
 
 
 if __name__ == "__main__":

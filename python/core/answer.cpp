@@ -19,7 +19,7 @@ static_assert(sizeof(Pair) == 4 * sizeof(std::int32_t) && sizeof(ContactPoint) %
 } // namespace
 
 Answer::~Answer() {
-    // Its buffers go back to where another thread may be taking some.
+    // The buffers return to the device's pool, which other threads use under this lock.
     const std::lock_guard lock(collider_->mutex());
     on_device_.reset();
     result_.parts.clear();
@@ -35,7 +35,7 @@ Digest Answer::contact_digest() const {
     return result_.contact_digest();
 }
 
-void Answer::check_kept() const {
+void Answer::check_pairs_kept() const {
     const auto& settings = collider_->settings();
     if (settings[parameters::output] != Output::pairs)
         throw InputError(fmt::format("setting output={} keeps no pairs; make the collider with output=pairs",
@@ -44,13 +44,13 @@ void Answer::check_kept() const {
 
 std::vector<Pair> Answer::pairs() const {
     const std::lock_guard lock(collider_->mutex());
-    check_kept();
+    check_pairs_kept();
     return result_.download();
 }
 
 std::vector<ContactPoint> Answer::contacts() const {
     const std::lock_guard lock(collider_->mutex());
-    check_kept();
+    check_pairs_kept();
     if (collider_->settings()[parameters::contact_rule] == ContactRule::none)
         throw InputError("setting contact_rule=none makes no contacts; make the collider without it");
     return result_.download_contacts();
@@ -58,7 +58,7 @@ std::vector<ContactPoint> Answer::contacts() const {
 
 const Answer::OnDevice& Answer::on_device() const {
     const std::lock_guard lock(collider_->mutex());
-    check_kept();
+    check_pairs_kept();
     if (on_device_) return *on_device_;
     auto& device = *collider_->devices().front();
     const auto kind = dlpack_device(device);
@@ -90,7 +90,7 @@ Rows pairs(const Answer& answer) {
     return owned_array<std::int32_t, 4>(std::move(found));
 }
 
-/// Columns of one array of records: pairs, features, points, normals, depths.
+/// Views of the columns of one array of records: pairs, features, points, normals, depths.
 nb::tuple contacts(const Answer& answer) {
     auto found = [&] {
         const nb::gil_scoped_release released;
@@ -131,7 +131,7 @@ nb::tuple digest_tuple(const Digest& digest) { return nb::make_tuple(digest.coun
 } // namespace
 
 void bind_answer(nb::module_& module) {
-    nb::class_<Answer>(module, "Answer", "What a run of Collider found; tandem.Answer hands on what it says.")
+    nb::class_<Answer>(module, "Answer", "Result of a run of Collider; tandem.Answer wraps it.")
         .def_prop_ro("count", number<&FrameResult::count>())
         .def_prop_ro("contact_count", number<&FrameResult::contacts>())
         .def_prop_ro("body_pairs", number<&FrameResult::body_pairs>())

@@ -5,7 +5,7 @@
 
 namespace tandem::python {
 
-/// What a frame's run found. Downloads and sums wait for the collider's other users, without the
+/// Result of one frame. Downloads and digests take the collider's lock; callers first release the
 /// interpreter's lock.
 class Answer {
 public:
@@ -19,23 +19,23 @@ public:
     double seconds() const { return seconds_; }
     Digest digest() const;
     Digest contact_digest() const;
-    /// Sorted. Throw InputError where the settings keep none.
+    /// Sorted. Throw InputError if the settings keep no pairs or make no contacts.
     std::vector<Pair> pairs() const;
     std::vector<ContactPoint> contacts() const;
 
-    /// Pairs as rows of four words in memory of the device they were found on.
+    /// Pairs as rows of four words in memory of the device that found them.
     struct OnDevice {
         Buffer rows;
-        int type = 0;   ///< as DLPack numbers kinds of devices
-        int number = 0; ///< of those of its kind
+        int type = 0;   ///< DLPack's number of the device type
+        int number = 0; ///< number of the device among those of its type
     };
-    /// Written there at the first call, in no order, and known to be once it returns. Throws InputError where
-    /// DLPack cannot name the memory, DeviceError where pairs are not all on one device.
+    /// The first call writes the rows, in no order, and waits until they are complete. Throws InputError if
+    /// DLPack has no name for the memory, DeviceError if the pairs are not all on one device.
     const OnDevice& on_device() const;
 
 private:
-    /// Throws InputError where the settings keep no pairs. With the collider's lock.
-    void check_kept() const;
+    /// Throws InputError if the settings keep no pairs. Needs the collider's lock.
+    void check_pairs_kept() const;
 
     std::shared_ptr<Collider> collider_;
     FrameResult result_;

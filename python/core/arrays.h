@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Arrays as they come from Python, of the host's memory, whose shape, type and order are checked before; and
-// as they go there.
+// Arrays from Python in host memory, whose shape, type and order are already checked, and arrays for Python.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,9 +14,9 @@ template<class Value, int columns>
 using HostArray =
     nanobind::ndarray<const Value, nanobind::shape<-1, columns>, nanobind::c_contig, nanobind::device::cpu>;
 
-using Points = HostArray<double, 3>;         ///< a vertex a row
-using Corners = HostArray<std::uint32_t, 4>; ///< a tetrahedron a row
-using Poses = HostArray<double, 7>;          ///< a body a row: tx ty tz qw qx qy qz
+using Points = HostArray<double, 3>;         ///< one row per vertex
+using Corners = HostArray<std::uint32_t, 4>; ///< one row per tetrahedron
+using Poses = HostArray<double, 7>;          ///< one row per body: tx ty tz qw qx qy qz
 
 inline void copy_points(const Points& from, std::vector<Eigen::Vector3d>& to) {
     static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
@@ -25,15 +24,15 @@ inline void copy_points(const Points& from, std::vector<Eigen::Vector3d>& to) {
     to.assign(first, first + from.shape(0));
 }
 
-/// A vector's values for Python, with its memory and what frees it.
+/// Moves the values to memory that Python owns. Returns its address and the capsule that frees it.
 template<class T>
 std::pair<T*, nanobind::capsule> owned(std::vector<T> values) {
-    auto* const kept = new std::vector<T>(std::move(values));
-    return {kept->data(),
-            nanobind::capsule(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); })};
+    auto* const storage = new std::vector<T>(std::move(values));
+    return {storage->data(),
+            nanobind::capsule(storage, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); })};
 }
 
-/// Rows of NumPy's over the memory of `values`, each of which is a row or a number of one.
+/// A NumPy array (rows, columns) over the memory of `values`. Each element is one row or one number of a row.
 template<class Value, std::size_t columns, class T>
 nanobind::ndarray<nanobind::numpy, Value, nanobind::shape<-1, columns>> owned_array(std::vector<T> values) {
     const auto rows = values.size() * sizeof(T) / (columns * sizeof(Value));

@@ -13,13 +13,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double preparing_per_measuring = 6; ///< as the program's
+constexpr double preparing_per_measuring = 6; ///< equal to the ratio of `tandem run`
 
 std::int64_t nanoseconds_since(Clock::time_point begin) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
 }
 
-/// Sessions of the candidates, until one is dropped.
+/// The candidates' sessions, and the time spent on them.
 class Trials {
 public:
     Trials(std::span<const Cell> candidates, const Scene& scene,
@@ -48,7 +48,7 @@ private:
     double measured_ = 0, preparing_ = 0;
 };
 
-/// With its first frame, in which kernels compile and buffers grow.
+/// Includes the first frame, in which kernels compile and buffers grow.
 void Trials::prepare(std::size_t i) {
     if (sessions_[i]) return;
     const auto begin = Clock::now();

@@ -7,22 +7,22 @@
 
 namespace tandem::python {
 
-/// A candidate of algorithm="auto" that was timed.
+/// A timed candidate of algorithm="auto".
 struct Trial {
     std::string algorithm;
-    SettingTexts changes; ///< settings that are not as its preset has them
-    double seconds = 0;   ///< median of its frames
+    SettingTexts changes; ///< settings that differ from its preset
+    double seconds = 0;   ///< median time of a frame
 };
 
-/// The fastest of several cells, prepared, and all that were timed, the fastest first.
+/// A prepared session of the fastest candidate, and all timed candidates, the fastest first.
 struct Choosing {
     std::unique_ptr<Session> session;
     const Traversal* algorithm = nullptr;
     std::vector<Trial> trials;
 };
 
-/// Times the candidates with `frame`, which runs one, for as many seconds of frames, and six times as many of
-/// preparing. Throws InputError with the first one's sentence where all fail.
+/// Times the candidates for `seconds` of frames, plus at most six times as long for preparation. `frame` runs
+/// one frame of a session. Throws InputError with the first error message if all candidates fail.
 Choosing choose(std::span<const Cell> candidates, const Scene& scene,
                 const std::function<FrameResult(Session&)>& frame, double seconds);
 

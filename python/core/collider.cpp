@@ -15,10 +15,10 @@ namespace tandem::python {
 
 namespace {
 
-constexpr double seconds_of_choosing = 2; ///< by a first frame that nothing was tuned to
+constexpr double seconds_of_choosing = 2; ///< in the first frame, where tune was not called
 
-/// Every body at the identity, deformable ones with their mesh's vertices.
-Frame rest(const Scene& scene) {
+/// Rigid bodies have the identity as their pose, deformable bodies the vertices of their mesh.
+Frame rest_frame(const Scene& scene) {
     Frame frame{std::vector<Pose>(scene.bodies.size()),
                 std::vector<std::vector<Eigen::Vector3d>>(scene.bodies.size())};
     for (std::size_t body = 0; body < scene.bodies.size(); ++body)
@@ -41,7 +41,7 @@ Scene scene_of(std::vector<Mesh> meshes, const ColliderOptions& options) {
     return scene;
 }
 
-/// What algorithm auto may become, by the program's own rules.
+/// Candidates of algorithm auto, by the rules of `tandem run`.
 std::vector<Cell> candidates_of(const ColliderOptions& options, const DeviceGroup& devices) {
     Request request{
         .algorithms = {std::string(automatic)}, .presets = {}, .devices = {}, .sets = {}, .may_choose = true};
@@ -57,20 +57,19 @@ std::size_t cuda_number(const std::string& device) {
     const auto* const end = device.data() + device.size();
     if (!device.starts_with(cuda) || std::from_chars(device.data() + cuda.size(), end, number).ptr != end)
         throw InputError(
-            fmt::format("stream: device {} is not one of CUDA's, which streams belong to; name one as "
-                        "cuda:0",
-                        device));
+            fmt::format("stream: device {} is not a CUDA device; streams need one, such as cuda:0", device));
     return number;
 }
 
 } // namespace
 
 Collider::Collider(std::vector<Mesh> meshes, const ColliderOptions& options) : algorithm_(options.algorithm) {
-    if (algorithm_ != automatic) tandem::algorithm(algorithm_); // the first word that may be wrong
+    if (algorithm_ != automatic)
+        tandem::algorithm(algorithm_); // reports an unknown name before devices are opened
     open_devices(options);
     scene_ = scene_of(std::move(meshes), options);
-    scene_.frame = [this](std::size_t) { return rest(scene_); };
-    frame_ = rest(scene_);
+    scene_.frame = [this](std::size_t) { return rest_frame(scene_); };
+    frame_ = rest_frame(scene_);
     prepare(options);
 }
 
@@ -87,11 +86,11 @@ void Collider::open_devices(const ColliderOptions& options) {
     backends_ = open_backends(names, {});
     auto groups = choose_devices(backends_, names);
     if (groups.size() != 1)
-        throw InputError("device=all names several; give one, or several that share the work as D+E");
+        throw InputError("device=all names several devices; give one, or several that share the work as D+E");
     devices_ = std::move(groups.front());
 }
 
-/// Meshes are looked at once, here.
+/// Also checks the meshes; frames are checked without them.
 void Collider::prepare(const ColliderOptions& options) {
     Settings settings;
     const Traversal* traversal = nullptr;
@@ -121,7 +120,7 @@ std::pair<FrameResult, double> Collider::run_frame(const AnyFrame& frame) {
 
 std::pair<FrameResult, double> Collider::run(const Input& input) {
     const std::lock_guard lock(mutex_);
-    return input.there ? run_frame(device_frame(input)) : run_frame(host_frame(input));
+    return input.on_device ? run_frame(device_frame(input)) : run_frame(host_frame(input));
 }
 
 template<class AnyFrame>
@@ -138,7 +137,8 @@ std::vector<Trial> Collider::tune(const Input& input, double seconds) {
     if (candidates_.empty())
         throw InputError(
             fmt::format("tune: algorithm {} was named; make the collider with algorithm=auto", algorithm_));
-    return input.there ? choose_for(device_frame(input), seconds) : choose_for(host_frame(input), seconds);
+    return input.on_device ? choose_for(device_frame(input), seconds)
+                           : choose_for(host_frame(input), seconds);
 }
 
 void Collider::reset() {
@@ -161,10 +161,10 @@ std::vector<std::uintptr_t> Collider::addresses() {
     return device_input_ ? device_input_->addresses() : std::vector<std::uintptr_t>{};
 }
 
-/// What is out of range is counted on the way, not looked for; the library's own check, which looks at meshes
-/// as well, has the sentence.
+/// The copy counts coordinates that are out of range. Only then the library's slower check runs, which throws
+/// the error message.
 const Frame& Collider::host_frame(const Input& input) {
-    beyond_ = 0;
+    out_of_range_ = 0;
     if (input.poses)
         set_poses(*input.poses);
     else
@@ -176,7 +176,7 @@ const Frame& Collider::host_frame(const Input& input) {
         else
             frame_.deformed[body] = scene_.meshes[scene_.bodies[body].mesh].vertices;
     }
-    if (beyond_ > 0) check_range(scene_, frame_, precision_);
+    if (out_of_range_ > 0) check_range(scene_, frame_, precision_);
     return frame_;
 }
 
@@ -195,7 +195,7 @@ void Collider::set_poses(const GivenRows& poses) {
             continue;
         }
         frame_.poses[body] = pose_of_row(static_cast<const double*>(poses.data) + 7 * body, body);
-        for (const double x : frame_.poses[body].translation) beyond_ += !(std::abs(x) <= limit_);
+        for (const double x : frame_.poses[body].translation) out_of_range_ += !(std::abs(x) <= limit_);
     }
 }
 
@@ -209,12 +209,12 @@ void Collider::set_vertices(std::size_t body, const GivenRows& vertices) {
     static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
     const auto* const from = static_cast<const double*>(vertices.data);
     auto* const to = reinterpret_cast<double*>(points.data());
-    std::size_t beyond = 0; // a local: the loop is vector code
+    std::size_t out_of_range = 0; // a local variable, so that the loop is vectorised
     for (std::size_t i = 0; i < 3 * count; ++i) {
-        beyond += !(std::abs(from[i]) <= limit_);
+        out_of_range += !(std::abs(from[i]) <= limit_);
         to[i] = from[i];
     }
-    beyond_ += beyond;
+    out_of_range_ += out_of_range;
 }
 
 } // namespace tandem::python

@@ -13,35 +13,34 @@
 
 namespace tandem::python {
 
-/// What a collider is made of. Bodies have one entry in each list that is about them.
+/// Options of a collider. `bodies` and `deformable` have one entry per body.
 struct ColliderOptions {
-    std::vector<std::uint32_t> bodies; ///< the mesh of each
+    std::vector<std::uint32_t> bodies; ///< number of each body's mesh
     std::vector<bool> deformable;
     std::string algorithm, preset, device;
     SettingTexts settings;
-    std::optional<std::uintptr_t>
-        stream; ///< a CUstream of the device, which is one of CUDA's; 0: the default one
+    std::optional<std::uintptr_t> stream; ///< a CUstream of the device, a CUDA one; 0: default stream
 };
 
-/// A frame's numbers: without poses every body is at the identity, and deformable ones without vertices have
-/// their mesh's.
+/// Arrays of one frame. Without poses every body has the identity. Deformable bodies without vertices have
+/// those of their mesh.
 struct Input {
     std::optional<GivenRows> poses;
-    std::vector<std::optional<GivenRows>> vertices; ///< one a body, or none at all
-    bool there = false; ///< some of them are in memory of the collider's device, and it is read there
+    std::vector<std::optional<GivenRows>> vertices; ///< one per body, or empty
+    bool on_device = false; ///< whether kernels read some of the arrays in memory of the collider's device
 };
 
-/// A scene of meshes on devices of its own, prepared for one algorithm. One thread at a time is in it.
+/// A scene of meshes on its own devices, prepared for one algorithm. One thread at a time uses it.
 class Collider {
 public:
     /// Throws InputError or DeviceError.
     Collider(std::vector<Mesh> meshes, const ColliderOptions& options);
 
-    /// Finds the pairs of a frame. Throws InputError or DeviceError.
-    /// Seconds: of the frame itself, as the program measures one.
+    /// Finds the pairs of a frame. Returns the result and the seconds of the frame itself, measured as the
+    /// program does. Throws InputError or DeviceError.
     std::pair<FrameResult, double> run(const Input& input);
-    /// Of algorithm auto: the fastest of its candidates for that frame runs from now on. Throws InputError
-    /// for another algorithm.
+    /// Algorithm auto: times the candidates on that frame and selects the fastest for later runs. Throws
+    /// InputError for another algorithm.
     std::vector<Trial> tune(const Input& input, double seconds);
     void reset();
 
@@ -50,24 +49,24 @@ public:
     bool is_any_deformable() const {
         return std::ranges::any_of(scene_.bodies, [](const Body& body) { return body.deformable; });
     }
-    /// "auto" until one is chosen.
+    /// "auto" until an algorithm is chosen.
     std::string algorithm();
-    /// As the devices took them; none until an algorithm is chosen.
+    /// Settings in use, after the devices' adjustments; empty until an algorithm is chosen.
     SettingTexts setting_texts();
-    /// The same of a collider that has run, with its lock.
+    /// The same. Needs a collider that has run, and its lock.
     const Settings& settings() const { return session_->settings(); }
     const DeviceGroup& devices() const { return devices_; }
-    /// Where kernels read the last frame that was in memory of the device.
+    /// Addresses from which kernels read the last frame that was in memory of the device.
     std::vector<std::uintptr_t> addresses();
-    /// Whose stream its commands go by: lives as long as the devices.
-    void keep(nanobind::object owner) { kept_ = std::move(owner); }
-    /// Around every use of its devices, answers' included. Taken without the interpreter's lock.
+    /// Keeps the Python object that owns the stream alive as long as the devices.
+    void set_stream_owner(nanobind::object owner) { stream_owner_ = std::move(owner); }
+    /// Guards every use of the devices, also by answers. Release the interpreter's lock before locking it.
     std::mutex& mutex() { return mutex_; }
 
 private:
     void open_devices(const ColliderOptions& options);
     void prepare(const ColliderOptions& options);
-    /// A frame of the input, checked and ready to run; the next one's takes its place.
+    /// The input as a checked frame. The next call overwrites it.
     const Frame& host_frame(const Input& input);
     const DeviceFrame& device_frame(const Input& input);
     template<class AnyFrame>
@@ -77,18 +76,18 @@ private:
     void set_poses(const GivenRows& poses);
     void set_vertices(std::size_t body, const GivenRows& vertices);
 
-    nanobind::object kept_;
-    std::vector<BackendReport> backends_; ///< these outlive what lies on their devices
+    nanobind::object stream_owner_;
+    std::vector<BackendReport> backends_; ///< declared first, so that devices outlive their buffers
     DeviceGroup devices_;
     Scene scene_;
     std::string algorithm_;
-    std::vector<Cell> candidates_; ///< of auto
+    std::vector<Cell> candidates_; ///< candidates of algorithm auto
     Precision precision_ = Precision::fp32;
-    double limit_ = 0;       ///< of coordinates
-    Frame frame_;            ///< the last one's memory serves the next
-    std::size_t beyond_ = 0; ///< coordinates of it that are out of range
+    double limit_ = 0;             ///< largest valid coordinate
+    Frame frame_;                  ///< its memory is reused for each frame
+    std::size_t out_of_range_ = 0; ///< number of coordinates of frame_ beyond limit_
     std::unique_ptr<DeviceInput> device_input_;
-    std::unique_ptr<Session> session_; ///< none until an algorithm is chosen
+    std::unique_ptr<Session> session_; ///< null until an algorithm is chosen
     std::mutex mutex_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Collider as Python has it, and where the interpreter's lock is let go.
+// Python binding of Collider. Releases the interpreter's lock around work on devices.
 #include "python/core/answer.h"
 #include "python/core/collider.h"
 #include "python/core/input.h"
@@ -41,7 +41,7 @@ std::shared_ptr<Collider> make(const std::vector<const Mesh*>& meshes, std::vect
         std::move(copies),
         ColliderOptions{std::move(bodies), std::move(deformable), std::move(algorithm), std::move(preset),
                         std::move(device), std::move(settings), stream});
-    collider->keep(std::move(owner));
+    collider->set_stream_owner(std::move(owner));
     return collider;
 }
 
@@ -51,7 +51,8 @@ std::unique_ptr<Answer> run(const std::shared_ptr<Collider>& collider, const Inp
     return std::make_unique<Answer>(collider, std::move(result), seconds);
 }
 
-/// A tuple (algorithm, changed settings, seconds) a trial, the fastest first; None where input_of has none.
+/// One tuple (algorithm, changed settings, seconds) per trial, the fastest first. None where input_of returns
+/// none.
 std::optional<nb::list> tune(Collider& collider, nb::handle poses, nb::handle vertices, double seconds) {
     const auto input = input_of(collider, poses, vertices);
     if (!input) return std::nullopt;
@@ -65,7 +66,7 @@ std::optional<nb::list> tune(Collider& collider, nb::handle poses, nb::handle ve
     return all;
 }
 
-/// What producers of arrays are told (DLPack), which have another name for the default stream.
+/// Address of the queue that producers of DLPack arrays get, 0 for the default stream.
 std::uintptr_t queue(const Collider& collider) {
     return reinterpret_cast<std::uintptr_t>(collider.devices().front()->queue());
 }
@@ -73,30 +74,29 @@ std::uintptr_t queue(const Collider& collider) {
 } // namespace
 
 void bind_collider(nb::module_& module) {
-    module.def("algorithms", &algorithm_names, "Names that Collider takes as its algorithm, beside auto.");
+    module.def("algorithms", &algorithm_names, "Names of the algorithms that Collider accepts besides auto.");
     const auto released = nb::call_guard<nb::gil_scoped_release>();
     const auto run_given = [](const std::shared_ptr<Collider>& self, nb::handle poses,
                               nb::handle vertices) -> std::unique_ptr<Answer> {
         const auto input = input_of(*self, poses, vertices);
         return input ? run(self, *input) : nullptr;
     };
-    const auto run_there = [](const std::shared_ptr<Collider>& self, nb::handle poses,
-                              const nb::list& vertices) {
+    const auto run_device_input = [](const std::shared_ptr<Collider>& self, nb::handle poses,
+                                     const nb::list& vertices) {
         return run(self, device_input(*self, poses, vertices));
     };
-    nb::class_<Collider>(module, "Collider", "What tandem.Collider, which checks its input, hands it to.")
+    nb::class_<Collider>(module, "Collider", "Implementation of tandem.Collider, which checks its input.")
         .def(nb::new_(&make), nb::arg("meshes"), nb::arg("bodies"), nb::arg("deformable"),
              nb::arg("algorithm"), nb::arg("preset"), nb::arg("device"), nb::arg("settings"),
              nb::arg("stream").none(), nb::arg("owner").none())
-        .def(
-            "run", run_given, nb::arg("poses").none(), nb::arg("vertices").none(),
-            nb::sig("def run(self, poses: object | None, vertices: object | None) -> Answer | None"),
-            "Of arrays, vertices in a list of one for each deformable body or in {number: array}. None where "
-            "they are in anything else.")
-        .def("run_there", run_there, nb::arg("poses").none(), nb::arg("vertices"),
-             "The same as if all were in memory of the device, where arrays of the host are for device host; "
-             "an "
-             "entry for each body.")
+        .def("run", run_given, nb::arg("poses").none(), nb::arg("vertices").none(),
+             nb::sig("def run(self, poses: object | None, vertices: object | None) -> Answer | None"),
+             "Runs a frame. vertices: a list with one array per deformable body, or {number: array}. Returns "
+             "None "
+             "for any other container.")
+        .def("run_device_input", run_device_input, nb::arg("poses").none(), nb::arg("vertices"),
+             "Runs a frame whose arrays are all in memory of the device; for device host, in host memory. "
+             "vertices has one entry per body.")
         .def("tune", &tune, nb::arg("poses").none(), nb::arg("vertices").none(), nb::arg("seconds"),
              nb::sig("def tune(self, poses: object | None, vertices: object | None, seconds: float) -> list "
                      "| None"))
@@ -105,10 +105,10 @@ void bind_collider(nb::module_& module) {
         .def_prop_ro("settings", &Collider::setting_texts, released)
         .def_prop_ro("devices", &device_names)
         .def_prop_ro("queue", &queue)
-        .def_prop_ro("addresses", &Collider::addresses, released,
-                     "Where kernels read the last frame that was in memory of the device: poses, 0 for none, "
-                     "then vertices of "
-                     "each deformable body.");
+        .def_prop_ro(
+            "addresses", &Collider::addresses, released,
+            "Addresses from which kernels read the last frame that was in memory of the device: poses "
+            "(0 for none), then vertices of each deformable body.");
 }
 
 } // namespace tandem::python

@@ -10,15 +10,15 @@ namespace tandem::python {
 namespace {
 
 constexpr std::size_t pose_numbers = 7, coordinates = 3;
-constexpr std::size_t most_adopted = 64;
+constexpr std::size_t max_adopted = 64;
 
 } // namespace
 
-/// A handle an array; all go at once when there are many, as with libraries that never use memory again.
+/// One handle per array. At max_adopted all are released, for libraries that never reuse memory.
 Buffer DeviceInput::adopted(void* data, std::size_t bytes) {
     const auto found = adopted_.find({data, bytes});
     if (found != adopted_.end()) return found->second;
-    if (adopted_.size() >= most_adopted) adopted_.clear();
+    if (adopted_.size() >= max_adopted) adopted_.clear();
     return adopted_[{data, bytes}] = device_.adopt(data, bytes, "rows of an application");
 }
 

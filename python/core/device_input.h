@@ -8,26 +8,27 @@
 
 namespace tandem::python {
 
-/// Frames of a scene as a session takes them from memory of its device: arrays there are read where they are,
-/// those of the host's memory are brought to it.
+/// Makes frames in memory of a device for a session. Kernels read arrays of that device in place. Arrays in
+/// host memory are uploaded.
 class DeviceInput {
 public:
     /// Both must outlive it.
     DeviceInput(Device& device, const Scene& scene)
         : device_(device), scene_(scene), uploads_(scene.bodies.size() + 1) {}
 
-    /// Without poses every body is at the identity, and deformable ones without vertices have their mesh's.
-    /// Throws InputError for a wrong number of rows.
+    /// Without poses every body has the identity. Deformable bodies without vertices have those of their
+    /// mesh. Throws InputError for a wrong number of rows.
     const DeviceFrame& frame(const std::optional<GivenRows>& poses,
                              const std::vector<std::optional<GivenRows>>& vertices);
-    /// Where kernels read the last frame: its poses, 0 for none, and the vertices of each deformable body.
+    /// Addresses from which kernels read the last frame: poses (0 for none), then the vertices of each
+    /// deformable body.
     std::vector<std::uintptr_t> addresses() const;
 
 private:
-    /// Rows that were brought to the device, and whether they are the mesh's own.
+    /// Uploaded rows.
     struct Upload {
         Buffer buffer;
-        bool at_rest = false;
+        bool at_rest = false; ///< whether they are the vertices of the mesh
     };
 
     DeviceRows rows_of(const GivenRows& given, std::size_t columns, Upload& upload);
@@ -37,11 +38,13 @@ private:
 
     Device& device_;
     const Scene& scene_;
-    std::vector<Upload> uploads_; ///< of each body's vertices, then of poses
-    /// Handles stay, since one that goes takes with it what the device keeps of earlier frames' commands.
+    std::vector<Upload> uploads_; ///< vertices of each body, then poses
+    /// Adopted arrays by address and bytes. They are kept, because releasing one discards the device's data
+    /// on commands of earlier frames.
     std::map<std::pair<void*, std::size_t>, Buffer> adopted_;
     DeviceFrame frame_;
-    std::optional<void*> followed_; ///< in this frame: arrays of a library share its stream
+    std::optional<void*>
+        followed_; ///< last queue followed in this frame: arrays of one library share a stream
 };
 
 } // namespace tandem::python

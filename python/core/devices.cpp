@@ -9,7 +9,7 @@ namespace tandem::python {
 
 namespace {
 
-/// Under the names of `tandem devices --json`.
+/// Fields have the names of `tandem devices --json`.
 nb::dict dictionary(const std::string& backend, const DeviceInfo& info) {
     nb::dict fields;
     fields["id"] = info.id.c_str();
@@ -41,10 +41,10 @@ nb::list devices() {
 void bind_devices(nb::module_& module) {
     module.def(
         "devices", &devices, nb::sig("def devices() -> list[dict[str, object]]"),
-        "Every device there is, under the names of `tandem devices --json`: id (what Collider takes), "
+        "All devices, with the fields of `tandem devices --json`: id (the argument `device` of Collider), "
         "backend, name, driver, compiler, compute_units, memory_bytes, local_bytes, double (whether it "
-        "has that type), hardware (PCI address or UUID; None where unknown). A backend without devices "
-        "has no entry; asking a Collider for one of them says why.");
+        "has that type), hardware (PCI address or UUID; None if unknown). A backend without devices "
+        "has no entry; a Collider on one of its devices raises an error with the reason.");
 }
 
 } // namespace tandem::python

@@ -17,11 +17,12 @@ void bind_errors(nb::module_& module) {
         }
     });
     const nb::exception<DeviceError> device_error(module, "DeviceError", PyExc_RuntimeError);
-    device_error.attr("__doc__") =
-        "A device failed or cannot do what was asked: one line that says which, and what was being done.";
+    device_error.attr("__doc__") = "A device failed or does not support the request. The message is one "
+                                   "line: the device and the operation.";
     const nb::exception<OutOfMemory> out_of_memory(module, "OutOfMemory", device_error.ptr());
     out_of_memory.attr("__doc__") =
-        "Memory of a device does not suffice: what was asked for and what there is. The device works on.";
+        "A device has too little memory: the message gives the requested and the available bytes. The device "
+        "remains usable.";
 }
 
 } // namespace tandem::python

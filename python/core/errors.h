@@ -5,8 +5,8 @@
 
 namespace tandem::python {
 
-/// Bad use or bad input as ValueError, failures of devices as the module's DeviceError and OutOfMemory, each
-/// with its sentence.
+/// Translates InputError to ValueError, and DeviceError and OutOfMemory to the module's exceptions of these
+/// names. Messages are kept.
 void bind_errors(nanobind::module_& module);
 
 } // namespace tandem::python

@@ -18,7 +18,7 @@ struct Table {
     int (*current_stream)(int device_type, std::int32_t device_id, void** stream);
 };
 
-/// How DLManagedTensorVersioned of dlpack.h begins, in every version.
+/// First members of DLManagedTensorVersioned of dlpack.h, equal in every version.
 struct Tensor {
     std::uint32_t major, minor;
     void* context;
@@ -28,7 +28,7 @@ struct Tensor {
 constexpr const char* tensor_name = "dltensor_versioned";
 
 void drop(PyObject* capsule) {
-    if (PyCapsule_IsValid(capsule, tensor_name) == 0) return; // somebody has taken it over
+    if (PyCapsule_IsValid(capsule, tensor_name) == 0) return; // renamed by a consumer that owns the tensor
     auto* const tensor = static_cast<Tensor*>(PyCapsule_GetPointer(capsule, tensor_name));
     if (tensor->deleter != nullptr) tensor->deleter(tensor);
 }
@@ -48,7 +48,7 @@ const Table* table_of(nb::handle type) {
     return table;
 }
 
-/// PyTorch's: the table gives what its __dlpack__ does not, memory that a gradient is known of.
+/// PyTorch's table exports arrays that require a gradient, which its __dlpack__ refuses.
 bool has_gradient(nb::handle array) {
     static auto* const name = PyUnicode_InternFromString("requires_grad");
     const auto value = nb::steal(attribute(array.ptr(), name));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// DLPack's table of C functions, which the arrays of a library have without a word of Python (DLPack 1.3).
+// DLPack's table of C functions (DLPack 1.3): exports arrays without running Python code.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,14 @@
 
 namespace tandem::python {
 
-/// An array, and the stream that its library gives its work to now; null of the host's memory.
+/// An array, and the stream on which its library currently enqueues work; null for host memory.
 struct Exchanged {
     nanobind::ndarray<nanobind::ro> array;
     void* stream = nullptr;
 };
 
-/// By __dlpack_c_exchange_api__ of the array's type. None where it has none, or would not give the array: its
-/// __dlpack__ says why.
+/// Exports an array by __dlpack_c_exchange_api__ of its type. None if the type has no such table or the
+/// export fails; __dlpack__ then raises the reason.
 std::optional<Exchanged> exchanged(nanobind::handle array);
 
 } // namespace tandem::python

@@ -5,12 +5,12 @@
 
 namespace tandem::python {
 
-/// `poses`: None or an array; `vertices`: None, a list of one array for each deformable body, or {body:
-/// array}. None where vertices are something else, before any array is looked at: others have words for that.
-/// Throws as given_rows does.
+/// `poses`: None or an array; `vertices`: None, a list with one array per deformable body, or {body: array}.
+/// None for another `vertices`, before any array is read: the Python caller reports the error. Throws as
+/// given_rows does.
 std::optional<Input> input_of(const Collider& collider, nanobind::handle poses, nanobind::handle vertices);
 
-/// The same of lists with an entry for each body, by device_rows.
+/// The same by device_rows; `vertices` has one entry per body.
 Input device_input(const Collider& collider, nanobind::handle poses, const nanobind::list& vertices);
 
 } // namespace tandem::python

@@ -28,12 +28,13 @@ Mesh make(const Points& vertices, const Corners& tetrahedra, const std::string& 
 } // namespace
 
 void bind_meshes(nb::module_& module) {
-    nb::class_<Mesh>(module, "Mesh",
-                     "Vertices and tetrahedra, checked: every index is in range, every coordinate finite.\n\n"
-                     "vertices: (n, 3) float64, in the unit of the scene. tetrahedra: (m, 4) uint32, rows of "
-                     "vertices; they keep their order, and answers number them by it. Both are read-only "
-                     "views of the mesh's own memory. inverted and degenerate count tetrahedra of negative "
-                     "and of zero volume, which are kept.")
+    nb::class_<Mesh>(
+        module, "Mesh",
+        "Checked vertices and tetrahedra: every index is in range, every coordinate is finite.\n\n"
+        "vertices: (n, 3) float64, in the unit of the scene. tetrahedra: (m, 4) uint32, indices of "
+        "vertices; answers number tetrahedra in this order. Both are read-only "
+        "views of the mesh's own memory. inverted and degenerate count tetrahedra of negative "
+        "and of zero volume; the mesh keeps them.")
         .def_prop_ro("vertices",
                      [](nb::handle self) {
                          const auto& rows = nb::cast<const Mesh&>(self).vertices;
@@ -50,10 +51,11 @@ void bind_meshes(nb::module_& module) {
         .def_ro("inverted", &Mesh::inverted)
         .def_ro("degenerate", &Mesh::degenerate);
     module.def("make_mesh", &make, nb::arg("vertices"), nb::arg("tetrahedra"), nb::arg("name"),
-               "What tandem.make_mesh, which checks its input, hands it to.");
-    module.def("read_mesh", &read_mesh, nb::arg("path"), nb::call_guard<nb::gil_scoped_release>(),
-               "Reads a tetrahedral mesh; content and suffix tell the format: Gmsh .msh 2.2 and 4.1, Medit "
-               ".mesh, TetGen .node/.ele, legacy .vtk and .vtu. Raises ValueError with FILE:LINE.");
+               "Implementation of tandem.make_mesh, which checks its input.");
+    module.def(
+        "read_mesh", &read_mesh, nb::arg("path"), nb::call_guard<nb::gil_scoped_release>(),
+        "Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 2.2 and 4.1, Medit "
+        ".mesh, TetGen .node/.ele, legacy .vtk and .vtu. Raises ValueError with FILE:LINE.");
 }
 
 } // namespace tandem::python

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// tandem._core, the compiled half of the Python package. What users call is python/tandem/collider.py.
+// tandem._core, the compiled part of the Python package. Users call python/tandem/collider.py.
 #include "python/core/answer.h"
 #include "python/core/collider.h"
 #include "python/core/devices.h"
@@ -8,7 +8,7 @@
 #include "python/core/scenes.h"
 
 NB_MODULE(_core, module) {
-    module.doc() = "The library tandem for Python; tandem.Collider is what to use.";
+    module.doc() = "The library tandem for Python. Use tandem.Collider.";
     tandem::python::bind_errors(module);
     tandem::python::bind_devices(module);
     tandem::python::bind_meshes(module);

@@ -17,7 +17,7 @@ namespace {
 Frame frame_of(const Scene& scene, std::size_t number) {
     if (number >= scene.frame_count)
         throw nb::index_error(
-            fmt::format("frame {} of {}; they are numbered from 0", number, scene.frame_count).c_str());
+            fmt::format("frame {} of {}; frames are numbered from 0", number, scene.frame_count).c_str());
     return scene.frame(number);
 }
 
@@ -54,23 +54,25 @@ std::vector<std::size_t> deformable_bodies(const Scene& scene) {
 } // namespace
 
 void bind_scenes(nb::module_& module) {
-    nb::class_<Scene>(module, "Scene",
-                      "Meshes, bodies and their motion, to be given to a Collider frame by frame. meshes: a "
-                      "list of Mesh; bodies: the mesh of each body; deformable: numbers of the bodies whose "
-                      "vertices come with every frame; frame_count, and key: name and parameters.")
+    nb::class_<Scene>(
+        module, "Scene",
+        "Meshes, bodies and their motion, for a Collider to run frame by frame. meshes: a "
+        "list of Mesh; bodies: the number of each body's mesh; deformable: numbers of the bodies "
+        "with new vertices in every frame; frame_count: number of frames; key: name and parameters.")
         .def_ro("key", &Scene::key)
         .def_ro("frame_count", &Scene::frame_count)
         .def_ro("meshes", &Scene::meshes)
         .def_prop_ro("bodies", &meshes_of_bodies)
         .def_prop_ro("deformable", &deformable_bodies)
         .def("poses", &poses_of, nb::arg("frame"),
-             "Of a frame, numbered from 0: (bodies, 7) float64, rows tx ty tz qw qx qy qz.")
+             "Poses of a frame, numbered from 0: (bodies, 7) float64, rows tx ty tz qw qx qy qz.")
         .def("vertices", &vertices_of, nb::arg("frame"),
-             "Of a frame's deformable bodies: {body: (n, 3) float64}, in the world.");
+             "Vertices of a frame's deformable bodies: {body: (n, 3) float64}, in world coordinates.");
     module.def(
         "make_scene", [](const std::string& specification) { return make_scene(specification); },
         nb::arg("specification"), nb::call_guard<nb::gil_scoped_release>(),
-        "A scene as the program takes it: NAME, NAME:par=value,par=value, the path of a scene "
+        "Makes a scene from the same text as the program: NAME, NAME:par=value,par=value, the path of a "
+        "scene "
         "description (.json) or of a recording (.frames). Raises ValueError.");
 }
 

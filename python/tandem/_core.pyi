@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# By nanobind's stubgen from python/core; tests/collider.py compares its names with the module's.
-"""The library tandem for Python; tandem.Collider is what to use."""
+# Written by nanobind's stubgen from python/core. tests/collider.py compares its names with those of the module.
+"""The library tandem for Python. Use tandem.Collider."""
 
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
@@ -11,24 +11,24 @@ from numpy.typing import NDArray
 
 class DeviceError(RuntimeError):
     """
-    A device failed or cannot do what was asked: one line that says which, and what was being done.
+    A device failed or does not support the request. The message is one line: the device and the operation.
     """
 
 class OutOfMemory(DeviceError):
     """
-    Memory of a device does not suffice: what was asked for and what there is. The device works on.
+    A device has too little memory: the message gives the requested and the available bytes. The device remains usable.
     """
 
 def devices() -> list[dict[str, object]]:
     """
-    Every device there is, under the names of `tandem devices --json`: id (what Collider takes), backend, name, driver, compiler, compute_units, memory_bytes, local_bytes, double (whether it has that type), hardware (PCI address or UUID; None where unknown). A backend without devices has no entry; asking a Collider for one of them says why.
+    All devices, with the fields of `tandem devices --json`: id (the argument `device` of Collider), backend, name, driver, compiler, compute_units, memory_bytes, local_bytes, double (whether it has that type), hardware (PCI address or UUID; None if unknown). A backend without devices has no entry; a Collider on one of its devices raises an error with the reason.
     """
 
 class Mesh:
     """
-    Vertices and tetrahedra, checked: every index is in range, every coordinate finite.
+    Checked vertices and tetrahedra: every index is in range, every coordinate is finite.
 
-    vertices: (n, 3) float64, in the unit of the scene. tetrahedra: (m, 4) uint32, rows of vertices; they keep their order, and answers number them by it. Both are read-only views of the mesh's own memory. inverted and degenerate count tetrahedra of negative and of zero volume, which are kept.
+    vertices: (n, 3) float64, in the unit of the scene. tetrahedra: (m, 4) uint32, indices of vertices; answers number tetrahedra in this order. Both are read-only views of the mesh's own memory. inverted and degenerate count tetrahedra of negative and of zero volume; the mesh keeps them.
     """
 
     @property
@@ -47,16 +47,16 @@ class Mesh:
     def degenerate(self) -> int: ...
 
 def make_mesh(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], tetrahedra: Annotated[NDArray[numpy.uint32], dict(shape=(None, 4), order='C', device='cpu', writable=False)], name: str) -> Mesh:
-    """What tandem.make_mesh, which checks its input, hands it to."""
+    """Implementation of tandem.make_mesh, which checks its input."""
 
 def read_mesh(path: str) -> Mesh:
     """
-    Reads a tetrahedral mesh; content and suffix tell the format: Gmsh .msh 2.2 and 4.1, Medit .mesh, TetGen .node/.ele, legacy .vtk and .vtu. Raises ValueError with FILE:LINE.
+    Reads a tetrahedral mesh. Content and suffix determine the format: Gmsh .msh 2.2 and 4.1, Medit .mesh, TetGen .node/.ele, legacy .vtk and .vtu. Raises ValueError with FILE:LINE.
     """
 
 class Scene:
     """
-    Meshes, bodies and their motion, to be given to a Collider frame by frame. meshes: a list of Mesh; bodies: the mesh of each body; deformable: numbers of the bodies whose vertices come with every frame; frame_count, and key: name and parameters.
+    Meshes, bodies and their motion, for a Collider to run frame by frame. meshes: a list of Mesh; bodies: the number of each body's mesh; deformable: numbers of the bodies with new vertices in every frame; frame_count: number of frames; key: name and parameters.
     """
 
     @property
@@ -76,19 +76,21 @@ class Scene:
 
     def poses(self, frame: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 7))]:
         """
-        Of a frame, numbered from 0: (bodies, 7) float64, rows tx ty tz qw qx qy qz.
+        Poses of a frame, numbered from 0: (bodies, 7) float64, rows tx ty tz qw qx qy qz.
         """
 
     def vertices(self, frame: int) -> dict:
-        """Of a frame's deformable bodies: {body: (n, 3) float64}, in the world."""
+        """
+        Vertices of a frame's deformable bodies: {body: (n, 3) float64}, in world coordinates.
+        """
 
 def make_scene(specification: str) -> Scene:
     """
-    A scene as the program takes it: NAME, NAME:par=value,par=value, the path of a scene description (.json) or of a recording (.frames). Raises ValueError.
+    Makes a scene from the same text as the program: NAME, NAME:par=value,par=value, the path of a scene description (.json) or of a recording (.frames). Raises ValueError.
     """
 
 class Answer:
-    """What a run of Collider found; tandem.Answer hands on what it says."""
+    """Result of a run of Collider; tandem.Answer wraps it."""
 
     @property
     def count(self) -> int: ...
@@ -122,21 +124,21 @@ class Answer:
     def pairs_on_device(self) -> Annotated[Any, dict(dtype='int32', shape=(None, 4))]: ...
 
 def algorithms() -> list[str]:
-    """Names that Collider takes as its algorithm, beside auto."""
+    """Names of the algorithms that Collider accepts besides auto."""
 
 class Collider:
-    """What tandem.Collider, which checks its input, hands it to."""
+    """Implementation of tandem.Collider, which checks its input."""
 
     def __init__(self, meshes: Sequence[Mesh], bodies: Sequence[int], deformable: Sequence[bool], algorithm: str, preset: str, device: str, settings: Mapping[str, str], stream: int | None, owner: object | None) -> None: ...
 
     def run(self, poses: object | None, vertices: object | None) -> Answer | None:
         """
-        Of arrays, vertices in a list of one for each deformable body or in {number: array}. None where they are in anything else.
+        Runs a frame. vertices: a list with one array per deformable body, or {number: array}. Returns None for any other container.
         """
 
-    def run_there(self, poses: object | None, vertices: list) -> Answer:
+    def run_device_input(self, poses: object | None, vertices: list) -> Answer:
         """
-        The same as if all were in memory of the device, where arrays of the host are for device host; an entry for each body.
+        Runs a frame whose arrays are all in memory of the device; for device host, in host memory. vertices has one entry per body.
         """
 
     def tune(self, poses: object | None, vertices: object | None, seconds: float) -> list | None: ...
@@ -158,5 +160,5 @@ class Collider:
     @property
     def addresses(self) -> list[int]:
         """
-        Where kernels read the last frame that was in memory of the device: poses, 0 for none, then vertices of each deformable body.
+        Addresses from which kernels read the last frame that was in memory of the device: poses (0 for none), then vertices of each deformable body.
         """
