@@ -43,7 +43,7 @@ class Compare(Case):
     def test_equal(self):
         old, new = self.write(record(), record(k="18")), self.write(record(), record(k="18"))
         out = self.compared(old, new)
-        self.assertIn("0 of 2 cells slower, 0 faster beyond 1 % at level 0.05; they could have shown 0.", out)
+        self.assertIn("0 of 2 cells slower, 0 faster beyond 1 % at level 0.05; detectable: 0.", out)
         for label in ("k=8 ", "k=18 "):
             row = next(line for line in out.splitlines() if line.startswith(label))
             self.assertEqual(row.split()[-3:][0], "≈")
@@ -82,7 +82,7 @@ class Compare(Case):
         other["work"]["digest"] = {"count": 7, "a": "00", "b": "00"}
         old = self.write(record())
         out = self.compared(old, self.write(other), code=1)
-        self.assertIn("another answer: chunked: 7 candidate pairs for 6883390", out)
+        self.assertIn("another answer: chunked: 7 candidate pairs instead of 6883390", out)
         self.assertNotIn("20.0", out)
         cell = self.json_of(old, self.write(other), code=1)["cells"][0]
         self.assertEqual((cell["verdict"], cell["times"]), ("another_answer", None))
@@ -90,7 +90,7 @@ class Compare(Case):
     def test_too_few(self):
         out = self.compared(self.write(record(samples=3)), self.write(record(9, samples=3)))
         self.assertIn("too few samples to tell", out)
-        self.assertIn("1 has too few samples to tell: 4 rounds of each would do", out.replace("\n  ", " "))
+        self.assertIn("1 has too few samples to tell: 4 rounds on each side are enough", out.replace("\n  ", " "))
 
     def test_commits_of_one_file(self):
         both = self.write(record(), record(1.5, commit="bbbb11112222"), record(1, commit="bbbc11112222"))
@@ -111,7 +111,7 @@ class Compare(Case):
         wrong["status"] = "wrong"
         old, new = self.write(record(), record(k="18")), self.write(record(), failed, wrong, record(k="24"))
         out = self.compared(old, new)
-        for words in (f"{new}:2 takes no part: k=26: failed: device lost", f"{new}:3 takes no part: k=14: its answer is not",
+        for words in (f"{new}:2 is left out: k=26: failed: device lost", f"{new}:3 is left out: k=14: its answer is not",
                       "1 cell is in old only: k=18", "1 cell is in new only: k=24", "0 of 1 cell slower"):
             self.assertIn(words, out.replace("\n  ", " "))
         found = self.json_of(old, new)

@@ -129,7 +129,7 @@ class Reading(Files):
                        {"work": {"digest": {"count": 3, "a": [], "b": ""}}}, {"environment": {"dirty": 0}},
                        {"devices": [{"id": 0, "name": "", "driver": "", "kind": "gpu"}]}, {"total_ns": 4}, {"total_ns": {"samples": ["a"], "rounds": [0]}}):
             refused(":1: is no record of a cell (", **change)
-        refused("a sample of 0 ns is no time", total_ns={"samples": [0], "rounds": [0]})
+        refused("a sample of 0 ns is not a valid time", total_ns={"samples": [0], "rounds": [0]})
         refused("2 samples and 1 rounds", total_ns={"samples": [1, 2], "rounds": [0]})
         refused("no rounds", total_ns={"samples": [1]})
 
@@ -219,7 +219,7 @@ class Verdicts(Files):
             after["work"][digest]["b"] = "0c"
             cell, found = self.compared([record("8", around(1, 9))], [after])
             self.assertEqual((cell.verdict, found[2].changed, found[2].tested), ("another_answer", True, 0))
-            self.assertIn(f"3 {what} others", texts.text(*found, 0.05))
+            self.assertIn(f"3 {what}, but different ones", texts.text(*found, 0.05))
         # Old records have digests of the comparison with the reference.
         old = record("8", around(1, 9)) | {"agreement": {"digest": {"count": 4, "a": "0a", "b": "0b"}}, "work": {}}
         new = [record("8", around(1, 9))]
@@ -241,8 +241,8 @@ class Verdicts(Files):
         more = [record(str(key), around(1, 9)) for key in range(20, 28)]
         _, found = self.compared([record("8", around(1, 9)), *more], [record("8", around(1, 9)), *failed])
         made = notes.notes(*found)
-        self.assertEqual(sum("takes no part" in note for note in made), 10)
-        self.assertTrue(any("5 more records take no part" in note for note in made))
+        self.assertEqual(sum("is left out" in note for note in made), 10)
+        self.assertTrue(any("5 more records are left out" in note for note in made))
         self.assertTrue(any(note.startswith("8 cells are in old only: ") and note.endswith("; and 3 more") for note in made))
 
 

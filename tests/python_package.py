@@ -154,7 +154,7 @@ class Reading(unittest.TestCase):
             with self.assertRaises(tandem.RecordError) as caught:
                 read(whole, begun + with_rounds(len(rounds), "b", 2))
             self.assertIn("0.jsonl:1 and ", str(caught.exception))
-            self.assertIn("1.jsonl:2: contradict each other", str(caught.exception))
+            self.assertIn("1.jsonl:2: different records of one cell in one run", str(caught.exception))
 
     def test_bad_files_are_one_line(self):
         good = (H200 / "seeds.jsonl").read_text().splitlines()[0]

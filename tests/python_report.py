@@ -71,21 +71,21 @@ class Sentences(unittest.TestCase):
     def test_what_is_not_told_apart(self):
         nearly = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
         groups, sentences = said([cell_of("a", ONE_MS), cell_of("b", nearly)])
-        self.assertFalse(groups[0].ranked[1].is_told_apart)
+        self.assertFalse(groups[0].ranked[1].is_distinguished)
         self.assertIn("is not told apart from it (1.000 times its time [", sentences)
 
     def test_one_round_is_not_sure(self):
         groups, sentences = said([cell_of("a", [1.0]), cell_of("b", [2.0])])
-        self.assertFalse(groups[0].ranked[1].is_told_apart)
+        self.assertFalse(groups[0].ranked[1].is_distinguished)
         self.assertIn("takes 2.000 times as long, in one round: how sure is not known", sentences)
 
     def test_rounds_of_one_session_are_pairs(self):
         """Rounds that rise and fall together are told apart, which those of two sessions are not."""
         tide = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]
-        for sessions, is_told_apart in ((("s", "s"), True), (("s", "t"), False)):
+        for sessions, is_distinguished in ((("s", "s"), True), (("s", "t"), False)):
             cells = [cell_of(name, [factor * ms for ms in tide], session=session)
                      for name, factor, session in zip("ab", (1, 1.05), sessions)]
-            self.assertEqual(groups_of(cells)[0].ranked[1].is_told_apart, is_told_apart)
+            self.assertEqual(groups_of(cells)[0].ranked[1].is_distinguished, is_distinguished)
 
     def test_failed_wrong_and_older_are_never_ranked(self):
         cells = [cell_of("a", TWO_MS), cell_of("b", ONE_MS, status="wrong"), cell_of("c", ONE_MS, status="failed", failure="no memory"),
@@ -236,7 +236,7 @@ class Reading(Case):
     def test_a_torn_line_is_ignored_and_said(self):
         read = read_records([self.file(self.record, self.record, end="")])
         self.assertEqual(len(read.cells), 1)
-        self.assertRegex(read.notes[0], r"some\.jsonl:2: the last line has no end, being cut off or still written: it is ignored$")
+        self.assertRegex(read.notes[0], r"some\.jsonl:2: the last line has no end and is ignored; it is cut off or still being written$")
         with self.assertRaisesRegex(lines.RecordError, "its only line has no end; name a file of records"):
             read_records([self.file(self.record, end="")])
 

@@ -184,7 +184,7 @@ class Scripts(Case):
                "half.jsonl": (b'{"key": "\\ud83d"}\n', ":1: is not JSON"), "second.jsonl": (line + b'{"schema":4,"key"\n', ":2: is not JSON"),
                "torn.jsonl": (line[:100], "torn.jsonl: its only line has no end"),
                "old.jsonl": (json.dumps({**record, "schema": 2}).encode() + b"\n", [":1: a record of schema 2", "scripts/convert_records"]),
-               "newer.jsonl": (json.dumps({**record, "schema": 9}).encode() + b"\n", [":1: a record of schema 9", "take the package"]),
+               "newer.jsonl": (json.dumps({**record, "schema": 9}).encode() + b"\n", [":1: a record of schema 9", "use the package"]),
                "empty.jsonl": (b"", "is empty"), "empty.jsonl.xz": (lzma.compress(b""), "is empty"),
                "half.jsonl.xz": (packed[:len(packed) // 2], "half.jsonl.xz: "), "odd.jsonl.xz": (packed[:300] + b"odd" + packed[303:], "odd.jsonl.xz: ")}
         for name, (data, expected) in bad.items():

@@ -61,8 +61,8 @@ def agrees(record):
 def read(path):
     """Cells that are right, by scene, k and method; and of each record whether it has the reference's answer. Raises RecordError."""
     cells, answers = {}, []
-    for place, kind, record in kinds.each(path, warn):
-        with kinds.fields_of("cell of the plan", place):
+    for location, kind, record in kinds.each(path, warn):
+        with kinds.fields_of("cell of the plan", location):
             answers.append(agrees(record))
             if record["status"] == "ok":
                 cells[(scene_of(record), record["settings"]["k"], method_of(record))] = Cell(record)

@@ -1,27 +1,27 @@
 # SPDX-License-Identifier: MIT
-"""A record of a cell as one row, for 'tandem export --csv' and the frame of cells alike. The standard library is all it needs."""
+"""Makes one row of a record of a cell, for 'tandem export --csv' and for Records.cells. Needs only the standard library."""
 
 FIRST_COLUMNS = (
     "status", "failure", "algorithm", "preset", "device", "device_name", "driver", "scene", "scene_digest", "bodies", "tetrahedra",
     "first_frame", "last_frame", "ms", "ms_low", "ms_high", "samples", "rounds", "converged", "disturbed", "device_span_ms",
     "launches", "waits", "candidate_pairs", "contacts", "missing", "extra", "contact_frames_wrong", "pairs_missed",
     "device_bytes", "commit", "dirty", "date", "session", "key")
-GROUPS = ("stage_", "count_", "set_")  # of further columns
+GROUPS = ("stage_", "count_", "set_")  # prefixes of further columns
 TIMES = ("ms", "ms_low", "ms_high", "device_span_ms")
 
 
 def columns(rows):
-    """Those that every table has, then those of each group that one of the rows has, by name."""
+    """Columns of every table, then those of each group that occur in the rows, sorted by name."""
     return [*FIRST_COLUMNS, *(name for group in GROUPS for name in sorted({name for row in rows for name in row if name.startswith(group)}))]
 
 
 def is_time(column):
-    """Whether a column has milliseconds a frame."""
+    """Whether a column has milliseconds per frame."""
     return column in TIMES or column.startswith("stage_")
 
 
 def at(record, *path):
-    """The value at a path of names; None where it ends early."""
+    """The value at a path of names; None if a name of the path is missing."""
     for name in path:
         if not isinstance(record, dict):
             return None
@@ -30,17 +30,17 @@ def at(record, *path):
 
 
 def frames_of(record):
-    """How many frames a sample of a record has."""
+    """The number of frames in a sample of a record."""
     return record["frames"]["last"] - record["frames"]["first"] + 1
 
 
 def milliseconds(ns, frames):
-    """A frame's, of nanoseconds of all; None of None."""
+    """Milliseconds per frame from nanoseconds of all frames; None for None."""
     return None if ns is None else ns / frames / 1e6
 
 
 def interval(name, times, frames):
-    """Milliseconds a frame of a summary of nanoseconds: its median and its 95 % interval, as three columns."""
+    """Three columns of milliseconds per frame from a summary of nanoseconds: its median and its 95 % interval."""
     ends = {name: "median", f"{name}_low": "low", f"{name}_high": "high"}
     return {column: milliseconds(at(times, end), frames) for column, end in ends.items()}
 
@@ -54,8 +54,8 @@ def _total(numbers):
 
 
 def row(record):
-    """Values by column; None of what the record does not have. Launches, waits, pairs, contacts and counters are sums over all frames.
-    Raises one of lines.FIELD_ERRORS where the record is not of its schema."""
+    """Values by column; None for missing fields. Launches, waits, pairs, contacts and counters are sums over all frames. Raises one of
+    lines.FIELD_ERRORS if the record does not match its schema."""
     made = {name: record.get(name) for name in ("status", "failure", "algorithm", "preset", "session", "key")}
     made |= {"device": _of_devices(record, "id"), "device_name": _of_devices(record, "name"), "driver": _of_devices(record, "driver")}
     made |= {"scene": at(record, "scene", "key"), "scene_digest": at(record, "scene", "digest")}
@@ -78,7 +78,7 @@ def _times(record):
 
 
 def _stages(record):
-    """A stage's time on the device, on the host where it has none there; launches and waits of all."""
+    """Times of stages on the device, or on the host for stages without device time; launches and waits of all stages."""
     frames, stages, made = frames_of(record), record.get("stages"), {}
     if not isinstance(stages, dict):
         return made

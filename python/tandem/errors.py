@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What ends a command of the program that is written in Python."""
+"""Exceptions that end commands of the program that are written in Python."""
 
 
 class BadUse(ValueError):
-    """One line: what is wrong, and what to do. The command ends with 2."""
+    """Bad use or bad input. The message is one line: what is wrong and what to do. The command exits with 2."""
 
 
 class OutputError(OSError):
-    """One line: what could not be written, and why. The command ends with 3."""
+    """Output that could not be written. The message is one line: which output, and why. The command exits with 3."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Files that are replaced as a whole or not at all."""
+"""Atomic replacement of files."""
 import errno
 import fcntl
 import os
@@ -13,14 +13,14 @@ def _sync_folder(path):
     try:
         os.fsync(folder)
     except OSError as problem:
-        if problem.errno not in (errno.EINVAL, errno.ENOTSUP):  # file systems that have no such thing
+        if problem.errno not in (errno.EINVAL, errno.ENOTSUP):  # some file systems do not sync folders
             raise
     finally:
         os.close(folder)
 
 
 def _locked(path, flags):
-    """The descriptor of a file that no other process writes."""
+    """Opens and locks a file. Returns its descriptor. Raises OutputError if another process has the lock."""
     try:
         descriptor = os.open(path, flags | os.O_CLOEXEC, 0o666)
     except OSError as problem:
@@ -34,8 +34,8 @@ def _locked(path, flags):
     return descriptor
 
 
-def _remove_left(path):
-    """Removes what a kill has left. Whoever may make files in the folder must not choose what is written to: a link is refused."""
+def _remove_stale(path):
+    """Removes the file of a killed process. Refuses a link, by which another user of the folder could choose the written file."""
     if os.path.islink(path):
         raise OutputError(f"{path}: is a link, and a file has to be made there; remove it")
     if os.path.exists(path):
@@ -45,9 +45,9 @@ def _remove_left(path):
 
 
 def replace_whole(path, data):
-    """Writes the bytes beside the file, in PATH.partial, and renames it: a kill leaves the old file or the new one. Raises OutputError."""
+    """Writes the bytes to PATH.partial and renames it, so that a kill leaves the old file or the new one. Raises OutputError."""
     partial = f"{path}.partial"
-    _remove_left(partial)
+    _remove_stale(partial)
     descriptor = _locked(partial, os.O_RDWR | os.O_CREAT | os.O_EXCL)
     try:
         for begin in range(0, len(data), 1 << 20):

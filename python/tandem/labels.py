@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Short names of cells: what tells them apart."""
+"""Short names of cells, made of the values in which they differ."""
 import pandas
 
 NAMES = ("algorithm", "preset", "device", "device_name", "scene", "first_frame", "last_frame")
@@ -14,8 +14,8 @@ def _texts(cells, name):
 
 
 def labels(cells, without=()):
-    """A text for each row of `cells` (of Records.cells): names and then settings, each where it tells rows apart that are not told
-    apart yet; columns `without` are left out. Rows that nothing tells apart have equal texts."""
+    """A text for each row of `cells` (from Records.cells). It has the columns of NAMES and then settings, but only those that distinguish
+    rows that the columns before do not. Leaves out columns `without`. Rows that do not differ have equal texts."""
     settings = [name for name in cells.columns if name.startswith("set_")]
     parts = pandas.Series("", index=cells.index)
     groups = pandas.Series(0, index=cells.index)

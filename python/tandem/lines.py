@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Lines of files of records, as 'tandem run --out' writes them: one JSON object a line."""
+"""Reads files of records, as 'tandem run --out' writes them: one JSON object per line."""
 import json
 import lzma
 import math
@@ -9,14 +9,14 @@ import warnings
 
 WHAT_TO_GIVE = "give files that 'tandem run --out' wrote"
 OLDEST, NEWEST = 2, 4
-# What a reader of fields raises where a record is not of its schema.
+# Exceptions of code that reads fields of a record which does not match its schema.
 FIELD_ERRORS = (KeyError, TypeError, AttributeError, IndexError, ValueError, ArithmeticError)
-_LARGE = re.compile(rb"[eE]\+?\d{3}|\d{300}")  # a number that may be beyond all doubles
-_LONE_SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")  # or a pair
+_LARGE = re.compile(rb"[eE]\+?\d{3}|\d{300}")  # a number that may exceed the range of double
+_LONE_SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")  # also matches pairs, which are valid
 
 
 class RecordError(ValueError):
-    """One line: FILE:LINE, what it is instead of a record, and what to do."""
+    """A line or file without valid records. The message is one line: FILE:LINE, what is wrong, and what to do."""
 
 
 def _open(path):
@@ -24,52 +24,52 @@ def _open(path):
 
 
 def _finite(text):
-    """A number of a JSON text. Raises ValueError for one that no double holds, for NaN and for Infinity."""
+    """A number of a JSON text. Raises ValueError for numbers beyond the range of double, NaN and Infinity."""
     value = float(text)
     if not math.isfinite(value):
         raise ValueError(f"{text} is not JSON")
     return value
 
 
-def parsed(text, place, what_to_give=WHAT_TO_GIVE):
-    """The value that the bytes of a line are in JSON, which has neither NaN nor halves of characters. Raises RecordError."""
+def parsed(text, location, what_to_give=WHAT_TO_GIVE):
+    """The JSON value of the bytes of a line. Refuses NaN, Infinity and lone surrogates, which are not valid JSON. Raises RecordError."""
     try:
         value = json.loads(text, parse_float=_finite if _LARGE.search(text) else float, parse_constant=_finite)
         if _LONE_SURROGATE.search(text):
             json.dumps(value, ensure_ascii=False).encode()
     except (ValueError, RecursionError):
-        raise RecordError(f"{place}: is not JSON; {what_to_give}") from None
+        raise RecordError(f"{location}: is not JSON; {what_to_give}") from None
     return value
 
 
-def checked_cell(record, place):
-    """The record, where it is one of a cell and of a schema that this package knows. Raises RecordError otherwise."""
+def checked_cell(record, location):
+    """The record, if it is a record of a cell and of a schema that this package reads. Raises RecordError otherwise."""
     if not isinstance(record, dict) or "schema" not in record or "key" not in record:
-        raise RecordError(f"{place}: is no record of a cell; {WHAT_TO_GIVE}")
+        raise RecordError(f"{location}: is no record of a cell; {WHAT_TO_GIVE}")
     schema = record["schema"]
     if not isinstance(schema, int):
-        raise RecordError(f"{place}: is no record of a cell (schema {schema!r}); {WHAT_TO_GIVE}")
+        raise RecordError(f"{location}: is no record of a cell (schema {schema!r}); {WHAT_TO_GIVE}")
     if schema < OLDEST:
-        raise RecordError(f"{place}: a record of schema {schema}; bring it to schema {NEWEST} with scripts/convert_records")
+        raise RecordError(f"{location}: a record of schema {schema}; convert it to schema {NEWEST} with scripts/convert_records")
     if schema > NEWEST:
-        raise RecordError(f"{place}: a record of schema {schema}, and this package knows {OLDEST} to {NEWEST}; take the package "
+        raise RecordError(f"{location}: a record of schema {schema}, but this package reads schemas {OLDEST} to {NEWEST}; use the package "
                           "of the program that wrote it")
     return record
 
 
-def _cell(text, place):
-    return checked_cell(parsed(text, place), place)
+def _cell(text, location):
+    return checked_cell(parsed(text, location), location)
 
 
 def numbered(path, torn, check=_cell):
-    """(line number, record) of every record of a file. A last line without an end is left out: `torn` is called with what to say of it.
-    `check` makes a record of the bytes of a line and "FILE:LINE"; without it the records are of cells. Raises RecordError."""
+    """Yields (line number, record) for every record of a file. Leaves out a last line without an end, and calls `torn` with a message about
+    it. `check` makes a record of the bytes of a line and "FILE:LINE"; the default accepts only cells. Raises RecordError."""
     number = 0
     try:
         with _open(path) as file:
             for number, line in enumerate(file, 1):
                 if not line.endswith(b"\n"):
-                    torn(f"{path}:{number}: the last line has no end, being cut off or still written: it is ignored")
+                    torn(f"{path}:{number}: the last line has no end and is ignored; it is cut off or still being written")
                     return
                 yield number, check(line, f"{path}:{number}")
     except (OSError, EOFError, lzma.LZMAError) as problem:
@@ -80,7 +80,7 @@ def numbered(path, torn, check=_cell):
 
 
 def each(path):
-    """Every record of a file and "FILE:LINE"; a last line without an end is warned of and left out. Raises RecordError."""
+    """Yields every record of a file and "FILE:LINE". Leaves out a last line without an end with a warning. Raises RecordError."""
     for number, record in numbered(path, lambda message: warnings.warn(message, stacklevel=4)):
         yield record, f"{path}:{number}"
 
@@ -90,27 +90,26 @@ def samples_by_round(record):
     total = record.get("total_ns") or {}
     samples = total.get("samples", [])
     rounds = {}
-    for of, ns in zip(total.get("rounds", range(len(samples))), samples):
-        rounds.setdefault(of, []).append(ns)
+    for number, ns in zip(total.get("rounds", range(len(samples))), samples):
+        rounds.setdefault(number, []).append(ns)
     return rounds
 
 
-def goes_on_with(more, less):
-    """Whether rounds have all of the others, and some besides: the same run, gone on with."""
-    return len(more) > len(less) > 0 and all(more.get(of) == samples for of, samples in less.items())
+def continues(more, less):
+    """Whether rounds `more` contain all of `less` and further ones: the same run, continued after an interruption."""
+    return len(more) > len(less) > 0 and all(more.get(number) == samples for number, samples in less.items())
 
 
 def run_of(record):
-    """What two records of one cell in one run of the program share; None where the run is not known."""
+    """A value that is equal for records of one cell in one run of the program; None if the run is unknown."""
     session = record.get("session")
     return session and (record["key"], session, tuple(device["id"] for device in record["devices"]), record.get("chosen") is not None)
 
 
 def merged(paths):
-    """Every record of several files, its place and its file, each result once: a record whose rounds another one of its key goes on
-    with is left out, and so is a copy. Raises RecordError for files that are none, and for two records of one cell in one run that
-    contradict each other."""
-    rows = [(record, place, path) for path in paths for record, place in each(path)]
+    """The records of several files, each with its location and its file, and each result once. Leaves out copies and records that another
+    record of the same key continues. Raises RecordError for files that cannot be read, and for different records of one cell in one run."""
+    rows = [(record, location, path) for path in paths for record, location in each(path)]
     by_key = {}
     for number, (record, *_) in enumerate(rows):
         by_key.setdefault(record["key"], []).append(number)
@@ -122,23 +121,23 @@ def merged(paths):
 
 
 def _superseded(rows):
-    """Numbers of the records of one key that take no part."""
+    """Numbers of those records of one key that are left out."""
     rounds, runs = {}, {}
-    for number, record, place in rows:
+    for number, record, location in rows:
         try:
             rounds[number], runs[number] = samples_by_round(record), run_of(record)
         except (KeyError, TypeError, AttributeError):
-            raise RecordError(f"{place}: a record that lacks fields of its schema; {WHAT_TO_GIVE}") from None
-    dropped = {number for number in rounds if any(goes_on_with(rounds[other], rounds[number]) for other in rounds)}
+            raise RecordError(f"{location}: a record that lacks fields of its schema; {WHAT_TO_GIVE}") from None
+    dropped = {number for number in rounds if any(continues(rounds[other], rounds[number]) for other in rounds)}
     first = {}
-    for number, record, place in rows:
+    for number, record, location in rows:
         run = runs[number]
         if number in dropped or not run:
             continue
         if run not in first:
-            first[run] = record, place
+            first[run] = record, location
         elif record == first[run][0]:
             dropped.add(number)
         else:
-            raise RecordError(f"{first[run][1]} and {place}: contradict each other, being of one cell in one run; leave one of them out")
+            raise RecordError(f"{first[run][1]} and {location}: different records of one cell in one run; leave one of them out")
     return dropped

@@ -1,26 +1,27 @@
 # SPDX-License-Identifier: MIT
-"""p-values of two-sided rank tests, exact also with ties where that is little work: as tandem compare has them. (scipy's exact
-tests have none with ties.)"""
+"""p-values of two-sided rank tests for tandem compare. Small tests are exact, also with ties, which scipy's exact tests do not
+support."""
 import functools
 import math
 
 import numpy
 
-MOST_PAIRS = 50
-MOST_SUMS = 4096  # of the smaller side's values times all values
+MAX_PAIRS = 50
+MAX_SUMS = 4096  # number of values of the smaller side times number of all values
 
 
 def _doubled_ranks(values):
-    """Ranks from 1, doubled: ties share their mean, which is then whole; and the sum of t^3 - t over groups of t equal values."""
-    _, places, counts = numpy.unique(values, return_inverse=True, return_counts=True)
+    """Doubled ranks from 1, and the sum of t^3 - t over groups of t equal values. Ties have the mean of their ranks, which is a whole number
+    when doubled."""
+    _, groups, counts = numpy.unique(values, return_inverse=True, return_counts=True)
     ends = numpy.cumsum(counts)
     tied = counts.astype(float)
-    return (2 * ends - counts + 1)[places], float((tied**3 - tied).sum())
+    return (2 * ends - counts + 1)[groups], float((tied**3 - tied).sum())
 
 
 def _two_sided(counts, at):
-    below, here, above = counts[:at].sum(), counts[at], counts[at + 1:].sum()
-    return float(min(1.0, 2 * (min(below, above) + here) / (below + here + above))), True
+    below, equal, above = counts[:at].sum(), counts[at], counts[at + 1:].sum()
+    return float(min(1.0, 2 * (min(below, above) + equal) / (below + equal + above))), True
 
 
 def _approximate(total, mean, variance):
@@ -30,7 +31,7 @@ def _approximate(total, mean, variance):
 
 @functools.lru_cache(maxsize=64)
 def _sets(ranks):
-    """How many sets of ranks there are, by their sum. Without ties, cells with equally many rounds have the same ranks."""
+    """Number of sets of ranks by their sum. The cache helps because, without ties, cells with equally many rounds have equal ranks."""
     counts = numpy.zeros(sum(ranks) + 1)
     counts[0] = 1
     for rank in ranks:
@@ -40,7 +41,7 @@ def _sets(ranks):
 
 @functools.lru_cache(maxsize=64)
 def _sets_of(size, ranks):
-    """Likewise sets of `size` ranks, which ascend."""
+    """Number of sets of `size` ranks by their sum. `ranks` ascend."""
     counts = numpy.zeros((size + 1, sum(ranks[-size:]) + 1))
     counts[0, 0] = 1
     for rank in ranks:
@@ -50,7 +51,7 @@ def _sets_of(size, ranks):
 
 
 def signed_ranks(differences):
-    """p of Wilcoxon's signed ranks, and whether it is exact; differences of nothing take no part."""
+    """p of Wilcoxon's signed-rank test, and whether it is exact. Ignores zero differences."""
     differences = numpy.asarray(differences, float)
     differences = differences[differences != 0]
     n = len(differences)
@@ -58,25 +59,25 @@ def signed_ranks(differences):
         return 1.0, True
     ranks, ties = _doubled_ranks(numpy.abs(differences))
     total = int(ranks[differences > 0].sum())
-    if n > MOST_PAIRS:
+    if n > MAX_PAIRS:
         return _approximate(total / 2, n * (n + 1) / 4, n * (n + 1) * (2 * n + 1) / 24 - ties / 48)
     return _two_sided(_sets(tuple(sorted(ranks))), total)
 
 
 def rank_sums(before, after):
-    """p of Wilcoxon's rank sums (Mann and Whitney's U), and whether it is exact."""
+    """p of Wilcoxon's rank-sum test (Mann and Whitney's U), and whether it is exact."""
     if len(before) > len(after):
         before, after = after, before
     n, m = len(before), len(after)
     ranks, ties = _doubled_ranks(numpy.concatenate([before, after]))
     total = int(ranks[:n].sum())
-    if n * (n + m) > MOST_SUMS:
+    if n * (n + m) > MAX_SUMS:
         return _approximate(total / 2, n * (n + m + 1) / 2, n * m / 12 * (n + m + 1 - ties / ((n + m) * (n + m - 1))))
     return _two_sided(_sets_of(n, tuple(sorted(ranks))), total)
 
 
 def least_signed_rank_p(pairs):
-    """What so many pairs can give at least."""
+    """The smallest p of the signed-rank test with this number of pairs."""
     return min(1.0, math.ldexp(2.0, -min(pairs, 1000)))
 
 
@@ -88,7 +89,7 @@ def least_rank_sum_p(before, after):
 
 
 def holm(p):
-    """p-values corrected over all of them (Holm 1979)."""
+    """p-values corrected for multiple tests (Holm 1979)."""
     p = numpy.asarray(p, float)
     order = numpy.argsort(p, kind="stable")
     corrected = numpy.empty(len(p))

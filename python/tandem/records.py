@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Files of records as frames."""
+"""Reads files of records as pandas frames."""
 import dataclasses
 import os
 import statistics
@@ -12,27 +12,27 @@ from .cell_rows import at, interval
 WHOLE = ("bodies", "tetrahedra", "first_frame", "last_frame", "samples", "rounds", "launches", "waits", "candidate_pairs",
          "contacts", "missing", "extra", "contact_frames_wrong", "pairs_missed", "device_bytes")
 TRUTHS = ("converged", "disturbed", "dirty", "partial")
-PARTS = ("samples", "stages", "kernels", "frames", "errors")  # beside cells
+PARTS = ("samples", "stages", "kernels", "frames", "errors")  # the tables besides cells
 SPREADS = ("median", "p99", "max")
 WORDS = ("status", "algorithm", "preset", "device", "device_name", "driver", "scene")
 
 
 @dataclasses.dataclass(frozen=True)
 class Records:
-    """Frames of the same records; column `cell` of the others is the index of `cells`. Times are milliseconds; launches, waits,
-    bytes, pairs and contacts of a cell are sums over its frames.
+    """Tables of the same records. Column `cell` of the other tables is the index of `cells`. Times are milliseconds. Launches, waits, bytes,
+    pairs and contacts of a cell are sums over its frames.
 
-    cells: a row a record, of any status, in the order of the files: the columns of `tandem export --csv`, then `file`, and `partial`:
-        the cell was interrupted before it had enough samples.
-        `ms` is the median of a frame with its 95 % interval `ms_low` to `ms_high`; `stage_NAME_ms` of a stage on the device, on
-        the host where it has no time there; `count_NAME` a counter of work; `set_NAME` a setting.
-    samples: a row a replay: cell, sample, round, ms a frame. Rounds are what is independent, samples of one are not.
-    stages: a row a stage: cell, stage, device_ms and host_ms a frame with intervals, launches, waits, bytes.
-    kernels: a row a kernel: cell, kernel, device_ms a frame with its interval, launches, registers, local_bytes, spill_bytes.
-        A kernel that was compiled in several ways has the largest of each.
-    frames: a row a frame: cell, frame, ms (its median over replays), body_pairs, candidate_pairs, contacts.
-    errors: a row an error against the exact truth of a cell that was held against it: cell, error, median, p99, max; of shares of
-        pairs (false_share of candidates, missed_share of pairs that meet) the median is the share.
+    cells: one row per record of any status, in the order of the files: the columns of `tandem export --csv`, then `file` and `partial`
+        (the cell was interrupted before it had enough samples).
+        `ms` is the median time of a frame, `ms_low` to `ms_high` its 95 % interval. `stage_NAME_ms` is the time of a stage on the device,
+        or on the host for a stage without device time. `count_NAME` is a counter of work, `set_NAME` a setting.
+    samples: one row per replay: cell, sample, round, ms per frame. Rounds are independent of each other, samples of one round are not.
+    stages: one row per stage: cell, stage, device_ms and host_ms per frame with intervals, launches, waits, bytes.
+    kernels: one row per kernel: cell, kernel, device_ms per frame with its interval, launches, registers, local_bytes, spill_bytes.
+        A kernel with several compiled variants has the largest value of each.
+    frames: one row per frame: cell, frame, ms (its median over replays), body_pairs, candidate_pairs, contacts.
+    errors: one row per error of a cell that was compared with the exact truth: cell, error, median, p99, max. For false_share (fraction of
+        candidates that do not meet) and missed_share (fraction of meeting pairs that are missed), the median is the fraction.
     """
     cells: pandas.DataFrame
     samples: pandas.DataFrame
@@ -42,7 +42,7 @@ class Records:
     errors: pandas.DataFrame
 
     def of(self, cells):
-        """The records of some cells alone: an index of `cells` or a mask of it. Numbers of cells stay as they are."""
+        """The records of selected cells, given by an index of `cells` or a mask of it. Keeps the numbers of cells."""
         chosen = self.cells.loc[cells]
         return Records(chosen, *(table[table["cell"].isin(chosen.index)] for table in (getattr(self, name) for name in PARTS)))
 
@@ -62,7 +62,7 @@ class _Cell:
         samples = total.get("samples", [])
         # Before schema 3 each sample is a round.
         rounds = total.get("rounds", range(len(samples)))
-        return [{"cell": self.number, "sample": i, "round": of, "ms": self.ms(ns)} for i, (ns, of) in enumerate(zip(samples, rounds))]
+        return [{"cell": self.number, "sample": i, "round": number, "ms": self.ms(ns)} for i, (ns, number) in enumerate(zip(samples, rounds))]
 
     def stages(self):
         return [{"cell": self.number, "stage": name, **interval("device_ms", stage.get("device_ns"), self.count),
@@ -98,15 +98,15 @@ class _Cell:
             return []
         missed = truth["missed_touching"] + truth["missed_overlapping"]
         meeting = truth["touching"] + truth["overlapping"] + missed
-        shares = {"false_share": (truth["false"], truth["candidates"]), "missed_share": (missed, meeting)}
-        rows = [{"cell": self.number, "error": name, "median": part / whole} for name, (part, whole) in shares.items() if whole]
+        fractions = {"false_share": (truth["false"], truth["candidates"]), "missed_share": (missed, meeting)}
+        rows = [{"cell": self.number, "error": name, "median": part / whole} for name, (part, whole) in fractions.items() if whole]
         contacts = truth.get("contacts") or {}
         return rows + [{"cell": self.number, "error": name, **{which: spread.get(which) for which in SPREADS}}
                        for name, spread in contacts.items() if isinstance(spread, dict)]
 
 
 def _typed(column):
-    """Settings: whole numbers, numbers, or words, as all values are that there are."""
+    """A column of settings as integers, floating-point numbers or words: the first type that all values have."""
     try:
         numbers = pandas.to_numeric(column)
     except (ValueError, TypeError):
@@ -138,24 +138,24 @@ def _table(rows, whole, words, times):
 
 
 def read(files):
-    """Records: of a path, or of several in their order, such as those of a plan's shards; .jsonl, or .jsonl.xz. A result stands in it
-    once: an interrupted cell's record is left out where another file or line has the cell gone on with. Raises RecordError:
-    FILE:LINE, what it is instead and what to do; a last line without an end is warned of and left out."""
+    """Reads Records from one path or several (.jsonl or .jsonl.xz), in their order, such as the shards of a plan. Each result occurs once:
+    the record of an interrupted cell is left out if another record continues it. Raises RecordError with FILE:LINE, the error and what to
+    do. A last line without an end is left out with a warning."""
     paths = [files] if isinstance(files, (str, os.PathLike)) else list(files)
     if not paths:
         raise lines.RecordError("no file is named; name files of records")
     rows = {name: [] for name in ("cells", *PARTS)}
-    for record, place, path in lines.merged(paths):
+    for record, location, path in lines.merged(paths):
         try:
             cell = _Cell(len(rows["cells"]), record)
             rows["cells"].append(cell_rows.row(record) | {"file": os.fspath(path), "partial": bool(at(record, "sampling", "interrupted"))})
             for name in PARTS:
                 rows[name] += getattr(cell, name)()
         except lines.FIELD_ERRORS:
-            raise lines.RecordError(f"{place}: a record that lacks fields of its schema; {lines.WHAT_TO_GIVE}") from None
-    both = ("device_ms", "device_ms_low", "device_ms_high")
+            raise lines.RecordError(f"{location}: a record that lacks fields of its schema; {lines.WHAT_TO_GIVE}") from None
+    device = ("device_ms", "device_ms_low", "device_ms_high")
     return Records(_cells(rows["cells"]), _table(rows["samples"], ("sample", "round"), (), ("ms",)),
-                   _table(rows["stages"], ("launches", "waits", "bytes"), ("stage",), (*both, "host_ms", "host_ms_low", "host_ms_high")),
-                   _table(rows["kernels"], ("launches", "registers", "local_bytes", "spill_bytes"), ("kernel",), both),
+                   _table(rows["stages"], ("launches", "waits", "bytes"), ("stage",), (*device, "host_ms", "host_ms_low", "host_ms_high")),
+                   _table(rows["kernels"], ("launches", "registers", "local_bytes", "spill_bytes"), ("kernel",), device),
                    _table(rows["frames"], ("frame", "body_pairs", "candidate_pairs", "contacts"), (), ("ms",)),
                    _table(rows["errors"], (), ("error",), SPREADS))

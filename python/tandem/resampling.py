@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Ratios of medians with bootstrap intervals, to the bit as tandem compare makes them: from a fixed seed, with a generator that is
+"""Ratios of medians with bootstrap intervals, for tandem compare. They are reproducible to the bit: the seed is fixed, and the generator is
 specified to the bit (mt19937_64: Nishimura 2000, ACM TOMACS 10(4); the C++ standard has its constants)."""
 import dataclasses
 import functools
@@ -13,25 +13,25 @@ _UPPER, _LOWER = numpy.uint64(0xFFFFFFFF80000000), numpy.uint64(0x7FFFFFFF)
 _TWIST = numpy.uint64(0xB5026F5AA96619E9)
 
 
-_words = numpy.empty(0, dtype=numpy.uint64)  # of SEED, as many as have been asked for
+_words = numpy.empty(0, dtype=numpy.uint64)  # first words of the generator with SEED; extended on demand
 
 
 def random_words(count):
-    """The first so many words of the generator."""
+    """The first `count` words of the generator."""
     global _words
     if len(_words) < count:
-        _words = _made(max(count, 2 * len(_words)))
+        _words = _generated(max(count, 2 * len(_words)))
     return _words[:count]
 
 
-def _made(count):
+def _generated(count):
     state = [SEED]
     for i in range(1, _WORDS):
         state.append((6364136223846793005 * (state[-1] ^ (state[-1] >> 62)) + i) % 2**64)
     state = numpy.array(state, dtype=numpy.uint64)
     one, words = numpy.uint64(1), []
     for _ in range(-(-count // _WORDS)):
-        # In two halves: a word takes the one half a block on, which is of the new block for the second half.
+        # In two halves: each word uses the word half a block later, which belongs to the new block for the second half.
         for first, last in ((0, _MIDDLE), (_MIDDLE, _WORDS)):
             at = numpy.arange(first, last)
             both = (state[at] & _UPPER) | (state[(at + 1) % _WORDS] & _LOWER)
@@ -45,14 +45,14 @@ def _made(count):
 
 @functools.lru_cache(maxsize=64)
 def _drawn(*sizes):
-    """For each of several lists of values of these sizes: the numbers of the values that each resample draws of it."""
+    """For each of several lists of values with these sizes: the indices of the values that each resample draws."""
     words = random_words(RESAMPLES * sum(sizes)).reshape(RESAMPLES, -1)
     ends = numpy.cumsum(sizes)
     return [(words[:, end - size:end] % numpy.uint64(size)).astype(int) for size, end in zip(sizes, ends)]
 
 
 def _medians(values, drawn):
-    """The median of each resample. Ranks are partitioned, which are small numbers: numpy.median of values takes three times as long."""
+    """The median of each resample. Partitions ranks, which are small integers: numpy.median of the values takes three times as long."""
     order = numpy.argsort(values)
     ranks = numpy.empty(len(values), dtype=numpy.uint16 if len(values) < 2**16 else numpy.uint32)
     ranks[order] = numpy.arange(len(values))
@@ -85,7 +85,7 @@ def _student_quantile(freedom):
 
 @functools.cache
 def interval_tail(values):
-    """The share of resamples on each side of a 95 % interval of so many values: expanded percentiles (Hesterberg 2015, 4.3)."""
+    """The fraction of resamples on each side of a 95 % interval of this number of values: expanded percentiles (Hesterberg 2015, 4.3)."""
     if values < 2:
         return 0.0
     width = math.sqrt(values / (values - 1)) * _student_quantile(values - 1)
@@ -93,7 +93,7 @@ def interval_tail(values):
 
 
 def _quantile(ordered, fraction):
-    """Linear between order statistics (Hyndman and Fan 1996, definition 7). numpy.quantile rounds otherwise."""
+    """A quantile, linear between order statistics (Hyndman and Fan 1996, definition 7). numpy.quantile rounds differently."""
     at = fraction * (len(ordered) - 1)
     below = math.floor(at)
     above = min(below + 1, len(ordered) - 1)
@@ -102,7 +102,7 @@ def _quantile(ordered, fraction):
 
 @dataclasses.dataclass(frozen=True)
 class Ratio:
-    """New over old, its 95 % interval, and the standard error of its logarithm."""
+    """A ratio new / old, its 95 % interval, and the standard error of its logarithm."""
     value: float
     low: float
     high: float
@@ -118,13 +118,13 @@ def _ratio(log_ratio, values, logs):
 
 
 def paired_ratio(before, after):
-    """Of values that belong together: the median of their ratios."""
+    """The median of the ratios of paired values."""
     logs = numpy.log(numpy.asarray(after, float) / numpy.asarray(before, float))
     return _ratio(float(numpy.median(logs)), len(logs), _medians(logs, *_drawn(len(logs))))
 
 
 def unpaired_ratio(before, after):
-    """Of values that do not: the ratio of their medians."""
+    """The ratio of the medians of unpaired values."""
     before, after = numpy.asarray(before, float), numpy.asarray(after, float)
     old, new = _drawn(len(before), len(after))
     logs = numpy.log(_medians(after, new)) - numpy.log(_medians(before, old))
@@ -132,7 +132,7 @@ def unpaired_ratio(before, after):
 
 
 def median_interval(values):
-    """The 95 % interval of the median of values, made as the program makes those of its records."""
+    """The 95 % interval of the median of values, computed as the program computes the intervals of its records."""
     values = numpy.sort(numpy.asarray(values, float))
     if values[0] == values[-1]:  # every resample has the same median
         return float(values[0]), float(values[-1])

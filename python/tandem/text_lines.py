@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Text in lines of a terminal: a character is one column wide."""
+"""Formats text for a terminal where each character is one column wide."""
 
 COLUMNS = 100
 
 
 def wrap(text, width):
-    """Lines of at most `width` characters, broken at spaces, and inside words that are longer; at least one line."""
+    """Lines of at most `width` characters; at least one. Breaks at spaces, and inside words that are longer than a line."""
     lines = []
     while len(text) > width:
         space = text.rfind(" ", 0, width + 1)
@@ -16,7 +16,7 @@ def wrap(text, width):
 
 
 def paragraph(text, indent):
-    """Lines of COLUMNS, each with its end; those after the first begin with `indent` spaces."""
+    """Lines of at most COLUMNS characters with their ends. All lines after the first begin with `indent` spaces."""
     first = wrap(text, COLUMNS)[0]
     rest = text[len(first):].lstrip(" ")
     more = wrap(rest, COLUMNS - indent) if rest else []
@@ -24,23 +24,23 @@ def paragraph(text, indent):
 
 
 def visible(text):
-    """A text in one line: control characters become escapes."""
+    """A text in one line, with control characters as escapes."""
     names = {"\n": "\\n", "\t": "\\t"}
     return "".join(names.get(c) or f"\\x{ord(c):02x}" if c < " " or c == "\x7f" else c for c in text)
 
 
-def one_line(text, most):
-    """A text in one line: control characters become spaces, and what is longer than `most` characters is cut."""
+def one_line(text, length):
+    """A text in one line, with control characters as spaces, cut after `length` characters."""
     text = "".join(" " if character < " " or character == "\x7f" else character for character in text)
-    return text if len(text) <= most else f"{text[:most]}..."
+    return text if len(text) <= length else f"{text[:length]}..."
 
 
 def table(rows, left):
-    """Rows of texts in columns, two spaces between, in COLUMNS. `left` has the numbers of the columns that are aligned to the left. The
-    first column takes what the others leave; a text too long for it stands in a line above its row."""
+    """Rows of texts as aligned columns with two spaces between, at most COLUMNS wide. `left`: numbers of the columns that are aligned to the
+    left. The first column gets the remaining width. A longer text is written on a line above its row."""
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    others = sum(width + 2 for width in widths[1:])
-    widths[0] = min(widths[0], max(8, COLUMNS - others))
+    rest = sum(width + 2 for width in widths[1:])
+    widths[0] = min(widths[0], max(8, COLUMNS - rest))
     text = ""
     for row in rows:
         fits = len(row[0]) <= widths[0]

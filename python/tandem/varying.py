@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Settings that differ among cells: what labels of tables and figures name."""
+"""Finds the settings that differ among cells, for labels of tables and figures."""
 
 
 def varying(cells):
-    """{(family, setting): {value: None, ...}} of settings with several values among the cells of a family, in order of appearance.
-    `cells` are pairs of a family and its settings, which are pairs of a name and a value."""
+    """{(family, setting): {value: None, ...}} for settings with several values among the cells of a family, in order of appearance.
+    `cells`: pairs of a family and a list of settings, each a pair of a name and a value."""
     values = {}
     for family, settings in cells:
         for name, value in settings:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Subcommands of the program that are written in Python: libexec/tandem/NAME runs `main` of the module NAME. The program has checked
-their options and handed them over as --name=value. What they share, other programs of the package use as well."""
+"""Subcommands of the program that are written in Python: libexec/tandem/NAME runs `main` of the module NAME. The program checks their
+options first and passes them as --name=value. Other programs of the package also use the functions of this file."""
 import argparse
 import importlib.util
 import os
@@ -19,19 +19,19 @@ class Parser(argparse.ArgumentParser):
 
 
 def warn(message):
-    """Prints a line about input that is left out."""
+    """Prints a warning on standard error."""
     print(message, file=sys.stderr)
 
 
-def complain(problem, code):
-    """Prints the one line of a problem; returns the exit code."""
+def print_error(problem, code):
+    """Prints an error as one line. Returns the exit code."""
     print(f"tandem: {visible(str(problem))}", file=sys.stderr)
     return code
 
 
 def check_packages(command, names, instead=""):
-    """Goes on with the system's python3, or where this is it with that of PATH, where this one lacks a package; BadUse where that lacks one
-    as well, or is none."""
+    """If this Python lacks a package, starts the command again with /usr/bin/python3, or with the python3 of PATH. Raises BadUse if that one
+    lacks a package too, or there is no other Python."""
     missing = [name for name in names if importlib.util.find_spec(name) is None]
     if not missing:
         return
@@ -43,24 +43,24 @@ def check_packages(command, names, instead=""):
 
 
 def _print(text):
-    """Text on standard output, to its end. Names of files need not be UTF-8."""
+    """Writes and flushes a text on standard output. Names of files in it need not be UTF-8."""
     try:
         sys.stdout.buffer.write(text.encode(errors="surrogateescape"))
         sys.stdout.buffer.flush()
     except OSError as problem:
-        # What is left of it would be written again when Python ends.
+        # Otherwise Python writes the rest of the buffer again at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise OutputError(f"standard output could not be written ({problem.strerror})") from None
 
 
 def run(make):
-    """The exit code of a command. `make` returns its text and its exit code, and raises BadUse, RecordError or OutputError."""
+    """Runs a command and returns its exit code. `make` returns its text and exit code, or raises BadUse, RecordError or OutputError."""
     from ..lines import RecordError
     try:
         text, code = make()
         _print(text)
         return code
     except (BadUse, RecordError) as problem:
-        return complain(problem, 2)
+        return print_error(problem, 2)
     except OutputError as problem:
-        return complain(problem, 3)
+        return print_error(problem, 3)

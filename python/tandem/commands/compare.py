@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tandem compare: which cells changed, by how much, how sure. Exit 1 where something is slower, faster or another answer."""
+"""tandem compare: which cells changed, by how much and how surely. Exits with 1 if a cell is slower, faster or has another answer."""
 import argparse
 
 from . import check_packages, run

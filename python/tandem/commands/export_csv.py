@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""tandem export --csv: the records of a file as a table of comma-separated values (RFC 4180). Each record has a line, of any status and
-in their order, under a line of names. Columns name and judge the cell, then come times in milliseconds a frame, counters and settings. What
-a record does not have is empty."""
+"""tandem export --csv: writes the records of a file as a table of comma-separated values (RFC 4180). The first line has the names of the
+columns; then each record, of any status, has one line. Columns name the cell and its status, then come times in milliseconds per frame,
+counters and settings. Missing values are empty."""
 import json
 
 from .. import cell_rows, lines
@@ -18,7 +18,7 @@ def _parsed(arguments):
 
 
 def _row(record, path, line):
-    recorded_cell(record, path, line)  # says what else it is
+    recorded_cell(record, path, line)  # raises an error for anything else
     try:
         return cell_rows.row(record)
     except lines.FIELD_ERRORS:
@@ -38,10 +38,10 @@ def _quoted(text):
 
 
 def as_csv(rows):
-    """The table of such rows as cell_rows.row() makes them."""
+    """The table of rows of cell_rows.row()."""
     columns = cell_rows.columns(rows)
-    drawn = [columns, *([_text(column, row.get(column)) for column in columns] for row in rows)]
-    return "".join(",".join(map(_quoted, line)) + "\n" for line in drawn)
+    table = [columns, *([_text(column, row.get(column)) for column in columns] for row in rows)]
+    return "".join(",".join(map(_quoted, line)) + "\n" for line in table)
 
 
 def _write(path, text):

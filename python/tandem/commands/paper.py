@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""The command 'tandem paper': measures its steps, then makes tables, figures, verdicts and index.html from the records of its folder.
-Exit 2, and one line that says why, for bad use and a folder without records; 3 when a step failed or something cannot be written."""
+"""tandem paper: measures the steps of a plan, then makes tables, figures, verdicts and index.html from the records of its folder.
+Exits with 2 and one error line for bad use and a folder without records, and with 3 if a step failed or a file cannot be written."""
 import argparse
 import csv
 import dataclasses
 
 from ..paper import measuring
-from . import check_packages, complain
+from . import check_packages, print_error
 
-DRAWS_WITH = ("matplotlib", "pandas", "scipy")
+PACKAGES = ("matplotlib", "pandas", "scipy")
 
 
 def write_claims(folder, found):
@@ -20,31 +20,31 @@ def write_claims(folder, found):
 
 
 def build(path):
-    """Everything; returns the line that says what there is. Raises lines.RecordError, OSError."""
+    """Makes all files. Returns a line with their numbers. Raises lines.RecordError, OSError."""
     from ..paper import claims, figures, page, pictures, tables
     from ..paper.folder import Folder
     folder = Folder(path)
     made = tables.all_tables(folder)
     for table in made:
         table.write(folder.path)
-    drawn = [*pictures.all_pictures(folder), *figures.all_curves(folder)]
+    all_figures = [*pictures.all_pictures(folder), *figures.all_curves(folder)]
     found = claims.all_claims(folder)
     write_claims(folder, found)
-    page.write(folder, made, drawn, found)
-    gaps = sum(bool(figure.missing) for figure in drawn)
+    page.write(folder, made, all_figures, found)
+    gaps = sum(bool(figure.missing) for figure in all_figures)
     verdicts = ", ".join(f"{sum(claim.verdict == kind for claim in found)} {kind}" for kind in (claims.AGREES, claims.DIFFERS, claims.UNTESTED))
-    return f"{folder.path / 'index.html'}: 7 tables, {len(drawn) - gaps} of {len(drawn)} figures, claims: {verdicts}"
+    return f"{folder.path / 'index.html'}: 7 tables, {len(all_figures) - gaps} of {len(all_figures)} figures, claims: {verdicts}"
 
 
 def draw(path):
-    """The exit code."""
+    """Makes all files and prints their numbers or an error. Returns the exit code."""
     from .. import lines
     try:
         print(build(path), flush=True)
     except lines.RecordError as error:
-        return complain(error, 2)
+        return print_error(error, 2)
     except OSError as error:
-        return complain(f"{error.filename or path}: cannot be written: {error.strerror}", 3)
+        return print_error(f"{error.filename or path}: cannot be written: {error.strerror}", 3)
     return 0
 
 
@@ -52,7 +52,7 @@ def parsed(arguments):
     parser = argparse.ArgumentParser(prog="tandem paper", description=__doc__)
     parser.add_argument("-o", "--output", required=True)
     parser.add_argument("--device", default="opencl:0")
-    parser.add_argument("--queue-bytes", type=int, default=0, help="what the paper's release allocates for queues on the device")
+    parser.add_argument("--queue-bytes", type=int, default=0, help="bytes of device memory that the paper's release allocates for queues")
     parser.add_argument("--size", default="small")
     parser.add_argument("--steps", default="")
     for name in ("again", "measure-only", "draw-only", "dry-run"):
@@ -61,11 +61,11 @@ def parsed(arguments):
 
 
 def main(arguments, program):
-    """`program`: the path of tandem, which the steps run."""
+    """`program`: path of tandem, which runs the steps."""
     options = parsed(arguments)
     try:
         if not options.measure_only and not options.dry_run:
-            check_packages("tandem paper", DRAWS_WITH, ", or give --measure-only")  # before anything is measured
+            check_packages("tandem paper", PACKAGES, ", or give --measure-only")  # fails before anything is measured
         if options.draw_only:
             return draw(options.output)
         steps = measuring.steps_of(options.size, options.device, options.queue_bytes)
@@ -79,9 +79,9 @@ def main(arguments, program):
                 folder.forget(step)
         worst = measuring.run_steps(folder, steps, first, last)
     except measuring.BadUse as error:
-        return complain(error, 2)
+        return print_error(error, 2)
     except OSError as error:
-        return complain(f"{error.filename or options.output}: {error.strerror}", 3)
+        return print_error(f"{error.filename or options.output}: {error.strerror}", 3)
     if options.measure_only:
         return worst
     return 3 if draw(options.output) else worst

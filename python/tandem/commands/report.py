@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tandem report: records, and a scene, as one page for a browser."""
+"""tandem report: writes records, and optionally a scene, as one page for a browser."""
 import argparse
 import datetime
 import subprocess
@@ -8,7 +8,7 @@ import sys
 from ..errors import BadUse
 from . import check_packages, run
 
-MOST_BYTES = 7_900_000
+MAX_BYTES = 7_900_000
 
 
 def _parsed(arguments):
@@ -29,20 +29,20 @@ def _counted(number, one, more):
 
 
 def _contents(cells, records, files):
-    """"36 cells of 2 files", and what there is besides cells."""
+    """"36 cells of 2 files", with the numbers of other records."""
     counts = ((cells, "cell", "cells"), (len(records.profiles), "profile", "profiles"), (len(records.simulations), "simulation", "simulations"),
               (len(records.ceilings), "device's ceilings", "devices' ceilings"))
     return f"{', '.join(_counted(*one) for one in counts if one[0])} of {_counted(files, 'file', 'files')}"
 
 
 def _made_by(program):
-    """The program's version in one line, and the time."""
+    """The program's version in one line, and the date and time."""
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
     return version, datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
 def _add_scene(page, options, program):
-    """The key of the scene, as the command's line has it; empty where there is none."""
+    """Adds the scene to the page, if one is given. Returns the text for the output line, or an empty text."""
     from ..report.scene import shown_scene, words_of
     if not options.scene:
         return ""
@@ -52,7 +52,7 @@ def _add_scene(page, options, program):
 
 
 def _write(options, program):
-    """The line of the command. Raises scene.ExportEnded besides what run() knows."""
+    """Writes the page and returns the output line. Raises scene.ExportEnded and the errors that run() handles."""
     from ..report.assembly import html_of, open_page, write_page
     if options.against and len(options.files) != 1:
         raise BadUse(f"--against {options.against}: two sets of records are compared; give one FILE beside it")
@@ -65,8 +65,8 @@ def _write(options, program):
     if options.against:
         page.data["differences"] = differences(options.against, options.files[0])
     scene = _add_scene(page, options, program)
-    room = max(MOST_BYTES - empty - sum(map(size_of, page.data.values())), 0)
-    data = data_of(records, room, *_made_by(program))
+    free_bytes = max(MAX_BYTES - empty - sum(map(size_of, page.data.values())), 0)
+    data = data_of(records, free_bytes, *_made_by(program))
     page.data["records"] = data.json
     written = write_page(options.output, page)
     for note in data.notes:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tandem view: a scene in three dimensions as a page for a browser."""
+"""tandem view: writes a three-dimensional view of a scene as a page for a browser."""
 import argparse
 import re
 
@@ -20,7 +20,7 @@ def _parsed(arguments):
 
 
 def _file_name(scene):
-    """A name that any file system takes."""
+    """A name that is valid in any file system."""
     return (re.sub(r"[^A-Za-z0-9_-]", "-", scene) or "scene") + ".html"
 
 

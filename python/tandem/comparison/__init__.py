@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which cells changed between two sets of records, by how much, how sure: what 'tandem compare' prints, as a frame."""
+"""Compares two sets of records, as 'tandem compare' does: which cells changed, by how much and how surely."""
 import dataclasses
 from typing import TYPE_CHECKING
 
@@ -15,10 +15,10 @@ COLUMNS = ("verdict", "old_ms", "new_ms", "ratio", "low", "high", "p", "p_holm",
 
 @dataclasses.dataclass(frozen=True)
 class Comparison:
-    """cells: a row a cell of both, index its key: verdict (slower, faster, within_threshold, not_shown, too_few, another_answer),
-    old_ms and new_ms a frame, ratio with its 95 % interval low to high, p, p_holm (corrected over all cells that could be told
-    apart), least_effect (the relative change that would have been shown with probability 0.8), paired, threshold.
-    only_old, only_new: keys without a counterpart. left_out: "FILE:LINE" of records that failed, were wrong or have no samples."""
+    """cells: one row per cell of both files, indexed by key: verdict (slower, faster, within_threshold, not_shown, too_few,
+    another_answer), old_ms and new_ms per frame, ratio with its 95 % interval low to high, p, p_holm (corrected over all cells that
+    can be tested), least_effect (the relative change that would be detected with probability 0.8), paired, threshold.
+    only_old, only_new: keys without a counterpart. left_out: "FILE:LINE" of records that failed, are wrong or have no samples."""
     cells: "pandas.DataFrame"
     only_old: list
     only_new: list
@@ -26,13 +26,13 @@ class Comparison:
 
     @property
     def changed(self):
-        """Something is slower, faster or another answer."""
+        """Whether a cell is slower, faster or has another answer."""
         return bool(self.cells["verdict"].isin(["slower", "faster", "another_answer"]).any())
 
 
 def matched_files(old, new, threshold=None, level=0.05, commits=("", "")):
-    """Two RecordedCells and their Matched. Raises RecordError, also where no cell is in both."""
-    from .matching import match  # needs numpy, and reading cells does not
+    """The RecordedCells of both files and their Matched. Raises RecordError, also if no cell is in both."""
+    from .matching import match  # needs numpy, which reading cells does not need
     before, after = read_cells(old, commits[0]), read_cells(new, commits[1])
     matched = match(before, after, threshold, level)
     if not matched.cells:
@@ -50,8 +50,8 @@ def _row(cell):
 
 
 def compare(old, new, *, threshold=None, level=0.05):
-    """Comparison of two files, as FILE or FILE@COMMIT. threshold: the change that counts, 0.01 for 1 %; 0.01 on GPUs and 0.03
-    elsewhere when left out. level: the probability of any false alarm, all cells together. Raises RecordError."""
+    """Comparison of two files, each FILE or FILE@COMMIT. threshold: the smallest relative change that counts, 0.01 for 1 %; default: 0.01 on
+    GPUs, 0.03 elsewhere. level: the probability of any false alarm among all cells. Raises RecordError."""
     import pandas
 
     from .matching import VERDICTS

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Records of cells, as far as they are compared; results/record.schema.json says what the fields mean."""
+"""Reads those fields of records of cells that are compared. results/record.schema.json describes the fields."""
 import dataclasses
 import os
 import statistics
@@ -20,10 +20,9 @@ class Answer:
 
 @dataclasses.dataclass
 class RecordedCell:
-    """A record of one cell; `frames` is how many a sample replays. `names` are what names it, the most telling first; `settings` has the
-    parameters of its scene as well.
-    `rounds` has the median of each round in nanoseconds, by its number, ascending: with schema 2 each sample is a round. `pairs` and
-    `contacts` are None where the record has no digest; a text that is not known is empty."""
+    """A record of one cell. `frames`: number of frames in a sample. `names`: texts that name the cell, the most significant first.
+    `settings`: includes the parameters of its scene. `rounds`: the median of each round in nanoseconds, by ascending number; with schema 2
+    each sample is a round. `pairs` and `contacts` are None if the record has no digest. Unknown texts are empty."""
     line: int
     schema: int
     key: str
@@ -49,9 +48,9 @@ class RecordedCell:
 
 @dataclasses.dataclass
 class RecordedCells:
-    """The records of one file, or of one commit in it. `commit` is the whole one, where one was asked for. `cells` has the last record
-    of each key that is ok, in the order of first lines; `left_out` those that failed, are wrong or have no samples. `repeated` counts
-    keys with several records that are ok; `torn`: the last line has no end and is ignored."""
+    """The records of one file, or of one commit in it. `commit`: the full commit, if one was given. `cells`: the last record of each key
+    that is ok, in the order of the keys' first lines. `left_out`: records that failed, are wrong or have no samples. `repeated`: number of
+    keys with several records that are ok. `torn`: the last line has no end and is ignored."""
     path: str
     commit: str
     cells: list
@@ -63,7 +62,7 @@ class RecordedCells:
 
 
 class _NotARecord(Exception):
-    """What a line is instead of a record."""
+    """A line is not a valid record; the message describes the error."""
 
 
 def _text(part, name):
@@ -74,7 +73,7 @@ def _text(part, name):
 
 
 def _needed(part, name, kind=str):
-    """A field that has to be there, and of this kind."""
+    """A required field of this type."""
     value = part[name]
     if not isinstance(value, kind) or isinstance(value, bool) is not (kind is bool):
         raise TypeError(f"{name} must be a {NAMES_OF[kind]}")
@@ -86,7 +85,8 @@ def _joined(devices, field):
 
 
 def _split_scene(key, settings):
-    """The scene's name and its parameters, of "NAME:par=value,par=value"; the whole key where a parameter is none, or hides a setting."""
+    """Splits "NAME:par=value,par=value" into the scene's name and its parameters. The name is the whole key if a part is not a parameter, or
+    has the name of a setting."""
     name, colon, rest = key.partition(":")
     parameters = dict(part.partition("=")[::2] for part in rest.split(",")) if colon else {}
     if not all("=" in part for part in rest.split(",") if colon) or parameters.keys() & settings.keys():
@@ -95,7 +95,7 @@ def _split_scene(key, settings):
 
 
 def _handling(record):
-    """What was done with flawed tetrahedra where that changes answers; old records do not say."""
+    """How flawed tetrahedra were handled, if that changes answers. Old records do not have it."""
     error = record.get("error")
     if not isinstance(error, dict) or "inputs" not in error:
         return ""
@@ -117,27 +117,27 @@ def _names(record):
 
 
 def _answer(record, name):
-    """Old records have the digest in `agreement`, where the answer was checked."""
-    for place in ("work", "agreement"):
-        part = record.get(place)
+    """The answer's digest. Old records of checked answers have it in `agreement`."""
+    for field in ("work", "agreement"):
+        part = record.get(field)
         if isinstance(part, dict) and name in part:
             return Answer(_needed(part[name], "count", int), _needed(part[name], "a"), _needed(part[name], "b"))
     return None
 
 
 def _rounds(record):
-    """How many samples there are, and the median of each round."""
+    """The number of samples, and the median of each round."""
     total = record.get("total_ns")
     samples = total["samples"] if total else []
     numbers = total.get("rounds") if total and record["schema"] >= 3 else range(len(samples))
     if numbers is None and samples:
-        raise _NotARecord(f"total_ns has no rounds, which schema 3 asks for; {RECORD_AGAIN}")
+        raise _NotARecord(f"total_ns has no rounds, which schema 3 requires; {RECORD_AGAIN}")
     if len(numbers or ()) != len(samples):
         raise _NotARecord(f"total_ns has {len(samples)} samples and {len(numbers)} rounds; {RECORD_AGAIN}")
     rounds = {}
     for number, ns in zip(numbers or (), samples):
         if not ns > 0:
-            raise _NotARecord(f"a sample of {ns} ns is no time; {RECORD_AGAIN}")
+            raise _NotARecord(f"a sample of {ns} ns is not a valid time; {RECORD_AGAIN}")
         rounds.setdefault(number, []).append(float(ns))
     return len(samples), {number: statistics.median(rounds[number]) for number in sorted(rounds)}
 
@@ -157,7 +157,7 @@ def _cell(record, line):
 
 
 def recorded_cell(record, path, line):
-    """The cell of a record that stands in this line. Raises RecordError: PATH:LINE, what it is instead and what to do."""
+    """The cell of the record in a line. Raises RecordError with PATH:LINE, the error and what to do."""
     try:
         return _cell(record, line)
     except _NotARecord as problem:
@@ -169,7 +169,7 @@ def recorded_cell(record, path, line):
 
 
 def _split_commit(file, commit):
-    """Path and commit, of a path or of PATH@COMMIT where no such file exists."""
+    """Splits PATH@COMMIT into path and commit. If a file with the whole name exists, the name is the path."""
     name = os.fspath(file)
     path, at, behind = name.rpartition("@")
     if not at or os.path.exists(name):
@@ -177,7 +177,7 @@ def _split_commit(file, commit):
     if not behind:
         raise lines.RecordError(f"{name}: no such file, and no commit behind the @; give FILE@COMMIT")
     if commit:
-        raise lines.RecordError(f"{name}: commit {commit} is asked for as well; name one commit, behind the @ or by its option")
+        raise lines.RecordError(f"{name}: the option names another commit, {commit}; name one commit, behind the @ or by the option")
     return path, behind
 
 
@@ -186,19 +186,19 @@ def _commits(cells):
 
 
 def _whole_commit(path, start, cells):
-    """The one commit that begins so."""
+    """The only commit that begins with `start`."""
     commits = _commits(cells)
     found = [commit for commit in commits if commit.startswith(start)]
     if not found:
         raise lines.RecordError(f"{path}: no record of commit {start}; there are {', '.join(commits)}")
     if len(found) > 1:
-        raise lines.RecordError(f"{path}: commit {start} may be {' or '.join(found)}; give more of it")
+        raise lines.RecordError(f"{path}: commit {start} may be {' or '.join(found)}; give more digits")
     return found[0]
 
 
 def read_cells(file, commit=""):
-    """RecordedCells of a file: a path, or PATH@COMMIT where no such file exists. `commit`, or what stands behind the @, is the beginning
-    of the one commit whose records count; all count where it is empty. Raises RecordError."""
+    """Reads RecordedCells of a file, given as PATH or PATH@COMMIT. `commit`, or the text behind the @, is the beginning of the commit whose
+    records count; without it all records count. Raises RecordError."""
     path, start = _split_commit(file, commit)
     torn = []
     records = [recorded_cell(record, path, line) for line, record in lines.numbered(path, torn.append)]

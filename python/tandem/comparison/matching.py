@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Cells of equal keys, compared: by how much times differ, how sure that is, and the verdict. The unit of every test is the round:
-samples of one round share its preparation."""
+"""Compares cells of equal keys: the ratio of their times, its significance, and the verdict. The unit of every test is the round,
+because samples of one round share its preparation."""
 import dataclasses
 import math
 import statistics
@@ -8,27 +8,27 @@ import statistics
 from .. import rank_tests, resampling
 from .cells import RecordedCell
 
-POWER = 0.8  # probability with which the least effect is shown
+POWER = 0.8  # probability that the least effect is detected
 ON_GPUS, ELSEWHERE = 0.01, 0.03  # thresholds
 VERDICTS = {"slower": "slower", "faster": "faster", "within_threshold": "within the threshold", "not_shown": "≈", "too_few": "too few samples to tell",
-            "another_answer": "another answer"}  # and how they are shown
+            "another_answer": "another answer"}  # with their texts
 CHANGES = ("slower", "faster", "another_answer")
-MOST_ROUNDS = 1000  # that are tried for rounds_needed
+MAX_ROUNDS = 1000  # upper limit of rounds_needed
 
 
 @dataclasses.dataclass
 class ComparedCell:
     """One cell in both files.
 
-    verdict: slower or faster: p is below the level and the ratio beyond the threshold; within_threshold: p is, the ratio is not;
-        not_shown: p is not; too_few: so few rounds that no times could bring p below the level; another_answer: digests differ, so
-        that times are of different work and are not compared.
-    paired: one session, interleaved: rounds of one number are pairs, and the others take no part. common: rounds of both.
-    before_ns, after_ns: medians over the rounds that take part.
-    p: of signed ranks of logarithms where paired, of rank sums otherwise; `exact` where that is counted. least_p: the least that so
-        many rounds can give. p_holm: corrected; None for cells that cannot be tested.
-    least_effect: the relative change that is shown with probability POWER; None where none would be.
-    rounds_needed: with too few, how many of each side would do.
+    verdict: slower or faster: p is below the level and the ratio is beyond the threshold; within_threshold: only p is; not_shown: p is
+        not below the level; too_few: with so few rounds p cannot fall below the level; another_answer: digests differ, so that the times
+        are of different work and are not compared.
+    paired: both records are of one session, so that rounds of equal number are pairs; other rounds are not used. common: rounds of both.
+    before_ns, after_ns: medians over the rounds that are used.
+    p: of the signed-rank test of logarithms if paired, else of the rank-sum test. exact: whether p is exact. least_p: the smallest p that
+        this number of rounds can give. p_holm: p after correction; None for cells that cannot be tested.
+    least_effect: the relative change that is detected with probability POWER; None for cells that cannot be tested.
+    rounds_needed: for too_few, the number of rounds on each side that is enough.
     """
     before: RecordedCell
     after: RecordedCell
@@ -49,8 +49,8 @@ class ComparedCell:
 
 @dataclasses.dataclass
 class Matched:
-    """cells: ComparedCells in the order of the old file; only_old, only_new: RecordedCells without a counterpart; tested: how many
-    cells the correction is over."""
+    """cells: ComparedCells in the order of the old file. only_old, only_new: RecordedCells without a counterpart. tested: number of cells
+    in the correction."""
     cells: list
     only_old: list
     only_new: list
@@ -91,7 +91,7 @@ def _compared(before, after, threshold):
 
 
 def least_effect(log_error, level, power=POWER):
-    """The relative change that a normal test at this level shows with this probability, the standard error of a logarithm given."""
+    """The relative change that a normal test at this level detects with this probability, given the standard error of the logarithm."""
     normal = statistics.NormalDist()
     return math.expm1((normal.inv_cdf(1 - level / 2) + normal.inv_cdf(power)) * log_error)
 
@@ -105,8 +105,8 @@ def _verdict(cell, level):
 
 
 def _decide(tested, level):
-    """Corrects p-values and says what they show. A cell has too few rounds where the correction of the least p-values of all leaves
-    it none below the level: each corrected p-value grows with every p-value."""
+    """Corrects p-values and sets verdicts. A cell keeps verdict too_few if its least p-value, corrected with the least p-values of all
+    cells, is not below the level. This is valid because each corrected p-value increases with every p-value."""
     least = rank_tests.holm([cell.least_p for cell in tested])
     for cell, p, least_p in zip(tested, rank_tests.holm([cell.p for cell in tested]), least):
         cell.p_holm = float(p)
@@ -116,17 +116,17 @@ def _decide(tested, level):
 
 
 def _rounds_needed(paired, level, cells):
-    """Rounds of each side with which a cell could be shown to have changed among so many."""
-    for rounds in range(1, MOST_ROUNDS):
+    """The smallest number of rounds on each side that can show a change of one cell among this number of cells."""
+    for rounds in range(1, MAX_ROUNDS):
         least = rank_tests.least_signed_rank_p(rounds) if paired else rank_tests.least_rank_sum_p(rounds, rounds)
         if least * cells < level:
             return rounds
-    return MOST_ROUNDS
+    return MAX_ROUNDS
 
 
 def match(before, after, threshold=None, level=0.05):
-    """Matched of two RecordedCells. p-values are corrected over all cells whose numbers of rounds could bring p below the level at all,
-    which no time decides (Holm 1979; Tarone 1990). The least effect is that of a cell which is the only one to change."""
+    """Compares two RecordedCells. p-values are corrected over all cells whose numbers of rounds allow a p below the level; times do not
+    influence this choice (Holm 1979; Tarone 1990). The least effect assumes that only one cell changes."""
     new = {cell.key: cell for cell in after.cells}
     old = {cell.key for cell in before.cells}
     cells = [_compared(cell, new[cell.key], threshold) for cell in before.cells if cell.key in new]

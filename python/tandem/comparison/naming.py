@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Short names of cells: what differs among them, and nothing else."""
+"""Short names of cells, made only of what differs among them."""
 
-LAST = "digest"  # says least, so it comes after the settings
+LAST = "digest"  # least informative, so it comes after the settings
 
 
 class _Growing:
-    """Labels that grow, and groups of cells that they do not tell apart yet."""
+    """Labels under construction, and groups of cells that still have equal labels."""
 
     def __init__(self, count):
         self.labels, self.groups = [""] * count, [0] * count
 
     def add(self, texts):
-        """Appends a text for each cell where that tells cells apart; whether it does."""
+        """Appends a text to each label if this distinguishes cells of a group. Returns whether it does."""
         pairs = list(zip(self.groups, texts))
         if len(set(pairs)) == len(set(self.groups)):
             return False
@@ -22,18 +22,18 @@ class _Growing:
 
 
 def _numbered(cells, labels):
-    """Cells whose keys differ in what no record names get numbers."""
-    numbers, made = {}, []
+    """Adds numbers to equal labels of cells with different keys."""
+    numbers, numbered = {}, []
     for cell, label in zip(cells, labels):
-        of_key = numbers.setdefault(label, {})
-        number = of_key.setdefault(cell.key, len(of_key) + 1)
-        made.append(label if number == 1 else f"{label} #{number}")
-    return made
+        number_of_key = numbers.setdefault(label, {})
+        number = number_of_key.setdefault(cell.key, len(number_of_key) + 1)
+        numbered.append(label if number == 1 else f"{label} #{number}")
+    return numbered
 
 
 def label(cells):
-    """A text for each RecordedCell, in order, none equal to another where keys are not; and what all share, as one text. A name stands
-    in the texts where it tells cells apart that those before it do not; then settings likewise, by the alphabet."""
+    """A text for each RecordedCell, in order, and one text with the values that all share. Texts of different keys differ. A text has those
+    names, and then those settings in alphabetical order, that distinguish cells which the values before do not."""
     if not cells:
         return [], ""
     growing, common = _Growing(len(cells)), []

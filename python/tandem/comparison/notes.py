@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Sentences about a comparison: what a reader has to know of files and cells, the summary, and why nothing can be compared."""
+"""Sentences about a comparison: notes on files and cells, the summary, and the reason if nothing can be compared."""
 import os
 
 from ..text_lines import one_line
 from .naming import label
 
-MOST_LEFT_OUT, MOST_ONLY, MOST_TRIED, MOST_DIFFERENCES = 10, 5, 300, 4
+MAX_LEFT_OUT, MAX_ONLY, MAX_TRIED, MAX_DIFFERENCES = 10, 5, 300, 4
 
 
 def _names(before, after, matched):
-    """Labels that tell all cells of both files apart, those without a counterpart and those left out included, by identity."""
+    """Distinct labels of all cells of both files by identity, including cells without a counterpart and cells left out."""
     cells = [*(cell.before for cell in matched.cells), *matched.only_old, *matched.only_new, *before.left_out, *after.left_out]
     return {id(cell): one_line(text, 1000) for cell, text in zip(cells, label(cells)[0])}
 
@@ -17,48 +17,48 @@ def _names(before, after, matched):
 def _change(what, before, after):
     if before is None or after is None or before == after:
         return []
-    return [f"{before.count} {what} others" if before.count == after.count else f"{after.count} {what} for {before.count}"]
+    return [f"{before.count} {what}, but different ones" if before.count == after.count else f"{after.count} {what} instead of {before.count}"]
 
 
-def _of_answers(matched, names):
+def _answer_notes(matched, names):
     for cell in matched.cells:
         if cell.verdict == "another_answer":
             changes = _change("candidate pairs", cell.before.pairs, cell.after.pairs) + _change("contacts", cell.before.contacts, cell.after.contacts)
             yield f"another answer: {names[id(cell.before)]}: {', '.join(changes)}"
 
 
-def _of_file(side):
+def _file_notes(side):
     if side.torn:
-        yield f"{side.path}: the last line has no end, being cut off or still written: it is ignored"
+        yield f"{side.path}: the last line has no end and is ignored; it is cut off or still being written"
     if side.repeated:
         yield (f"{side.path}: {side.repeated} {'cell was' if side.repeated == 1 else 'cells were'} recorded more than once; "
                "the last record that is ok counts")
 
 
 def _reason(cell):
-    """Why a record takes no part."""
+    """Why a record is left out."""
     if cell.status == "failed":
         return f"failed: {one_line(cell.failure, 160)}"
     return "its answer is not the reference's" if cell.status != "ok" else "it has no samples"
 
 
-def _of_left_out(side, names):
-    for cell in side.left_out[:MOST_LEFT_OUT]:
-        yield f"{side.path}:{cell.line} takes no part: {names[id(cell)]}: {_reason(cell)}"
-    if len(side.left_out) > MOST_LEFT_OUT:
-        yield f"{side.path}: {len(side.left_out) - MOST_LEFT_OUT} more records take no part; --format json lists them"
+def _left_out_notes(side, names):
+    for cell in side.left_out[:MAX_LEFT_OUT]:
+        yield f"{side.path}:{cell.line} is left out: {names[id(cell)]}: {_reason(cell)}"
+    if len(side.left_out) > MAX_LEFT_OUT:
+        yield f"{side.path}: {len(side.left_out) - MAX_LEFT_OUT} more records are left out; --format json lists them"
 
 
-def _of_only(which, cells, names):
+def _only_notes(which, cells, names):
     if cells:
-        some = [names[id(cell)] for cell in cells[:MOST_ONLY]]
-        if len(cells) > MOST_ONLY:
-            some.append(f"and {len(cells) - MOST_ONLY} more")
+        some = [names[id(cell)] for cell in cells[:MAX_ONLY]]
+        if len(cells) > MAX_ONLY:
+            some.append(f"and {len(cells) - MAX_ONLY} more")
         yield f"{len(cells)} {'cell is' if len(cells) == 1 else 'cells are'} in {which} only: {'; '.join(some)}"
 
 
-def _of_machines(matched):
-    """Keys of schema 2 do not say where a cell ran."""
+def _machine_notes(matched):
+    """Differences of machines: keys of schema 2 do not contain them."""
     for name in ("model", "driver", "processor"):
         def values(side):
             cells = (getattr(cell, side) for cell in matched.cells)
@@ -68,11 +68,11 @@ def _of_machines(matched):
             yield f"other {name}s: old {' and '.join(old)}, new {' and '.join(new)}"
 
 
-def _of_separate_runs(matched):
-    """Only within a session do both sides share what the machine does."""
-    apart = sum(not cell.paired for cell in matched.cells)
-    if apart:
-        yield (f"{apart} of {len(matched.cells)} cells were measured in separate runs: load, clocks and preparation of each run count "
+def _separate_run_notes(matched):
+    """Only within a session are both sides measured under the same load of the machine."""
+    separate = sum(not cell.paired for cell in matched.cells)
+    if separate:
+        yield (f"{separate} of {len(matched.cells)} cells were measured in separate runs: load, clocks and preparation of each run count "
                "as changes")
 
 
@@ -84,24 +84,24 @@ def _same_file(before, after):
 
 
 def notes(before, after, matched):
-    """Sentences: each other answer, each record that takes no part, and what else a reader has to know of the files."""
+    """Sentences on different answers, records left out, and further facts about the files."""
     names = _names(before, after, matched)
-    found = list(_of_answers(matched, names))
+    found = list(_answer_notes(matched, names))
     same_commit = before.commit == after.commit
     if same_commit and _same_file(before.path, after.path):
         found.append("old and new are the same records; FILE@COMMIT names those of one commit")
-    found += _of_file(before)
+    found += _file_notes(before)
     if before.path != after.path or not same_commit:
-        found += _of_file(after)
+        found += _file_notes(after)
     for side in (before, after):
-        found += _of_left_out(side, names)
-    found += _of_only("old", matched.only_old, names)
-    found += _of_only("new", matched.only_new, names)
-    return [*found, *_of_machines(matched), *_of_separate_runs(matched)]
+        found += _left_out_notes(side, names)
+    found += _only_notes("old", matched.only_old, names)
+    found += _only_notes("new", matched.only_new, names)
+    return [*found, *_machine_notes(matched), *_separate_run_notes(matched)]
 
 
 def _thresholds(matched):
-    """"3 %", or each with its kind of device where they are the defaults and both occur."""
+    """"3 %", or both default thresholds with their kinds of device."""
     found = sorted({cell.threshold for cell in matched.cells})
     texts = [f"{100 * threshold:g} %" for threshold in (found[0], found[-1])]
     return texts[0] if len(found) == 1 else f"{texts[0]} (GPUs) or {texts[1]} (processors)"
@@ -111,22 +111,22 @@ def _too_few(matched):
     few = [cell for cell in matched.cells if cell.verdict == "too_few"]
     if not few:
         return ""
-    return f"; {len(few)} {'has' if len(few) == 1 else 'have'} too few samples to tell: {max(cell.rounds_needed for cell in few)} rounds of each would do"
+    return f"; {len(few)} {'has' if len(few) == 1 else 'have'} too few samples to tell: {max(cell.rounds_needed for cell in few)} rounds on each side are enough"
 
 
-def _others(matched):
-    """"; the others could have shown 0.8 to 2.1 %"."""
-    others = [cell for cell in matched.cells if cell.verdict in ("not_shown", "within_threshold")]
-    effects = [100 * cell.least_effect for cell in others if cell.least_effect is not None]
+def _detectable(matched):
+    """"; detectable in the others: 0.8 to 2.1 %"."""
+    undecided = [cell for cell in matched.cells if cell.verdict in ("not_shown", "within_threshold")]
+    effects = [100 * cell.least_effect for cell in undecided if cell.least_effect is not None]
     if not effects:
         return ""
-    decided = len(matched.cells) - len(others) - matched.count("too_few")
+    decided = len(matched.cells) - len(undecided) - matched.count("too_few")
     low, high = f"{min(effects):.1f}", f"{max(effects):.1f}"
-    return f"; {'the others' if decided else 'they'} could have shown {low}{'' if low == high else f' to {high}'} %"
+    return f"; detectable{' in the others' if decided else ''}: {low}{'' if low == high else f' to {high}'} %"
 
 
 def summary(matched, level):
-    """One line: how many cells are slower and faster, beyond what, and what the others could have shown."""
+    """One line: numbers of slower and faster cells, the threshold, and the changes that are detectable in the other cells."""
     answers, within = matched.count("another_answer"), matched.count("within_threshold")
     text = (f"{matched.count('slower')} of {len(matched.cells)} {'cell' if len(matched.cells) == 1 else 'cells'} slower, "
             f"{matched.count('faster')} faster beyond {_thresholds(matched)} at level {level:g}")
@@ -134,11 +134,11 @@ def summary(matched, level):
         text += f"; {answers} with another answer"
     if within:
         text += f"; {within} changed within the threshold"
-    return text + _too_few(matched) + _others(matched)
+    return text + _too_few(matched) + _detectable(matched)
 
 
 def _differences(before, after):
-    """"X / Y" for each name, or else each setting, in which two cells differ; presets are no part of a key."""
+    """"X / Y" for each name and each setting in which two cells differ. Presets are left out, because keys do not contain them."""
     found = [f"{value} / {after.names[name]}" for name, value in before.names.items() if name != "preset" and value != after.names[name]]
 
     def text(cell, name):
@@ -150,7 +150,8 @@ def _differences(before, after):
 
 
 def nothing_common(before, after):
-    """Why no cell is in both of two RecordedCells: the nearest two cells, and in what they differ; of many only some are tried."""
+    """The reason why two RecordedCells have no cell in common: the differences of the two most similar cells. Tries at most MAX_TRIED cells
+    of each."""
     for side in (before, after):
         if not side.cells:
             name = f"{side.path}@{side.commit}" if side.commit else side.path
@@ -158,8 +159,8 @@ def nothing_common(before, after):
     what = f"{before.path} and {after.path} have no cell in common ({len(before.cells)} and {len(after.cells)} cells"
     schemas = before.cells[0].schema, after.cells[0].schema
     if schemas[0] != schemas[1]:
-        return f"{what}), being of schemas {schemas[0]} and {schemas[1]}; record both with one program's schema"
-    least = min((_differences(old, new) for old in before.cells[:MOST_TRIED] for new in after.cells[:MOST_TRIED]), key=len)
-    if len(least) > MOST_DIFFERENCES:
-        least = [*least[:MOST_DIFFERENCES], f"{len(least) - MOST_DIFFERENCES} more"]
+        return f"{what}), because they have schemas {schemas[0]} and {schemas[1]}; record both with one version of the program"
+    least = min((_differences(old, new) for old in before.cells[:MAX_TRIED] for new in after.cells[:MAX_TRIED]), key=len)
+    if len(least) > MAX_DIFFERENCES:
+        least = [*least[:MAX_DIFFERENCES], f"{len(least) - MAX_DIFFERENCES} more"]
     return f"{what}; the nearest differ in {', '.join(least)}); record the same cells"

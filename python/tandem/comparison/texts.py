@@ -8,12 +8,12 @@ from .matching import POWER, VERDICTS
 from .naming import label
 from .notes import notes, summary
 
-HEADING = ("cell", "old ms", "new ms", "new/old [95 %]", "p (Holm)", "verdict", "would show")
+HEADING = ("cell", "old ms", "new ms", "new/old [95 %]", "p (Holm)", "verdict", "detectable")
 LEFT = (0, len(HEADING) - 2)
 
 
 def _milliseconds(ns):
-    """Four digits, at most so many decimals."""
+    """Milliseconds with about four digits, at most four decimals."""
     ms = ns * 1e-6
     return f"{ms:.{4 if ms < 1 else 3 if ms < 10 else 2 if ms < 100 else 1 if ms < 1000 else 0}f}"
 
@@ -29,15 +29,15 @@ def _row(cell, name):
 
 
 def _rows(matched):
-    """What the cells share, and a row for each under a heading."""
+    """The values that all cells share, and a heading with one row per cell."""
     names, common = label([cell.before for cell in matched.cells])
     return one_line(common, 1000), [HEADING, *map(_row, matched.cells, names)]
 
 
 def _origin(side):
-    """Where records come from: "FILE: 24 cells, commit 133aed5766b2"."""
+    """Origin of records: "FILE: 24 cells, commit 133aed5766b2"."""
     commits = [commit or "unknown" for commit in side.commits]
-    changed = " with changes that are not committed" if any(cell.dirty for cell in side.cells) else ""
+    changed = " with uncommitted changes" if any(cell.dirty for cell in side.cells) else ""
     cells = f"{len(side.cells)} {'cell' if len(side.cells) == 1 else 'cells'}"
     return one_line(f"{side.path}: {cells}, {'commit' if len(commits) == 1 else 'commits'} {', '.join(commits)}{changed}", 1000)
 
@@ -52,7 +52,7 @@ def text(before, after, matched, level):
 
 
 def _escaped(part):
-    """A bar would begin another cell of the table, and what looks like HTML or a star would be read as such."""
+    """Escapes characters that Markdown or HTML would interpret, such as bars of tables."""
     return "".join(f"\\{character}" if character in "|<>*_`\\[]" else character for character in part)
 
 
@@ -73,7 +73,7 @@ def _origin_json(cell, median_ns):
 
 
 def _times_json(cell):
-    """What the times say; None for a cell with another answer."""
+    """Ratio and tests of times; None for a cell with another answer."""
     if cell.ratio is None:
         return None
     test = f"{'signed ranks' if cell.paired else 'rank sums'}, {'exact' if cell.exact else 'normal approximation'}"

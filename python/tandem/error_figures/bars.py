@@ -6,7 +6,7 @@ from .panels import note
 from .points import OF_CONTACTS, swept, words
 
 KINDS = ("random", "resting", "constructed")
-MOST_BARS = 200  # of a kind of scene
+MAX_BARS = 200  # of a kind of scene
 
 
 def _sums_of(own):
@@ -49,10 +49,10 @@ def draw(points):
     base = {s: points[0].settings.get(s) for s in OF_CONTACTS}  # bounds know nothing of contacts
     points = [p for p in points if all(p.settings.get(s) == v for s, v in base.items())]
     kinds = _configurations(points)
-    width = max(4.5, *(0.14 * min(MOST_BARS, len(own)) for own in kinds.values()))
+    width = max(4.5, *(0.14 * min(MAX_BARS, len(own)) for own in kinds.values()))
     figure, axes = plt.subplots(3, len(kinds), figsize=(width * len(kinds), 7), squeeze=False, sharex="col", layout="constrained")
     for column, (kind, configurations) in zip(axes.T, kinds.items()):
-        _column(column, dict(list(configurations.items())[:MOST_BARS]))
-        more = f", the first {MOST_BARS} of {len(configurations)} configurations" if len(configurations) > MOST_BARS else ""
+        _column(column, dict(list(configurations.items())[:MAX_BARS]))
+        more = f", the first {MAX_BARS} of {len(configurations)} configurations" if len(configurations) > MAX_BARS else ""
         column[0].set_title(f"{kind} scenes{more}")
     return figure, points

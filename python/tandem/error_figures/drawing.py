@@ -40,4 +40,4 @@ def figures(points, folder):
         figures_by_name = {"bars": bars, "cliffs": cliffs, "pareto": pareto}
         names = [file for name, module in figures_by_name.items() for file in _save(folder, name, module.draw(points))]
     scenes = len(pareto.scenes_of(points))
-    return ", ".join(names), f"; pareto has the first {pareto.MOST_SCENES} scenes of {scenes}" if scenes > pareto.MOST_SCENES else ""
+    return ", ".join(names), f"; pareto has the first {pareto.MAX_SCENES} scenes of {scenes}" if scenes > pareto.MAX_SCENES else ""

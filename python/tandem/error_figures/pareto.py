@@ -8,8 +8,8 @@ import matplotlib.pyplot as plt
 from .panels import few_ticks, note
 from .points import OF_CONTACTS, short_words, sweep_text, swept
 
-MOST_SCENES = 4
-MOST_NAMES = 5  # of a panel
+MAX_SCENES = 4
+MAX_NAMES = 5  # of a panel
 PALE, FRONT = "0.7", "#0b5394"
 
 
@@ -25,10 +25,10 @@ def frontier(points, value, step):
 
 def _some_of(line, value):
     """The ends of a long frontier, and the points after its largest steps."""
-    if len(line) <= MOST_NAMES:
+    if len(line) <= MAX_NAMES:
         return line
     steps = sorted(range(1, len(line) - 1), key=lambda i: math.log(value(line[i - 1]) / value(line[i])), reverse=True)
-    return [line[i] for i in sorted({0, len(line) - 1, *steps[:MOST_NAMES - 2]})]
+    return [line[i] for i in sorted({0, len(line) - 1, *steps[:MAX_NAMES - 2]})]
 
 
 def _alike(point, points, value):
@@ -103,7 +103,7 @@ def scenes_of(points):
 
 def draw(points):
     """The figure of the first scenes and its points; None where there is no scene for it."""
-    shown = scenes_of(points)[:MOST_SCENES]
+    shown = scenes_of(points)[:MAX_SCENES]
     if not shown:
         return None
     figure, axes = plt.subplots(3, len(shown), figsize=(6.4 * len(shown), 9), squeeze=False, layout="constrained")

@@ -53,8 +53,8 @@ def read(files, torn):
     """Points, and how many cells with a truth are left out. Raises RecordError, also where there is no point."""
     points, left_out = [], 0
     for file in files:
-        for place, kind, record in kinds.each(file, torn):
-            with kinds.fields_of(kind, place):
+        for location, kind, record in kinds.each(file, torn):
+            with kinds.fields_of(kind, location):
                 if kind != "cell" or not (record["error"] or {}).get("truth"):
                     continue
                 if record["status"] == "ok" and "median" in (record["total_ns"] or {}):

@@ -90,8 +90,8 @@ def read(paths, torn):
     """Records by group, of cells that ran whole, with times of devices, in our own form. Raises RecordError."""
     groups = {}
     for path in paths:
-        for place, kind, record in kinds.each(path, torn):
-            with kinds.fields_of("cell", place):
+        for location, kind, record in kinds.each(path, torn):
+            with kinds.fields_of("cell", location):
                 if kind == "cell" and record["status"] == "ok" and record["preset"] != "published" and record["devices"][0].get("clock") is not None:
                     groups.setdefault(group_of(record), []).append(loads_of(record))
     return groups

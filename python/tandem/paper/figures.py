@@ -6,7 +6,7 @@ from .drawing import COLOUR_OF, COLOURS, INK, PALE, STAGES, WINNER, Plot, millis
 from .folder import SCENES
 from .tables import data_path, pick
 
-MOST_COSTS = 6  # of Figures 7 and 10, as in the paper
+MAX_COSTS = 6  # of Figures 7 and 10, as in the paper
 
 
 def published_gproximity(folder):
@@ -21,7 +21,7 @@ def figure7(folder):
         return missing(folder.path, 7, "gProximity's bottlenecks", "no cell of gProximity published has ended well")
     plot = Plot(7, 2, 2.6)
     sums = {stage: sum(way.stage(stage) / way.total() for way in ways) for stage in STAGES}
-    costs = sorted(sums, key=sums.get, reverse=True)[:MOST_COSTS]
+    costs = sorted(sums, key=sums.get, reverse=True)[:MAX_COSTS]
     shares, launches = plot.axes
     left = numpy.zeros(len(ways))
     for stage in costs:
@@ -150,7 +150,7 @@ def figure10(folder):
     shown = set()
     for row, costs in enumerate(parts):
         left = 0
-        for name in sorted(costs, key=costs.get, reverse=True)[:MOST_COSTS]:
+        for name in sorted(costs, key=costs.get, reverse=True)[:MAX_COSTS]:
             ax.barh(row, 1e3 * costs[name], left=left, color=COLOUR_OF[name], height=0.7, label=None if name in shown else name)
             shown.add(name)
             left += 1e3 * costs[name]
@@ -173,7 +173,7 @@ def figure11(folder):
     for ax, run in zip(plot.axes, runs):
         steps = [step["step"] for step in run.steps]
         curves = {stage: numpy.array(run.curve(f"stage:{stage}")) for stage in STAGES} | {"solve": numpy.array(run.curve("host:solve"))}
-        largest = sorted(curves, key=lambda name: curves[name].sum(), reverse=True)[:MOST_COSTS]
+        largest = sorted(curves, key=lambda name: curves[name].sum(), reverse=True)[:MAX_COSTS]
         for name in largest:
             ax.plot(steps, 1e3 * curves[name], color=COLOUR_OF[name], label=name, linewidth=1.2)
         plot.rows += [{"run": f"{run.scene} {run.run['devices'][0]['id']}", "step": step, **{name: 1e3 * values[i] for name, values in curves.items()}}

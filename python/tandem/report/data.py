@@ -61,7 +61,7 @@ def _fitting_cells(records, room, values):
 
 
 def _group(group, cells):
-    ranked = [[one.cell, rounded(one.ratio.value), rounded(one.ratio.low), rounded(one.ratio.high), one.is_told_apart] for one in group.ranked]
+    ranked = [[one.cell, rounded(one.ratio.value), rounded(one.ratio.low), rounded(one.ratio.high), one.is_distinguished] for one in group.ranked]
     return {"title": group.title, "cells": group.cells, "ranked": ranked, "differ": group.answers_differ, "words": group_sentences(group, cells)}
 
 

@@ -9,7 +9,7 @@ from ..comparison.notes import notes, summary
 from .data import dumped
 from .numbers import rounded
 
-MOST_SHOWN = 3000  # the first cells, and the page says of how many
+MAX_SHOWN = 3000  # the first cells, and the page says of how many
 LEVEL = 0.05
 
 
@@ -33,4 +33,4 @@ def differences(old, new):
     labels, common = label([cell.before for cell in matched.cells])
     return dumped({"old": os.path.basename(old), "new": os.path.basename(new), "common": common, "summary": summary(matched, LEVEL),
                    "notes": notes(before, after, matched), "of": len(matched.cells),
-                   "cells": list(map(_row, matched.cells[:MOST_SHOWN], labels))})
+                   "cells": list(map(_row, matched.cells[:MAX_SHOWN], labels))})

@@ -14,13 +14,13 @@ ONE = resampling.Ratio(1.0, 1.0, 1.0, 0.0)
 @dataclasses.dataclass
 class Ranked:
     """A cell in the order of speed, held against the fastest of its group. cell: its number; ratio: its time to the fastest's;
-    has_interval: both have rounds enough for one; is_told_apart: 1 lies outside of it."""
+    has_interval: both have rounds enough for one; is_distinguished: 1 lies outside of it."""
     cell: int
     ratio: resampling.Ratio = ONE
     has_interval: bool = False
 
     @property
-    def is_told_apart(self):
+    def is_distinguished(self):
         return self.has_interval and (self.ratio.low > 1 or self.ratio.high < 1)
 
 

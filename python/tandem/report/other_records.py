@@ -11,7 +11,7 @@ KERNEL_NUMBERS = ("share", "launches", "bytes", "operations", "bytes_per_s", "op
                   "occupancy")
 CEILINGS = ("bytes_per_s", "cached_bytes_per_s", "operations_per_s")
 HOST_PARTS = ("broad", "narrow", "reduce", "assemble", "solve", "move")
-MOST_RUNS, MOST_STEPS = 40, 600
+MAX_RUNS, MAX_STEPS = 40, 600
 
 
 def _device_text(device):
@@ -62,7 +62,7 @@ class _Run:
         if (self.steps - 1) % self.stride:
             return
         self.kept.append(step)
-        if len(self.kept) == MOST_STEPS:
+        if len(self.kept) == MAX_STEPS:
             self.stride *= 2
             self.kept = self.kept[::2]
 
@@ -92,8 +92,8 @@ class Simulations:
             run.failure = line["failure"]
 
     def shown(self):
-        return [run.shown() for run in list(self._runs.values())[:MOST_RUNS]]
+        return [run.shown() for run in list(self._runs.values())[:MAX_RUNS]]
 
     @property
     def left_out(self):
-        return max(len(self._runs) - MOST_RUNS, 0)
+        return max(len(self._runs) - MAX_RUNS, 0)

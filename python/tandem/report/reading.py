@@ -9,8 +9,8 @@ from .other_records import Simulations, shown_ceilings, shown_profile
 from .shown_cells import shown_cell
 
 WHAT_TO_GIVE = "give files that 'tandem run --out', 'profile --out', 'simulate --record' or 'devices --measure --out' wrote"
-MOST_CELLS = 6000  # beyond so many, one a key
-MOST_OTHER_RECORDS = 200  # profiles, and records of ceilings
+MAX_CELLS = 6000  # beyond so many, one a key
+MAX_OTHER_RECORDS = 200  # profiles, and records of ceilings
 LISTS = {"cell": "cells", "profile": "profiles", "simulation": "simulations", "ceilings": "ceilings"}  # for each kind of record
 
 
@@ -38,9 +38,9 @@ class _Cells:
 
     def add(self, cell):
         numbers = self.of_key.get(cell.recorded.key, [])
-        if any(self.cells[number].goes_on_with(cell) or self.cells[number].is_copy_of(cell) for number in numbers):
+        if any(self.cells[number].continues(cell) or self.cells[number].is_copy_of(cell) for number in numbers):
             return
-        interrupted = [number for number in numbers if cell.goes_on_with(self.cells[number])]
+        interrupted = [number for number in numbers if cell.continues(self.cells[number])]
         self._remove(interrupted)
         self.records += 1 - len(interrupted)
         if not self.one_a_key and len(self.cells) == self.most:
@@ -89,15 +89,15 @@ class _Cells:
                    f"has room for {self.most}; give fewer files, or the lines that matter")
 
 
-def _checked(text, place):
+def _checked(text, location):
     """The kind and the record of a line. Schemas of cells are checked where these are read."""
-    record = lines.parsed(text, place, WHAT_TO_GIVE)
+    record = lines.parsed(text, location, WHAT_TO_GIVE)
     kind = kinds.kind_of(record)
     if kind is None:
-        raise lines.RecordError(f"{place}: is no record of tandem; {WHAT_TO_GIVE}")
+        raise lines.RecordError(f"{location}: is no record of tandem; {WHAT_TO_GIVE}")
     known, schema = kinds.SCHEMAS[kind], record.get("schema")
     if kind != "cell" and schema != known:
-        raise lines.RecordError(f"{place}: a record of schema {json.dumps(schema)}, and this program knows {known}; bring it to that with "
+        raise lines.RecordError(f"{location}: a record of schema {json.dumps(schema)}, and this program knows {known}; bring it to that with "
                                 "scripts/convert_records")
     return LISTS[kind], record
 
@@ -133,7 +133,7 @@ class _Reader:
 
     def _keep(self, kind, shown):
         kept = getattr(self.records, kind)
-        if len(kept) < MOST_OTHER_RECORDS:
+        if len(kept) < MAX_OTHER_RECORDS:
             kept.append(shown)
         else:
             self.left_out += 1
@@ -145,13 +145,13 @@ class _Reader:
         records.simulations = self.simulations.shown()
         records.notes += cells.notes()
         if self.left_out:
-            records.notes.append(f"{self.left_out} profiles or records of ceilings are left out: there is room for {MOST_OTHER_RECORDS} of each")
+            records.notes.append(f"{self.left_out} profiles or records of ceilings are left out: there is room for {MAX_OTHER_RECORDS} of each")
         if self.simulations.left_out:
             records.notes.append(f"the last {self.simulations.left_out} simulations are left out")
         return records
 
 
-def read_records(files, most=MOST_CELLS):
+def read_records(files, most=MAX_CELLS):
     """Records of files of any kinds. Raises RecordError: a file that is none, lines of other schemas."""
     reader = _Reader(most)
     for file in files:

@@ -6,7 +6,7 @@ import statistics
 from ..text_lines import one_line
 from .numbers import digits
 
-MOST_LETTERS = 900  # about cells that are not ranked
+MAX_LETTERS = 900  # about cells that are not ranked
 
 
 def _label(group, cell):
@@ -23,7 +23,7 @@ def _held_against_fastest(ranked):
     if not ranked.has_interval:
         return f"takes {digits(ratio.value)} times as long, in one round: how sure is not known"
     interval = f"[{digits(ratio.low)}, {digits(ratio.high)}]"
-    if not ranked.is_told_apart:
+    if not ranked.is_distinguished:
         return f"is not told apart from it ({digits(ratio.value)} times its time {interval})"
     return f"takes {digits(ratio.value)} times as long {interval}"
 
@@ -50,7 +50,7 @@ def _not_ranked(group, cells):
         failed = cell.status == "failed"
         why = one_line(cell.failure, 200) if failed else "its answer is not the reference's"
         sentences += f" {_label(group, number)} {'failed' if failed else 'was wrong'}, and is not ranked: {why}."
-        if len(sentences) > MOST_LETTERS:
+        if len(sentences) > MAX_LETTERS:
             return f"{sentences} There are more."
     return sentences
 
@@ -73,11 +73,11 @@ class _Wins:
     least: float = 0
     most: float = 0
 
-    def add(self, ratio, is_told_apart):
+    def add(self, ratio, is_distinguished):
         self.least = ratio if self.all == 0 else min(self.least, ratio)
         self.most = max(self.most, ratio)
         self.all += 1
-        self.sure += is_told_apart
+        self.sure += is_distinguished
 
 
 def _wins(groups, cells):
@@ -91,7 +91,7 @@ def _wins(groups, cells):
         winner = algorithm(group.ranked[0])
         after = next((ranked for ranked in group.ranked if algorithm(ranked) != winner), None)
         if after is not None:
-            wins.setdefault(winner, _Wins()).add(after.ratio.value, after.is_told_apart)
+            wins.setdefault(winner, _Wins()).add(after.ratio.value, after.is_distinguished)
     return sorted(sorted(wins.items()), key=lambda item: -item[1].all)
 
 

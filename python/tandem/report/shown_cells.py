@@ -15,7 +15,7 @@ FIELDS = {"algorithm": True, "preset": True, "device": True, "driver": True, "sc
           "settings": True, "ms": False, "rounds": False, "samples": False, "stages": False, "launches": False, "waits": False, "pairs": False,
           "contacts": False, "error": False, "conditions": True, "sampling": True, "commit": True, "date": False, "command": True,
           "file": False, "line": False, "bodies": False, "tetrahedra": False, "label": False}
-MOST_FRAMES, MOST_LETTERS = 512, 2000
+MAX_FRAMES, MAX_LETTERS = 512, 2000
 CONTACT_ERRORS = ("depth_relative", "normal_degrees", "point", "hausdorff", "volume_relative")
 
 
@@ -36,9 +36,9 @@ class ShownCell:
     samples: dict = dataclasses.field(default_factory=dict)
     run: tuple | None = None
 
-    def goes_on_with(self, other):
+    def continues(self, other):
         """Whether this record has all rounds of the other, and more: that one was interrupted."""
-        return lines.goes_on_with(self.samples, other.samples)
+        return lines.continues(self.samples, other.samples)
 
     def is_copy_of(self, other):
         return bool(self.run) and self.run == other.run and self.samples == other.samples and self.recorded.status == other.recorded.status
@@ -58,7 +58,7 @@ def _time(summary, frames):
 
 def _shown_text(value):
     """As long a text as anyone reads; None where the record has none."""
-    return one_line(value, MOST_LETTERS) if isinstance(value, str) else None
+    return one_line(value, MAX_LETTERS) if isinstance(value, str) else None
 
 
 def _sum(counts):
@@ -96,7 +96,7 @@ def _curve(replays):
     if not isinstance(replays, list) or not replays or len(replays[0] or ()) < 2:
         return None
     replays = [replay for replay in replays if replay is not None]
-    frames = range(min(len(replays[0]), MOST_FRAMES))
+    frames = range(min(len(replays[0]), MAX_FRAMES))
     return [rounded(statistics.median([replay[frame] for replay in replays if frame < len(replay)]) / 1e6) for frame in frames]
 
 

@@ -23,8 +23,8 @@ def as_markdown(files):
     made = {"cell": cells.Cell, "profile": profiles.Profile, "ceilings": ceilings.Ceilings}
     rows = {kind: [] for kind in made}
     for file in files:
-        for place, kind, record in kinds.each(file, warn):
-            with kinds.fields_of(kind, place):
+        for location, kind, record in kinds.each(file, warn):
+            with kinds.fields_of(kind, location):
                 if kind == "simulation":
                     runs.add(record, file, devices)
                 else:

@@ -13,7 +13,7 @@ BOUNDS = {"k": None, "axes": "standard", "precision": "float", "rounding": "safe
 # Kernels that the release has as well. Our refit has a launch for strips and one for tops, our balance one that plans and one that
 # moves; the release's seeds, body pairs and decisions are the host's or part of these.
 THEIRS = ("transform_vertices", "refit_tops", "traverse", "traverse_in_groups", "traverse_queues", "plan_balance", "generate_contacts")
-MOST_RATIOS = 200  # of a table; with more, each cell is held against the fastest chunked one alone
+MAX_RATIOS = 200  # of a table; with more, each cell is held against the fastest chunked one alone
 
 
 class Cell(Named):
@@ -72,7 +72,7 @@ def _opponents(rows, named):
     by_rank = {}
     for own in ours:
         by_rank.setdefault(own[0].rank, []).append(own)
-    all_shown = sum(len(by_rank.get(r.rank, ())) for r, _ in theirs) <= MOST_RATIOS
+    all_shown = sum(len(by_rank.get(r.rank, ())) for r, _ in theirs) <= MAX_RATIOS
     if not all_shown:
         by_rank = {rank: [min(own, key=lambda cell: cell[0].total)] for rank, own in by_rank.items()}
     return theirs, by_rank, all_shown
@@ -96,7 +96,7 @@ def _ratio_table(rows, named):
              for g, name in theirs for c, base in by_rank.get(g.rank, ())]
     if not lines:
         return ""
-    head = "\n" if all_shown else f"\nMore than {MOST_RATIOS} ratios: against the fastest chunked cell alone.\n\n"
+    head = "\n" if all_shown else f"\nMore than {MAX_RATIOS} ratios: against the fastest chunked cell alone.\n\n"
     return head + table(["gProximity / chunked", "device", "total", "kernels", "write", "launches", *(["as theirs"] if counted else [])], lines)
 
 
