@@ -293,7 +293,7 @@ class Drawing(unittest.TestCase):
         cells.loc[first, "status"] = "wrong"
         records = dataclasses.replace(self.plates, cells=cells)
         for draw in (tandem.plot_cells, tandem.plot_stages, tandem.plot_frames, lambda r: tandem.plot_sweep(r, "slabs")):
-            with self.assertWarnsRegex(UserWarning, "1 of .* cells failed, were wrong"):
+            with self.assertWarnsRegex(UserWarning, "1 of .* cells failed, are wrong"):
                 draw(records)
         with warnings.catch_warnings(), self.assertRaisesRegex(ValueError, "nothing can be drawn"):
             warnings.simplefilter("ignore")

@@ -344,7 +344,7 @@ class Scripts(Case):
                 out.write(json.dumps({**record, "algorithm": algorithm, "preset": preset, "settings": settings}) + "\n")
         text = self.said("tables", path, address_space=1 << 29)
         self.assertEqual(text.count("threads="), count + count) # a row each; half of them as ratios, of two cells
-        self.assertIn("against the fastest chunked cell alone", text)
+        self.assertIn("only those to the fastest chunked cell are shown", text)
         path.unlink()
 
     def test_figures_say_what_they_lack(self):

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""python3 -m tandem.answer FILE.jsonl [--write README.md ... | --picture FILE.svg]: the tables of the README from the records of
-results/h200/plan.json, as Markdown: what a frame takes, what refit and walk take of it, and how many times as long as tiled the other walks
-take. --write puts each table between its marks, <!-- answer: NAME --> and <!-- end -->, of the pages; without it they are printed. --picture
-draws the README's first one instead (python3-matplotlib). Medians have the half width of their 95 % interval; ratios are of rounds taken side
-by side. Exit 2, and one line that says why, for a file that is not of that plan."""
+"""python3 -m tandem.answer FILE.jsonl [--write README.md ... | --picture FILE.svg]: makes the Markdown tables of the README from the records
+of results/h200/plan.json. They have the times of a frame, of its refit and walk, and the ratios of the other walks to tiled.
+
+--write writes each table between its marks, <!-- answer: NAME --> and <!-- end -->, of the pages; without it the tables are printed. --picture
+draws the first table as a chart instead (python3-matplotlib). Medians have the half width of their 95 % interval. Ratios are medians over
+rounds that were measured side by side. Exits with 2 and one error line for a file that is not of that plan."""
 import argparse
 import itertools
 import re
@@ -37,12 +38,12 @@ def method_of(record):
     if algorithm == "gproximity":
         return "fair"
     if algorithm == "tiled":
-        return "tiled" if "slabs" in record["asked"] else "other"  # slabs=usual was asked for and another value taken
+        return "tiled" if "slabs" in record["asked"] else "other"  # "asked" has slabs if the cell of slabs=usual took another value
     return "sah" if settings["builder"] == "sah" else "paper" if settings["schedule"] == "item" else "chunked"
 
 
 class Cell:
-    """Milliseconds a frame by round: of samples, and device time of refit and walk of replays with a clock around every command."""
+    """Milliseconds per frame by round: of samples, and the device time of refit and walk from replays that time every command."""
 
     def __init__(self, record):
         frames = cell_rows.frames_of(record)
@@ -53,13 +54,13 @@ class Cell:
 
 
 def agrees(record):
-    """Whether the cell has the reference's answer."""
+    """Whether the answer of the cell equals that of the reference."""
     agreement = record["agreement"]
     return record["status"] == "ok" and agreement["missing"] == agreement["extra"] == agreement["contact_frames_wrong"] == 0
 
 
 def read(path):
-    """Cells that are right, by scene, k and method; and of each record whether it has the reference's answer. Raises RecordError."""
+    """Correct cells by scene, k and method, and for each record whether its answer equals that of the reference. Raises RecordError."""
     cells, answers = {}, []
     for location, kind, record in kinds.each(path, warn):
         with kinds.fields_of("cell of the plan", location):
@@ -74,13 +75,13 @@ def text(value):
 
 
 def span(values):
-    """"1.4 to 2.1", of medians of ratios."""
+    """Range of medians of ratios: "1.4 to 2.1"."""
     low, high = text(min(values)), text(max(values))
     return low if low == high else f"{low} to {high}"
 
 
 def with_width(values):
-    """"0.348 ± 0.002", as many digits as the width has."""
+    """The median with half the width of its interval: "0.348 ± 0.002"."""
     from .resampling import median_interval
     values = list(values)
     low, high = median_interval(values)
@@ -90,7 +91,7 @@ def with_width(values):
 
 
 def paired(cell, base, part="total"):
-    """resampling.Ratio of a cell's times over those of another one, of the rounds that both have."""
+    """resampling.Ratio of the times of a cell to those of `base`, over their common rounds."""
     from .resampling import paired_ratio
     above, below = getattr(cell, part), getattr(base, part)
     common = [n for n in above if n in below]
@@ -98,14 +99,14 @@ def paired(cell, base, part="total"):
 
 
 def ratio_text(cell, base, part):
-    """The ratio with its interval; ≈ where 1 lies in it."""
+    """The ratio with its interval, marked with ≈ if the interval contains 1."""
     found = paired(cell, base, part)
     about = "≈ " if found.low <= 1 <= found.high else ""
     return f"{about}{text(found.value)} [{text(found.low)}, {text(found.high)}]"
 
 
 def table(cells, methods, cell_text):
-    """A row a scene and k, a column a method."""
+    """A table with one row per scene and k, and one column per method."""
     rows = []
     for scene, name in SCENES.items():
         for k in ("8", "18"):
@@ -116,7 +117,7 @@ def table(cells, methods, cell_text):
 
 
 def tables(cells, answers):
-    """Texts by the names of their marks."""
+    """Texts of the tables by the names of their marks."""
     plain = lambda part: lambda own, m: with_width(getattr(own[m], part).values()) if own[m] else ""
     against = lambda part: lambda own, m: ratio_text(own[m], own["tiled"], part) if own[m] and own["tiled"] else ""
     of_paper = {key[:2] for key in cells if "published" in key[2] or key[2] == "paper"}
@@ -127,7 +128,7 @@ def tables(cells, answers):
 
 
 def first_lines(cells, answers):
-    """The answer in three lines: k = 18 and whole frames, unless they say something else."""
+    """The answer as a list, for whole frames and, unless stated otherwise, k = 18."""
     at = lambda scene, method, k="18": cells.get((scene, k, method))
     scenes = [scene for scene in SCENES if all(at(scene, method) for method in ("tiled", "chunked", "fair"))]
     next_best = [min(paired(at(s, other), at(s, "tiled")).value for other in ("chunked", "fair")) for s in scenes]
@@ -143,7 +144,7 @@ def first_lines(cells, answers):
 
 
 def against_gproximity(ratios, noun, each):
-    """Two sentences of gProximity's time over the walk's: where the walk wins, and where it loses."""
+    """One or two sentences on the ratio of gProximity's time to that of the walk: where the walk is faster, and where it is slower."""
     wins, loses = [v for v in ratios if v >= 1], [1 / v for v in ratios if v < 1]
     if not loses:
         return f"is {span(wins)} times as fast as gProximity in {len(wins)} of {len(ratios)} {noun}."
@@ -154,7 +155,7 @@ def against_gproximity(ratios, noun, each):
 
 
 def paper_schedule(cells):
-    """What the paper's own schedule does where the plan has it, at any k."""
+    """The list item on the paper's own schedule, over all cells of the plan that have it; empty if there are none."""
     ratios = {key[:2]: paired(cells[(*key[:2], "fair")], cell).value for key, cell in cells.items()
               if key[2] == "paper" and (*key[:2], "fair") in cells}
     scenes = [scene for scene in SCENES if any(key[0] == scene for key in ratios)]
@@ -166,7 +167,7 @@ def paper_schedule(cells):
 
 
 def title_of(cells, names):
-    """Which of the methods has the lowest median, and in how many scenes; names of devices as the records have them."""
+    """The title of the chart: the methods with the lowest median, the number of scenes, and the names of the devices."""
     fastest = [min(names, key=lambda method: statistics.median(cells[(scene, "18", method)].total.values())) for scene in SCENES]
     counts = sorted(((fastest.count(method), name) for method, name in names.items() if method in fastest), reverse=True)
     devices = sorted({name for (_, k, method), cell in cells.items() if k == "18" and method in names for name in cell.devices})
@@ -175,7 +176,7 @@ def title_of(cells, names):
 
 
 def _draw_scene(ax, row, cells, shown):
-    """Medians with intervals of the walks in one scene; the first row names them all, the rest the fastest."""
+    """Draws medians with intervals of the walks in one scene. The first row has the names of all walks."""
     from .resampling import median_interval
     for method, (colour, marker, name) in shown.items():
         values = list(cells[method].total.values())
@@ -190,15 +191,15 @@ def _draw_scene(ax, row, cells, shown):
 
 
 def picture(cells, path):
-    """Milliseconds a frame of the three walks with intervals, a row a scene; the fastest is named. Raises BadUse where the plan's cells of
-    k = 18 are not all there, and OutputError."""
+    """Draws milliseconds per frame of the three walks with intervals, one row per scene. Raises BadUse if a cell with k = 18 is missing, and
+    OutputError."""
     import matplotlib
     matplotlib.use("svg")
     import matplotlib.pyplot as plt
     shown = {"tiled": ("#0b5394", "o", "tiled"), "chunked": ("#6b7885", "s", "chunked, grouped"), "fair": ("#96753a", "D", "gProximity")}
     for scene, method in itertools.product(SCENES, shown):
         if (scene, "18", method) not in cells:
-            raise BadUse(f"--picture needs all scenes of the plan, and there is no cell of {METHODS[method]}, k = 18, {SCENES[scene]}")
+            raise BadUse(f"--picture needs all scenes of the plan, but the file has no cell of {METHODS[method]}, k = 18, {SCENES[scene]}")
     with matplotlib.rc_context({"svg.hashsalt": "tandem", "font.size": 9, "axes.spines.top": False, "axes.spines.right": False}):
         figure, ax = plt.subplots(figsize=(7, 2.9), layout="constrained")
         for row, scene in enumerate(SCENES):
@@ -233,10 +234,10 @@ def _make(arguments):
     if options.picture:
         picture(cells, options.picture)
         return "", 0
-    made = tables(cells, answers)
+    texts = tables(cells, answers)
     for page in options.write:
-        markdown.rewrite(page, "answer", made)
-    return "" if options.write else "".join(f"{name}\n\n{one}\n\n" for name, one in made.items()), 0
+        markdown.rewrite(page, "answer", texts)
+    return "" if options.write else "".join(f"{name}\n\n{table_text}\n\n" for name, table_text in texts.items()), 0
 
 
 def main(arguments, program=""):

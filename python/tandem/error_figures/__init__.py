@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""python3 -m tandem.error_figures FILE.jsonl[.xz] ... FOLDER: draws what has errors against the truth (tandem accuracy) as three figures, each
-with its data beside it. pareto: time against candidates per meeting pair, and against the 99th percentiles of depth and normal error; cells
-that no other beats in both are named. cliffs: errors against difficulty of hard scenes. bars: missed and false pairs and time by kind
-of scene. Labels have the settings that differ; a panel without data says why. Other records of tandem, and cells that failed
-or are wrong, are left out. Exit 2, and one line that says why, for a file that is no file of records, also an empty one, and
-where nothing can be drawn; 3 when figures cannot be written. Needs python3-matplotlib."""
+"""python3 -m tandem.error_figures FILE.jsonl[.xz] ... FOLDER: draws records with errors against the truth (tandem accuracy) as three figures,
+and writes their data beside them.
+
+pareto: time over candidates per meeting pair, and over the 99th percentiles of depth and normal error, with names of Pareto-optimal cells.
+cliffs: errors over difficulty of hard scenes. bars: missed and false pairs and time by kind of scene. Labels have the settings that differ. A
+panel without data has a text with the reason. Other records of tandem, and cells that failed or are wrong, are left out.
+
+Exits with 2 and one error line for a file without records and if nothing can be drawn, with 3 if figures cannot be written. Needs
+python3-matplotlib."""
 import argparse
 import pathlib
 
@@ -20,14 +23,14 @@ def _parsed(arguments):
 
 
 def draw(files, folder):
-    """Draws the records of these files; returns the line that says what there is. Raises RecordError, BadUse and OutputError."""
+    """Draws the records of these files. Returns the output line. Raises RecordError, BadUse and OutputError."""
     from .drawing import figures
     from .points import read
     points, left_out = read(files, warn)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as problem:
-        raise BadUse(f"cannot make the folder {folder}, the last argument: {problem.strerror}") from None
+        raise BadUse(f"cannot create the folder {folder}, the last argument: {problem.strerror}") from None
     try:
         names, more = figures(points, folder)
     except OSError as problem:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Errors against difficulty, a panel a family of hard scenes."""
+"""Errors over difficulty, one panel per family of hard scenes."""
 import textwrap
 
 import matplotlib.pyplot as plt
@@ -12,16 +12,16 @@ def _rule_of(point):
     return " ".join(point.settings[s] for s in ("contact_rule", "decision", "precision") if s in point.settings)
 
 
-def _worst(places):
-    """The largest value at each place, by place."""
+def _worst(points):
+    """The largest value at each difficulty, of pairs (difficulty, value)."""
     line = {}
-    for place, value in places:
-        line[place] = max(value, line.get(place, value))
+    for difficulty, value in points:
+        line[difficulty] = max(value, line.get(difficulty, value))
     return sorted(line.items())
 
 
 def _lines(own, bounds_of, bounds, rules):
-    """(style, label, points) of each line of a panel."""
+    """The lines of a panel, each as (style, label, points)."""
     made = [(f"C{i % 10}-o", f"missed, {name}", _worst((p.difficulty, p.missed / max(p.meeting, 1)) for p in own if bounds_of(p) == name))
             for i, name in enumerate(bounds)]
     made += [(f"C{5 + i % 5}--", f"depth, {name}", _worst((p.difficulty, p.depth) for p in own if _rule_of(p) == name and p.depth is not None))
@@ -30,7 +30,7 @@ def _lines(own, bounds_of, bounds, rules):
 
 
 def _panel(panel, own, lines):
-    """One family: what its bounds miss and how wrong its depths are, over difficulty."""
+    """Draws one family: missed pairs and errors of depths over difficulty."""
     if not any(p.meeting for p in own):
         note(panel, "nothing to draw: no pairs meet")
         return
@@ -38,8 +38,8 @@ def _panel(panel, own, lines):
         panel.plot(*zip(*line), style, ms=2.5, lw=0.8, label=label)
     # Safe and directed bounds are certified to miss nothing at any difficulty (algorithms/bounds/README.md).
     panel.axhspan(-5e-9, 2e-9, color="0.85", label="certified: safe, directed")
-    places = sorted({p.difficulty for p in own})
-    if places[0] > 0 and places[-1] >= 100 * places[0]:
+    difficulties = sorted({p.difficulty for p in own})
+    if difficulties[0] > 0 and difficulties[-1] >= 100 * difficulties[0]:
         panel.set_xscale("log")
     panel.set_yscale("symlog", linthresh=1e-8)
     panel.set_ylim(-5e-9, 2)
@@ -48,7 +48,7 @@ def _panel(panel, own, lines):
 
 
 def _families(points):
-    """Points by family, of those with several difficulties."""
+    """Points by family, for families with several difficulties."""
     families = {}
     for p in points:
         if p.family and p.difficulty is not None:
@@ -56,31 +56,31 @@ def _families(points):
     return {name: own for name, own in families.items() if len({p.difficulty for p in own}) > 1}
 
 
-def _title(figure, axes, points, of_bounds, columns):
+def _title(figure, axes, points, bounds_settings, columns):
     handles = {label: handle for panel in axes.flat for handle, label in zip(*panel.get_legend_handles_labels())}
     figure.legend(handles.values(), handles.keys(), loc="lower center", ncol=6, fontsize=7, bbox_to_anchor=(0.5, 1.0))
-    rest = sweep_text(swept(points, (*of_bounds, *OF_CONTACTS)))
+    rest = sweep_text(swept(points, (*bounds_settings, *OF_CONTACTS)))
     text = "difficulty; solid: share of meeting pairs missed; dashed: depth error (99th percentile, / L)" + (f"; worst over {rest}" if rest else "")
     figure.supxlabel("\n".join(textwrap.wrap(text, 40 * columns)), fontsize=8)
 
 
 def draw(points):
-    """The figure and its points; None where there is no family for it."""
+    """Draws the figure. Returns it with its points, or None if there is no family for it."""
     families = _families(points)
     if not families:
         return None
     points = [p for own in families.values() for p in own]
-    of_bounds = ["rounding", *(name for name in ("axes", "placement") if name in swept(points))]
-    bounds_of = lambda p: " ".join(p.settings[name] for name in of_bounds if name in p.settings)
+    bounds_settings = ["rounding", *(name for name in ("axes", "placement") if name in swept(points))]
+    bounds_of = lambda p: " ".join(p.settings[name] for name in bounds_settings if name in p.settings)
     columns = min(4, len(families))
     rows = -(-len(families) // columns)
     figure, axes = plt.subplots(rows, columns, figsize=(3 * columns, 1.9 * rows), squeeze=False, layout="constrained")
     for panel in axes.flat[len(families):]:
         panel.axis("off")
-    # All families have the same colours.
+    # Equal bounds and rules have equal colours in all families.
     bounds, rules = sorted({bounds_of(p) for p in points}), sorted({_rule_of(p) for p in points})
     for panel, (family, own) in zip(axes.flat, families.items()):
         _panel(panel, own, _lines(own, bounds_of, bounds, rules))
         panel.set_title(family, fontsize=8)
-    _title(figure, axes, points, of_bounds, columns)
+    _title(figure, axes, points, bounds_settings, columns)
     return figure, points

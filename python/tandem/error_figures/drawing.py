@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""All figures, with their data beside them."""
+"""Draws all figures and writes their data beside them."""
 import csv
 
 import matplotlib
@@ -23,7 +23,7 @@ def _write_data(path, points):
 
 
 def _save(folder, name, drawn):
-    """Writes a figure and its data; its file's name, as the only item of a list, which is empty where nothing is drawn."""
+    """Writes a figure and its data. Returns a list with the name of its file, empty if there is no figure."""
     if drawn is None:
         return []
     figure, points = drawn
@@ -34,7 +34,7 @@ def _save(folder, name, drawn):
 
 
 def figures(points, folder):
-    """Draws all; returns which, and which scenes are not drawn, in words. Raises OSError."""
+    """Draws all figures. Returns a text with their names, and one about scenes that are not drawn. Raises OSError."""
     matplotlib.use("svg")
     with matplotlib.rc_context(STYLE):
         figures_by_name = {"bars": bars, "cliffs": cliffs, "pareto": pareto}

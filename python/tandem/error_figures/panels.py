@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""What panels of several figures share."""
+"""Functions for panels of several figures."""
 import matplotlib.ticker
 
 
 def note(panel, text):
-    """A text in place of a drawing."""
+    """Writes a text into an empty panel."""
     panel.text(0.5, 0.5, text, transform=panel.transAxes, ha="center", va="center", fontsize=7, color="0.4", wrap=True)
     panel.set(xticks=[], yticks=[])
 
 
 def few_ticks(axes):
-    """Plain numbers where there are too few powers of ten."""
+    """Sets ticks with plain numbers on axes that span too few powers of ten."""
     for axis in (axes.xaxis, axes.yaxis):
         low, high = axis.get_view_interval()
         if low > 0 and high < 50 * low:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Time against errors, a column a scene: cells that no other beats in both are joined and named."""
+"""Time over errors, one column per scene. Pareto-optimal cells are joined by a line and have names."""
 import math
 import textwrap
 
@@ -9,12 +9,12 @@ from .panels import few_ticks, note
 from .points import OF_CONTACTS, short_words, sweep_text, swept
 
 MAX_SCENES = 4
-MAX_NAMES = 5  # of a panel
+MAX_NAMES = 5  # per panel
 PALE, FRONT = "0.7", "#0b5394"
 
 
 def frontier(points, value, step):
-    """The points that no other beats in both time and value, by time; each has a value `step` times less than the one before."""
+    """The Pareto-optimal points in time and value, by time. Each value is smaller than the one before by a factor of at least `step`."""
     best, line = float("inf"), []
     for p in sorted(points, key=lambda p: (p.ms, value(p))):
         if value(p) * step <= best:
@@ -23,8 +23,8 @@ def frontier(points, value, step):
     return line
 
 
-def _some_of(line, value):
-    """The ends of a long frontier, and the points after its largest steps."""
+def _most_distinct(line, value):
+    """At most MAX_NAMES points of a frontier: its ends and the points after its largest steps."""
     if len(line) <= MAX_NAMES:
         return line
     steps = sorted(range(1, len(line) - 1), key=lambda i: math.log(value(line[i - 1]) / value(line[i])), reverse=True)
@@ -32,7 +32,7 @@ def _some_of(line, value):
 
 
 def _alike(point, points, value):
-    """How many more points are not told apart from it: intervals that overlap, and its value to a thousandth."""
+    """Number of other points with overlapping intervals of time and a value that differs by less than a thousandth."""
     return sum(q is not point and q.low <= point.high and q.high >= point.low and abs(value(q) / value(point) - 1) < 1e-3 for q in points)
 
 
@@ -46,7 +46,7 @@ def _message(line, names, value, gain):
 
 
 def _draw_all(axes, points, value):
-    """Every point, pale; hollow where it misses pairs."""
+    """Draws all points in a pale colour, hollow ones for cells that miss pairs."""
     for group, hollow in (([p for p in points if p.missed == 0], False), ([p for p in points if p.missed > 0], True)):
         axes.hlines([value(p) for p in group], [p.low for p in group], [p.high for p in group], color=PALE, lw=0.8)
         axes.plot([p.ms for p in group], [value(p) for p in group], "o", ms=3.5, mec=PALE, mfc="none" if hollow else PALE, ls="")
@@ -54,7 +54,7 @@ def _draw_all(axes, points, value):
 
 
 def _draw_front(axes, points, value, line, names):
-    """The frontier, joined and named."""
+    """Draws the frontier with its line and names."""
     middle = math.sqrt(min(q.ms for q in points) * max(q.ms for q in points))
     axes.plot([p.ms for p in line], [value(p) for p in line], color=FRONT, lw=0.7, drawstyle="steps-post", zorder=0)
     for p in line:
@@ -67,7 +67,7 @@ def _draw_front(axes, points, value, line, names):
 
 
 def _scatter(axes, points, value, without, title, gain, step):
-    """A panel. A point of the frontier is named where it gains `step` times, by what tells it apart."""
+    """Draws a panel. Names those points of the frontier that gain a factor of `step`, by the settings in which they differ."""
     axes.set(xlabel="ms a frame", ylabel=title)
     known = [p for p in points if value(p) is not None]
     points = [p for p in known if value(p) > 0 and p.ms > 0]
@@ -75,16 +75,16 @@ def _scatter(axes, points, value, without, title, gain, step):
         note(axes, "nothing to draw: all are 0" if known else "nothing to draw: no cell was asked for this (--truth contacts)")
         return
     _draw_all(axes, points, value)
-    line = _some_of(frontier([p for p in points if p.missed == 0], value, step), value)
+    line = _most_distinct(frontier([p for p in points if p.missed == 0], value, step), value)
     if line:
-        telling = swept(line, without) or swept(points, without)
-        names = {p: short_words(p, telling) or p.label for p in line}
+        distinguishing = swept(line, without) or swept(points, without)
+        names = {p: short_words(p, distinguishing) or p.label for p in line}
         _draw_front(axes, points, value, line, names)
         axes.set_title("\n".join(textwrap.wrap(_message(line, names, value, gain), 80)), fontsize=8, loc="left")
     axes.margins(x=0.1, y=0.15)
     few_ticks(axes)
     values = [value(p) for p in points]
-    if max(values) < 2 * min(values):  # no ticks that differ in the sixth digit
+    if max(values) < 2 * min(values):  # avoids ticks that differ in the sixth digit
         axes.set_ylim(min(values) / 2, max(values) * 2)
 
 
@@ -97,12 +97,12 @@ def _column(panels, scene, own):
 
 
 def scenes_of(points):
-    """Those that are not made to be hard."""
+    """Names of the scenes, without hard ones."""
     return [s for s in dict.fromkeys(p.scene for p in points) if not s.startswith("hard")]
 
 
 def draw(points):
-    """The figure of the first scenes and its points; None where there is no scene for it."""
+    """Draws the figure of the first MAX_SCENES scenes. Returns it with its points, or None if there is no scene for it."""
     shown = scenes_of(points)[:MAX_SCENES]
     if not shown:
         return None

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""python3 -m tandem.model [FILE.jsonl[.xz] ...] [--write README.md]: what a frame costs a device, fitted to records of one device, of several and
-of ranks; and what the partitioner and the ghost lists take of many ranks in one process, by the microbenchmarks.
+"""python3 -m tandem.model [FILE.jsonl[.xz] ...] [--write README.md]: fits a model of the time of a frame on a device to records of one device,
+of several devices and of ranks. It also makes tables of the microbenchmarks of the partitioner and the ghost lists.
 
-Without files it takes those of a checkout: results/h100x2/*.jsonl*, results/h200/plan.jsonl and results/scaling/ranks.jsonl, and the
-microbenchmarks of results/cpu/bench.json. Coefficients are the non-negative ones with the least squares of relative errors, a stage at a time, of
-all records of one device, algorithm, k and slabs. --write puts each table between its marks, <!-- model: NAME --> and <!-- end -->; without it
-they are printed. --fit prints the coefficients of all groups, and no more. Exit 2, and one line that says why, for files that are no records, or
-too few to tell the terms apart."""
+Without files it reads those of a checkout: results/h100x2/*.jsonl*, results/h200/plan.jsonl, results/scaling/ranks.jsonl, and the
+microbenchmarks of results/cpu/bench.json. The fit is one of non-negative least squares of relative errors, stage by stage, over all records of
+one device, algorithm, k and slabs. --write writes each table between its marks, <!-- model: NAME --> and <!-- end -->; without it the tables
+are printed. --fit prints only the coefficients of all groups. Exits with 2 and one error line for files without records, or with too few for
+a fit."""
 import argparse
 import pathlib
 
@@ -22,14 +22,14 @@ def _parsed(arguments):
     parser.add_argument("--partitions", type=pathlib.Path, default=RESULTS / "cpu/bench.json", metavar="FILE.json")
     parser.add_argument("--write", action="append", default=[], metavar="README.md")
     parser.add_argument("--group", default="tiled resident, k = 18, slabs=three", help="text in the names of groups (default: %(default)s)")
-    parser.add_argument("--fit", action="store_true", help="coefficients of all groups, and no more")
+    parser.add_argument("--fit", action="store_true", help="print only the coefficients of all groups")
     options = parser.parse_args(arguments)
     options.files = options.files or [*sorted((RESULTS / "h100x2").glob("*.jsonl*")), RESULTS / "h200/plan.jsonl", RESULTS / "scaling/ranks.jsonl"]
     return options
 
 
 def tables(options):
-    """Texts by the names of their marks. Raises RecordError and BadUse."""
+    """Texts of the tables by the names of their marks. Raises RecordError and BadUse."""
     from . import fitting, loads, pages
     groups = loads.read(options.files, warn)
     if options.fit:
@@ -42,10 +42,10 @@ def tables(options):
 def _make(arguments):
     options = _parsed(arguments)
     check_packages("tandem.model", ("numpy",))
-    made = tables(options)
+    texts = tables(options)
     for page in options.write:
-        markdown.rewrite(page, "model", made)
-    return "" if options.write else "\n\n".join(f"{name}\n\n{text}" for name, text in made.items()) + "\n", 0
+        markdown.rewrite(page, "model", texts)
+    return "" if options.write else "\n\n".join(f"{name}\n\n{text}" for name, text in texts.items()) + "\n", 0
 
 
 def main(arguments, program=""):

@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""What each device did in a mean frame of a record: counts, and microseconds by part."""
+"""Work and time of each device in a mean frame of a record: counts, and microseconds by part."""
 import dataclasses
 import math
 
 from .. import cell_rows, kinds
 
 STAGES = {"refit": ("refit",), "broad": ("broad",), "walk": ("seed", "traverse", "balance"), "contact": ("contact",)}
-GROUPING = ("slabs", "builder", "schedule", "descent", "contact_rule")  # settings that coefficients differ by
-TILE = 32  # bodies of a tile of the broad stage
+GROUPING = ("slabs", "builder", "schedule", "descent", "contact_rule")  # settings that change coefficients
+TILE = 32  # bodies per tile of the broad stage
 
 
 @dataclasses.dataclass
 class Load:
-    """What one device did in a mean frame: counts, and microseconds by part and in all; `exchange` (messages, bytes, microseconds) of ranks."""
+    """Work and time of one device in a mean frame: counts, microseconds by part, and total. `exchange`: (messages, bytes, microseconds) of a
+    rank."""
     counts: dict
     us: dict
     total: float
@@ -21,7 +22,7 @@ class Load:
 
 @dataclasses.dataclass
 class Record:
-    """The loads of a cell that ran whole, and what a frame of it took."""
+    """The loads of a completed cell, and the time of its frames."""
     loads: list
     frame_us: float
     scene: dict
@@ -35,7 +36,7 @@ def _mean(values):
 
 
 def _part_times(stages, frames):
-    """Microseconds of each part by the device's clock, or by the host's where the device has none (host, PoCL's kind)."""
+    """Microseconds of each part by the clock of the device, or by that of the host for devices without one (host, PoCL)."""
     return {part: sum(stages[s] for s in names if s in stages) / frames / 1e3 for part, names in STAGES.items()}
 
 
@@ -47,8 +48,8 @@ def _load(counts, times, total, frames, exchange=None):
 
 
 def counts_of(scene, bodies, own, body_pairs, pairs, is_sorted, known=None):
-    """Counts of a device that has so many bodies, `own` of them for itself. `known`: bodies of which the host has poses for the device;
-    all of the scene when left out."""
+    """Counts of a device with `bodies` bodies, of which it owns `own`. `known`: number of bodies whose poses the host has for the device;
+    default: all of the scene."""
     tiles = lambda n: math.ceil(n / TILE)
     return {"bodies": bodies, "own": own, "tetrahedra": scene["tetrahedra"] * bodies / scene["bodies"], "tile_pairs": tiles(own) * tiles(bodies),
             "body_pairs": body_pairs, "pairs": pairs,
@@ -64,7 +65,7 @@ def _load_alone(record, frames):
 
 
 def _load_of_part(record, one, frames):
-    """One device's, of several."""
+    """The load of one of several devices."""
     stages, scene = {name: stage["device_ns"] for name, stage in one["stages"].items()}, record["scene"]
     counts = counts_of(scene, _mean(one["bodies"]), scene["bodies"] / len(record["partition"]["devices"]), _mean(one["body_pairs"]),
                        _mean(one["candidate_pairs"]), False, _mean(one["bodies"]) if record.get("ranks") else None)
@@ -72,7 +73,7 @@ def _load_of_part(record, one, frames):
 
 
 def loads_of(record):
-    """A Record of the record of a cell. Raises one of lines.FIELD_ERRORS."""
+    """The Record of a cell's JSON record. Raises one of lines.FIELD_ERRORS."""
     frames, parts = cell_rows.frames_of(record), record.get("partition")
     loads = [_load_alone(record, frames)] if parts is None else [_load_of_part(record, one, frames) for one in parts["devices"]]
     return Record(loads, record["total_ns"]["median"] / frames / 1e3, record["scene"], (record.get("preparation") or {}).get("device_bytes"),
@@ -80,14 +81,14 @@ def loads_of(record):
 
 
 def group_of(record):
-    """What has coefficients of its own: devices, algorithm, preset and the settings that matter."""
+    """Name of the group with which a record shares coefficients: devices, algorithm, preset and the settings of GROUPING."""
     settings, names = record["settings"], sorted({d["name"] for d in record["devices"]})
     more = "".join(f", {name}={settings[name]}" for name in GROUPING if name in settings)
     return f"{' and '.join(names)}, {record['algorithm']} {record['preset']}, k = {settings['k']}{more}"
 
 
 def read(paths, torn):
-    """Records by group, of cells that ran whole, with times of devices, in our own form. Raises RecordError."""
+    """Records by group. Takes completed cells with times of devices, without those of preset published. Raises RecordError."""
     groups = {}
     for path in paths:
         for location, kind, record in kinds.each(path, torn):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Tables of coefficients, of ranks and of the microbenchmarks of partitions, as Markdown without a last end of line."""
+"""Markdown tables of coefficients, of ranks and of the microbenchmarks of partitions, without a final end of line."""
 import json
 import re
 import statistics
@@ -16,16 +16,15 @@ def _table(heads, rows):
     return markdown.table(heads, rows, numeric=True).rstrip("\n")
 
 
-def _three(value):
-    """Three digits."""
+def _three_digits(value):
     return "0" if value == 0 else f"{value:,.0f}" if value >= 100 else f"{value:.3g}"
 
 
 def _in_unit(us):
-    """Microseconds in the unit that needs no more than three digits."""
+    """Microseconds as text, in the unit that gives a value of at least 1."""
     for unit, scale in (("ms", 1e-3), ("us", 1.0), ("ns", 1e3), ("ps", 1e6)):
         if us * scale >= 1 or unit == "ps":
-            return f"{_three(us * scale)} {unit}"
+            return f"{_three_digits(us * scale)} {unit}"
 
 
 def _percent(value):
@@ -35,7 +34,7 @@ def _percent(value):
 
 
 def _errors(errors):
-    """How many there are, their median and the worst."""
+    """Texts of their number, their median and their maximum."""
     return [str(len(errors)), _percent(statistics.median(errors)), _percent(max(errors))]
 
 
@@ -47,25 +46,25 @@ def _rows(model):
     yield ["**whole frames**", "the slowest device", *_errors([abs(e) for e in model.errors])]
     if model.memory:
         own = model.memory
-        values = [f"{_three(value)} bytes {WHAT[name]}" for name, value in own.per.items()]
+        values = [f"{_three_digits(value)} bytes {WHAT[name]}" for name, value in own.per.items()]
         yield ["memory", ", ".join([*([f"{own.fixed / 1e6:,.0f} MB"] if own.fixed else []), *values]), *_errors(own.errors)]
 
 
 def coefficients(models):
-    """A table a group."""
+    """One table per group."""
     texts = [f"{name}: {len(model.records)} records.\n\n" + _table(["part", "takes", "measured", "median error", "worst"], list(_rows(model)))
              for name, model in models.items()]
     return "\n\n".join(texts)
 
 
 def every_rank(every):
-    rows = [["looking whether an own body is still near, waits included", every.own],
-            ["a frame beside its slowest rank, a body of the scene", every.beside]]
+    rows = [["checking whether an own body is still near, waits included", every.own],
+            ["a frame beyond the time of its slowest rank, per body of the scene", every.beyond]]
     return f"{every.ranks} ranks, {every.bodies:,} bodies:\n\n" + _table(["what", "ns a body"], [[what, f"{value:.3g}"] for what, value in rows])
 
 
 def _iterations(found, name):
-    """(numbers in its name, benchmark) of each run of that name, by its numbers."""
+    """Pairs (numbers in the name, benchmark) of all runs of that name, sorted by the numbers."""
     own = [([int(number) for number in re.findall(r"/(\d+)", one["name"])], one) for one in found
            if one["run_type"] == "iteration" and one["name"].startswith(f"{name},")]
     return sorted(own, key=lambda pair: pair[0])
@@ -85,17 +84,17 @@ def _ghost_row(numbers, one):
 
 
 def partitions(path):
-    """Tables of the microbenchmarks of many ranks in one process (tests/bench/partition.cpp), of a file of Google Benchmark's. Raises
+    """Tables of the microbenchmarks of many ranks in one process (tests/bench/partition.cpp), from a file of Google Benchmark. Raises
     BadUse."""
     try:
         found = json.loads(path.read_text())["benchmarks"]
-        cut = [_partition_row(*own) for own in _iterations(found, "partition")]
-        met = [_ghost_row(*own) for own in _iterations(found, "ghosts")]
+        partition_rows = [_partition_row(*own) for own in _iterations(found, "partition")]
+        ghost_rows = [_ghost_row(*own) for own in _iterations(found, "ghosts")]
     except OSError as problem:
         raise BadUse(f"{path}: {problem.strerror}; scripts/bench makes it") from None
     except (ValueError, KeyError, TypeError):
-        raise BadUse(f"{path} is no result of scripts/bench with the benchmarks of partitions") from None
+        raise BadUse(f"{path}: is not a result of scripts/bench with the benchmarks of partitions") from None
     return {"partition": _table(["parts", "bodies a part", "seconds", "us a body", "most bodies over mean", "ghost bodies, mean", "most",
-                                 "mean, of own^(2/3)"], cut),
+                                 "mean, of own^(2/3)"], partition_rows),
             "ghosts": _table(["ranks", "bodies a rank", "ghost bodies, mean", "most", "mean, of own^(2/3)", "ranks that own them",
-                              "KB sent at the set-up, most", "KB a frame, most"], met)}
+                              "KB sent at the set-up, most", "KB a frame, most"], ghost_rows)}

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""python3 -m tandem.tables FILE.jsonl[.xz] ...: records of any kind as Markdown. Cells: a table a scene, its frames and kind of bounds, in
-milliseconds a frame by stage as in the paper's Table 5, then how many times chunked is faster as in its Table 4; profiles: a
-table each; simulations: shares as in its Table 3; ceilings.
+"""python3 -m tandem.tables FILE.jsonl[.xz] ...: prints records of any kind as Markdown. Cells have one table per scene, frame range and kind of
+bounds: milliseconds per frame by stage, as in the paper's Table 5, then ratios of gProximity to chunked, as in its Table 4. Profiles have one
+table each. Simulations have fractions of time, as in its Table 3. Ceilings of devices have one table.
 
-Columns of stages are device times of replays with timestamps (host times for preprocess, postprocess, and broad where the host
-finds body pairs); total is the median of the replays that time whole frames, +- half its 95 % interval ("?": one round), bold
-where no comparable cell is faster. "as theirs" are launches counted as those of the paper's Table 5 are, where a record says how often
-each kernel was launched: a refit, a balance and the contacts of a batch are one each. A label has what tells cells of one algorithm and
-preset apart. Failed and wrong cells are shown as such and compared with none. Exit 2, and one line that says why, for a file that is no file
-of records, also an empty one; 3 when standard output cannot be written."""
+Columns of stages are device times of replays with timestamps. Stages preprocess and postprocess, and broad if the host finds body pairs, have
+host times. Column total is the median of the replays that time whole frames, +- half its 95 % interval ("?": only one round); it is bold if no
+comparable cell is faster. Column "as theirs" has launches counted as in the paper's Table 5, for records with launches of each kernel: a
+refit, a balance and the contacts of a batch count as one each. A label has the settings in which cells of one algorithm and preset differ.
+Failed and wrong cells are shown as such and not compared. Exits with 2 and one error line for a file without records, with 3 if standard
+output cannot be written."""
 import argparse
 
 from .. import kinds
@@ -20,15 +20,15 @@ from .naming import Devices
 def as_markdown(files):
     """Tables of all records of these files. Raises RecordError."""
     devices, runs = Devices(), simulations.Simulations()
-    made = {"cell": cells.Cell, "profile": profiles.Profile, "ceilings": ceilings.Ceilings}
-    rows = {kind: [] for kind in made}
+    row_types = {"cell": cells.Cell, "profile": profiles.Profile, "ceilings": ceilings.Ceilings}
+    rows = {kind: [] for kind in row_types}
     for file in files:
         for location, kind, record in kinds.each(file, warn):
             with kinds.fields_of(kind, location):
                 if kind == "simulation":
                     runs.add(record, file, devices)
                 else:
-                    rows[kind].append(made[kind](record, devices))
+                    rows[kind].append(row_types[kind](record, devices))
     return "".join([cells.text(rows["cell"], devices), profiles.text(rows["profile"], devices), runs.text(devices),
                     ceilings.text(rows["ceilings"], devices)])
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Ceilings of devices: a row each."""
+"""Ceilings of devices, one row per device."""
 from .wording import number, table
 
 

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Names of cells and devices in tables: what tells them apart, and nothing else."""
+"""Names of cells and devices in tables, made only of what differs among them."""
 from ..varying import varying
 
 
 class Devices:
-    """Names of devices. An id that was several models or cards, in different files, has what tells them apart."""
+    """Names of devices. If an id stands for several models or cards in different files, the name has the model, or part of the address."""
 
     def __init__(self):
         self.cards = {}
 
     def add(self, devices):
-        """What text() takes, of the devices of a record."""
+        """Adds the devices of a record. Returns the argument of text() for them."""
         own = tuple((d["id"], d["name"] + (" (PoCL)" if "PoCL" in d["driver"] else ""), d["hardware"] or "") for d in devices)
         for identity, *card in own:
             self.cards.setdefault(identity, {})[tuple(card)] = None
@@ -28,28 +28,28 @@ class Devices:
 
 
 class Named:
-    """What any record of an algorithm is called by. Equal values are kept once: in long files they take most of the memory."""
-    _seen = {}
+    """The values that name a record of an algorithm. Equal values are stored once, because they need most of the memory for long files."""
+    _unique = {}
 
     @classmethod
     def once(cls, value):
-        return cls._seen.setdefault(value, value)
+        return cls._unique.setdefault(value, value)
 
     def __init__(self, record, devices, more=None):
-        # Devices that take a setting otherwise than asked, such as groups of one work-item, make no other cell of it.
+        # Settings as they were asked for: a device that changes one, such as to groups of one work-item, does not make another cell.
         settings = sorted({**record["settings"], **record.get("asked", {}), **(more or {})}.items())
         self.settings = self.once(tuple(map(self.once, settings)))
         self.family = self.once((record["algorithm"], record["preset"]))
         self.devices = self.once(devices.add(record["devices"]))
         self.commit = self.once(record["environment"]["commit"] or "")
-        self.place = record["scene"]["key"]
+        self.heading = record["scene"]["key"]
         if "frames" in record:
-            self.place += f", frames {record['frames']['first']}:{record['frames']['last']}"
+            self.heading += f", frames {record['frames']['first']}:{record['frames']['last']}"
 
 
 def labels(rows, devices, known=()):
-    """(text, devices) of each Named: algorithm, preset, settings that differ among those of both but for the `known`, and commits where
-    nothing else differs."""
+    """(text, devices) of each Named. The text has algorithm, preset, and the settings in which cells of both differ, without those in
+    `known`. Commits are added if nothing else differs."""
     differ = varying({(row.family, row.settings) for row in rows})
     texts = [" ".join([*row.family, *(f"{name}={value}" for name, value in row.settings if name not in known and (row.family, name) in differ)])
              for row in rows]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Profiles: a table of kernels for each."""
+"""Tables of profiles: kernels, one table per profile."""
 from .. import cell_rows
 from .naming import Named, labels
 from .wording import notes, number, table, with_interval
@@ -24,14 +24,14 @@ class Profile(Named):
 
     @staticmethod
     def _bound(kernel):
-        """By Nsight Compute's counters where there are some, or else by the floor."""
+        """The limit of a kernel by the counters of Nsight Compute, or by the floor if there are none."""
         return (kernel["counters"] or {}).get("bound") or kernel["bound"] or ""
 
 
 def text(rows, devices):
-    made = []
+    parts = []
     for row, (name, device) in zip(rows, labels(rows, devices)):
-        made += [f"\n### Kernels of {name} on {device}: {row.place}\n\n", f"A frame takes {row.total_text or '?'} ms. {row.notes}".rstrip(), "\n\n"]
+        parts += [f"\n### Kernels of {name} on {device}: {row.heading}\n\n", f"A frame takes {row.total_text or '?'} ms. {row.notes}".rstrip(), "\n\n"]
         if row.kernels:
-            made.append(table(Profile.HEADS, row.kernels))
-    return "".join(made)
+            parts.append(table(Profile.HEADS, row.kernels))
+    return "".join(parts)

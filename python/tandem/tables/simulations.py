@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Simulations: shares of stages of each run, and what has not ended."""
+"""Tables of simulations: fractions of time by stage of each run, and runs that have not ended."""
 import statistics
 
 from .naming import Named, labels
@@ -7,7 +7,7 @@ from .wording import number, table, verdict
 
 
 class Run(Named):
-    """A run of a simulation, of the steps that its process recorded."""
+    """A run of a simulation: the steps that one process recorded."""
     HEADS = ["scene", "method", "device", "steps", "ms a step", "total s", "warm-up s", "initialization", "broad", "narrow", "contact reduction",
              "solver and its rows", "motion", "contacts found / kept", "notes"]
 
@@ -24,7 +24,7 @@ class Run(Named):
 
 
 class Simulations:
-    """Runs; and lines of steps, by file and session, until the line of their run comes."""
+    """Runs, and by file and session the steps of runs whose own line has not been read yet."""
 
     def __init__(self):
         self.runs, self.steps = [], {}
@@ -37,11 +37,11 @@ class Simulations:
             self.runs.append(Run(record, devices, self.steps.pop(session, [])))
 
     def text(self, devices):
-        made = ""
+        texts = ""
         if self.runs:
-            rows = [[run.place, *name, *run.texts] for run, name in zip(self.runs, labels(self.runs, devices))]
-            made = "\n### Simulations\n\n" + table(Run.HEADS, rows)
+            rows = [[run.heading, *name, *run.texts] for run, name in zip(self.runs, labels(self.runs, devices))]
+            texts = "\n### Simulations\n\n" + table(Run.HEADS, rows)
         unfinished = {file: own for (file, _), own in self.steps.items()}
         for file, steps in unfinished.items():
-            made += f"\n{file}: {len(steps)} steps of a simulation that has not ended, {number(statistics.median(steps) / 1e6)} ms a step, median.\n"
-        return made
+            texts += f"\n{file}: {len(steps)} steps of a simulation that has not ended, {number(statistics.median(steps) / 1e6)} ms a step, median.\n"
+        return texts

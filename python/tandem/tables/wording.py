@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Numbers and notes as tables have them."""
+"""Texts of numbers and notes in tables."""
 from .. import markdown
 
 
 def table(heads, rows):
-    """A table in Markdown without the columns that are empty everywhere."""
-    kept = [i for i in range(len(heads)) if any(row[i] for row in rows)]
-    return markdown.table([heads[i] for i in kept], [[row[i] for i in kept] for row in rows])
+    """A Markdown table without columns that are empty in all rows."""
+    filled = [i for i in range(len(heads)) if any(row[i] for row in rows)]
+    return markdown.table([heads[i] for i in filled], [[row[i] for i in filled] for row in rows])
 
 
 def number(value):
@@ -14,7 +14,7 @@ def number(value):
 
 
 def with_interval(summary, scale, rounds):
-    """The median and half its interval; nothing of a cell without samples."""
+    """The median and half the width of its interval; an empty text for a cell without samples."""
     if not summary or "median" not in summary:
         return ""
     half = f"{(summary['high'] - summary['low']) / 2 * scale:.2g}" if rounds > 1 else "?"
@@ -22,7 +22,7 @@ def with_interval(summary, scale, rounds):
 
 
 def verdict(record):
-    """Why a record is failed or wrong; nothing of one that is ok."""
+    """Why a record is failed or wrong; an empty text if it is ok."""
     if record["status"] == "failed":
         return f"failed: {record['failure']}"
     if record["status"] == "ok":
@@ -34,12 +34,12 @@ def verdict(record):
 
 
 def notes(record):
-    """What a reader has to know of a cell's numbers, as one text."""
+    """Notes on the numbers of a cell, as one text."""
     sampling, conditions, chosen = record["sampling"], record["conditions"] or {}, record.get("chosen")
     found = [verdict(record),
              "not compared" if record["agreement"] is None and record["status"] == "ok" else "",
              "interrupted" if sampling["interrupted"] else "",
-             "interval stayed wide" if sampling["converged"] is False else "",
+             "wide interval" if sampling["converged"] is False else "",
              f"{len(conditions['disturbed'])} rounds disturbed" if conditions.get("disturbed") else "",
              f"chosen by {chosen['by']} of {chosen['of']}" if chosen else ""]
     return "; ".join(filter(None, found))
