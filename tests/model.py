@@ -147,7 +147,7 @@ class Fit(ModelCase):
         self.assertEqual(made["partition"].splitlines()[2:], ["| 4 | 125 | 2.00 | 4000.0 | 0.88 | 50 | 90 | 2.0 |"])
         self.assertEqual(made["ghosts"].splitlines()[2:], ["| 8 | 27 | 4 | 4 | 0.4 | 4.0 | 5 | 2.5 |"])
         good = self.file("good.jsonl", records())
-        for text, expected in (("", "is not a result of scripts/bench"), ('{"benchmarks": [{"run_type": "iteration", "name": "ghosts, ranks/1/1"}]}', "no result of")):
+        for text, expected in (("", "is not a result of scripts/bench"), ('{"benchmarks": [{"run_type": "iteration", "name": "ghosts, ranks/1/1"}]}', "is not a result of")):
             self.refused(expected, "--group", "made", "--partitions", self.file("bad.json", [text]), good)
         self.refused("scripts/bench makes it", "--group", "made", "--partitions", self.work / "none.json", good)
         page = self.file("page.md", ["<!-- model: nothing -->\n<!-- end -->\n"])
