@@ -8,8 +8,6 @@ namespace tandem {
 
 namespace {
 
-constexpr const char* default_device = "opencl:0";
-
 std::vector<std::string> devices_of(const Product& product) {
     if (product.request.devices.empty()) return {default_device};
     return product.request.devices;

@@ -9,6 +9,9 @@
 
 namespace tandem {
 
+/// The device of a command that names none.
+inline constexpr const char* default_device = "opencl:0";
+
 /// The devices of one cell, which split its work: one, or several named D+E.
 using DeviceGroup = std::vector<Device*>;
 

@@ -63,7 +63,7 @@ void prefer_certain_contacts(Request& request, std::span<const DeviceGroup> devi
 Request contacts_request(const SimulateOptions& options) {
     auto request = options.request;
     if (request.algorithms.empty()) request.algorithms = {std::string(algorithms().front()->name())};
-    if (request.devices.empty()) request.devices = {"opencl:0"};
+    if (request.devices.empty()) request.devices = {default_device};
     return request;
 }
 

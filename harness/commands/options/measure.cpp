@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // run, check and accuracy: cells of a scene, measured and compared.
+#include "harness/plans/device_groups.h"
 #include "harness/commands/options/actions.h"
 #include "harness/commands/options/contradictions.h"
 #include "harness/commands/options/sets.h"
@@ -52,7 +53,9 @@ void add_cell_options(CLI::App& app, RunOptions& options, std::vector<std::strin
         ->delimiter(',');
     app.add_option(
            "--device", options.request.devices,
-           "D,E or all, D+E for one cell on both (see 'tandem devices'; default: opencl:0, for check all)")
+           fmt::format(
+               "D,E or all, D+E for one cell on both (see 'tandem devices'; default: {}, for check all)",
+               default_device))
         ->delimiter(',');
     app.add_option("--frames", options.frames, "FIRST:LAST, both inclusive, or one number (default: all)");
     app.add_option("--threads", options.threads,

@@ -37,9 +37,10 @@ int run_paper(const CLI::App& app, const std::string& device) {
 } // namespace
 
 Action add_paper(CLI::App& app) {
-    auto device = std::make_shared<std::string>("opencl:0");
+    auto device = std::make_shared<std::string>(default_device);
     add_external_option(app, "-o,--output", "the folder for tables, figures, records and index.html");
-    app.add_option("--device", *device, "the device to measure on (default: opencl:0)");
+    app.add_option("--device", *device,
+                   fmt::format("the device to measure on (default: {})", default_device));
     add_external_option(app, "--size",
                         "scenes: small, for a processor (15 minutes on two cores), or full, those of the "
                         "paper, for a GPU (default: small)")

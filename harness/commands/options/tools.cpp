@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // simulate and export, and the listings of devices, scenes and algorithms.
 #include "algorithms/parameters/table.h"
+#include "harness/plans/device_groups.h"
 #include "harness/commands/options/actions.h"
 #include "harness/commands/options/sets.h"
 #include "harness/commands/commands.h"
@@ -43,7 +44,8 @@ Action add_simulate(CLI::App& app) {
                    "the algorithm that finds contacts (default: chunked)");
     app.add_option("--preset", options.request.presets,
                    "a preset of the algorithm (see 'tandem algorithms'; default: its first)");
-    app.add_option("--device", options.request.devices, "the device that finds contacts (default: opencl:0)");
+    app.add_option("--device", options.request.devices,
+                   fmt::format("the device that finds contacts (default: {})", default_device));
     app.add_option("--set", given->sets,
                    "NAME=VALUE: a setting of the algorithm (default: contact_rule=sat, decision=recheck)")
         ->expected(1)

@@ -164,7 +164,7 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
 
 int accuracy_command(const AccuracyOptions& options) {
     auto request = options.run.request;
-    if (request.devices.empty()) request.devices.emplace_back("opencl:0");
+    if (request.devices.empty()) request.devices.emplace_back(default_device);
     if (request.algorithms.empty()) request.algorithms.emplace_back(algorithms().front()->name());
     const auto backends = open_backends(request.devices, options.run.require);
     check_required(backends, options.run.require);
