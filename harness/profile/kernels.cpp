@@ -107,7 +107,7 @@ std::vector<KernelProfile> profile_kernels(const Measurement& m, const FrameFact
         kernels.push_back(profile_of(entry, m, facts, cost == costs.end() ? nullptr : &*cost, limits));
         sum += kernels.back().ns.median;
     }
-    for (auto& kernel : kernels) kernel.share = sum > 0 ? kernel.ns.median / sum : 0;
+    for (auto& kernel : kernels) kernel.time_fraction = sum > 0 ? kernel.ns.median / sum : 0;
     std::ranges::stable_sort(kernels, std::ranges::greater{}, [](const auto& k) { return k.ns.median; });
     return kernels;
 }

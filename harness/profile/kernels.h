@@ -30,7 +30,7 @@ struct KernelProfile {
     Summary ns;          ///< device time over the instrumented replays of all rounds
     KernelSample sample; ///< sum over the frames of the last replay
     double launches = 0;
-    double share = 0;                        ///< fraction of the device time of all kernels
+    double time_fraction = 0;                ///< fraction of the device time of all kernels
     std::optional<double> bytes, operations; ///< declared costs (algorithms/cost.h)
     std::string_view how;                    ///< how the declared costs are counted; empty: none declared
     Floor floor;

@@ -34,7 +34,7 @@ Json kernel_json(const KernelProfile& kernel) {
               {"q3", kernel.ns.q3},
               {"low", kernel.ns.low},
               {"high", kernel.ns.high}}},
-            {"share", kernel.share},
+            {"share", kernel.time_fraction},
             {"launches", kernel.launches},
             {"groups", kernel.sample.groups},
             {"group_size", kernel.sample.group_size},

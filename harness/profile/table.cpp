@@ -11,7 +11,7 @@ namespace tandem::profile {
 
 namespace {
 
-constexpr double least_share = 0.01; ///< least fraction of the device time for a separate row
+constexpr double least_fraction = 0.01; ///< least fraction of the device time for a separate row
 constexpr const char* unknown = "-";
 
 using Text = std::function<std::string(const KernelProfile&)>;
@@ -74,7 +74,7 @@ std::string half_width(const KernelProfile& kernel) {
 std::vector<std::pair<const char*, Text>> columns_of() {
     return {{"us/frame", [](const auto& k) { return digits(k.ns.median * 1e-3); }},
             {"95 %", half_width},
-            {"share", [](const auto& k) { return fmt::format("{:.1f} %", k.share * 100); }},
+            {"share", [](const auto& k) { return fmt::format("{:.1f} %", k.time_fraction * 100); }},
             {"launches", [](const auto& k) { return digits(k.launches); }},
             {"floor us", floor_us},
             {"x floor", scaled(&KernelProfile::over_floor, 1)},
@@ -100,7 +100,7 @@ KernelProfile sum_of(std::span<const KernelProfile> kernels) {
         sum.ns.median += kernel.ns.median;
         sum.ns.low += kernel.ns.low;
         sum.ns.high += kernel.ns.high;
-        sum.share += kernel.share;
+        sum.time_fraction += kernel.time_fraction;
         sum.launches += kernel.launches;
     }
     return sum;
@@ -131,7 +131,7 @@ std::string profile_legend() {
 std::string profile_table(const Profile& profile, bool all) {
     auto rows = profile.kernels;
     const auto small =
-        std::ranges::find_if(rows, [&](const auto& k) { return !all && k.share < least_share; });
+        std::ranges::find_if(rows, [&](const auto& k) { return !all && k.time_fraction < least_fraction; });
     const std::vector<KernelProfile> rest(small, rows.end());
     rows.erase(small, rows.end());
     const auto count = rows.size();

@@ -80,7 +80,7 @@ TEST(ProfileKernels, AreOfAFrame) {
     EXPECT_EQ(kernels[0].ns.low, 1000);
     EXPECT_EQ(kernels[0].ns.high, 3000);
     EXPECT_EQ(kernels[0].launches, 1);
-    EXPECT_EQ(kernels[0].share, 0.5);
+    EXPECT_EQ(kernels[0].time_fraction, 0.5);
     EXPECT_FALSE(kernels[0].bytes);
     EXPECT_TRUE(kernels[0].how.empty());
 }
