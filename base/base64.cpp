@@ -21,7 +21,7 @@ constexpr auto digits = [] {
 
 } // namespace
 
-/// Blocks that are padded and then go on are one text: VTK encodes a header and its data one after the other.
+/// Accepts padding between groups: VTK encodes a header and its data as separate base64 texts.
 std::optional<std::string> decode_base64(std::string_view text, std::size_t limit) {
     std::string bytes;
     bytes.reserve(limit);

@@ -7,11 +7,11 @@
 
 namespace tandem::read {
 
-/// Decodes until `limit` bytes are there, the text ends, or a '<' follows. Padding may stand between
-/// groups: VTK encodes headers on their own. Empty when the text is not base64.
+/// Decodes until `limit` bytes are decoded, the text ends, or a '<' follows. Padding may stand between
+/// groups, because VTK encodes headers separately. Returns no value when the text is not base64.
 std::optional<std::string> decode_base64(std::string_view text, std::size_t limit);
 
-/// The base64 text of `bytes`, padded, without line ends.
+/// The base64 text of `bytes`, padded, without line breaks.
 std::string encode_base64(std::string_view bytes);
 
 } // namespace tandem::read

@@ -7,16 +7,16 @@
 
 namespace tandem {
 
-/// 64-bit digest of a sequence of values: FNV-1a (Fowler, Noll and Vo) over 64-bit words, with a final mix of
-/// each word, so that high bits count too. Not cryptographic.
+/// 64-bit digest of a sequence of values: FNV-1a (Fowler, Noll and Vo) over 64-bit words. A final mix of each
+/// word makes high bits count too. Not cryptographic.
 class Digester {
 public:
     void add(std::uint64_t word) {
         state_ = (state_ ^ word) * 0x100000001b3u;
         state_ ^= state_ >> 32;
     }
-    void add(double number) { add(std::bit_cast<std::uint64_t>(number + 0.0)); } // -0 is 0
-    /// With its length, so that two texts in a row differ from one.
+    void add(double number) { add(std::bit_cast<std::uint64_t>(number + 0.0)); } // turns -0 into 0
+    /// Adds the length too, so that two texts in a row differ from one.
     void add(std::string_view text) {
         add(std::uint64_t{text.size()});
         for (const char c : text) add(std::uint64_t{static_cast<unsigned char>(c)});

@@ -5,8 +5,8 @@
 
 namespace tandem {
 
-/// Makes the name of a file last that was made or renamed: a synced file has its name for certain only when
-/// the folder is synced as well. Folders that cannot be synced, or not by this user, are left. Throws
+/// Makes the name of a created or renamed file durable: syncing the file does not guarantee its name until
+/// the folder is synced as well. Skips folders that cannot be synced or that this user cannot open. Throws
 /// OutputError when the disk fails.
 void sync_folder_of(const std::string& path);
 

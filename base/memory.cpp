@@ -15,16 +15,16 @@ namespace {
 
 constexpr auto unlimited = ~std::uint64_t{0};
 
-/// The number that follows `name` in a file of names and numbers; `unknown` when there is none.
-std::uint64_t number_in(const char* path, std::string_view name, std::uint64_t unknown) {
+/// The number after `name` in a file of names and numbers; `fallback` when `name` is missing.
+std::uint64_t number_in(const char* path, std::string_view name, std::uint64_t fallback) {
     std::ifstream file(path);
     std::string word;
     for (std::uint64_t value = 0; file >> word;)
         if (word == name && file >> value) return value;
-    return unknown;
+    return fallback;
 }
 
-/// What ulimit -v leaves; unlimited where there is none.
+/// The address space that ulimit -v leaves; `unlimited` without such a limit.
 std::uint64_t free_address_space() {
     rlimit limit{};
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return unlimited;
@@ -32,13 +32,14 @@ std::uint64_t free_address_space() {
     return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
 }
 
-/// Of version 2, as it shows in a container. What it keeps of files can be dropped.
+/// Memory left in the control group (version 2, at the paths of a container). Inactive file cache counts as
+/// free, because the kernel can drop it.
 std::uint64_t free_control_group() {
-    std::ifstream most_file("/sys/fs/cgroup/memory.max"), used_file("/sys/fs/cgroup/memory.current");
-    std::uint64_t most = 0, used = 0;
-    if (!(most_file >> most) || !(used_file >> used)) return unlimited;
+    std::ifstream limit_file("/sys/fs/cgroup/memory.max"), used_file("/sys/fs/cgroup/memory.current");
+    std::uint64_t limit = 0, used = 0;
+    if (!(limit_file >> limit) || !(used_file >> used)) return unlimited;
     used -= std::min(used, number_in("/sys/fs/cgroup/memory.stat", "inactive_file", 0));
-    return most > used ? most - used : 0;
+    return limit > used ? limit - used : 0;
 }
 
 } // namespace
@@ -49,7 +50,7 @@ std::uint64_t free_memory() {
 }
 
 void refuse_beyond_memory(std::string_view what, double bytes) {
-    if (bytes < 1e8) return; // most scenes: nothing is looked up for them
+    if (bytes < 1e8) return; // most scenes are smaller and need no look-up
     const auto free = static_cast<double>(free_memory());
     if (bytes <= free) return;
     throw InputError(

@@ -6,12 +6,12 @@
 
 namespace tandem {
 
-/// Bytes that this process can still get: the least of what Linux calls available, the rest of its control
-/// group, and the rest of its address space (ulimit -v).
+/// Bytes that this process can still allocate: the minimum of Linux's available memory, the rest of its
+/// control group, and the rest of its address space (ulimit -v).
 std::uint64_t free_memory();
 
-/// Throws InputError, before anything is made, where `what` ("3 bodies of mesh jack") takes at least so many
-/// bytes and fewer are free.
+/// Throws InputError when `what` ("3 bodies of mesh jack") needs at least `bytes` bytes and fewer are free.
+/// Call it before any allocation.
 void refuse_beyond_memory(std::string_view what, double bytes);
 
 } // namespace tandem

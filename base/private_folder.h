@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Folders for what is run or believed when it is read again: nobody but this user may write to them.
+// Folders for data that tandem executes or trusts when it reads it again: only this user may write to them.
 #pragma once
 
 #include <filesystem>
@@ -7,10 +7,10 @@
 
 namespace tandem {
 
-/// Makes a folder, with rights of this user alone, unless it is there.
+/// Creates a folder that only this user can access, unless it exists.
 std::error_code make_own(const std::filesystem::path& folder);
 
-/// Why others may have written to a folder that is there, and what to do; empty where they cannot have.
+/// Why other users may have written to an existing folder, and what to do; empty when they cannot have.
 std::string why_not_own(const std::filesystem::path& folder);
 
 } // namespace tandem

@@ -42,8 +42,7 @@ Eigen::Quaterniond Random::rotation() {
 }
 
 SineCosine sine_cosine(double angle) {
-    // pi/2 as a 33-bit head, whose products with small integers are exact, and the rest (Cody and Waite
-    // 1980).
+    // pi/2 as a 33-bit head, whose products with small integers are exact, and a tail (Cody and Waite 1980).
     constexpr double head = 0x1.921fb544p0;
     constexpr double tail = 0x1.0b4611a626331p-34;
     const double quarters = std::floor(angle / (head + tail) + 0.5);

@@ -25,8 +25,8 @@ private:
     std::uint64_t state_;
 };
 
-/// Sine and cosine from IEEE operations only, so that poses have the same bits everywhere: reduction by pi/2
-/// in two parts, Taylor polynomials. Absolute error below 2e-16 for |angle| <= 1e6.
+/// Sine and cosine from IEEE operations only, so that poses have the same bits everywhere. Reduction by pi/2
+/// in two parts, then Taylor polynomials. Absolute error below 2e-16 for |angle| <= 1e6.
 struct SineCosine {
     double sine, cosine;
 };

@@ -17,23 +17,23 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// What is wrong before all of it is in memory; thrown through the parser.
+/// An error found before the whole file is parsed; thrown through the parser.
 struct Refusal {
     std::string what;
 };
 
-/// Names of the objects that are open, so that none is there twice.
+/// Parser callback that refuses repeated names in one object and deep nesting.
 class Names {
 public:
     bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
         const auto at = static_cast<std::size_t>(depth);
-        if (at > most_json_depth)
-            throw Refusal{fmt::format("is nested deeper than {} levels; make it flatter", most_json_depth)};
+        if (at > max_json_depth)
+            throw Refusal{fmt::format("is nested deeper than {} levels; reduce the nesting", max_json_depth)};
         if (event == Json::parse_event_t::object_start) {
             open_.resize(std::max(open_.size(), at + 1));
             open_[at].clear();
         }
-        // A name is within the object that begins a level above.
+        // A name belongs to the object that begins one level above.
         if (event == Json::parse_event_t::key && !open_.at(at - 1).insert(parsed.get<std::string>()).second)
             throw Refusal{fmt::format("has the name {} twice in one object; leave one out",
                                       parsed.dump(-1, ' ', true, Json::error_handler_t::replace))};
@@ -41,7 +41,7 @@ public:
     }
 
 private:
-    std::vector<std::set<std::string>> open_; ///< by depth
+    std::vector<std::set<std::string>> open_; ///< names of each open object, by depth
 };
 
 std::string text_of(const std::string& path, std::string_view what) {
@@ -52,9 +52,9 @@ std::string text_of(const std::string& path, std::string_view what) {
     std::vector<char> part(std::size_t{1} << 16);
     while (file.read(part.data(), static_cast<std::streamsize>(part.size())) || file.gcount() > 0) {
         text.append(part.data(), static_cast<std::size_t>(file.gcount()));
-        if (text.size() > most_json_bytes)
+        if (text.size() > max_json_bytes)
             throw InputError(fmt::format("{}: is longer than the {} MiB that a {} may have", path,
-                                         most_json_bytes >> 20, what));
+                                         max_json_bytes >> 20, what));
     }
     return text;
 }

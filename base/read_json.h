@@ -8,13 +8,13 @@
 
 namespace tandem {
 
-/// What is read of a file that a user wrote: no longer, and no object or array within so many others.
-constexpr std::size_t most_json_bytes = std::size_t{64} << 20;
-constexpr std::size_t most_json_depth = 64;
+/// Limits for files that users write: size, and levels of nested objects and arrays.
+constexpr std::size_t max_json_bytes = std::size_t{64} << 20;
+constexpr std::size_t max_json_depth = 64;
 
-/// The JSON of a file, which is a `what` ("scene description"). Throws InputError: one line that names the
-/// file, and where in it; also for a name that an object has twice, which readers of JSON take differently
-/// (RFC 8259, section 4), a number that no double holds, and what is longer or deeper than the above.
+/// Reads the JSON of a file; `what` is its kind ("scene description"). Throws InputError: one line with the
+/// file and the position. Errors include a repeated name in an object, which readers treat differently (RFC
+/// 8259, section 4), a number beyond double, and a file beyond the limits.
 nlohmann::json read_json(const std::string& path, std::string_view what);
 
 } // namespace tandem

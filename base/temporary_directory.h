@@ -5,10 +5,10 @@
 
 namespace tandem {
 
-/// A folder of this process alone among the temporary files, which goes again with all that is in it.
+/// A private folder among the temporary files; the destructor removes it with its contents.
 class TemporaryDirectory {
 public:
-    /// Throws InputError where none can be made.
+    /// Throws InputError when it cannot create the folder.
     TemporaryDirectory();
     ~TemporaryDirectory();
     TemporaryDirectory(const TemporaryDirectory&) = delete;

@@ -94,7 +94,7 @@ class Choosing(Case):
 
     def test_choices_of_others_are_not_believed(self):
         self.work.joinpath(self.kept.name).chmod(0o777)
-        self.bad(f"TANDEM_KERNEL_CACHE: others can write to {self.kept.name}", "run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "auto",
+        self.bad(f"TANDEM_KERNEL_CACHE: other users can write to {self.kept.name}", "run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "auto",
                  environment=self.environment)
         home = self.work / "home"
         (home / ".cache/tandem").mkdir(parents=True)

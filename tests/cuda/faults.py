@@ -160,7 +160,7 @@ class Faults(unittest.TestCase):
             self.assertEqual(cache.stat().st_mode & 0o777, 0o700)
             for mode in (0o720, 0o702, 0o1777):
                 cache.chmod(mode)
-                self.assertIn(f"TANDEM_KERNEL_CACHE: others can write to {cache}; 'chmod go-w' it", reason(TANDEM_KERNEL_CACHE=cache))
+                self.assertIn(f"TANDEM_KERNEL_CACHE: other users can write to {cache}; run 'chmod go-w' on it", reason(TANDEM_KERNEL_CACHE=cache))
             cache.chmod(0o755)
             self.assertEqual(tandem(*RUN, "--device", "cuda:0", TANDEM_KERNEL_CACHE=cache)[0], 1)
 
