@@ -19,7 +19,8 @@ std::optional<ContactTruth> contact_truth(const TetraCorners& a, const TetraCorn
     result.depth = nearest_root(exact->depth_squared);
     result.depth_squared = nearest(exact->depth_squared);
     for (const auto& normal : exact->normals) {
-        // Each component is the root of one rational, rounded once: no quotient of rounded numbers.
+        // Each component is the square root of one rational, rounded once, and no quotient of rounded
+        // numbers.
         const mpz_class square = dot(normal, normal);
         auto& unit = result.normals.emplace_back();
         for (unsigned axis = 0; axis < 3; ++axis) {

@@ -14,7 +14,7 @@ namespace {
 
 using namespace oracle;
 
-/// By comparisons alone, which round nothing.
+/// Uses comparisons only, which do not round.
 bool boxes_apart(const TetraCorners& a, const TetraCorners& b) {
     for (unsigned axis = 0; axis < 3; ++axis) {
         const auto low = [axis](const TetraCorners& c) {
@@ -28,9 +28,9 @@ bool boxes_apart(const TetraCorners& a, const TetraCorners& b) {
     return false;
 }
 
-/// By the facets that the filter left; nothing when a tetrahedron has no volume.
+/// Decides by the facets that the filter left open. No value when a tetrahedron has no volume.
 template<class Number>
-std::optional<Relation> by_facets(const Lattice<Number>& lattice, const Filtered& filtered) {
+std::optional<Relation> decide_by_facets(const Lattice<Number>& lattice, const Filtered& filtered) {
     if (!filtered.volume[0] && orientation(lattice.a) == 0) return std::nullopt;
     if (!filtered.volume[1] && orientation(lattice.b) == 0) return std::nullopt;
     auto relation = Relation::overlapping;
@@ -42,23 +42,24 @@ std::optional<Relation> by_facets(const Lattice<Number>& lattice, const Filtered
     return relation;
 }
 
-/// A flat tetrahedron has no facets to go by; being without interior it touches whatever it meets.
-Decision by_program(const TetraCorners& a, const TetraCorners& b) {
+/// For tetrahedra without volume, which have no facets. Without an interior they can touch but not overlap.
+Decision decide_by_program(const TetraCorners& a, const TetraCorners& b) {
     const auto lattice = big_lattice(a, b);
     return {hulls_meet(lattice.a, lattice.b) ? Relation::touching : Relation::disjoint, Tier::program};
 }
 
-/// What the filter could not decide.
-Decision by_integers(const TetraCorners& a, const TetraCorners& b, const Filtered& filtered, Tier first) {
+/// Decides pairs that the filter left undecided.
+Decision decide_by_integers(const TetraCorners& a, const TetraCorners& b, const Filtered& filtered,
+                            Tier first) {
     std::optional<Relation> found;
     auto tier = Tier::integers;
     if (const auto lattice = first <= tier ? small_lattice(a, b) : std::nullopt) {
-        found = by_facets(*lattice, filtered);
+        found = decide_by_facets(*lattice, filtered);
     } else {
         tier = Tier::big_integers;
-        found = by_facets(big_lattice(a, b), filtered);
+        found = decide_by_facets(big_lattice(a, b), filtered);
     }
-    return found ? Decision{*found, tier} : by_program(a, b);
+    return found ? Decision{*found, tier} : decide_by_program(a, b);
 }
 
 } // namespace
@@ -77,7 +78,7 @@ Decision decide(const TetraCorners& a, const TetraCorners& b, Tier first) {
     if (filtered.disjoint) return {Relation::disjoint, Tier::filter};
     if (filtered.unsure == 0 && filtered.volume[0] && filtered.volume[1])
         return {Relation::overlapping, Tier::filter};
-    return by_integers(a, b, filtered, first);
+    return decide_by_integers(a, b, filtered, first);
 }
 
 void DecisionCounts::add(Decision decision) {

@@ -15,9 +15,10 @@ mpq_class squared(const Facet<mpz_class>& facet) {
     return result;
 }
 
-/// The depth is the distance of the origin from the nearest facet of the difference A - B, in units of the
-/// lattice squared until the end. Facets that tie within the slack give one normal each.
-void push_apart(const Lattice<mpz_class>& lattice, double slack, ExactContact& result) {
+/// Sets the depth and its normals. The depth is the distance of the origin from the nearest facet of the
+/// difference A - B. It is a square in lattice units until the last line. Each facet within the slack gives
+/// one normal.
+void set_separation(const Lattice<mpz_class>& lattice, double slack, ExactContact& result) {
     std::vector<std::pair<mpq_class, Vector<mpz_class>>> facets;
     for_each_facet(lattice.a, lattice.b, all_facets, [&](Facet<mpz_class> facet) {
         auto depth = squared(facet);
@@ -25,9 +26,9 @@ void push_apart(const Lattice<mpz_class>& lattice, double slack, ExactContact& r
         facets.emplace_back(std::move(depth), std::move(facet.normal));
         return true;
     });
-    const mpq_class more = 1 + mpq_class(slack);
+    const mpq_class factor = 1 + mpq_class(slack);
     for (auto& [depth, normal] : facets)
-        if (depth <= more * more * result.depth_squared) result.normals.push_back(std::move(normal));
+        if (depth <= factor * factor * result.depth_squared) result.normals.push_back(std::move(normal));
     result.depth_squared = scaled(result.depth_squared, 2 * lattice.exponent);
 }
 
@@ -40,7 +41,7 @@ std::optional<ExactContact> exact_contact(const TetraCorners& a, const TetraCorn
     const auto lattice = big_lattice(a, b);
     if (orientation(lattice.a) == 0 || orientation(lattice.b) == 0) return std::nullopt;
     if (result.relation == Relation::disjoint) return result;
-    push_apart(lattice, slack, result);
+    set_separation(lattice, slack, result);
     result.vertices = intersection_vertices(lattice.a, lattice.b);
     result.volume = scaled(intersection_volume(lattice.a, lattice.b, result.vertices), 3 * lattice.exponent);
     for (auto& vertex : result.vertices)

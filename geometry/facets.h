@@ -8,10 +8,10 @@
 
 namespace tandem::oracle {
 
-/// Two corners of a tetrahedron and the other two.
+/// An edge of a tetrahedron, and the two other corners.
 struct Edge {
     unsigned from, to;
-    std::array<unsigned, 2> others;
+    std::array<unsigned, 2> opposite;
 };
 constexpr std::array<Edge, 6> edges{
     {{0, 1, {2, 3}}, {0, 2, {1, 3}}, {0, 3, {1, 2}}, {1, 2, {0, 3}}, {1, 3, {0, 2}}, {2, 3, {0, 1}}}};
@@ -19,8 +19,8 @@ constexpr std::array<Edge, 6> edges{
 /// Corners of the face opposite corner i, ascending.
 constexpr std::array<std::array<unsigned, 3>, 4> faces{{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
 
-/// A set of candidate facets: bit i the face i of A, bit 4 + i that of B, bit 8 + 6 i + j the product of edge
-/// i of A and edge j of B.
+/// A set of candidate facets. Bit i is face i of A, bit 4 + i is face i of B, and bit 8 + 6 i + j is the
+/// product of edge i of A and edge j of B.
 using FacetSet = std::uint64_t;
 /// 8 faces and 36 products of edges.
 constexpr FacetSet all_facets = (FacetSet{1} << 44) - 1;
@@ -53,15 +53,15 @@ int sign(const Number& x) {
     return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-/// A facet of the Minkowski difference A - B of two tetrahedra with volume: the closed sets are disjoint when
-/// a facet's gap is positive, touch when the largest is zero, overlap when all are negative.
+/// A facet of the Minkowski difference A - B of two tetrahedra with volume. The closed sets are disjoint when
+/// any gap is positive, touch when the largest gap is zero, and overlap when all gaps are negative.
 template<class Number>
 struct Facet {
     Vector<Number> normal; ///< out of A; not of unit length
     Number gap;            ///< min over B of normal . x - max over A
 };
 
-/// The facet of a face of A, which must have volume.
+/// The facet for a face of A. A must have volume.
 template<class Number>
 Facet<Number> face_facet(const Points<Number>& a, const Points<Number>& b, unsigned face) {
     const auto& p = a[faces[face][0]];
@@ -75,9 +75,10 @@ Facet<Number> face_facet(const Points<Number>& a, const Points<Number>& b, unsig
     return {std::move(normal), std::move(gap)};
 }
 
-/// The facet of an edge of each, if there is one: A - B has a facet there exactly when a direction
-/// perpendicular to both edges has its maximum over A on A's edge only and its minimum over B on B's only.
-/// Where more of A or B is level with the edge the facet is a face's; parallel edges make none.
+/// The facet for an edge of A and an edge of B, if it exists. It exists exactly when a direction
+/// perpendicular to both edges has its maximum over A on A's edge only and its minimum over B on B's edge
+/// only. When more of A or B is level with the edge, the facet belongs to a face. Parallel edges have no
+/// facet.
 template<class Number>
 std::optional<Facet<Number>> edges_facet(const Points<Number>& a, const Points<Number>& b, unsigned edge_a,
                                          unsigned edge_b) {
@@ -86,23 +87,23 @@ std::optional<Facet<Number>> edges_facet(const Points<Number>& a, const Points<N
     const auto& p = a[ea.from];
     const auto& q = b[eb.from];
     auto normal = cross(minus(a[ea.to], p), minus(b[eb.to], q));
-    const int side = sign(dot(normal, minus(a[ea.others[0]], p)));
-    if (side == 0 || sign(dot(normal, minus(a[ea.others[1]], p))) != side) return std::nullopt;
-    for (const auto other : eb.others)
+    const int side = sign(dot(normal, minus(a[ea.opposite[0]], p)));
+    if (side == 0 || sign(dot(normal, minus(a[ea.opposite[1]], p))) != side) return std::nullopt;
+    for (const auto other : eb.opposite)
         if (sign(dot(normal, minus(b[other], q))) != -side) return std::nullopt;
     if (side > 0) normal = minus(Vector<Number>{0, 0, 0}, normal);
     Number gap = dot(normal, minus(q, p));
     return Facet<Number>{std::move(normal), std::move(gap)};
 }
 
-/// The sign of the volume: 0 for corners in a plane.
+/// The sign of the volume; 0 when the corners lie in one plane.
 template<class Number>
 int orientation(const Points<Number>& p) {
     return sign(dot(cross(minus(p[1], p[0]), minus(p[2], p[0])), minus(p[3], p[0])));
 }
 
-/// Calls visit(facet) for each facet of A - B among `set` (and others of no consequence) until it returns
-/// false. Normals point from A to B. Both must have volume.
+/// Calls visit(facet) for each facet of A - B in `set` until it returns false. May also visit facets that do
+/// not affect the result. Normals point from A to B. Both tetrahedra must have volume.
 template<class Number, class Visit>
 void for_each_facet(const Points<Number>& a, const Points<Number>& b, FacetSet set, Visit visit) {
     for (unsigned i = 0; i < 4; ++i)

@@ -16,12 +16,12 @@ using Vector3 = Vector<double>;
 
 double taxicab(const Vector3& p) { return std::fabs(p[0]) + std::fabs(p[1]) + std::fabs(p[2]); }
 
-/// A computed cross product and the sum of its terms' magnitudes over all components.
+/// A computed cross product, with the sum of the magnitudes of its terms over all components.
 struct Normal {
     Vector3 vector;
     double magnitude;
-    double slack;  ///< how far a component of a factor may be off
-    double spread; ///< by how much the magnitude may then be larger
+    double slack;  ///< error bound of a component of a factor
+    double spread; ///< resulting error bound of the magnitude
 
     Normal() = default;
     Normal(const Vector3& p, const Vector3& q, double s)
@@ -32,13 +32,13 @@ struct Normal {
         magnitude = 0;
         for (const double term : terms) magnitude += std::fabs(term);
     }
-    /// Of the error of a product with a difference of components of at most `size`.
+    /// Error bound of the product with a difference whose components are at most `size`.
     double bound(double size) const {
         return relative * magnitude * size + absolute + (magnitude * slack + spread * (size + slack));
     }
 };
 
-/// The sign of x when its error is at most `bound`; 0: unsure.
+/// The sign of x when its error is at most `bound`; 0 when uncertain.
 int certain(double x, double bound) { return (x > bound) - (x < -bound); }
 
 /// Edges and face normals of one tetrahedron.
@@ -57,17 +57,17 @@ struct Outline {
                   Normal(edge[0], edge[2], slack), Normal(edge[0], edge[1], slack)};
         orientation = certain(dot(normal[3].vector, edge[2]), normal[3].bound(size));
     }
-    /// On which side of its face's normal corner i lies.
+    /// The side of corner i relative to the normal of its face.
     int inside(unsigned i) const { return i % 2 == 0 ? -orientation : orientation; }
-    /// ((to - from) x (corner others[i] - from)) has this sign relative to the normal of the face of those
-    /// three.
+    /// The sign of ((to - from) x (corner opposite[i] - from)) relative to the normal of the face of these
+    /// three corners.
     static int parity(unsigned e, unsigned i) {
-        const auto k = edges[e].others[i];
+        const auto k = edges[e].opposite[i];
         return edges[e].from < k && k < edges[e].to ? -1 : 1;
     }
 };
 
-/// Certain signs of every face normal of one times every edge of the other.
+/// Certain signs of the products of each face normal of one and each edge of the other.
 using Signs = std::array<std::array<int, 6>, 4>;
 
 Signs signs(const Outline& a, const Outline& b) {
@@ -79,7 +79,7 @@ Signs signs(const Outline& a, const Outline& b) {
     return result;
 }
 
-/// The unsure faces of A, one bit each; nothing when a face tells the two apart.
+/// The undecided faces of A, one bit each. No value when a face separates the two tetrahedra.
 std::optional<FacetSet> try_faces(const Outline& a, const TetraCorners& corners_a,
                                   const TetraCorners& corners_b, double size) {
     FacetSet unsure = 0;
@@ -99,19 +99,19 @@ std::optional<FacetSet> try_faces(const Outline& a, const TetraCorners& corners_
     return unsure;
 }
 
-/// What is known of the facet of A - B at the product n = ea x eb of an edge of each.
+/// What is certain of the facet of A - B at the product n = ea x eb of an edge of A and an edge of B.
 struct Side {
-    bool possible = true; ///< no two corners are certain to contradict each other
+    bool possible = true; ///< no two corners certainly contradict each other
     bool certain = true;  ///< the facet exists
-    int sign = 0;         ///< of n . x for the rest of A, and against it that of B, if known of any corner
+    int sign = 0;         ///< of n . x for the rest of A and of -n . x for the rest of B; 0: unknown
 };
 
-/// Corner k of A lies at n . (a_k - a_i) = -((ea x (a_k - a_i)) . eb), a face's normal times eb.
+/// Corner k of A has n . (a_k - a_i) = -((ea x (a_k - a_i)) . eb), a face normal times eb.
 Side facet_side(const Signs& on_a, const Signs& on_b, unsigned i, unsigned j) {
     Side result;
     for (unsigned k = 0; k < 2; ++k) {
-        const int sides[2] = {-Outline::parity(i, k) * on_a[edges[i].others[1 - k]][j],
-                              -Outline::parity(j, k) * on_b[edges[j].others[1 - k]][i]};
+        const int sides[2] = {-Outline::parity(i, k) * on_a[edges[i].opposite[1 - k]][j],
+                              -Outline::parity(j, k) * on_b[edges[j].opposite[1 - k]][i]};
         for (const int side : sides) {
             result.certain &= side != 0;
             result.possible &= side * result.sign != -1;
@@ -121,7 +121,7 @@ Side facet_side(const Signs& on_a, const Signs& on_b, unsigned i, unsigned j) {
     return result;
 }
 
-/// The unsure products of edges, bit 6 i + j each; nothing when one tells the two apart.
+/// The undecided products of edges, bit 6 i + j each. No value when one separates the two tetrahedra.
 std::optional<FacetSet> try_products(const Outline& a, const Outline& b, const TetraCorners& corners_a,
                                      const TetraCorners& corners_b, double size, double slack) {
     const auto on_a = signs(a, b);
@@ -140,7 +140,7 @@ std::optional<FacetSet> try_products(const Outline& a, const Outline& b, const T
     return unsure;
 }
 
-/// The largest difference of coordinates along an axis, rounded: no smaller than any rounded difference.
+/// The largest rounded difference of coordinates along an axis. No other rounded difference is larger.
 double extent(const TetraCorners& a, const TetraCorners& b) {
     double size = 0;
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -157,10 +157,10 @@ double extent(const TetraCorners& a, const TetraCorners& b) {
 
 } // namespace
 
-Filtered filter(const TetraCorners& a, const TetraCorners& b, double off) {
+Filtered filter(const TetraCorners& a, const TetraCorners& b, double error) {
     Filtered result;
     const double size = extent(a, b);
-    const double slack = 2 * off * (1 + 0x1p-40);
+    const double slack = 2 * error * (1 + 0x1p-40);
     if (!(size + slack <= largest)) return result;
     const Outline outline_a(a, slack), outline_b(b, slack);
     result.volume[0] = outline_a.orientation != 0;

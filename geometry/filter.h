@@ -6,28 +6,28 @@
 
 namespace tandem::oracle {
 
-/// What double arithmetic could certify.
+/// What double arithmetic can certify about a pair.
 struct Filtered {
-    bool disjoint = false;        ///< certain
-    FacetSet unsure = all_facets; ///< facets not certain to have a negative gap; none: overlapping
-    bool volume[2]{false, false}; ///< certain that the tetrahedron has some
+    bool disjoint = false;        ///< certainly disjoint
+    FacetSet unsure = all_facets; ///< facets whose gap is not certainly negative; none: overlapping
+    bool volume[2]{false, false}; ///< whether each tetrahedron certainly has volume
 };
 
-/// Semi-static filter. Signs are those of 3 x 3 determinants of differences of coordinates, n . d with n a
-/// cross product: 8 roundings at most along any path, so the error is below gamma_8 (Higham 2002, 3.1) times
-/// the sum of the terms' magnitudes, the permanent of Shewchuk's orient3d bound (1997). That
-/// sum is at most |n|_1, taken with magnitudes, times the largest difference; 12 u covers gamma_8 = 8 u and
-/// the roundings of the bound itself, and 2^-700 all underflow as long as differences are below 2^300.
-/// Coordinates must be finite; larger ones are left undecided.
+/// Semi-static filter. It computes signs of 3 x 3 determinants of coordinate differences, n . d with n a
+/// cross product. Any path has at most 8 roundings, so the error is below gamma_8 (Higham 2002, 3.1) times
+/// the sum of the terms' magnitudes. This sum is the permanent of Shewchuk's orient3d bound (1997). It is at
+/// most |n|_1, taken with magnitudes, times the largest difference. The factor 12 u covers gamma_8 = 8 u and
+/// the roundings of the bound itself. The term 2^-700 covers all underflow while differences are below 2^300.
+/// Coordinates must be finite; larger ones stay undecided.
 ///
-/// What is certain is so for all tetrahedra whose coordinates differ from these by at most `off`. Differences
-/// then differ by s = 2 off at most, and a sign by the sum over its six terms p q d of
-/// (|p| + s)(|q| + s)(|d| + s) - |p q d|. With m the sum of |p q| and m' that of (|p| + s)(|q| + s), which is
-/// m + 2 s (|p|_1 + |q|_1) + 6 s^2, this is at most m s + (m' - m)(size + s); every part of it has a factor
-/// s, so that its roundings are covered by an s that is 2^-40 larger.
-Filtered filter(const TetraCorners& a, const TetraCorners& b, double off = 0);
+/// Certain results hold for all tetrahedra whose coordinates differ from these by at most `error`.
+/// Differences then differ by at most s = 2 error. A determinant then differs by at most the sum over its six
+/// terms p q d of (|p| + s)(|q| + s)(|d| + s) - |p q d|. Let m be the sum of |p q|, and m' that of
+/// (|p| + s)(|q| + s), which is m + 2 s (|p|_1 + |q|_1) + 6 s^2. The bound is then m s + (m' - m)(size + s).
+/// Each part has a factor s, so a value of s that is 2^-40 larger covers the roundings.
+Filtered filter(const TetraCorners& a, const TetraCorners& b, double error = 0);
 
-/// The sign of facets.h's orientation where double arithmetic is certain of it; 0: unsure. The same bound.
+/// The sign of orientation() in facets.h when double arithmetic is certain; 0 when uncertain. The same bound.
 int certain_orientation(const TetraCorners& corners);
 
 } // namespace tandem::oracle

@@ -24,11 +24,11 @@ Parts parts(double x) {
     return {mantissa >> zeros, exponent - 53 + zeros};
 }
 
-using Scattered = std::array<std::array<std::array<Parts, 3>, 4>, 2>;
+using AllParts = std::array<std::array<std::array<Parts, 3>, 4>, 2>;
 
-/// The parts of all coordinates and the smallest of their exponents.
-std::pair<Scattered, int> scattered(const TetraCorners& a, const TetraCorners& b) {
-    Scattered result;
+/// The parts of all coordinates, and the smallest exponent.
+std::pair<AllParts, int> all_parts(const TetraCorners& a, const TetraCorners& b) {
+    AllParts result;
     int exponent = std::numeric_limits<int>::max();
     for (unsigned body = 0; body < 2; ++body)
         for (unsigned i = 0; i < 4; ++i)
@@ -59,8 +59,8 @@ mpz_class in_units(const Parts& part, int exponent) {
     return mpz_class(static_cast<long>(part.mantissa)) << static_cast<unsigned>(part.exponent - exponent);
 }
 
-/// Coordinates in these units fit 2^61.
-bool fits(const Scattered& all, int exponent) {
+/// Whether all coordinates in these units fit in 61 bits.
+bool fits(const AllParts& all, int exponent) {
     for (const auto& body : all)
         for (const auto& corner : body)
             for (const auto& part : corner) {
@@ -74,9 +74,9 @@ bool fits(const Scattered& all, int exponent) {
 } // namespace
 
 std::optional<Lattice<Int128>> small_lattice(const TetraCorners& a, const TetraCorners& b) {
-    const auto [all, exponent] = scattered(a, b);
+    const auto [all, exponent] = all_parts(a, b);
     if (!fits(all, exponent)) return std::nullopt;
-    constexpr auto farthest = std::int64_t{1} << 40;
+    constexpr auto max_distance = std::int64_t{1} << 40;
     bool near = true;
     const auto result = lattice<Int128>(
         exponent, [&all = all, exponent = exponent](unsigned body, unsigned i, unsigned axis) {
@@ -85,13 +85,13 @@ std::optional<Lattice<Int128>> small_lattice(const TetraCorners& a, const TetraC
         });
     for (const auto* points : {&result.a, &result.b})
         for (const auto& point : *points)
-            for (const auto x : point) near &= -farthest <= x && x <= farthest;
+            for (const auto x : point) near &= -max_distance <= x && x <= max_distance;
     if (!near) return std::nullopt;
     return result;
 }
 
 Lattice<mpz_class> big_lattice(const TetraCorners& a, const TetraCorners& b) {
-    const auto [all, exponent] = scattered(a, b);
+    const auto [all, exponent] = all_parts(a, b);
     return lattice<mpz_class>(exponent,
                               [&all = all, exponent = exponent](unsigned body, unsigned i, unsigned axis) {
                                   return in_units(all[body][i][axis], exponent);

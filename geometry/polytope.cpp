@@ -9,13 +9,13 @@ namespace tandem::oracle {
 
 namespace {
 
-/// The plane of a face; normal . x <= offset inside.
+/// The plane of a face; interior points have normal . x <= offset.
 struct Plane {
     Vector<mpz_class> normal;
     mpz_class offset;
 };
 
-/// Normals are turned away from the opposite corner, so that the order of corners does not matter.
+/// Normals point away from the opposite corner, so the order of the corners does not matter.
 std::array<Plane, 4> planes(const Points<mpz_class>& corners) {
     std::array<Plane, 4> result;
     for (unsigned i = 0; i < 4; ++i) {
@@ -46,8 +46,8 @@ std::optional<std::pair<mpq_class, mpq_class>> clip(const Vector<mpz_class>& p, 
     return std::pair{low, high};
 }
 
-/// The ends of the part of each edge that lies in the other tetrahedron, given by its planes; an edge that
-/// only touches it gives one point twice.
+/// Adds the ends of the part of each edge that lies in the other tetrahedron, given by its planes. An edge
+/// that only touches it adds one point twice.
 void add_ends(const Points<mpz_class>& corners, const std::array<Plane, 4>& other,
               std::vector<RationalPoint>& vertices) {
     for (const auto& edge : edges) {
@@ -63,10 +63,10 @@ void add_ends(const Points<mpz_class>& corners, const std::array<Plane, 4>& othe
     }
 }
 
-/// Sorts the vertices of a convex polygon in a plane of this normal around its first vertex.
-void go_around(std::vector<RationalPoint>& polygon, const Vector<mpz_class>& normal) {
-    // Projected along an axis that the normal has a part of, the polygon stays convex and does not become a
-    // line.
+/// Sorts the vertices of a convex polygon around its lowest vertex; `normal` belongs to its plane.
+void sort_around(std::vector<RationalPoint>& polygon, const Vector<mpz_class>& normal) {
+    // A projection along an axis with a non-zero component of the normal keeps the polygon convex and
+    // two-dimensional.
     const unsigned drop = normal[0] != 0 ? 0 : normal[1] != 0 ? 1 : 2;
     const unsigned u = (drop + 1) % 3, v = (drop + 2) % 3;
     std::sort(polygon.begin(), polygon.end(),
@@ -105,16 +105,17 @@ std::vector<RationalPoint> intersection_vertices(const Points<mpz_class>& a, con
 mpq_class intersection_volume(const Points<mpz_class>& a, const Points<mpz_class>& b,
                               const std::vector<RationalPoint>& vertices) {
     mpq_class sum = 0;
-    std::vector<std::vector<RationalPoint>> seen; // faces of A and of B in one plane share their polygon
+    std::vector<std::vector<RationalPoint>> counted; // coplanar faces of A and of B have one polygon
     for (const auto& corners : {a, b})
         for (const auto& plane : planes(corners)) {
             const RationalPoint normal{plane.normal[0], plane.normal[1], plane.normal[2]};
             std::vector<RationalPoint> polygon;
             for (const auto& vertex : vertices)
                 if (dot(normal, vertex) == plane.offset) polygon.push_back(vertex);
-            if (polygon.size() < 3 || std::find(seen.begin(), seen.end(), polygon) != seen.end()) continue;
-            seen.push_back(polygon);
-            go_around(polygon, plane.normal);
+            if (polygon.size() < 3 || std::find(counted.begin(), counted.end(), polygon) != counted.end())
+                continue;
+            counted.push_back(polygon);
+            sort_around(polygon, plane.normal);
             sum += pyramid(polygon, vertices.front());
         }
     return sum / 6;

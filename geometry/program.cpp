@@ -14,7 +14,8 @@ struct Tableau {
 
     bool artificial(unsigned row) const { return basis[row] >= weights; }
 
-    /// The sum of the artificial rows' entries: how fast their total falls as that weight grows.
+    /// The sum of the entries of the artificial rows: the rate at which their total falls as this weight
+    /// grows.
     mpq_class gain(unsigned column) const {
         mpq_class sum;
         for (unsigned row = 0; row < rows; ++row)
@@ -22,7 +23,7 @@ struct Tableau {
         return sum;
     }
 
-    /// The row that first reaches zero as that weight grows; the lowest variable on ties.
+    /// The row that first reaches zero as this weight grows; the lowest variable on ties.
     unsigned leaving(unsigned column) const {
         unsigned best = rows;
         mpq_class least;

@@ -14,8 +14,8 @@ constexpr long smallest = -1074; // exponent of the smallest subnormal
 
 long bits(const mpz_class& x) { return static_cast<long>(mpz_sizeinbase(x.get_mpz_t(), 2)); }
 
-/// Rounds once (whole + fraction) 2^exponent, the fraction in (0, 1) if `inexact`, else 0. Whole has more
-/// than `digits` bits if inexact.
+/// Rounds (whole + fraction) 2^exponent once. The fraction is in (0, 1) if `inexact`, else 0. If inexact,
+/// `whole` has more than `digits` bits.
 double rounded(mpz_class whole, bool inexact, long exponent) {
     if (whole == 0) return 0;
     const long last = std::max(exponent + bits(whole) - digits, smallest);
@@ -37,18 +37,19 @@ double rounded(mpz_class whole, bool inexact, long exponent) {
 
 double nearest(const mpq_class& x) {
     const mpz_class magnitude = abs(x.get_num());
-    // So that the quotient has digits + 3 bits at least, and a remainder alone tells what is dropped.
+    // The quotient has at least digits + 3 bits, so rounding needs only whether a remainder exists.
     const long exponent = bits(magnitude) - bits(x.get_den()) - (digits + 3);
-    const mpz_class above =
+    const mpz_class numerator =
         exponent < 0 ? mpz_class(magnitude << static_cast<unsigned long>(-exponent)) : magnitude;
-    const mpz_class below = exponent > 0 ? mpz_class(x.get_den() << static_cast<unsigned long>(exponent))
-                                         : mpz_class(x.get_den());
-    const mpz_class whole = above / below;
-    return sgn(x) * rounded(whole, whole * below != above, exponent);
+    const mpz_class denominator = exponent > 0
+                                      ? mpz_class(x.get_den() << static_cast<unsigned long>(exponent))
+                                      : mpz_class(x.get_den());
+    const mpz_class whole = numerator / denominator;
+    return sgn(x) * rounded(whole, whole * denominator != numerator, exponent);
 }
 
 double nearest_root(const mpq_class& x) {
-    // Twice the digits of the root before the root is taken; an even exponent.
+    // The square needs twice the digits of the root, and an even exponent.
     long exponent = bits(x.get_num()) - bits(x.get_den()) - 2 * (digits + 3);
     exponent -= exponent % 2 != 0;
     const mpq_class square = scaled(x, -exponent);

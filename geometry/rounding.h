@@ -5,7 +5,7 @@
 
 namespace tandem::oracle {
 
-/// The double nearest to x, ties to even; subnormal and infinite results as IEEE 754 has them.
+/// The double nearest to x, ties to even; subnormal and infinite results as in IEEE 754.
 double nearest(const mpq_class& x);
 
 /// The double nearest to the square root of x; x >= 0.

@@ -17,11 +17,11 @@ using namespace oracle;
 
 using IntegerPoint = Vector<mpz_class>;
 
-/// Corners counter-clockwise, seen from outside.
+/// Corners, counter-clockwise when viewed from outside.
 using Triangle = std::array<std::size_t, 3>;
 
-/// Six times the volume of the tetrahedron over a triangle: positive for a point on the inner side.
-mpz_class above(const std::vector<IntegerPoint>& points, const Triangle& t, const IntegerPoint& p) {
+/// Six times the signed volume of the tetrahedron over a triangle; positive for a point on the inner side.
+mpz_class signed_volume(const std::vector<IntegerPoint>& points, const Triangle& t, const IntegerPoint& p) {
     const auto& corner = points[t[0]];
     return -dot(cross(minus(points[t[1]], corner), minus(points[t[2]], corner)), minus(p, corner));
 }
@@ -30,8 +30,7 @@ bool on_a_line(const IntegerPoint& p, const IntegerPoint& q, const IntegerPoint&
     return cross(minus(q, p), minus(r, p)) == IntegerPoint{0, 0, 0};
 }
 
-/// The first points that span a tetrahedron, as the four triangles of its surface; none when all lie in a
-/// plane.
+/// The surface triangles of the first tetrahedron that the points span; empty when all lie in one plane.
 std::vector<Triangle> first_hull(const std::vector<IntegerPoint>& points) {
     Triangle base{};
     std::size_t found = 0;
@@ -40,7 +39,7 @@ std::vector<Triangle> first_hull(const std::vector<IntegerPoint>& points) {
             || (found == 2 && !on_a_line(points[base[0]], points[base[1]], points[i])))
             base[found++] = i;
         else if (found == 3) {
-            const int side = sign(above(points, base, points[i]));
+            const int side = sign(signed_volume(points, base, points[i]));
             if (side == 0) continue;
             if (side < 0) std::swap(base[1], base[2]);
             const auto [a, b, c] = base;
@@ -50,17 +49,17 @@ std::vector<Triangle> first_hull(const std::vector<IntegerPoint>& points) {
     return {};
 }
 
-/// Replaces what point `p` sees of the hull by triangles from the edge of that to it. Triangles in whose
-/// plane it lies stay: seen ones are then those of whole faces, and no new triangle has its corners on a
-/// line.
+/// Replaces the hull triangles that are visible from point `p` by triangles from their border to `p`.
+/// Triangles whose plane contains `p` stay. Thus only whole faces are visible, and no new triangle has its
+/// corners on a line.
 void add_point(std::vector<Triangle>& hull, const std::vector<IntegerPoint>& points, std::size_t p) {
     std::set<std::pair<std::size_t, std::size_t>> edges;
-    const auto seen = [&](const Triangle& t) {
-        if (sign(above(points, t, points[p])) >= 0) return false;
+    const auto visible = [&](const Triangle& t) {
+        if (sign(signed_volume(points, t, points[p])) >= 0) return false;
         for (unsigned i = 0; i < 3; ++i) edges.emplace(t[i], t[(i + 1) % 3]);
         return true;
     };
-    std::erase_if(hull, seen);
+    std::erase_if(hull, visible);
     for (const auto& [from, to] : edges)
         if (!edges.contains({to, from})) hull.push_back({from, to, p});
 }
@@ -79,7 +78,7 @@ double hull_volume(std::span<const std::array<double, 3>> given) {
     if (hull.empty()) return 0;
     for (std::size_t p = 0; p < points.size(); ++p) add_point(hull, points, p);
     mpz_class sum = 0;
-    for (const auto& t : hull) sum += above(points, t, points.front());
+    for (const auto& t : hull) sum += signed_volume(points, t, points.front());
     mpq_class volume(sum, 6);
     volume.canonicalize();
     return nearest(scaled(volume, 3 * exponent));

@@ -7,14 +7,13 @@
 
 namespace tandem {
 
-/// Whether the tetrahedron has a volume, exactly: its corners lie in no common plane. Coordinates must be
-/// finite. A filter of doubles first, integers where it is unsure.
+/// Whether the tetrahedron has volume, exactly: its corners do not lie in one plane. Coordinates must be
+/// finite. A filter in double runs first; integers decide when it is uncertain.
 bool has_volume(const TetraCorners& corners);
 
-/// Volume of the convex hull of finite points, in their units cubed: exact, rounded once; 0 for points in a
-/// common plane and for none. Points are added one after the other to a hull of triangles, those that see a
-/// triangle from outside taking its place; every side is decided in integers, so that points in the plane of
-/// a face do no harm.
+/// Volume of the convex hull of finite points, in their units cubed: exact, rounded once. 0 for no points and
+/// for points in one plane. Points are added one by one to a hull of triangles and replace the triangles that
+/// face them. Integers decide every side, so points in the plane of a face are valid.
 double hull_volume(std::span<const std::array<double, 3>> points);
 
 } // namespace tandem
