@@ -30,24 +30,24 @@ std::string kernel_key(const KernelSource& source, std::string_view entry, const
     return key;
 }
 
-/// A vendor's code for it is one for many mistakes and names no kernel.
+/// Checked before the launch: a vendor's error code covers many mistakes and names no kernel.
 void check_group_size(const DeviceInfo& device, const KernelFacts& kernel, std::uint32_t group_size) {
-    const auto most =
+    const auto limit =
         kernel.max_group_size >= 0 ? kernel.max_group_size : std::int64_t{device.max_group_size};
-    if (group_size > 0 && group_size <= most) return;
+    if (group_size > 0 && group_size <= limit) return;
     throw DeviceError(
-        fmt::format("{} ({}): kernel '{}' cannot run in groups of {} work-items; {} is the most", device.id,
-                    device.name, kernel.entry, group_size, most));
+        fmt::format("{} ({}): kernel '{}' cannot run in groups of {} work-items; the maximum is {}",
+                    device.id, device.name, kernel.entry, group_size, limit));
 }
 
 [[noreturn]] void refuse_without_stage(const DeviceInfo& device, Command command, std::string_view label) {
     constexpr std::string_view names[] = {"launch", "upload", "download", "clear"};
-    throw std::logic_error(fmt::format("{} ({}): {} of '{}' outside any StageScope; say which stage it is",
+    throw std::logic_error(fmt::format("{} ({}): {} of '{}' outside any StageScope; create one for its stage",
                                        device.id, device.name, names[static_cast<std::size_t>(command)],
                                        label));
 }
 
-/// Keeps the device's count of live bytes right, and its guards, whoever drops the last handle.
+/// Updates the device's count of allocated bytes, and its guards, when the last handle is dropped.
 std::shared_ptr<Buffer::Impl> counted(std::shared_ptr<Buffer::Impl> impl,
                                       const std::shared_ptr<std::size_t>& count,
                                       const std::shared_ptr<BufferGuards>& guards) {
@@ -99,24 +99,24 @@ void Device::submit(Event event, std::string_view label, const Work& work) {
 }
 
 void Device::check_capacity(std::size_t bytes, std::string_view label) const {
-    const auto& has = info();
-    const auto refuse = [&](std::string_view why, std::uint64_t most) {
-        throw OutOfMemory(fmt::format("{} ({}): buffer '{}' needs {} bytes, {} are in use, and {} {}", has.id,
-                                      has.name, label, bytes, bytes_allocated(), why, most));
+    const auto& device = info();
+    const auto refuse = [&](std::string_view why, std::uint64_t limit) {
+        throw OutOfMemory(fmt::format("{} ({}): buffer '{}' needs {} bytes, {} are in use, and {} {}",
+                                      device.id, device.name, label, bytes, bytes_allocated(), why, limit));
     };
-    const auto exceeds = [&](std::uint64_t most) {
-        return bytes_allocated() > most || bytes > most - bytes_allocated();
+    const auto exceeds = [&](std::uint64_t limit) {
+        return bytes_allocated() > limit || bytes > limit - bytes_allocated();
     };
-    if (bytes > has.max_allocation)
+    if (bytes > device.max_allocation)
         throw OutOfMemory(
-            fmt::format("{} ({}): buffer '{}' needs {} bytes, and one allocation holds at most {}", has.id,
-                        has.name, label, bytes, has.max_allocation));
+            fmt::format("{} ({}): buffer '{}' needs {} bytes, and one allocation holds at most {}", device.id,
+                        device.name, label, bytes, device.max_allocation));
     if (exceeds(memory_limit_)) refuse("the limit is", memory_limit_);
-    if (has.allocates_late && exceeds(has.global_bytes)) refuse("the device has", has.global_bytes);
+    if (device.allocates_late && exceeds(device.global_bytes)) refuse("the device has", device.global_bytes);
 }
 
 Buffer Device::allocate(std::size_t bytes, std::string_view label) {
-    // Zero-sized buffers are not allowed by OpenCL; one word keeps callers free of special cases.
+    // OpenCL does not allow buffers of size zero; a minimum size saves callers a special case.
     const auto size = std::max<std::size_t>(bytes, 16);
     check_capacity(size, label);
     auto impl = do_allocate(guards_ ? size + BufferGuards::padding : size);
@@ -158,9 +158,9 @@ Kernel Device::compile(const KernelSource& source, std::string_view entry, const
     const auto key = kernel_key(source, entry, defines);
     if (const auto found = kernels_.find(key); found != kernels_.end()) {
         auto& known = found->second;
-        if (!std::exchange(known.asked, true)) {
-            asked_.push_back(known.kernel.facts());
-            asked_.back().compile_ms = 0;
+        if (!std::exchange(known.requested, true)) {
+            requested_.push_back(known.kernel.facts());
+            requested_.back().compile_ms = 0;
         }
         return known.kernel;
     }
@@ -169,7 +169,7 @@ Kernel Device::compile(const KernelSource& source, std::string_view entry, const
     impl->facts.entry = entry;
     impl->facts.defines = defines;
     impl->facts.compile_ms = static_cast<double>(nanoseconds_since(begin)) * 1e-6;
-    asked_.push_back(impl->facts);
+    requested_.push_back(impl->facts);
     return kernels_.emplace(key, Compiled{Kernel(std::move(impl)), true}).first->second.kernel;
 }
 
@@ -190,7 +190,7 @@ Trace Device::finish() {
     }
     const auto begin = Clock::now();
     do_finish();
-    // Only what is still in flight is waited for: its stage is that of the command submitted last.
+    // A wait counts only while work is in flight. Its stage is that of the last submitted command.
     const auto last = std::find_if(trace_.events.rbegin(), trace_.events.rend(),
                                    [](const Event& e) { return e.command != Command::host_work; });
     if (last != trace_.events.rend() && !last->blocked)
@@ -199,7 +199,7 @@ Trace Device::finish() {
     return std::exchange(trace_, {});
 }
 
-/// Adaptors count on each ticket being released once, in order.
+/// Adaptors require that each ticket is released once, in ascending order.
 void Device::read_times() {
     const auto guarding = guards_ ? guards_->take_tickets() : std::vector<std::uint64_t>{};
     auto next = guarding.begin();
@@ -218,19 +218,19 @@ void Device::set_clocks(Clocks clocks) {
 }
 
 std::vector<KernelFacts> Device::take_kernels() {
-    for (auto& [key, known] : kernels_) known.asked = false;
-    return std::exchange(asked_, {});
+    for (auto& [key, known] : kernels_) known.requested = false;
+    return std::exchange(requested_, {});
 }
 
 std::size_t Device::bytes_allocated() const { return *allocated_; }
 
-StageScope::StageScope(Device& device, Stage stage) : device_(device), before_(device.set_stage(stage)) {
+StageScope::StageScope(Device& device, Stage stage) : device_(device), previous_(device.set_stage(stage)) {
     ranges::push(stage_names[static_cast<std::size_t>(stage)].data());
 }
 
 StageScope::~StageScope() {
     ranges::pop();
-    device_.set_stage(before_);
+    device_.set_stage(previous_);
 }
 
 HostWork::HostWork(Device& device, Stage stage, std::string_view label)

@@ -22,42 +22,42 @@ namespace tandem {
 
 class BufferGuards;
 
-/// A device failed or cannot do what was asked: backend, call, code and what was being done, in one line.
-/// What the device was asked for before is no longer in flight, or can never be waited for.
+/// A device failed or cannot do what was requested. The message is one line: backend, call, code and
+/// operation. Earlier commands are no longer in flight, or waiting for them is impossible.
 struct DeviceError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Memory does not suffice: what was asked for and what there is. Comes from allocate(), and from later
-/// commands where memory is taken at first use (DeviceInfo::allocates_late) or a kernel needs some of its
-/// own. The device works on; dropping buffers helps.
+/// Memory does not suffice; the message names the requested and the available bytes. Thrown by allocate(),
+/// and by later commands where memory is taken at first use (DeviceInfo::allocates_late) or a kernel needs
+/// its own. The device remains usable; freeing buffers helps.
 struct OutOfMemory : DeviceError {
     using DeviceError::DeviceError;
 };
 
-/// What a device is; sizes in bytes.
+/// Properties of a device; sizes in bytes.
 struct DeviceInfo {
     std::string id;       ///< "host", "opencl:0", "cuda:0"
-    std::string name;     ///< as the vendor calls it
+    std::string name;     ///< the vendor's name
     std::string driver;   ///< driver or runtime version
-    std::string compiler; ///< what compiles kernels
+    std::string compiler; ///< the compiler of kernels
     std::string hardware; ///< PCI address or UUID; empty when unknown
     bool is_gpu = false;
-    std::uint32_t compute_units = 1;    ///< what runs work-groups side by side: multiprocessors, cores
-    std::uint32_t max_group_size = 1;   ///< work-items; a kernel may take fewer
-    std::uint32_t cores = 0;            ///< that add and multiply in float at once, in all; 0: unknown
-    std::uint32_t clock_mhz = 0;        ///< at most; 0: unknown
-    std::uint64_t peak_bytes_per_s = 0; ///< of memory, by its clock and width; 0: unknown
-    std::uint64_t global_bytes = 0;     ///< device memory in all, whoever uses it
-    std::uint64_t max_allocation = 0;   ///< the most that one buffer holds
-    std::uint64_t local_bytes = 0;      ///< memory of a work-group
-    bool allocates_late = false;        ///< memory is taken at first use, so that allocate() has to count
+    std::uint32_t compute_units = 1;    ///< units that run work-groups in parallel: multiprocessors, cores
+    std::uint32_t max_group_size = 1;   ///< work-items; a kernel's own limit may be lower
+    std::uint32_t cores = 0;            ///< for float additions and multiplications, in total; 0: unknown
+    std::uint32_t clock_mhz = 0;        ///< maximum; 0: unknown
+    std::uint64_t peak_bytes_per_s = 0; ///< of memory, from its clock and width; 0: unknown
+    std::uint64_t global_bytes = 0;     ///< total device memory, free or not
+    std::uint64_t max_allocation = 0;   ///< largest size of one buffer
+    std::uint64_t local_bytes = 0;      ///< local memory of a work-group
+    bool allocates_late = false;        ///< memory is taken at first use, so allocate() counts it
     bool has_double = true;
-    bool has_directed_rounding = false; ///< kernels can add rounding down and up
-    bool stages_pinned = false;         ///< uploads that do not block go through page-locked memory
+    bool has_directed_rounding = false; ///< kernels can add with rounding down and up
+    bool stages_pinned = false;         ///< non-blocking uploads use page-locked memory
 };
 
-/// Compile-time parameters of a kernel: name -> value, emitted as defines under the same names.
+/// Compile-time parameters of a kernel (name -> value), emitted as defines under the same names.
 using Defines = std::map<std::string, std::string>;
 
 /// A kernel file with its headers, flattened into one text.
@@ -66,16 +66,17 @@ struct KernelSource {
     std::string_view text;
 };
 
-/// Device memory, freed with the last copy of its handle; dies before its device. Freeing never fails.
+/// A handle of device memory. The last copy frees the memory and must be destroyed before the device. Freeing
+/// never fails.
 class Buffer {
 public:
-    /// What an adaptor adds its handle to.
+    /// Base class of an adaptor's buffer, which adds the vendor's handle.
     struct Impl : std::enable_shared_from_this<Impl> {
         virtual ~Impl() = default;
-        /// What Device::adopt takes.
+        /// The vendor's handle, as Device::adopt takes it.
         virtual void* native() const = 0;
-        std::size_t bytes = 0; ///< at least what was asked for
-        std::string label;     ///< names it in traces and errors
+        std::size_t bytes = 0; ///< at least the requested size
+        std::string label;     ///< its name in traces and errors
     };
 
     Buffer() = default;
@@ -83,30 +84,30 @@ public:
 
     explicit operator bool() const { return impl_ != nullptr; }
     std::size_t bytes() const { return impl_ ? impl_->bytes : 0; }
-    Impl& impl() const { return *impl_; } ///< not of an empty handle
-    /// The memory by the vendor's own handle, which this one frees: a pointer of the host's or of CUDA's, a
-    /// cl_mem of OpenCL's; null of an empty handle.
+    Impl& impl() const { return *impl_; } ///< requires a non-empty handle
+    /// The vendor's handle, valid as long as this one: a host or CUDA pointer, or a cl_mem; null for an empty
+    /// handle.
     void* native() const { return impl_ ? impl_->native() : nullptr; }
 
 private:
     std::shared_ptr<Impl> impl_;
 };
 
-/// What compiling a kernel cost and what it uses; -1 = the backend does not tell.
+/// Cost and resources of a compiled kernel; -1: the backend does not report the value.
 struct KernelFacts {
     std::string entry;
     Defines defines;
-    double compile_ms = 0;            ///< 0 when it was there already
-    std::int64_t registers = -1;      ///< a work-item's
-    std::int64_t local_bytes = -1;    ///< a work-group's
+    double compile_ms = 0;            ///< 0 when it was compiled before
+    std::int64_t registers = -1;      ///< of a work-item
+    std::int64_t local_bytes = -1;    ///< of a work-group
     std::int64_t spill_bytes = -1;    ///< stores and loads of a work-item
-    std::int64_t max_group_size = -1; ///< work-items; more are refused by launch()
-    /// Share of the work-items that a compute unit can hold which groups of GROUP_SIZE fill at most, as far
-    /// as registers and local memory let them; negative where the backend does not tell.
+    std::int64_t max_group_size = -1; ///< work-items; launch() refuses more
+    /// Largest fraction of a compute unit's work-items that groups of GROUP_SIZE can fill, given registers
+    /// and local memory; negative when the backend does not report it.
     double occupancy = -1;
 };
 
-/// A compiled entry point of one device; a cheap handle.
+/// A compiled entry point of one device. Copies are cheap.
 class Kernel {
 public:
     struct Impl {
@@ -126,8 +127,8 @@ private:
     std::shared_ptr<Impl> impl_;
 };
 
-/// A kernel's argument: a buffer, which has to outlive the call, or a scalar of at most 8 bytes, whose type
-/// has the size of the kernel's parameter.
+/// A kernel argument: a buffer, which must outlive the call, or a scalar of at most 8 bytes. The scalar's
+/// type must have the size of the kernel's parameter.
 class Argument {
 public:
     struct Scalar {
@@ -156,16 +157,16 @@ struct Grid {
     std::uint32_t group_size = 1;
 };
 
-/// Whether commands are recorded, with device timestamps. Off, which is the default: no clock is read, no
-/// event made and nothing kept from one command to the next.
+/// Whether commands are recorded, with device timestamps. When off, the default, no clock is read, no event
+/// is created and no command is recorded.
 enum class Clocks { off, on };
 
-/// One device of one backend. The public functions record what they do in the trace, where clocks are on, and
-/// leave the doing to the private ones, so that a command cannot run unrecorded nor be recorded twice.
-/// A command (upload, download, clear, launch) belongs to a stage of a frame: outside any StageScope it
-/// throws std::logic_error that names it, whether clocks are on or off. Commands run in order. A device is
-/// used from one thread at a time; two devices may be used from two. A thread's current CUDA context is left
-/// as it was. Every function may throw DeviceError.
+/// One device of one backend. With clocks on, the public functions record each command in the trace, and
+/// private virtual functions execute it. Thus every command is recorded exactly once.
+/// A command (upload, download, clear, launch) belongs to a stage of a frame. Outside any StageScope it
+/// throws std::logic_error that names it, with clocks on or off. Commands run in order. Only one thread at a
+/// time may use a device; different devices may run in different threads. A thread's current CUDA context is
+/// restored. Every function may throw DeviceError.
 class Device {
 public:
     virtual ~Device();
@@ -173,29 +174,29 @@ public:
     Device& operator=(const Device&) = delete;
 
     virtual const DeviceInfo& info() const = 0;
-    /// By what device times are taken: "CUPTI 13.0 activity records", "CUDA events" and, where these stand in
-    /// for something better, why. Certain once clocks have been on: a library that only they need is opened
-    /// then. It may change while they are on, after a failure.
+    /// The source of device times: "CUPTI 13.0 activity records", or "CUDA events" and why nothing better is
+    /// used. It is certain only once clocks have been on, because they load a library of their own. A failure
+    /// may change it while they are on.
     virtual std::string clock() const = 0;
-    /// What commands go to, by the vendor's own handle: a CUstream of CUDA's, whose default stream is null; a
-    /// cl_command_queue of OpenCL's; null of the host's.
+    /// The vendor's handle of the queue of commands: a CUstream of CUDA, null for its default stream; a
+    /// cl_command_queue of OpenCL; null on the host.
     virtual void* queue() const = 0;
-    /// Commands from now on come after what was given to `queue` so far, a vendor's handle of this device's
-    /// context. The host waits for it where no command does: on OpenCL.
+    /// Later commands run after everything submitted so far to `queue`, a vendor's handle in this device's
+    /// context. On OpenCL the host waits for it.
     void follow(void* queue) { do_follow(queue); }
 
-    /// Memory of at least `bytes` bytes, their values unknown. Throws OutOfMemory that says how much was
-    /// asked for, what is in use and how much there is.
+    /// Allocates at least `bytes` bytes of undefined values. Throws OutOfMemory that names the requested, the
+    /// used and the available bytes.
     Buffer allocate(std::size_t bytes, std::string_view label);
     /// Wraps memory of a host application's context: a cl_mem or a device pointer, which must outlive the
     /// buffer. It does not count as allocated.
     Buffer adopt(void* native, std::size_t bytes, std::string_view label);
 
-    /// Copies `from` to `to` at byte `offset`. Unless `blocking` it returns at once with the bytes copied; it
-    /// waits where copies of uploads in flight have come to fill their memory (tens of MiB).
+    /// Copies `from` to `to` at byte `offset`. Unless `blocking`, it returns once the bytes are copied to
+    /// staging memory. That memory is limited; the call waits while uploads in flight fill it.
     void upload(const Buffer& to, std::span<const std::byte> from, std::size_t offset = 0,
                 bool blocking = false);
-    /// Copies from `from` at byte `offset`; waits for it.
+    /// Copies from `from` at byte `offset` and waits for the result.
     void download(const Buffer& from, std::span<std::byte> to, std::size_t offset = 0);
     /// Sets `bytes` bytes at `offset` to zero.
     void clear(const Buffer& buffer, std::size_t bytes, std::size_t offset = 0);
@@ -203,14 +204,14 @@ public:
     /// Compiles once per (source, entry, defines) and device. Throws DeviceError with the compiler's log in
     /// one line.
     Kernel compile(const KernelSource& source, std::string_view entry, const Defines& defines);
-    /// Runs a kernel with its arguments in order; no groups are no launch. Throws DeviceError when the groups
-    /// are larger than the kernel can take.
+    /// Runs a kernel with its arguments in order; zero groups launch nothing. Throws DeviceError when the
+    /// groups are larger than the kernel allows.
     void launch(const Kernel& kernel, Grid grid, std::span<const Argument> arguments);
 
-    /// Runs `work`, whose commands go to the device as one submission where it knows how and the same
-    /// commands have come before: a frame after another. A command that waits ends it, and begins the next.
-    /// Where the device does not know how, and with clocks on, commands go one by one. `work` may throw; what
-    /// it enqueued before is submitted. An error of a command may come with a later one, or at the end.
+    /// Runs `work` and submits its commands as one, if the device supports it and the same commands came
+    /// before, as in successive frames. A command that waits ends one submission and begins the next.
+    /// Otherwise, and with clocks on, commands are submitted one by one. `work` may throw; what it enqueued
+    /// before is submitted. A later command or the end may report the error of an earlier command.
     template<class Work>
     void as_one(const Work& work) {
         if (clocks_ == Clocks::on || collecting_ || !do_begin_collecting()) {
@@ -229,46 +230,44 @@ public:
         do_end_collecting();
     }
 
-    /// How often work was handed to the device so far: commands, and those of as_one that went together once.
+    /// The number of submissions so far. Commands that as_one() submits together count once.
     std::uint64_t submissions() const { return submissions_; }
 
-    /// Waits for everything submitted so far and returns its trace, with device times filled in; an empty one
-    /// where clocks are off.
+    /// Waits for everything submitted so far and returns its trace with device times; empty when clocks are
+    /// off.
     Trace finish();
 
-    /// Waits, drops what was recorded since the last finish(), then switches clocks on or off. On CUDA the
-    /// last device to switch them off detaches a profiling library from the driver: no other thread may be in
-    /// a call of the driver then (cuda/activity.h).
+    /// Waits, discards the trace since the last finish(), then switches clocks on or off. On CUDA the last
+    /// device to switch them off detaches a profiling library from the driver. No other thread may be in a
+    /// driver call then (cuda/activity.h).
     void set_clocks(Clocks clocks);
     Clocks clocks() const { return clocks_; }
 
-    /// How many threads run the work-groups of a launch where that is the host's to do; 0, which is the
-    /// default: one for each core. Answers do not depend on it. Other devices have work-items of their own,
-    /// and ignore it.
+    /// Sets the number of threads that run the work-groups of a launch on the host; 0, the default: one per
+    /// core. Results do not depend on it. Other devices ignore it.
     void set_threads(std::uint32_t threads) { do_set_threads(threads); }
 
-    /// Tells a profiler that is attached to the process to begin or to end here; nothing where the backend
-    /// has no such call.
+    /// Starts or stops an attached profiler; does nothing when the backend has no such call.
     void profile(bool on) { do_profile(on); }
 
-    /// The facts of every kernel asked for since the last call, each once; compile_ms is 0 for those that
-    /// were there already.
+    /// The facts of every kernel requested since the last call, each once; compile_ms is 0 for kernels
+    /// compiled before.
     std::vector<KernelFacts> take_kernels();
 
-    /// Bytes of the buffers that live, without adopted ones.
+    /// Bytes of all live buffers, without adopted ones.
     std::size_t bytes_allocated() const;
-    /// From now on allocate() throws OutOfMemory where bytes_allocated() would exceed `bytes`. What is
-    /// allocated already stays.
+    /// From now on allocate() throws OutOfMemory when bytes_allocated() would exceed `bytes`. Existing
+    /// buffers stay.
     void set_memory_limit(std::size_t bytes) { memory_limit_ = bytes; }
-    /// no_memory_limit unless one was set.
+    /// no_memory_limit unless set.
     std::size_t memory_limit() const { return memory_limit_; }
     static constexpr std::size_t no_memory_limit = std::numeric_limits<std::size_t>::max();
 
-    /// For tests. From now on each new buffer is followed by a byte pattern (buffer_guards.h), which
-    /// check_guards() verifies. Traces and bytes_allocated() do not change.
+    /// For tests. Writes a byte pattern (buffer_guards.h) behind each new buffer, which check_guards()
+    /// verifies. Traces and bytes_allocated() do not change.
     void guard_buffers();
-    /// Waits, and throws std::logic_error where something was written past the end of a guarded buffer,
-    /// whether it still lives or was freed since the last call. Does nothing without guard_buffers().
+    /// Waits, and throws std::logic_error when something was written past the end of a guarded buffer, also
+    /// of one freed since the last call. Does nothing without guard_buffers().
     void check_guards() {
         if (guards_) do_check_guards();
     }
@@ -276,9 +275,9 @@ public:
 protected:
     Device();
 
-    /// For an adaptor that collects: it has handed commands over in so many calls.
+    /// For an adaptor that collects commands: adds the calls that submitted them.
     void count_submissions(std::uint64_t calls) { submissions_ += calls; }
-    /// For an adaptor whose command had to wait although it need not have: the trace says so.
+    /// For an adaptor whose command waits although it need not: the trace records the wait.
     void host_waited() { waited_ = true; }
 
 private:
@@ -288,11 +287,11 @@ private:
 
     struct Compiled {
         Kernel kernel;
-        bool asked = false; ///< its facts stand in asked_
+        bool requested = false; ///< its facts are in requested_
     };
 
-    // What an adaptor does. A command returns the ticket of its timestamps, 0 where clocks are off; ranges
-    // and group sizes have been checked. Text is made of failures only.
+    // Implemented by adaptors. A command returns the ticket of its timestamps, 0 when clocks are off. Ranges
+    // and group sizes are already checked. Error texts are built only on failure.
 
     virtual std::shared_ptr<Buffer::Impl> do_allocate(std::size_t bytes) = 0;
     virtual std::shared_ptr<Buffer::Impl> do_adopt(void* native) = 0;
@@ -306,9 +305,10 @@ private:
     virtual std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) = 0;
     virtual void do_finish() = 0;
     virtual void do_follow(void* queue) = 0;
-    /// From here on commands may be kept back until the end, or until one that waits; false: they are not.
+    /// From now on the adaptor may hold commands back until the end or until one that waits. False: it does
+    /// not.
     virtual bool do_begin_collecting() { return false; }
-    /// Submits what was kept back. Counts with count_submissions what was handed over since the begin.
+    /// Submits the commands held back, and counts these submissions with count_submissions().
     virtual void do_end_collecting() {}
     virtual void do_set_clocks(Clocks clocks) = 0;
     virtual void do_set_threads(std::uint32_t) {}
@@ -318,29 +318,29 @@ private:
 
     void check_capacity(std::size_t bytes, std::string_view label) const;
     void do_check_guards();
-    /// Fills in the device times of what was recorded and releases all tickets.
+    /// Fills in the device times of the trace and releases all tickets.
     void read_times();
-    /// Runs `work`, which returns a ticket, and records it where clocks are on.
+    /// Runs `work`, which returns a ticket, and records it when clocks are on.
     template<class Work>
     void submit(Event event, std::string_view label, const Work& work);
     void record(Event event, std::chrono::steady_clock::time_point begin);
     std::optional<Stage> set_stage(std::optional<Stage> stage) { return std::exchange(stage_, stage); }
 
     std::map<std::string, Compiled> kernels_;
-    std::vector<KernelFacts> asked_;
+    std::vector<KernelFacts> requested_;
     std::shared_ptr<std::size_t> allocated_ = std::make_shared<std::size_t>(0);
     std::size_t memory_limit_ = no_memory_limit;
-    std::shared_ptr<BufferGuards> guards_; ///< none unless asked for
+    std::shared_ptr<BufferGuards> guards_; ///< null without guard_buffers()
     Trace trace_;
-    std::optional<Stage> stage_; ///< none outside every StageScope
+    std::optional<Stage> stage_; ///< none outside any StageScope
     Clocks clocks_ = Clocks::off;
     bool waited_ = false;
-    bool collecting_ = false; ///< within as_one, by a device that does
+    bool collecting_ = false; ///< within as_one(), on a device that collects
     std::uint64_t submissions_ = 0;
 };
 
-/// Books commands of its lifetime under a stage; an inner scope's stage stands until it ends. Dies before its
-/// device. A profiler sees it as a range of that name.
+/// Assigns the commands of its lifetime to a stage; an inner scope takes precedence until it ends. Must end
+/// before its device does. A profiler shows it as a range of that name.
 class StageScope {
 public:
     StageScope(Device& device, Stage stage);
@@ -350,11 +350,11 @@ public:
 
 private:
     Device& device_;
-    std::optional<Stage> before_;
+    std::optional<Stage> previous_;
 };
 
-/// Times host work that belongs to a stage; the only clock outside the device's commands. Does nothing where
-/// clocks are off. `label` has to outlive it.
+/// Times host work that belongs to a stage; the only clock outside the device's commands. Does nothing when
+/// clocks are off. `label` must outlive it.
 class HostWork {
 public:
     HostWork(Device& device, Stage stage, std::string_view label);
@@ -370,7 +370,7 @@ private:
     std::chrono::steady_clock::time_point begin_;
 };
 
-/// The bytes of a vector's elements, to upload them.
+/// The elements of a vector as bytes, for uploads.
 template<class T>
 std::span<const std::byte> bytes_of(const std::vector<T>& values) {
     return std::as_bytes(std::span(values));

@@ -9,8 +9,8 @@
 namespace tandem {
 
 std::vector<std::string_view> throttle_reasons(std::uint64_t throttle) {
-    // NvmlClocksThrottleReasons of the NVML API reference. Left out: idle (0x1), clocks set for applications
-    // (0x2) and for displays (0x100).
+    // NvmlClocksThrottleReasons of the NVML API reference. Not listed: idle (0x1), clocks set for
+    // applications (0x2) and for displays (0x100).
     static constexpr std::array<std::pair<std::uint64_t, std::string_view>, 6> slowing{
         {{0x4, "power cap"},
          {0x8, "hardware slowdown"},
@@ -25,7 +25,7 @@ std::vector<std::string_view> throttle_reasons(std::uint64_t throttle) {
 }
 
 GpuGauge::GpuGauge(const DeviceInfo& info) {
-    if (!info.is_gpu || info.hardware.empty()) return; // without one, NVML need not be started
+    if (!info.is_gpu || info.hardware.empty()) return; // no GPU: NVML is not loaded
     nvml_ = cuda::nvml();
     handle_ = nvml_->find(info.hardware);
 }

@@ -17,30 +17,28 @@ namespace cuda {
 class Nvml;
 }
 
-/// What a GPU is like at one time, as its driver tells; what it does not tell is unknown.
+/// The condition of a GPU at one time, as its driver reports it; values that it does not report are empty.
 struct GpuCondition {
-    std::optional<unsigned> sm_mhz; ///< clock of the multiprocessors, and the highest that they have
+    std::optional<unsigned> sm_mhz; ///< clock of the multiprocessors, and its maximum
     std::optional<unsigned> sm_limit_mhz;
-    std::optional<unsigned> memory_mhz; ///< clock of the memory, and the highest that it has
+    std::optional<unsigned> memory_mhz; ///< clock of the memory, and its maximum
     std::optional<unsigned> memory_limit_mhz;
     std::optional<unsigned> temperature_c;
-    std::optional<double> power_w;       ///< drawn; newer GPUs tell the mean of the last second
-    std::optional<double> power_limit_w; ///< enforced
-    std::optional<std::uint64_t>
-        throttle;                         ///< bits of NVML: why clocks are not higher, see throttle_reasons()
-    std::optional<unsigned> busy_percent; ///< of the driver's last period in which kernels ran, whose ever
-    std::optional<unsigned> processes;    ///< that compute on it beside this one
+    std::optional<double> power_w;         ///< drawn; on newer GPUs the mean of the last second
+    std::optional<double> power_limit_w;   ///< enforced
+    std::optional<std::uint64_t> throttle; ///< bits of NVML, see throttle_reasons()
+    std::optional<unsigned> busy_percent;  ///< of the driver's last period with kernels of any process
+    std::optional<unsigned> processes;     ///< others that compute on it
 
     bool operator==(const GpuCondition&) const = default;
 };
 
-/// What slows a GPU down, in words. Being idle and clocks that someone has set are in the bits too, but slow
-/// nothing down that was not meant to be.
+/// The reasons in these bits that slow a GPU down, as words. Idleness and clocks set on purpose are left out.
 std::vector<std::string_view> throttle_reasons(std::uint64_t throttle);
 
-/// Reads the condition of one device; made once for many readings. A reading asks the driver ten questions
-/// and takes time on the host, so it belongs outside of every span that is timed. Never fails: of processors,
-/// of GPUs of other vendors and without NVML everything is unknown.
+/// Reads the condition of one device; create it once for many readings. A reading makes ten driver calls and
+/// takes host time, so it belongs outside timed spans. Never fails: for processors, for GPUs of other vendors
+/// and without NVML all values are empty.
 class GpuGauge {
 public:
     /// Finds the device by its `info.hardware`.

@@ -17,9 +17,8 @@ inline std::string uuid_text(const std::array<unsigned char, 16>& bytes) {
     return text;
 }
 
-/// What a record has in place of a UUID or PCI address: 16 hexadecimal digits, FNV-1a (Fowler, Noll and Vo)
-/// of 64 bits over its characters. It tells the GPUs of records apart; it names none to whoever does not know
-/// its UUID.
+/// Replaces a UUID or PCI address in records: 16 hexadecimal digits, the 64-bit FNV-1a hash (Fowler, Noll and
+/// Vo) of its characters. It distinguishes GPUs without disclosing their UUIDs.
 inline std::string hardware_digest(std::string_view hardware) {
     std::uint64_t hash = 0xcbf29ce484222325u;
     for (const char c : hardware) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;

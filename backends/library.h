@@ -7,10 +7,10 @@
 
 namespace tandem {
 
-/// A shared library found at run time. It stays loaded: drivers do not survive being unloaded.
+/// A shared library loaded at run time. It stays loaded, because drivers do not support being unloaded.
 class Library {
 public:
-    /// Opens the first of `names` that there is. Throws DeviceError: "looked for A, B".
+    /// Opens the first of `names` that loads. Throws DeviceError: "looked for A, B".
     explicit Library(std::span<const std::string> names);
 
     const std::string& name() const { return name_; }
@@ -22,7 +22,7 @@ private:
     void* handle_ = nullptr;
 };
 
-/// The first of `names` that there is; nothing where there is none.
+/// The first of `names` that loads; no value when none does.
 std::optional<Library> library_if_any(std::span<const std::string> names);
 
 } // namespace tandem

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The kernel dialect: one text for OpenCL C, CUDA and host C++. Rules: any group size is correct, one
-// included; barriers only in uniform control flow; only scalars and pointers cross the host boundary; shared
-// counters are read with ATOMIC_READ; no group ever waits for another. Parameters are defines with a default,
-// written as #ifndef NAME / #define NAME value / #endif, so that a file compiles alone.
+// The kernel dialect: one text for OpenCL C, CUDA and host C++. Rules: every group size, also 1, gives
+// correct results. Barriers stand only in uniform control flow. Only scalars and pointers cross the host
+// boundary. Shared counters are read with ATOMIC_READ. No group waits for another. Parameters are defines
+// with a default, written as #ifndef NAME / #define NAME value / #endif, so that a file compiles alone.
 #ifndef TANDEM_PORTABLE_H
 #define TANDEM_PORTABLE_H
 
@@ -13,8 +13,8 @@
 #define PRECISION 32
 #endif
 
-// A team is a part of a work-group that needs to wait for its own work-items only: a warp. Where the compiler
-// has no barrier for one the whole group waits, so that every dialect runs the same teams.
+// A team is a part of a work-group that waits for its own work-items only: a warp. When the compiler has no
+// barrier for a warp, the whole group waits, so that every dialect has the same teams.
 #if GROUP_SIZE % 32 == 0
 #define TEAM_SIZE 32
 #else
@@ -33,12 +33,11 @@
 #define TEAM_BARRIER BARRIER
 #endif
 
-// Lanes are what a tile has 32 of. A team of LANE_STEP work-items works on a tile, and each does what is said
-// FOR_LANES for every LANE_STEP-th lane: on a GPU a lane is a work-item of a warp; on the host device, where
-// groups have one work-item, it is a loop that the compiler turns into vector code. Where it has no barrier
-// for a warp the group is the team, and work-items past the last lane only wait. What a lane keeps from one
-// FOR_LANES to the next is an array `type name[LANE_PARTS]`, of which a lane's is name[part]. No barriers
-// inside.
+// Lanes are the 32 elements of a tile. A team of LANE_STEP work-items works on a tile; each runs the body of
+// FOR_LANES for every LANE_STEP-th lane. On a GPU a lane is a work-item of a warp. On the host device, whose
+// groups have one work-item, FOR_LANES is a loop that the compiler vectorises. Without a barrier for a warp
+// the group is the team, and work-items past the last lane only wait. A value kept from one FOR_LANES to the
+// next is an array `type name[LANE_PARTS]`; a lane uses name[part]. No barriers inside FOR_LANES.
 #define LANES 32
 #if GROUP_SIZE % LANES == 0 && (GROUP_SIZE == LANES || defined(__CUDACC__) || defined(__NV_CL_C_VERSION))
 #define LANE_STEP LANES
@@ -53,7 +52,7 @@
 #define LANE_TEAMS (GROUP_SIZE / LANE_STEP)
 #define LANE_TEAM (LOCAL_ID / LANE_STEP)
 #define LANE_ID (LOCAL_ID % LANE_STEP) // of a work-item in its team
-// Lanes that are a warp tell each other without memory which of them ...: a bit for each.
+// When the lanes are a warp, these exchange values without memory. LANES_THAT gives one bit per lane.
 #if LANE_STEP == LANES && defined(__CUDACC__)
 #define LANES_ARE_WARP 1
 #define LANES_THAT(condition) __ballot_sync(0xffffffffu, (condition))
@@ -93,7 +92,7 @@
 #define COUNT_ONES(value) ((uint)popcount((uint)(value)))
 #define SQUARE_ROOT(value) sqrt(value)
 #define ABSOLUTE(value) fabs(value)
-#ifdef __NV_CL_C_VERSION // one instruction there; elsewhere the library's care for NaN costs more
+#ifdef __NV_CL_C_VERSION // one instruction on NVIDIA; elsewhere handling of NaN costs more
 #define MINIMUM(a, b) fmin((a), (b))
 #define MAXIMUM(a, b) fmax((a), (b))
 #else
@@ -136,7 +135,7 @@
 #define REAL_INFINITY ((real)__int_as_float(0x7f800000))
 typedef unsigned char uchar;
 typedef unsigned int uint;
-typedef unsigned long ulong; // 64 bits where CUDA runs on Linux, as glibc has it
+typedef unsigned long ulong; // 64 bits on Linux
 
 #else // host C++: groups of one work-item, see backends/host/dialect.h
 #define KERNEL static
@@ -180,7 +179,7 @@ typedef double real;
 typedef float real;
 #endif
 
-// A real's bits and back: sign, exponent, mantissa.
+// Conversion of a real to its bits and back: sign, exponent, mantissa.
 #if PRECISION == 64
 typedef ulong RealBits;
 #define EXPONENT_AT 52
@@ -211,14 +210,14 @@ typedef uint RealBits;
 #define GLOBAL_COUNT (GROUP_COUNT * (uint)(GROUP_SIZE))
 
 // A 64-bit counter as two 32-bit words {low, high}: 64-bit atomics are an extension in OpenCL 1.2. Returns
-// the low word before the addition. Past 2^32 the low word starts over; a reader that finds high != 0 knows.
+// the low word before the addition. Beyond 2^32 the low word wraps around, and high != 0 shows it.
 DEVICE uint counter_add(GLOBAL uint* counter, uint value) {
     const uint before = ATOMIC_ADD(counter, value);
     if (before + value < before) ATOMIC_ADD(counter + 1, 1u);
     return before;
 }
 
-// Adds a 64-bit value with wrap-around; right once all additions are done.
+// Adds a 64-bit value with wrap-around. The sum is valid once all additions are done.
 DEVICE void counter_add_wide(GLOBAL uint* counter, ulong value) {
     const uint low = (uint)value;
     const uint before = ATOMIC_ADD(counter, low);
@@ -242,15 +241,15 @@ DEVICE uint from_first_lane(uint value) {
 }
 #endif
 
-// What a team of lanes counts, all of it in each call. In a warp every work-item has the number; elsewhere it
-// is a word of local memory.
+// A counter of a team of lanes; all of the team take part in each call. In a warp every work-item holds the
+// value; elsewhere it is a word of local memory.
 typedef struct {
     LOCAL uint* word;
     uint value;
 } LaneCounter;
 
-// Begins, or begins again, at `value`: between the last look of any work-item and the next place taken there
-// has to be a LANE_BARRIER on either side.
+// Sets the counter to `value`. A LANE_BARRIER must separate this call from the last read before it, and
+// another from the next reserved slot after it.
 DEVICE void begin_count(LaneCounter* counter, uint value) {
     if (LANES_ARE_WARP)
         counter->value = value;
@@ -258,19 +257,19 @@ DEVICE void begin_count(LaneCounter* counter, uint value) {
         *counter->word = value;
 }
 
-// A place for a lane that is `wanting` one.
-DEVICE uint reserve_slot(LaneCounter* counter, int wanting) {
+// Reserves a slot for each lane with `needs_slot`.
+DEVICE uint reserve_slot(LaneCounter* counter, int needs_slot) {
 #if LANES_ARE_WARP
-    const uint all = LANES_THAT(wanting);
-    const uint place = counter->value + COUNT_ONES(all & ((1u << LANE_ID) - 1u));
+    const uint all = LANES_THAT(needs_slot);
+    const uint slot = counter->value + COUNT_ONES(all & ((1u << LANE_ID) - 1u));
     counter->value += COUNT_ONES(all);
-    return place;
+    return slot;
 #else
-    return wanting ? LOCAL_ATOMIC_ADD(counter->word, 1u) : 0u;
+    return needs_slot ? LOCAL_ATOMIC_ADD(counter->word, 1u) : 0u;
 #endif
 }
 
-// How many places have been taken; after a LANE_BARRIER.
+// The number of reserved slots; call it after a LANE_BARRIER.
 DEVICE uint reserved_slots(const LaneCounter* counter) {
     return LANES_ARE_WARP ? counter->value : *counter->word;
 }

@@ -8,7 +8,7 @@ namespace tandem {
 
 namespace {
 
-/// The number before `word` in `text`, counted from `from`; -1 when there is none.
+/// The number before the first `word` at or after `from` in `text`; -1 when there is none.
 std::int64_t number_before(std::string_view text, std::string_view word, std::size_t from) {
     const auto at = text.find(word, from);
     if (at == std::string_view::npos) return -1;

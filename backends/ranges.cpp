@@ -2,7 +2,7 @@
 #include "backends/ranges.h"
 
 #ifdef TANDEM_NVTX
-// The header alone: whatever records ranges puts its functions behind it when the first one begins.
+// Header-only: a profiler installs its functions when the first range begins.
 #include <nvtx3/nvToolsExt.h>
 #endif
 
@@ -11,7 +11,7 @@ namespace tandem::ranges {
 #ifdef TANDEM_NVTX
 namespace {
 
-/// The project's own, so that a filter tells its ranges from a library's.
+/// A domain of the project's own, so that filters separate its ranges from those of libraries.
 nvtxDomainHandle_t domain() {
     static const auto handle = nvtxDomainCreateA("tandem");
     return handle;

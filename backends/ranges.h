@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Named stretches of a thread's time for a profiler's timeline: NVTX where the build has found its header,
-// nothing elsewhere. Without a profiler a call is a test of a pointer.
+// Named ranges of a thread's time for a profiler's timeline. They use NVTX when the build finds its header;
+// otherwise they do nothing. Without a profiler a call only tests a pointer.
 #pragma once
 
 namespace tandem::ranges {
@@ -8,12 +8,12 @@ namespace tandem::ranges {
 /// Whether this build has NVTX.
 bool available();
 
-/// Begins a range on this thread; `name` is copied, and ends with a zero. Never throws.
+/// Begins a range on this thread; `name` ends with a zero and is copied. Never throws.
 void push(const char* name);
-/// Ends the range of this thread that was begun last.
+/// Ends the innermost range of this thread.
 void pop();
 
-/// A range as long as it lives.
+/// A range for the lifetime of the object.
 class ProfilerRange {
 public:
     explicit ProfilerRange(const char* name) { push(name); }

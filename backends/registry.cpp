@@ -43,7 +43,7 @@ BackendReport guarded(const Backend& backend) {
     }
 }
 
-/// Whether one of "D+E+..." is the backend, something of it, or of all.
+/// Whether a part of "D+E+..." names the backend, one of its devices, or all devices.
 bool names(std::string_view wanted, std::string_view backend) {
     for (std::size_t begin = 0; begin <= wanted.size();) {
         const auto end = std::min(wanted.find('+', begin), wanted.size());
@@ -69,7 +69,7 @@ std::vector<BackendReport> discover(std::span<const std::string> wanted) {
     return reports;
 }
 
-std::vector<BackendReport> with_others(std::vector<BackendReport> found) {
+std::vector<BackendReport> add_missing_backends(std::vector<BackendReport> found) {
     std::vector<BackendReport> all;
     for (const auto& backend : known_backends) {
         const auto own = std::ranges::find(found, backend.name, &BackendReport::name);

@@ -26,7 +26,7 @@ std::byte* Staging::take(std::size_t bytes) {
         const bool idle =
             std::all_of(blocks_.begin(), blocks_.end(), [](const auto& block) { return block.used == 0; });
         if (!idle) return nullptr;
-        drop(); // blocks that are each too small would be in the way for ever
+        drop(); // blocks that are too small would fill the limit for ever
     }
     auto* memory = source_.allocate(size);
     if (memory == nullptr) return nullptr;

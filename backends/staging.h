@@ -7,30 +7,30 @@
 
 namespace tandem {
 
-/// Host memory for transfers in flight: handed out front to back, taken back all at once, used again, and
-/// never more than a limit, so that a host that never waits does not fill its memory with copies.
+/// Host memory for transfers in flight. It is allotted front to back, released all at once and reused. The
+/// limit prevents a host that never waits from filling its memory with copies.
 class Staging {
 public:
-    /// Where the memory comes from; `allocate` gives null when there is no more.
+    /// The allocator; `allocate` returns null when no memory is left.
     struct Source {
         std::function<std::byte*(std::size_t bytes)> allocate;
         std::function<void(std::byte*)> free;
     };
 
-    /// `limit`: the most bytes that it holds.
+    /// `limit`: the maximum of bytes that it holds.
     Staging(Source source, std::size_t limit) : source_(std::move(source)), limit_(limit) {}
     ~Staging() { drop(); }
     Staging(const Staging&) = delete;
     Staging& operator=(const Staging&) = delete;
 
-    /// `bytes` bytes that stay untouched until release(); null where the limit or the system gives no more,
-    /// and the caller has to wait for its transfer instead.
+    /// Returns `bytes` bytes that stay valid until release(). Null when the limit or the system allows no
+    /// more; the caller then waits for its transfer instead.
     std::byte* take(std::size_t bytes);
-    /// Everything handed out may be used again: no transfer is in flight.
+    /// Makes all memory available again. No transfer may be in flight.
     void release();
-    /// Gives the memory back: no transfer is in flight.
+    /// Frees the memory. No transfer may be in flight.
     void drop();
-    /// Leaves the memory to the process for good: whether transfers are in flight cannot be found out.
+    /// Leaks the memory, because transfers may still be in flight.
     void abandon() { blocks_.clear(); }
 
 private:
@@ -42,7 +42,7 @@ private:
 
     Source source_;
     std::size_t limit_;
-    std::size_t held_ = 0; ///< the sizes of all blocks
+    std::size_t held_ = 0; ///< sum of the sizes of all blocks
     std::vector<Block> blocks_;
 };
 

@@ -11,7 +11,7 @@ namespace tandem {
 
 struct KernelFacts; // device.h
 
-/// The parts of a frame that time is booked under.
+/// The stages of a frame, to which times are assigned.
 enum class Stage {
     transform,
     refit,
@@ -26,7 +26,7 @@ enum class Stage {
     postprocess,
     read,
     write,
-    exchange ///< of messages, between ranks of a job
+    exchange ///< messages between ranks of a job
 };
 inline constexpr std::array<std::string_view, 14> stage_names{
     "transform", "refit", "broad",      "seed",        "traverse", "balance", "contact",
@@ -34,7 +34,7 @@ inline constexpr std::array<std::string_view, 14> stage_names{
 
 enum class Command { launch, upload, download, clear, wait, host_work };
 
-/// One command, or one stretch of host work, as it ran. Times in nanoseconds.
+/// One executed command, or one span of host work. Times in nanoseconds.
 struct Event {
     Command command = Command::launch;
     Stage stage = Stage::write;
@@ -42,16 +42,16 @@ struct Event {
     std::uint64_t bytes = 0;  ///< moved by transfers and clears
     std::uint64_t groups = 0; ///< launches: work-groups
     std::uint32_t group_size = 0;
-    std::int64_t host_begin_ns = -1;     ///< the host's steady clock when the call began
+    std::int64_t host_begin_ns = -1;     ///< the host's steady clock at the start of the call
     std::int64_t host_ns = 0;            ///< host time inside the call
     std::int64_t device_ns = -1;         ///< from the API's events; -1 when not measured
-    std::int64_t begin_ns = -1;          ///< device clock at the begin; -1 when not measured
+    std::int64_t begin_ns = -1;          ///< device clock at the start; -1 when not measured
     std::uint64_t ticket = 0;            ///< the adaptor's handle for its timing event; 0 = none
     bool blocked = false;                ///< the host waited for the device in this call
-    const KernelFacts* kernel = nullptr; ///< of launches: what was launched; lives as long as the device
+    const KernelFacts* kernel = nullptr; ///< launches: the kernel; valid as long as the device
 };
 
-/// What ran since the last finish, in order of submission.
+/// The events since the last finish(), in order of submission.
 struct Trace {
     std::vector<Event> events;
 };

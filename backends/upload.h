@@ -5,7 +5,8 @@
 
 namespace tandem {
 
-/// A new buffer that holds `bytes`, booked under Stage::write. Throws OutOfMemory or DeviceError.
+/// Creates a buffer with the content `bytes`; the upload counts as Stage::write. Throws OutOfMemory or
+/// DeviceError.
 inline Buffer uploaded(Device& device, std::span<const std::byte> bytes, std::string_view label) {
     auto buffer = device.allocate(bytes.size(), label);
     const StageScope scope(device, Stage::write);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What host-compiled kernels need from outside their namespaces; included once before them.
+// Definitions that host-compiled kernels need outside their namespaces; included once before them.
 #pragma once
 
 #include "backends/device.h"
@@ -18,7 +18,7 @@ using ulong = unsigned long;
 
 namespace tandem::host {
 
-// Functions here are always inlined: files for processors of some kinds must not leave any for all
+// Functions in this file are always inlined: a copy compiled for newer processors must not serve all others
 // (tests/levels.sh).
 
 /// The work-group that a thread runs, and whether other threads run groups of the same launch.
@@ -26,19 +26,20 @@ inline constinit thread_local uint group_id = 0;
 inline constinit thread_local uint group_count = 1;
 inline constinit thread_local bool in_parallel = false;
 
-/// Of memory that all work-groups share.
+/// Adds to memory that all work-groups share.
 [[gnu::always_inline]] inline uint fetch_add(uint* pointer, uint value) {
     if (in_parallel) return __atomic_fetch_add(pointer, value, __ATOMIC_RELAXED);
     return std::exchange(*pointer, *pointer + value);
 }
 
-/// Of a work-group's own memory.
+/// Adds to a work-group's own memory.
 [[gnu::always_inline]] inline uint fetch_add_locally(uint* pointer, uint value) {
     return std::exchange(*pointer, *pointer + value);
 }
 
-/// The sum rounded down and up, from operations that round to nearest: what was rounded off is a number of
-/// the same kind (Knuth's exact sum, Muller et al. 2018, 4.3), and its sign says on which side the sum is.
+/// The rounding error of a sum, exact in the same type (Knuth's exact sum, Muller et al. 2018, 4.3). Its sign
+/// gives the direction of the exact sum, so that add_down and add_up need only operations that round to
+/// nearest.
 template<class Real>
 [[gnu::always_inline]] inline Real rounded_off(Real a, Real b, Real sum) {
     const Real of_b = sum - a;
@@ -64,10 +65,10 @@ struct HostBuffer : Buffer::Impl {
     std::byte* data = nullptr;
 };
 
-/// A define that the host reads at run time instead of compiling a variant of it.
+/// A define that the host reads at run time instead of compiling one variant per value.
 struct RuntimeDefine {
     const char* name;
-    void (*set)(long value); ///< for kernels that the calling thread runs from now on
+    void (*set)(long value); ///< for the later kernels of the calling thread
     long initial;            ///< the kernel's default
 };
 
@@ -79,7 +80,7 @@ struct HostKernel {
     void (*run)(std::span<const Argument>);
     std::size_t argument_count;
     std::span<const RuntimeDefine> runtime;
-    int level; ///< x86-64-v2, -v3 or -v4, whose instructions it has; 0: those of any processor
+    int level; ///< of its instructions: x86-64-v2, -v3 or -v4; 0: any processor
 };
 
 /// Kernels of the project by variant (generated).
@@ -92,8 +93,8 @@ void add_host_kernels(std::span<const std::span<const HostKernel>> variants);
 template<class T>
 T argument_as(const Argument& argument) {
     if constexpr (std::is_pointer_v<T>) {
-        // A kernel's parameters and a launch's arguments are two texts of the project; nothing is thrown
-        // here.
+        // The project writes both the kernel's parameters and the launch's arguments, so a mismatch is no
+        // user error and nothing is thrown.
         return reinterpret_cast<T>(
             static_cast<HostBuffer*>(*std::get_if<Buffer::Impl*>(&argument.value()))->data);
     } else {

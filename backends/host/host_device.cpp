@@ -30,10 +30,10 @@ std::uint64_t physical_memory() {
            * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
 }
 
-/// The level of the processor's instructions: 2, 3 or 4 of x86-64; 0 elsewhere.
+/// The processor's level of x86-64: 2, 3 or 4; 0 below it and on other architectures.
 int processor_level() {
 #if defined(__x86_64__) && defined(__clang__)
-    // Older clang knows no names of levels: what sets the processors of each apart.
+    // Older clang does not accept the names of levels, so the features that separate them are tested.
     if (!__builtin_cpu_supports("sse4.2") || !__builtin_cpu_supports("popcnt")) return 0;
     if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi2"))
         return 2;
@@ -80,7 +80,7 @@ private:
     std::shared_ptr<Buffer::Impl> do_allocate(std::size_t bytes) override {
         auto buffer = std::make_shared<HostBuffer>();
         try {
-            // Without values: rooms are larger than what most frames fill, and pages come at first use.
+            // Uninitialised: capacities are larger than most frames need, and pages are mapped at first use.
             buffer->storage = std::make_unique_for_overwrite<std::byte[]>(bytes);
         } catch (const std::bad_alloc&) {
             refuse(bytes);
@@ -120,7 +120,7 @@ private:
             throw DeviceError(fmt::format("host: kernel '{}' takes {} arguments, got {}", impl.row->entry,
                                           impl.row->argument_count, arguments.size()));
         return timed([&] {
-            const auto begun = run_alone(impl, grid.groups, arguments);
+            const auto begun = run_serially(impl, grid.groups, arguments);
             if (begun == grid.groups) return;
             ForkJoin edges;
             const auto work = [&](const Groups& groups) {
@@ -133,27 +133,27 @@ private:
 
     using Groups = tbb::blocked_range<std::uint64_t>;
 
-    /// Some of a launch's groups, one after the other on the calling thread.
+    /// Runs some groups of a launch in order on the calling thread.
     static void run_groups(const HostKernelImpl& kernel, std::uint64_t count, const Groups& groups,
-                           std::span<const Argument> arguments, bool others) {
+                           std::span<const Argument> arguments, bool parallel) {
         for (const auto& [set, value] : kernel.runtime) set(value);
         group_count = static_cast<uint>(count);
-        in_parallel = others;
+        in_parallel = parallel;
         for (auto group = groups.begin(); group != groups.end(); ++group) {
             group_id = static_cast<uint>(group);
             kernel.row->run(arguments);
         }
     }
 
-    /// The first groups of a launch on the calling thread, all of them if it has to do everything, or if they
-    /// take no longer than waking others would. Returns how many have run.
-    std::uint64_t run_alone(const HostKernelImpl& kernel, std::uint64_t count,
-                            std::span<const Argument> arguments) const {
-        constexpr auto most = std::chrono::microseconds(50);
+    /// Runs the first groups of a launch on the calling thread and returns how many. Runs all of them with
+    /// one thread, or when they take less time than waking other threads.
+    std::uint64_t run_serially(const HostKernelImpl& kernel, std::uint64_t count,
+                               std::span<const Argument> arguments) const {
+        constexpr auto wake_time = std::chrono::microseconds(50);
         const auto step = threads() == 1 ? count : std::max<std::uint64_t>(1, count / 256);
         const auto begin = Clock::now();
         std::uint64_t done = 0;
-        while (done < count && (done == 0 || Clock::now() - begin < most)) {
+        while (done < count && (done == 0 || Clock::now() - begin < wake_time)) {
             const auto next = std::min(done + step, count);
             run_groups(kernel, count, {done, next}, arguments, false);
             done = next;
@@ -167,15 +167,16 @@ private:
         const auto wanted = threads == 0 ? tbb::info::default_concurrency() : static_cast<int>(threads);
         if (wanted == this->threads()) return;
         arena_.terminate();
-        // More threads than cores are the asker's to have: without this oneTBB has none for them, and says
-        // so.
-        more_.reset();
+        // More threads than cores may be requested. Without this control oneTBB does not provide them, and
+        // warns.
+        thread_limit_.reset();
         if (wanted > tbb::info::default_concurrency())
-            more_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(wanted));
+            thread_limit_.emplace(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(wanted));
         arena_.initialize(wanted);
     }
 
-    void do_follow(void*) override {} // what is called has been done
+    void do_follow(void*) override {} // every call completes before it returns
     void do_finish() override {}
     void do_set_clocks(Clocks) override {}
 
@@ -186,7 +187,7 @@ private:
     }
 
     [[noreturn]] void refuse(std::size_t bytes) const {
-        throw OutOfMemory(fmt::format("host: {} bytes asked for, {} in use, and the machine has {}", bytes,
+        throw OutOfMemory(fmt::format("host: {} bytes requested, {} in use, and the machine has {}", bytes,
                                       bytes_allocated(), info_.global_bytes));
     }
 
@@ -205,9 +206,9 @@ private:
         return intervals_.size();
     }
 
-    int level_; ///< of the instructions that kernels may have
+    int level_; ///< of the instructions that kernels may use
     DeviceInfo info_ = describe(level_);
-    std::optional<tbb::global_control> more_;
+    std::optional<tbb::global_control> thread_limit_;
     tbb::task_arena arena_{tbb::info::default_concurrency()};
     std::vector<std::pair<std::int64_t, std::int64_t>> intervals_;
 };
@@ -230,7 +231,7 @@ std::vector<std::span<const HostKernel>>& known_variants() {
     return all;
 }
 
-/// The one with most instructions of those that the device may use.
+/// The kernel with the highest level that the device may use.
 const HostKernel* find_row(std::string_view source, std::string_view entry, std::string_view fixed,
                            int level) {
     const HostKernel* best = nullptr;
@@ -248,8 +249,8 @@ std::shared_ptr<Kernel::Impl> HostDevice::do_compile(const KernelSource& source,
     const auto* row = find_row(source.name, entry, fixed, level_);
     if (!row)
         throw DeviceError(
-            fmt::format("host: kernel '{}' of {} is not compiled for {}; the host has the K that setting k "
-                        "lists, in PRECISION 32 and 64",
+            fmt::format("host: kernel '{}' of {} is not compiled for {}; the host has the values of setting "
+                        "k, in PRECISION 32 and 64",
                         entry, source.name, fixed));
     auto impl = std::make_shared<HostKernelImpl>();
     impl->row = row;
@@ -283,16 +284,16 @@ std::set<int> compiled_levels() {
     return levels;
 }
 
-std::unique_ptr<Device> make_device(int most_level) {
+std::unique_ptr<Device> make_device(int max_level) {
     const auto levels = compiled_levels();
     if (levels.empty()) return std::make_unique<HostDevice>(0);
-    const int most = std::min(most_level, processor_level());
-    const auto above = levels.upper_bound(most);
+    const int level = std::min(max_level, processor_level());
+    const auto above = levels.upper_bound(level);
     if (above == levels.begin())
-        throw DeviceError(
-            fmt::format("host: its kernels are compiled for x86-64-v{} and this is level {}; build with "
-                        "-DTANDEM_LEVELS=\"2;3;4\" for any processor",
-                        *above, most));
+        throw DeviceError(fmt::format(
+            "host: its kernels are compiled for x86-64-v{} and the available level is {}; build with "
+            "-DTANDEM_LEVELS=\"2;3;4\" for any processor",
+            *above, level));
     return std::make_unique<HostDevice>(*std::prev(above));
 }
 

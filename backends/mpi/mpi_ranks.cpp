@@ -14,7 +14,7 @@ namespace tandem {
 
 namespace {
 
-enum Tag { exchanged = 1, passed, there };
+enum Tag { exchange_tag = 1, send_tag, device_tag };
 
 void check(int code, std::string_view call) {
     if (code == MPI_SUCCESS) return;
@@ -26,10 +26,10 @@ void check(int code, std::string_view call) {
                                             : std::string_view("unknown error")));
 }
 
-/// Asked of the library that runs, whatever it was when this was compiled. One that does not know it of
-/// itself, as Open MPI over a UCX that reaches GPUs, is told by the environment.
+/// Queried at run time, because the library may differ from the one at compile time. TANDEM_MPI_CUDA
+/// overrides the answer of a library that does not report it, such as Open MPI over a UCX with GPU support.
 bool is_cuda_aware() {
-    if (const auto* said = std::getenv("TANDEM_MPI_CUDA")) return std::string_view(said) == "1";
+    if (const auto* setting = std::getenv("TANDEM_MPI_CUDA")) return std::string_view(setting) == "1";
     using Query = int (*)();
     const auto query = reinterpret_cast<Query>(dlsym(RTLD_DEFAULT, "MPIX_Query_cuda_support"));
     return query != nullptr && query() == 1;
@@ -37,7 +37,7 @@ bool is_cuda_aware() {
 
 class MpiRanks final : public Ranks {
 public:
-    MpiRanks(MPI_Comm communicator, std::size_t most_at_once) : most_at_once_(most_at_once) {
+    MpiRanks(MPI_Comm communicator, std::size_t max_piece_bytes) : max_piece_bytes_(max_piece_bytes) {
         check(MPI_Comm_dup(communicator, &communicator_), "MPI_Comm_dup");
         check(MPI_Comm_set_errhandler(communicator_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
         check(MPI_Comm_rank(communicator_, &rank_), "MPI_Comm_rank");
@@ -55,23 +55,23 @@ public:
     void exchange_device(std::span<const Piece> out, std::span<const Piece> in) override;
     void send(int to, std::span<const std::byte> bytes) override;
     Received receive() override;
-    bool is_there() override;
+    bool probe() override;
     [[noreturn]] void abort(int code) override {
         MPI_Abort(communicator_, code);
-        std::_Exit(code); // MPI_Abort is not declared not to return
+        std::_Exit(code); // MPI_Abort is not declared [[noreturn]]
     }
 
 private:
-    std::vector<std::uint64_t> sizes_to_all(const std::vector<Bytes>& out);
+    std::vector<std::uint64_t> exchange_sizes(const std::vector<Bytes>& out);
 
-    /// work(offset, count) for each piece of so many bytes.
+    /// Calls work(offset, count) for each piece of at most max_piece_bytes_ bytes.
     template<class Work>
     void in_pieces(std::size_t bytes, const Work& work) const {
-        for (std::size_t offset = 0; offset < bytes; offset += most_at_once_)
-            work(offset, static_cast<int>(std::min(bytes - offset, most_at_once_)));
+        for (std::size_t offset = 0; offset < bytes; offset += max_piece_bytes_)
+            work(offset, static_cast<int>(std::min(bytes - offset, max_piece_bytes_)));
     }
 
-    const std::size_t most_at_once_;
+    const std::size_t max_piece_bytes_;
     MPI_Comm communicator_ = MPI_COMM_NULL;
     int rank_ = 0, size_ = 1;
 };
@@ -85,7 +85,8 @@ void MpiRanks::broadcast(Bytes& bytes, int from) {
     });
 }
 
-/// In as many rounds as the counts of one call cannot hold what all gave; each takes as much of everyone.
+/// Gathers in several rounds when the total exceeds the counts of one call. Each round takes equally much of
+/// every rank.
 std::vector<Ranks::Bytes> MpiRanks::gather_to_all(std::span<const std::byte> own) {
     const auto ranks = static_cast<std::size_t>(size_);
     const std::uint64_t length = own.size();
@@ -94,7 +95,8 @@ std::vector<Ranks::Bytes> MpiRanks::gather_to_all(std::span<const std::byte> own
           "MPI_Allgather");
     const auto total = std::accumulate(lengths.begin(), lengths.end(), std::uint64_t{0});
     const auto longest = std::ranges::max(lengths);
-    const auto piece = total <= most_at_once_ ? longest : std::max<std::uint64_t>(most_at_once_ / ranks, 1);
+    const auto piece =
+        total <= max_piece_bytes_ ? longest : std::max<std::uint64_t>(max_piece_bytes_ / ranks, 1);
     std::vector<Bytes> parts(ranks);
     for (std::size_t i = 0; i < ranks; ++i) parts[i].reserve(lengths[i]);
     std::vector<int> counts(ranks), starts(ranks);
@@ -117,24 +119,24 @@ std::vector<Ranks::Bytes> MpiRanks::gather_to_all(std::span<const std::byte> own
     return parts;
 }
 
-/// How many bytes each rank has for this one.
-std::vector<std::uint64_t> MpiRanks::sizes_to_all(const std::vector<Bytes>& out) {
-    std::vector<std::uint64_t> sizes(out.size()), coming(out.size());
+/// Exchanges the sizes of messages; returns the number of bytes that each rank sends to this one.
+std::vector<std::uint64_t> MpiRanks::exchange_sizes(const std::vector<Bytes>& out) {
+    std::vector<std::uint64_t> sizes(out.size()), incoming(out.size());
     for (std::size_t i = 0; i < out.size(); ++i) sizes[i] = out[i].size();
-    check(MPI_Alltoall(sizes.data(), 1, MPI_UINT64_T, coming.data(), 1, MPI_UINT64_T, communicator_),
+    check(MPI_Alltoall(sizes.data(), 1, MPI_UINT64_T, incoming.data(), 1, MPI_UINT64_T, communicator_),
           "MPI_Alltoall");
-    return coming;
+    return incoming;
 }
 
 std::vector<Ranks::Bytes> MpiRanks::exchange(const std::vector<Bytes>& out) {
-    const auto coming = sizes_to_all(out);
+    const auto incoming = exchange_sizes(out);
     std::vector<Bytes> in(out.size());
     std::vector<MPI_Request> requests;
     for (int other = 0; other < size_; ++other) {
         auto& bytes = in[static_cast<std::size_t>(other)];
-        bytes.resize(coming[static_cast<std::size_t>(other)]);
+        bytes.resize(incoming[static_cast<std::size_t>(other)]);
         in_pieces(bytes.size(), [&](std::size_t offset, int count) {
-            check(MPI_Irecv(bytes.data() + offset, count, MPI_BYTE, other, exchanged, communicator_,
+            check(MPI_Irecv(bytes.data() + offset, count, MPI_BYTE, other, exchange_tag, communicator_,
                             &requests.emplace_back()),
                   "MPI_Irecv");
         });
@@ -142,7 +144,7 @@ std::vector<Ranks::Bytes> MpiRanks::exchange(const std::vector<Bytes>& out) {
     for (int other = 0; other < size_; ++other) {
         const auto& bytes = out[static_cast<std::size_t>(other)];
         in_pieces(bytes.size(), [&](std::size_t offset, int count) {
-            check(MPI_Isend(bytes.data() + offset, count, MPI_BYTE, other, exchanged, communicator_,
+            check(MPI_Isend(bytes.data() + offset, count, MPI_BYTE, other, exchange_tag, communicator_,
                             &requests.emplace_back()),
                   "MPI_Isend");
         });
@@ -161,8 +163,8 @@ void MpiRanks::exchange_device(std::span<const Piece> out, std::span<const Piece
     const auto begin = [&](std::span<const Piece> pieces, auto call, std::string_view name) {
         for (const auto& piece : pieces)
             in_pieces(piece.bytes, [&](std::size_t offset, int count) {
-                check(call(static_cast<std::byte*>(piece.memory) + offset, count, MPI_BYTE, piece.rank, there,
-                           communicator_, &requests.emplace_back()),
+                check(call(static_cast<std::byte*>(piece.memory) + offset, count, MPI_BYTE, piece.rank,
+                           device_tag, communicator_, &requests.emplace_back()),
                       name);
             });
     };
@@ -173,34 +175,35 @@ void MpiRanks::exchange_device(std::span<const Piece> out, std::span<const Piece
 }
 
 void MpiRanks::send(int to, std::span<const std::byte> bytes) {
-    if (bytes.size() > most_at_once_)
-        throw RanksError(fmt::format("MPI: a message of {} bytes; at most {}", bytes.size(), most_at_once_));
-    check(MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, passed, communicator_),
+    if (bytes.size() > max_piece_bytes_)
+        throw RanksError(fmt::format("MPI: a message of {} bytes is too long; the limit is {}", bytes.size(),
+                                     max_piece_bytes_));
+    check(MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, send_tag, communicator_),
           "MPI_Send");
 }
 
 Ranks::Received MpiRanks::receive() {
     MPI_Status status;
-    check(MPI_Probe(MPI_ANY_SOURCE, passed, communicator_, &status), "MPI_Probe");
+    check(MPI_Probe(MPI_ANY_SOURCE, send_tag, communicator_, &status), "MPI_Probe");
     int length = 0;
     check(MPI_Get_count(&status, MPI_BYTE, &length), "MPI_Get_count");
     Received message{status.MPI_SOURCE, Bytes(static_cast<std::size_t>(length))};
-    check(MPI_Recv(message.bytes.data(), length, MPI_BYTE, message.from, passed, communicator_,
+    check(MPI_Recv(message.bytes.data(), length, MPI_BYTE, message.from, send_tag, communicator_,
                    MPI_STATUS_IGNORE),
           "MPI_Recv");
     return message;
 }
 
-bool MpiRanks::is_there() {
+bool MpiRanks::probe() {
     int flag = 0;
-    check(MPI_Iprobe(MPI_ANY_SOURCE, passed, communicator_, &flag, MPI_STATUS_IGNORE), "MPI_Iprobe");
+    check(MPI_Iprobe(MPI_ANY_SOURCE, send_tag, communicator_, &flag, MPI_STATUS_IGNORE), "MPI_Iprobe");
     return flag != 0;
 }
 
 } // namespace
 
-std::unique_ptr<Ranks> mpi_ranks(MPI_Comm communicator, std::size_t most_at_once) {
-    return std::make_unique<MpiRanks>(communicator, most_at_once);
+std::unique_ptr<Ranks> mpi_ranks(MPI_Comm communicator, std::size_t max_piece_bytes) {
+    return std::make_unique<MpiRanks>(communicator, max_piece_bytes);
 }
 
 std::string mpi_version() {

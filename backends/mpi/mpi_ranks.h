@@ -3,7 +3,7 @@
 
 #include "backends/ranks.h"
 
-// The bindings for C++, which the standard has given up, bring warnings and symbols of their own.
+// The C++ bindings, which the standard has removed, add warnings and symbols of their own.
 #ifndef OMPI_SKIP_MPICXX
 #define OMPI_SKIP_MPICXX
 #endif
@@ -18,12 +18,12 @@
 namespace tandem {
 
 /// The ranks of a communicator, which is duplicated, so that messages do not mix with the application's. MPI
-/// has been initialised, by the thread that uses these or with MPI_THREAD_SERIALIZED; the ranks die before
-/// MPI_Finalize. Counts of MPI's calls are ints: longer messages go in pieces of `most_at_once` bytes, less
-/// than 2^31, those of send() aside, which throws. Throws RanksError.
-std::unique_ptr<Ranks> mpi_ranks(MPI_Comm communicator, std::size_t most_at_once = std::size_t{1} << 30);
+/// must be initialised by the thread that uses them, or with MPI_THREAD_SERIALIZED. Destroy the ranks before
+/// MPI_Finalize. Longer messages are split into pieces of `max_piece_bytes` bytes, less than 2^31, because
+/// MPI counts in int. send() does not split and throws instead. Throws RanksError.
+std::unique_ptr<Ranks> mpi_ranks(MPI_Comm communicator, std::size_t max_piece_bytes = std::size_t{1} << 30);
 
-/// "Open MPI v4.1.4, ..." as the library calls itself, one line.
+/// The library's own name and version in one line, such as "Open MPI v4.1.4".
 std::string mpi_version();
 
 } // namespace tandem

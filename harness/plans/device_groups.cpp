@@ -126,7 +126,8 @@ std::vector<BackendReport> open_backends(std::span<const std::string> names,
     const bool known =
         std::ranges::all_of(names, [&](const auto& name) { return all_available(name, backends); })
         && std::ranges::all_of(require, [&](const auto& name) { return is_available(name, backends); });
-    return known ? std::move(backends) : with_others(std::move(backends)); // the error message lists all
+    return known ? std::move(backends)
+                 : add_missing_backends(std::move(backends)); // the error message lists all
 }
 
 std::vector<DeviceGroup> choose_devices(const std::vector<BackendReport>& backends,

@@ -147,20 +147,20 @@ TEST(Ranks, MessagesArriveWholeAndInOrder) {
     }
     Bytes together(1);
     ranks->broadcast(together, 0);
-    EXPECT_FALSE(ranks->is_there());
+    EXPECT_FALSE(ranks->probe());
 }
 
 TEST(Ranks, AMessageIsThereOnceItWasSent) {
     if (ranks->size() == 1) GTEST_SKIP() << "nobody to send to";
-    EXPECT_FALSE(ranks->is_there());
+    EXPECT_FALSE(ranks->probe());
     ranks->gather_to_all({});
     if (ranks->rank() == 1) ranks->send(0, bytes_of(1, 9));
     if (!ranks->is_first()) return;
-    while (!ranks->is_there()) {}
+    while (!ranks->probe()) {}
     const auto message = ranks->receive();
     EXPECT_EQ(message.from, 1);
     EXPECT_EQ(message.bytes, bytes_of(1, 9));
-    EXPECT_FALSE(ranks->is_there());
+    EXPECT_FALSE(ranks->probe());
 }
 
 } // namespace

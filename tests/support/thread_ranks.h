@@ -61,7 +61,7 @@ private:
         void exchange_device(std::span<const Piece>, std::span<const Piece>) override { refuse(); }
         void send(int, std::span<const std::byte>) override { refuse(); }
         Received receive() override { refuse(); }
-        bool is_there() override { return false; }
+        bool probe() override { return false; }
         void abort(int code) override { std::_Exit(code); }
 
     private:

@@ -76,7 +76,7 @@ int end_with_rank_0(Ranks& ranks, int code) {
         return code;
     }
     const Interrupt interrupt; // rank 0 alone reacts to a signal
-    while (!ranks.is_there()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    while (!ranks.probe()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return MessageReader(ranks.receive().bytes).read<int>();
 }
 
