@@ -12,8 +12,8 @@
 
 namespace tandem::testing_support {
 
-/// All devices, with guarded buffers: a session's frame fails where a kernel has written past the end of one.
-/// The address sanitizer sees that by itself, and more of it.
+/// All devices, with guarded buffers: a frame fails if a kernel writes past the end of a buffer. The address
+/// sanitizer detects this without guards.
 inline std::vector<BackendReport> guarded_backends() {
     auto backends = discover();
 #if !defined(__SANITIZE_ADDRESS__)
@@ -31,7 +31,7 @@ inline Device& device(std::string_view id) {
     throw DeviceError("no device " + std::string(id));
 }
 
-/// Host and opencl:0, without which the tests fail, and every other device there is.
+/// Host and opencl:0, which the tests require, and every other available device.
 inline std::vector<std::string> device_names() {
     std::vector<std::string> names{"host", "opencl:0"};
     for (const auto& backend : discover())
@@ -41,7 +41,7 @@ inline std::vector<std::string> device_names() {
     return names;
 }
 
-/// What a test over device_names() calls one of them.
+/// Label of a device in the name of a parameterized test.
 inline std::string device_label(const std::string& device) {
     std::string name = device == "opencl:0" ? "opencl" : device;
     name.erase(std::remove(name.begin(), name.end(), ':'), name.end());
@@ -54,7 +54,7 @@ inline bool declares(const Traversal& traversal, std::string_view setting) {
     return std::any_of(all.begin(), all.end(), [&](const auto* p) { return p->name == setting; });
 }
 
-/// Every data path that the algorithm has.
+/// Every data path of the algorithm.
 inline std::vector<SettingTexts> residencies_of(const Traversal& traversal) {
     if (!declares(traversal, "residency")) return {{}};
     return {{{"residency", "resident"}}, {{"residency", "published"}}};
@@ -63,31 +63,31 @@ inline std::vector<SettingTexts> residencies_of(const Traversal& traversal) {
 /// Values of one setting (or of several at once, written "k=8,axes=coordinate").
 using Axis = std::vector<SettingTexts>;
 
-/// Rows such that every pair of values of any two axes stands together in at least one of them; greedy, fixed
-/// seed.
+/// Rows in which every pair of values of any two axes occurs at least once; greedy, with a fixed seed.
 inline std::vector<SettingTexts> pairwise(const std::vector<Axis>& axes) {
     using Choice = std::pair<std::size_t, std::size_t>; // axis, value
-    std::set<std::pair<Choice, Choice>> open;
+    std::set<std::pair<Choice, Choice>> uncovered;
     for (std::size_t i = 0; i < axes.size(); ++i)
         for (std::size_t j = i + 1; j < axes.size(); ++j)
             for (std::size_t a = 0; a < axes[i].size(); ++a)
-                for (std::size_t b = 0; b < axes[j].size(); ++b) open.insert({{i, a}, {j, b}});
+                for (std::size_t b = 0; b < axes[j].size(); ++b) uncovered.insert({{i, a}, {j, b}});
     Random random(7);
     std::vector<SettingTexts> rows;
-    while (!open.empty()) {
+    while (!uncovered.empty()) {
         std::vector<std::size_t> best;
         std::size_t most = 0;
         const auto covers = [&](const std::vector<std::size_t>& row) {
-            return static_cast<std::size_t>(std::count_if(open.begin(), open.end(), [&](const auto& pair) {
-                return row[pair.first.first] == pair.first.second
-                       && row[pair.second.first] == pair.second.second;
-            }));
+            return static_cast<std::size_t>(
+                std::count_if(uncovered.begin(), uncovered.end(), [&](const auto& pair) {
+                    return row[pair.first.first] == pair.first.second
+                           && row[pair.second.first] == pair.second.second;
+                }));
         };
         for (int attempt = 0; attempt < 100; ++attempt) {
             std::vector<std::size_t> row;
             for (const auto& axis : axes) row.push_back(random.next() % axis.size());
-            row[open.begin()->first.first] = open.begin()->first.second;
-            row[open.begin()->second.first] = open.begin()->second.second;
+            row[uncovered.begin()->first.first] = uncovered.begin()->first.second;
+            row[uncovered.begin()->second.first] = uncovered.begin()->second.second;
             if (const auto count = covers(row); count > most) {
                 most = count;
                 best = row;
@@ -97,7 +97,7 @@ inline std::vector<SettingTexts> pairwise(const std::vector<Axis>& axes) {
         for (std::size_t i = 0; i < axes.size(); ++i)
             settings.insert(axes[i][best[i]].begin(), axes[i][best[i]].end());
         rows.push_back(settings);
-        std::erase_if(open, [&](const auto& pair) {
+        std::erase_if(uncovered, [&](const auto& pair) {
             return best[pair.first.first] == pair.first.second
                    && best[pair.second.first] == pair.second.second;
         });
@@ -105,7 +105,7 @@ inline std::vector<SettingTexts> pairwise(const std::vector<Axis>& axes) {
     return rows;
 }
 
-/// All body pairs but fixed-fixed ones: the traversal must not need the broad phase.
+/// All body pairs except fixed-fixed ones. The traversal must not depend on the broad phase.
 inline std::vector<BodyPair> all_pairs(const Scene& scene) {
     std::vector<BodyPair> pairs;
     for (std::uint32_t a = 0; a < scene.bodies.size(); ++a)
@@ -114,7 +114,7 @@ inline std::vector<BodyPair> all_pairs(const Scene& scene) {
     return pairs;
 }
 
-/// Runs a frame among all of them, or among those that the device finds where it is to.
+/// Runs a frame on all body pairs, or on those that the device finds if the broad phase runs there.
 inline FrameResult run_among_all(Session& session, const Scene& scene, const Frame& frame) {
     if (session.settings()[parameters::broad] == Broad::device) return session.run(frame);
     return session.run(frame, all_pairs(scene));

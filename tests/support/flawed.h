@@ -11,8 +11,8 @@
 
 namespace tandem::testing_support {
 
-/// Boxes within each other: bodies 0 (fixed) and 1 rigid with one mesh, body 2 deformable with another, which
-/// moves a little in every frame. `cells` cubes along each side, of six tetrahedra.
+/// Overlapping boxes: bodies 0 (fixed) and 1 are rigid and share a mesh; body 2 is deformable, has its own
+/// mesh and moves a little in every frame. A side has `cells` cubes of six tetrahedra each.
 inline Scene boxes_scene(std::uint32_t cells, std::size_t frames) {
     Random random(cells);
     Scene scene;
@@ -33,14 +33,15 @@ inline Scene boxes_scene(std::uint32_t cells, std::size_t frames) {
     return scene;
 }
 
-/// The scene with these frames, the first of which has number `first`.
+/// The scene with these frames, numbered from `first`.
 inline Scene with_frames(Scene scene, std::vector<Frame> frames, std::size_t first = 0) {
     scene.frame_count = first + frames.size();
     scene.frame = [frames = std::move(frames), first](std::size_t index) { return frames.at(index - first); };
     return scene;
 }
 
-/// Puts a corner of the tetrahedron onto another of its corners, so that it and perhaps others are flat.
+/// Collapses a corner of the tetrahedron onto another of its corners: it and possibly its neighbours become
+/// flat.
 inline void make_flat(const Mesh& mesh, std::vector<Eigen::Vector3d>& vertices, std::uint32_t tetrahedron) {
     const auto& t = mesh.tetrahedra[tetrahedron];
     vertices[t[3]] = vertices[t[0]];
@@ -55,7 +56,7 @@ inline bool is_flat(const Mesh& mesh, const std::vector<Eigen::Vector3d>& vertic
     return !has_volume(corners);
 }
 
-/// The tetrahedra with that vertex, ascending.
+/// Tetrahedra that contain the vertex, ascending.
 inline std::vector<std::uint32_t> around(const Mesh& mesh, std::uint32_t vertex) {
     std::vector<std::uint32_t> result;
     for (std::uint32_t t = 0; t < mesh.tetrahedra.size(); ++t)
@@ -65,13 +66,13 @@ inline std::vector<std::uint32_t> around(const Mesh& mesh, std::uint32_t vertex)
     return result;
 }
 
-/// Whether a pair has a tetrahedron that the frame skips.
+/// Whether the frame skips a tetrahedron of the pair.
 inline bool is_skipped(const Frame& frame, const Pair& pair) {
-    const auto holds = [&](std::uint32_t body, std::uint32_t tetrahedron) {
+    const auto contains = [&](std::uint32_t body, std::uint32_t tetrahedron) {
         return !frame.skipped.empty()
                && std::binary_search(frame.skipped[body].begin(), frame.skipped[body].end(), tetrahedron);
     };
-    return holds(pair.body_a, pair.tet_a) || holds(pair.body_b, pair.tet_b);
+    return contains(pair.body_a, pair.tet_a) || contains(pair.body_b, pair.tet_b);
 }
 
 } // namespace tandem::testing_support

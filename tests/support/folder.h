@@ -12,7 +12,7 @@
 
 namespace tandem::testing_support {
 
-/// A test with a folder of its own.
+/// A test with its own temporary folder.
 class FolderTest : public testing::Test {
 protected:
     void SetUp() override { std::filesystem::create_directories(folder_); }
@@ -35,7 +35,7 @@ inline void write_bytes(const std::string& path, std::string_view bytes) {
     std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// What an InputError of `act` says.
+/// Message of the InputError that `act` throws.
 template<class Act>
 std::string failure_of(Act act) {
     try {

@@ -6,7 +6,7 @@
 
 namespace tandem::testing_support {
 
-/// Bytes of the heap in use; 0 under a sanitizer, whose heap is its own.
+/// Bytes of heap in use; 0 under a sanitizer, which replaces the heap.
 inline std::size_t heap() {
     const auto use = mallinfo2();
     return use.uordblks + use.hblkhd;

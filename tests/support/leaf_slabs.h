@@ -11,8 +11,9 @@
 
 namespace tandem::testing_support {
 
-/// Pairs as a scene of two bodies: the first has every a, the second every b, a tetrahedron each. Without
-/// poses the corners are world vertices, of deformable bodies; with poses they are those of the meshes.
+/// A scene of two bodies with one tetrahedron per pair: the first body has every a, the second every b.
+/// Without poses the bodies are deformable and the corners are world vertices. With poses the corners are
+/// those of the meshes.
 class PairScene {
 public:
     explicit PairScene(const std::vector<OraclePair>& pairs) : PairScene(pairs, nullptr) {}
@@ -44,7 +45,7 @@ private:
     Frame frame_;
 };
 
-/// The leaf slabs that a device makes of a PairScene.
+/// The leaf slabs that a device computes for a PairScene.
 template<class Real>
 class LeafSlabs {
 public:
@@ -75,7 +76,8 @@ public:
     Real upper(unsigned body, std::size_t pair, std::size_t axis) const {
         return slabs_[body][pair * 2 * axes_ + axes_ + axis];
     }
-    /// Whether some axis tells tetrahedron a of the first body from b of the second, by the kernels' rule.
+    /// Whether some axis separates tetrahedron a of the first body from b of the second, by the kernels'
+    /// rule.
     bool separated(std::size_t pair) const { return separated(pair, pair); }
     bool separated(std::size_t a, std::size_t b) const {
         for (std::size_t axis = 0; axis < axes_; ++axis)
@@ -85,7 +87,7 @@ public:
     }
 
 private:
-    /// Heap index of an item of a chunk: the deepest leaves hold the first items.
+    /// Heap index of an item of a chunk: the deepest leaves contain the first items.
     static std::uint32_t leaf_of(std::uint32_t item, std::uint32_t items) {
         const auto width = 1u << ceil_log2(items);
         return item + width < 2 * items ? item + width : item + width - items;
@@ -99,9 +101,9 @@ private:
     std::array<std::vector<Real>, 2> slabs_;
 };
 
-/// Pairs whose contact plane is perpendicular to an integer direction (families 1 and 2 of the hard cases):
-/// a face of one and a corner of the other, in the face's middle. All coordinates are on the coarsest lattice
-/// that keeps those near `offset` exact in Real, so that most use every digit.
+/// Pairs whose contact plane is perpendicular to an integer direction (families 1 and 2 of the hard cases): a
+/// corner of one touches the middle of a face of the other. All coordinates are on the coarsest lattice that
+/// is exact in Real near `offset`, so most of them use every digit.
 template<class Real>
 class SlabTouchMaker {
 public:
@@ -112,11 +114,11 @@ public:
           offset_(offset),
           unit_(std::ldexp(1.0, std::ilogb(offset + 2) + 1 - std::numeric_limits<Real>::digits)) {}
 
-    /// The origin of all is `offset` times `place`; `shift`: lattice units that b moves into a (out of it
-    /// when negative) along one of d's axes.
-    OraclePair touching(const Direction& d, const std::array<double, 3>& place, int shift = 0) {
+    /// The contact is near `offset` times `position`. `shift`: lattice units by which b moves into a (out of
+    /// it when negative) along one of d's axes.
+    OraclePair touching(const Direction& d, const std::array<double, 3>& position, int shift = 0) {
         for (;;) {
-            const auto contact = point(0.25, place);
+            const auto contact = point(0.25, position);
             const auto u = in_plane(d);
             const auto v = in_plane(d);
             OraclePair pair{{contact, contact, contact, contact}, {contact, contact, contact, contact}};
@@ -141,14 +143,14 @@ public:
 private:
     double lattice(double low, double high) { return unit_ * std::floor(random_.uniform(low, high) / unit_); }
 
-    std::array<double, 3> point(double spread, const std::array<double, 3>& place) {
+    std::array<double, 3> point(double spread, const std::array<double, 3>& position) {
         std::array<double, 3> p;
         for (unsigned i = 0; i < 3; ++i)
-            p[i] = unit_ * std::nearbyint(offset_ * place[i] / unit_) + lattice(-spread, spread);
+            p[i] = unit_ * std::nearbyint(offset_ * position[i] / unit_) + lattice(-spread, spread);
         return p;
     }
 
-    /// A vector with d . v = 0: the last axis of d makes up for the others.
+    /// A vector with d . v = 0: the last axis of d compensates for the other two.
     std::array<double, 3> in_plane(const Direction& d) {
         std::array<double, 3> v{};
         double sum = 0;
@@ -163,7 +165,7 @@ private:
         return v;
     }
 
-    /// Moves a corner off the plane, to the side of d's sign.
+    /// Moves a corner off the plane, to the side that `side` gives relative to d.
     void add_beside(std::array<double, 3>& corner, const Direction& d, int side) {
         std::array<double, 3> v{};
         double along = 0;
@@ -184,8 +186,8 @@ private:
         for (auto& corner : corners) corner[axis] -= d[axis] * shift * unit_;
     }
 
-    /// In lattice units around the contact: few digits, so that the determinant's sign is exact in double for
-    /// float lattices.
+    /// Coordinates relative to the contact in lattice units. They have few digits, so the determinant's sign
+    /// is exact in double for float lattices.
     TetraCorners relative(TetraCorners corners, const std::array<double, 3>& contact) const {
         for (auto& corner : corners)
             for (unsigned i = 0; i < 3; ++i) corner[i] = (corner[i] - contact[i]) / unit_;

@@ -5,7 +5,7 @@
 
 namespace tandem::testing_support {
 
-/// Limits a device's memory to what is allocated and so much more, for as long as it lives.
+/// Limits a device's memory to what is allocated plus `more` bytes, for the lifetime of the object.
 class Limited {
 public:
     Limited(Device& device, std::size_t more) : device_(device) {
@@ -25,7 +25,7 @@ inline std::unique_ptr<Session> prepare_on(Device& on, const Traversal& traversa
     return traversal.prepare(devices, scene, resolve(traversal.parameters(), {}, given, traversal.name()));
 }
 
-/// Bytes that a session takes when everything else is as small as can be.
+/// Bytes that a session needs when every capacity is minimal.
 inline std::size_t least_bytes(Device& on, const Traversal& traversal, const Scene& scene,
                                SettingTexts given) {
     for (const auto* parameter : traversal.parameters())
@@ -36,7 +36,7 @@ inline std::size_t least_bytes(Device& on, const Traversal& traversal, const Sce
     return on.bytes_allocated() - before;
 }
 
-/// What of a frame's answer may not depend on memory.
+/// The parts of a frame's answer that must not depend on memory.
 struct Answer {
     Digest pairs, contacts;
     std::array<std::uint64_t, 4> counts{};

@@ -5,8 +5,8 @@
 
 namespace tandem::testing_support {
 
-/// Whether every case is wanted, as the tests of label full say by TANDEM_LONG_FORM=1; otherwise tests of
-/// many settings take a share of them, in which each value is still there.
+/// Whether to run every case: tests of label full set TANDEM_LONG_FORM=1. Otherwise tests over many settings
+/// run a fraction of the cases, which still covers each value.
 inline bool long_form() { return std::getenv("TANDEM_LONG_FORM") != nullptr; }
 
 } // namespace tandem::testing_support

@@ -7,7 +7,7 @@
 
 namespace tandem::testing_support {
 
-/// How one of two tetrahedra lies inside the other.
+/// How one of two tetrahedra is nested in the other.
 enum class Nesting {
     concentric,
     identical,
@@ -31,8 +31,8 @@ inline const char* name(Nesting nesting) {
     return names[static_cast<unsigned>(nesting)];
 }
 
-/// The inner one's corners are means of the outer one's with eighths as weights, so that floats hold them
-/// and what is shared is shared exactly.
+/// Corners of the inner tetrahedron are means of the outer corners with weights in eighths. So floats
+/// represent them, and shared corners are shared exactly.
 class NestedMaker {
 public:
     explicit NestedMaker(std::uint64_t seed) : random_(seed) {}
@@ -55,7 +55,7 @@ public:
 private:
     using Weights = std::array<double, 4>;
 
-    /// Whether floats are certain of its volume too.
+    /// Whether its volume is also certain in float arithmetic.
     static bool is_solid(const TetraCorners& t) {
         double box = 1;
         for (unsigned k = 0; k < 3; ++k) {
@@ -100,21 +100,23 @@ private:
         }
     }
 
-    /// Four weights of at least `least` that sum to eight.
+    /// Four weights, each at least `least`, that sum to eight.
     Weights random_weights(double least) {
         Weights weights{least, least, least, least};
         for (double rest = 8 - 4 * least; rest > 0; --rest) weights[random_.next() % 4] += 1;
         return weights;
     }
 
-    static std::array<double, 3> mean(const TetraCorners& of, const Weights& w) {
+    static std::array<double, 3> mean(const TetraCorners& corners, const Weights& w) {
         std::array<double, 3> result;
         for (unsigned k = 0; k < 3; ++k)
-            result[k] = (w[0] * of[0][k] + w[1] * of[1][k] + w[2] * of[2][k] + w[3] * of[3][k]) / 8;
+            result[k] =
+                (w[0] * corners[0][k] + w[1] * corners[1][k] + w[2] * corners[2][k] + w[3] * corners[3][k])
+                / 8;
         return result;
     }
 
-    /// The last corner to a 64th of its height above the others.
+    /// Moves the last corner to a 64th of its height above the other three.
     static void flatten(TetraCorners& t) {
         for (unsigned k = 0; k < 3; ++k) {
             const double below = (t[0][k] + t[1][k] + 2 * t[2][k]) / 4;
@@ -130,7 +132,7 @@ private:
     Random random_;
 };
 
-/// How far b has to go along the unit vector n to do no more than touch a, in long double.
+/// Distance by which b has to move along the unit vector n so that it only touches a; in long double.
 inline double translation_along(const OraclePair& pair, const std::array<double, 3>& n) {
     const auto along = [&n](const std::array<double, 3>& p) {
         return static_cast<long double>(n[0]) * p[0] + static_cast<long double>(n[1]) * p[1]

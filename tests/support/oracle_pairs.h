@@ -5,7 +5,7 @@
 
 namespace tandem::testing_support {
 
-/// Random pairs near each other, without known answers.
+/// Families of random pairs that are close to each other and whose relation is not known.
 enum class Family {
     generic,
     far_origin,
@@ -29,7 +29,8 @@ inline double as_float(double x) {
     return static_cast<double>(narrow);
 }
 
-/// Corner 3 of b goes onto the face of a's corners 0, 1, 2, rounded; the rest of b to the side a is not on.
+/// Moves corner 3 of b onto the face of a's corners 0, 1, 2, rounded, and the rest of b to the side opposite
+/// to a.
 inline void put_on_face(OraclePair& pair) {
     auto& [a, b] = pair;
     const auto above = [&](const std::array<double, 3>& corner) {

@@ -10,7 +10,7 @@
 
 namespace tandem::testing_support {
 
-/// Two tetrahedra whose coordinates are floats.
+/// Two tetrahedra whose coordinates are representable as float.
 struct OraclePair {
     TetraCorners a, b;
 };
@@ -40,17 +40,17 @@ OraclePair changed(OraclePair pair, Change change) {
     return pair;
 }
 
-/// Pairs that touch by construction: a plane, one tetrahedron on each side of it, a corner, an edge or a face
-/// of each in it, all through one point of it; then mapped by an integer matrix, moved and shuffled. Integers
-/// of at most 24 bits throughout, so floats hold them.
+/// Pairs that touch by construction. Each has a plane, a tetrahedron on each side of it, and a corner, an
+/// edge or a face of each tetrahedron in it, all through one common point. An integer matrix then maps the
+/// pair, which is translated and shuffled. All integers have at most 24 bits, so they are exact as floats.
 class TouchMaker {
 public:
     explicit TouchMaker(std::uint64_t seed) : random_(seed) {}
 
-    /// Of a: 1 a corner, 2 an edge, 3 a face in the plane; of b likewise. `largest`: matrix entries.
-    OraclePair touching(unsigned of_a, unsigned of_b, int largest) {
+    /// Number of corners in the plane: 1 a corner, 2 an edge, 3 a face. `largest` bounds the matrix entries.
+    OraclePair touching(unsigned corners_a, unsigned corners_b, int largest) {
         for (;;) {
-            OraclePair pair{side(of_a, -1), side(of_b, 1)};
+            OraclePair pair{side(corners_a, -1), side(corners_b, 1)};
             std::array<std::array<double, 3>, 3> map{};
             for (auto& row : map)
                 for (auto& x : row) x = integer(-largest, largest);
@@ -65,18 +65,19 @@ public:
         }
     }
 
-    /// Two faces in one plane around a common point inside both, then b moved by one unit, the distance of
-    /// neighbouring floats there, along the axis nearest the normal: away from a (+1) or into it (-1).
+    /// Two coplanar faces around a common interior point. Then b moves by one unit, the distance between
+    /// neighbouring floats at that magnitude, along the axis nearest to the normal: away from a (+1) or into
+    /// it (-1).
     OraclePair one_ulp(int direction) {
         base_ = 1 << 23 | 1 << 22;
-        least_stretch_ = 0x1p45; // one unit is then below 2^-10 of what it was before the map
+        least_stretch_ = 0x1p45; // one unit is then below 2^-10 of its length before the map
         auto pair = touching(3, 3, 1 << 17);
         base_ = 0;
         least_stretch_ = 1;
         const auto smaller = [](double p, double q) { return std::abs(p) < std::abs(q); };
         const auto axis = std::max_element(normal_.begin(), normal_.end(), smaller) - normal_.begin();
         const auto component = static_cast<unsigned>(axis);
-        double along = 0; // of the normal, from a to b
+        double along = 0; // component along the normal, from a to b
         for (unsigned i = 0; i < 4; ++i)
             for (unsigned k = 0; k < 3; ++k) along += normal_[k] * (pair.b[i][k] - pair.a[i][k]);
         const bool outwards = (along > 0) == (normal_[component] > 0);
@@ -84,7 +85,7 @@ public:
         return pair;
     }
 
-    /// b is a halved about its centroid.
+    /// b is a scaled by one half about its centroid.
     OraclePair nested() {
         for (;;) {
             OraclePair pair;
@@ -120,7 +121,8 @@ private:
     }
     double offset() { return base_ == 0 ? integer(-1000, 1000) : base_; }
 
-    /// `level` corners in the plane x = 0 with the origin between them, the others at x of that sign.
+    /// `level` corners lie in the plane x = 0 with the origin between them; the remaining x have the sign
+    /// `sign`.
     TetraCorners side(unsigned level, double sign) {
         TetraCorners result{};
         for (auto& corner : result) corner = {sign * integer(1, 4), integer(-4, 4), integer(-4, 4)};
@@ -155,7 +157,7 @@ private:
     Random random_;
     std::array<double, 3> normal_{};
     double base_ = 0;
-    double least_stretch_ = 1; ///< of the map's determinant
+    double least_stretch_ = 1; ///< lower bound for the map's determinant
 };
 
 } // namespace tandem::testing_support

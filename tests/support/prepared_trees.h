@@ -16,7 +16,7 @@ struct PreparedTrees {
         bodies.update(frame);
         trees.refit(frame);
     }
-    /// All nodes as the last refit made them, and all volumes.
+    /// All nodes after the last refit, and all body volumes.
     template<class Real>
     std::vector<Real> nodes() const {
         return reals<Real>(trees.nodes(), trees.slots());

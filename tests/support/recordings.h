@@ -8,7 +8,7 @@
 
 namespace tandem::testing_support {
 
-/// A recording of a fixed, a deformable and two rigid bodies whose frames take little room.
+/// A recording of a fixed, a deformable and two rigid bodies, with small frames.
 struct SmallRecording {
     SmallRecording() : scene(crowd(3, 4, 2)) {
         Mesh tiny = scene.meshes[2];
@@ -17,7 +17,7 @@ struct SmallRecording {
         header = recording_of("pile:bodies=4", scene, 0.01);
     }
 
-    /// Frame i of a motion without end.
+    /// Frame i; any i is valid.
     Frame frame(std::size_t i) const {
         Random random(100 + i);
         Frame result = scene.frame(0);
@@ -27,7 +27,7 @@ struct SmallRecording {
         for (int v = 0; v < 4; ++v) result.deformed[1].push_back(random.direction());
         return result;
     }
-    /// Frames `first` up to `last`, with steps from 10 times the frame's number and times from its hundredth.
+    /// Appends frames `first` up to `last`: step 10 i and time 0.01 i for frame i.
     void append(RecordingWriter& writer, std::size_t first, std::size_t last) const {
         for (auto i = first; i < last; ++i) writer.append(10 * i, 0.01 * static_cast<double>(i), frame(i));
     }
@@ -40,7 +40,7 @@ struct SmallRecording {
     RecordingHeader header;
 };
 
-/// The frames of a recording that can be read, up to the first that cannot.
+/// Number of frames of a recording; throws if one of them is not readable.
 inline std::size_t readable_frames(const Recording& recording, const Scene& scene) {
     const auto fixed = scene.frame(0).poses;
     for (std::size_t i = 0; i < recording.frames(); ++i) recording.read(i, fixed);

@@ -3,8 +3,8 @@
 
 namespace tandem::testing_support {
 
-/// Whether everything here is sanitized: the library's host kernels are those of k = 8 and 18 only, and
-/// everything takes long, so that a part of the pairs has to do.
+/// Whether the build is sanitized. The library then contains host kernels for k = 8 and 18 only, and
+/// everything is slow, so tests use a subset of the pairs.
 constexpr bool sanitized() {
 #ifdef TANDEM_SANITIZED
     return true;

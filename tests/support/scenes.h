@@ -8,7 +8,7 @@
 
 namespace tandem::testing_support {
 
-/// What make_scene() says of a specification that it refuses.
+/// Message of make_scene() for a specification that it rejects.
 inline std::string failure(const std::string& specification) {
     try {
         make_scene(specification);
@@ -18,10 +18,10 @@ inline std::string failure(const std::string& specification) {
     return "no error";
 }
 
-/// A tetrahedron of its own at each place.
-inline Mesh tetrahedra_at(const std::vector<Eigen::Vector3d>& places, double size = 1) {
+/// A mesh with a separate tetrahedron at each position.
+inline Mesh tetrahedra_at(const std::vector<Eigen::Vector3d>& positions, double size = 1) {
     Mesh mesh;
-    for (const auto& p : places) {
+    for (const auto& p : positions) {
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
         mesh.vertices.insert(mesh.vertices.end(),
                              {p, p + Eigen::Vector3d(size, 0, 0), p + Eigen::Vector3d(0, size, 0),
@@ -32,7 +32,7 @@ inline Mesh tetrahedra_at(const std::vector<Eigen::Vector3d>& places, double siz
     return mesh;
 }
 
-/// A box of cells x cells x cells cubes of six tetrahedra each, its inner vertices shaken.
+/// A box of cells x cells x cells cubes of six tetrahedra each; its vertices are perturbed.
 inline Mesh shaken_box(std::uint32_t cells, Random& random) {
     Mesh mesh;
     mesh.name = "box";
@@ -57,7 +57,7 @@ inline Mesh shaken_box(std::uint32_t cells, Random& random) {
     return mesh;
 }
 
-/// A corner of a cube with edges of that length.
+/// The corner of a cube with edges of that length.
 inline Mesh one_tetrahedron(double edge) {
     Mesh mesh;
     mesh.vertices = {{0, 0, 0}, {edge, 0, 0}, {0, edge, 0}, {0, 0, edge}};
@@ -66,8 +66,7 @@ inline Mesh one_tetrahedron(double edge) {
     return mesh;
 }
 
-/// Bodies of three meshes (1 tetrahedron, 48, 162) crowded together; body 0 fixed, body 1 deformable; two
-/// frames.
+/// Crowded bodies of three meshes (1, 48 and 162 tetrahedra); body 0 is fixed, body 1 deformable; two frames.
 inline Scene crowd(std::uint64_t seed, std::uint32_t bodies, double spread) {
     Random random(seed);
     Scene scene;
@@ -96,8 +95,8 @@ inline Scene crowd(std::uint64_t seed, std::uint32_t bodies, double spread) {
     return scene;
 }
 
-/// Boxes in a row along x, each of which meets its neighbours; from frame to frame they all go `step` along x
-/// and turn. The first is fixed, the second one deformable.
+/// Boxes in a row along x, each overlapping its neighbours. From frame to frame they move by `step` along x
+/// and rotate. The first is fixed, the second deformable.
 inline Scene procession(std::uint32_t bodies, std::size_t frames, double step) {
     Random random(17);
     Scene scene;
@@ -111,14 +110,14 @@ inline Scene procession(std::uint32_t bodies, std::size_t frames, double step) {
     scene.frame = [bodies, step, vertices](std::size_t number) {
         Frame frame;
         frame.deformed.resize(bodies);
-        const double way = step * static_cast<double>(number);
+        const double displacement = step * static_cast<double>(number);
         for (std::uint32_t i = 0; i < bodies; ++i) {
-            const Eigen::Vector3d place(0.8 * i + (i == 0 ? 0 : way), i % 3 * 0.1, 0);
+            const Eigen::Vector3d position(0.8 * i + (i == 0 ? 0 : displacement), i % 3 * 0.1, 0);
             const Eigen::Quaterniond turn(
-                Eigen::AngleAxisd(i == 0 ? 0 : way + 0.3 * i, Eigen::Vector3d::UnitZ()));
-            frame.poses.push_back(i == 1 ? Pose{} : Pose{turn, place});
+                Eigen::AngleAxisd(i == 0 ? 0 : displacement + 0.3 * i, Eigen::Vector3d::UnitZ()));
+            frame.poses.push_back(i == 1 ? Pose{} : Pose{turn, position});
             if (i != 1) continue;
-            for (const auto& vertex : vertices) frame.deformed[1].push_back(turn * vertex + place);
+            for (const auto& vertex : vertices) frame.deformed[1].push_back(turn * vertex + position);
         }
         return frame;
     };
@@ -126,8 +125,8 @@ inline Scene procession(std::uint32_t bodies, std::size_t frames, double step) {
     return scene;
 }
 
-/// Boxes around a centre, near it in some frames and further away in others: the numbers of pairs and
-/// contacts grow and shrink from frame to frame, by little and by much.
+/// Boxes around a centre, closer in some frames than in others: the numbers of pairs and contacts grow and
+/// shrink from frame to frame, by small and large factors.
 inline Scene breathing(std::size_t bodies) {
     constexpr std::array spreads{1.6, 1.3, 1.25, 0.7, 1.0, 0.68, 0.6, 1.7, 0.62};
     Random random(5);

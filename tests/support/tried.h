@@ -10,9 +10,8 @@
 
 namespace tandem::testing_support {
 
-/// Adds a line to the file TANDEM_TRIED, if there is one in the environment, for scripts/tried: so many
-/// `unit`s of `what` were tried on `where`, and so many answers or records were lost. (tests/program.py has
-/// the same.)
+/// Appends a line to the file that TANDEM_TRIED names, if it is set: `count` `unit`s of `what` were tried on
+/// `where`, and `lost` answers or records were lost. tests/program.py has the same function.
 inline void tried(std::string_view what, std::uint64_t count, std::string_view unit, std::string_view where,
                   std::uint64_t lost) {
     const char* path = std::getenv("TANDEM_TRIED");
