@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// adversarial [--pairs N] [--device D,E] [--family F,G] ...: N pairs in all, spread over the families of hard
-// cases, bounded and tested on every device by the kernels of the walks and compared with the exact truth.
-// First the commit, then one line a family and a last one; exit 1 when a pair is missed.
-// adversarial --counter E [--algorithm A,B] [--device D,E]: 2^E pairs, counted by every algorithm; exit 1
+// adversarial [--pairs N] [--device D,E] [--family F,G] ...: N pairs in total, spread over the families of
+// hard cases. The kernels of the traversals bound and test them on every device; the results are compared
+// with the exact truth. Prints the commit, one line per family and a summary; exit code 1 if a pair is
+// missed.
+// adversarial --counter E [--algorithm A,B] [--device D,E]: every algorithm counts 2^E pairs; exit code 1 if
+// a count is wrong. --help lists all options.
 // when a count is wrong. --help lists all options.
 #include "backends/registry.h"
 #include "harness/verify/adversarial.h"
@@ -24,7 +26,7 @@ struct Options {
     std::vector<std::string> devices{"all"}, families;
     std::vector<int> k{6, 8, 14, 18, 26};
     std::string rounding = "safe";
-    int exponent = 0; ///< not 0: count 2^exponent pairs instead
+    int exponent = 0; ///< if not 0: count 2^exponent pairs instead
     std::vector<std::string> algorithms;
     AdversarialOptions run;
 };
@@ -92,7 +94,7 @@ int run(const Options& options) {
                1e-6 * static_cast<double>(sum.pairs * cells.size()) / sum.test_seconds);
     std::string where;
     for (const auto& group : choose_devices(backends, options.devices))
-        for (const auto* device : group) // by two interfaces it is one
+        for (const auto* device : group) // a device behind two interfaces counts once
             if (where.find(device->info().name) == std::string::npos)
                 where += (where.empty() ? "" : ", ") + device->info().name;
     if (options.rounding == "safe")
@@ -101,7 +103,7 @@ int run(const Options& options) {
     return sum.ok() ? 0 : 1;
 }
 
-/// Runs every algorithm once over 2^exponent pairs that it only counts.
+/// Runs every algorithm once over 2^exponent pairs with output=count.
 int count(const Options& options) {
     const auto scene = make_scene(fmt::format("hard:counter-wrap:difficulty={}", options.exponent));
     const auto expected = hard_family("counter-wrap").meeting(options.exponent);

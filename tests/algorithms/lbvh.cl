@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: MIT
-// One binary tree a body with stored children, and the plainest walk of it: a query of body b's tree for
-// every tetrahedron of body a.
+// One binary tree per body with stored children, and the simplest traversal: every tetrahedron of body a
+// queries body b's tree.
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
 #include "algorithms/bodies/body.clh"
 #include "algorithms/bounds/volume.clh"
 #include "algorithms/broad_phase/body_pairs.clh"
 
-// A tree over n items has n - 1 inner nodes, depth after depth from the root, which is 0, and behind them the
-// leaves in the order of their items. A node is K reals. The rows of an inner node's children, two node
-// numbers each, belong to a mesh and serve all its bodies. One row a body, in TREE_WORDS words.
+// A tree over n items has n - 1 inner nodes, in depth order from the root (node 0), followed by the leaves in
+// item order. A node is K reals. Each inner node has a row of children (two node numbers) that belongs to the
+// mesh and serves all its bodies. Each body has one tree row of TREE_WORDS words.
 #define TREE_WORDS 4
-#define TREE_NODES 0    // the slot of its root
-#define TREE_CHILDREN 1 // its mesh's first row of children
-#define TREE_DEPTHS 2   // its mesh's place in depths: the first inner node of each depth, and their number
+#define TREE_NODES 0    // slot of its root
+#define TREE_CHILDREN 1 // first row of children of its mesh
+// start of its mesh in `depths`: the first inner node of each depth, then their number
+#define TREE_DEPTHS 2
 #define TREE_DEPTH_COUNT 3
 
 #define STATUS_LEAF_HITS STATUS_OWN
 
-// Halving the most items whose nodes a word can number, 2^31, ends after 31 steps; at each depth above the
-// node at hand its sibling waits.
-#define MOST_WAITING 32
+// Halving 2^31 items, the most whose nodes a word can number, ends after 31 steps. The stack contains one
+// sibling for each depth above the current node, and the node itself.
+#define STACK_CAPACITY 32
 
 DEVICE GLOBAL const uint* tree_of(GLOBAL const uint* trees, uint body) {
     return trees + (ulong)body * TREE_WORDS;
@@ -34,17 +35,17 @@ DEVICE GLOBAL const uint* children_of(GLOBAL const uint* children, GLOBAL const 
     return children + ((ulong)tree[TREE_CHILDREN] + node) * 2;
 }
 
-// Slabs that end before they start overlap nothing and widen nothing. Negative zero becomes positive: equal
-// slabs then have equal bits.
+// Empty slabs (lower end above upper end) overlap nothing and enlarge no union. Negative zero becomes
+// positive, so equal slabs have equal bits.
 DEVICE void bound_tetrahedron(GLOBAL const uint* bodies, GLOBAL const real* poses,
                               GLOBAL const uint* tetrahedra, GLOBAL const real* vertices, uint body,
-                              uint item, int takes_part, GLOBAL real* node) {
+                              uint item, int is_active, GLOBAL real* node) {
     real slabs[K];
     for (int axis = 0; axis < DIRECTIONS; ++axis) {
         slabs[axis] = REAL_INFINITY;
         slabs[axis + DIRECTIONS] = -REAL_INFINITY;
     }
-    if (takes_part) {
+    if (is_active) {
         Point corner[4];
         load_corners(bodies, poses, tetrahedra, vertices, body, item, corner);
         const Point drift = drift_at(poses, body);
@@ -53,7 +54,7 @@ DEVICE void bound_tetrahedron(GLOBAL const uint* bodies, GLOBAL const real* pose
     for (int word = 0; word < K; ++word) node[word] = slabs[word] + (real)0;
 }
 
-// The inner nodes of one depth, which are first..end - 1, from those below.
+// Merges the inner nodes first..end - 1, all of one depth, from their children.
 DEVICE void merge_depth(GLOBAL real* nodes, GLOBAL const uint* children, GLOBAL const uint* tree, uint first,
                         uint end) {
     for (uint node = first + LOCAL_ID; node < end; node += GROUP_SIZE) {
@@ -66,8 +67,8 @@ DEVICE void merge_depth(GLOBAL real* nodes, GLOBAL const uint* children, GLOBAL 
     }
 }
 
-// Bottom up, a work-group a body of those `chosen`. `skipped`: a word a node slot, of which those of leaves
-// say whether the frame skips their tetrahedra.
+// Bottom-up refit; one work-group per body of `chosen`. `skipped` has a word per node slot: nonzero in a leaf
+// whose tetrahedron the frame skips.
 KERNEL void refit_trees(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const uint* trees,
                         GLOBAL const uint* children, GLOBAL const uint* depths, GLOBAL const uint* skipped,
                         GLOBAL const uint* chosen, GLOBAL const uint* bodies, GLOBAL const real* poses,
@@ -84,7 +85,7 @@ KERNEL void refit_trees(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const u
     BARRIER_GLOBAL;
     GLOBAL const uint* first = depths + tree[TREE_DEPTHS];
     uint depth = tree[TREE_DEPTH_COUNT];
-    do { // once at least: PoCL 3.1 gets barriers wrong in a loop that might not run at all
+    do { // at least once: PoCL 3.1 miscompiles barriers in a loop that may not run
         if (depth > 0u) {
             --depth;
             merge_depth(own, children, tree, first[depth], first[depth + 1u]);
@@ -95,7 +96,7 @@ KERNEL void refit_trees(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const u
         volumes[(ulong)body * K + word] = own[word];
 }
 
-// What a launch works on.
+// Arguments of a launch.
 typedef struct {
     GLOBAL const real* nodes;
     GLOBAL const uint* trees;
@@ -107,26 +108,26 @@ typedef struct {
     GLOBAL uint* status;
 } Job;
 
-// Everything in body b that the leaf of a's item overlaps. Returns how many leaves that is.
+// Emits every leaf of body b that overlaps the leaf of a's item. Returns the number of leaves.
 DEVICE uint query_leaf(const Job* job, uint a, uint b, uint item, Tally* tally) {
     const uint leaf = items_of(job->bodies, a) - 1u + item;
     GLOBAL const real* query = job->nodes + ((ulong)tree_of(job->trees, a)[TREE_NODES] + leaf) * K;
     GLOBAL const uint* tree = tree_of(job->trees, b);
     GLOBAL const real* nodes = job->nodes + (ulong)tree[TREE_NODES] * K;
     const uint inner = items_of(job->bodies, b) - 1u;
-    uint stack[MOST_WAITING];
-    uint waiting = 1;
+    uint stack[STACK_CAPACITY];
+    uint stack_size = 1;
     uint hits = 0;
     stack[0] = 0u;
     if (COUNT_WORK) tally->seeds += 1;
-    while (waiting > 0u) {
-        const uint node = stack[--waiting];
+    while (stack_size > 0u) {
+        const uint node = stack[--stack_size];
         if (COUNT_WORK) tally->tests += 1;
         if (!overlap(query, nodes + (ulong)node * K)) continue;
         if (node < inner) {
             GLOBAL const uint* child = children_of(job->children, tree, node);
-            stack[waiting++] = child[0];
-            stack[waiting++] = child[1];
+            stack[stack_size++] = child[0];
+            stack[stack_size++] = child[1];
         } else {
             ++hits;
             emit(tally, job->status, job->found, job->capacity, job->bodies, job->ids, a, b, item,
@@ -136,8 +137,8 @@ DEVICE uint query_leaf(const Job* job, uint a, uint b, uint item, Tally* tally) 
     return hits;
 }
 
-// A work-group takes body pairs and a block of GROUP_SIZE items of their bodies a, `blocks` of which are
-// enough for any body: how many queries there are needs no scan.
+// A work-group processes body pairs and a block of GROUP_SIZE items of their bodies a. `blocks` is enough for
+// any body, so the launch needs no scan to count queries.
 KERNEL void query_leaves(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* children,
                          GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* pairs,
                          uint pair_capacity, uint blocks, GLOBAL uint* found, uint capacity,

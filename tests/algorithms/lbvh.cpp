@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An algorithm of the tests with a hierarchy and a walk of its own: this file, lbvh.cl, and the line at the
-// end that lists it.
+// An algorithm of the tests with its own hierarchy and traversal: this file, lbvh.cl, and the line at the end
+// that registers it.
 #include "algorithms/parameters/table.h"
 #include "algorithms/pipeline.h"
 #include "algorithms/sources.h"
@@ -24,13 +24,13 @@ const std::vector<Preset> all_presets{
 
 const KernelSource& source() { return kernel_source("tests/algorithms/lbvh.cl"); }
 
-/// Which nodes a mesh's trees have, as lbvh.cl numbers them.
+/// Nodes of a mesh's trees, as lbvh.cl numbers them.
 struct Topology {
-    std::vector<std::uint32_t> children; ///< two an inner node
-    std::vector<std::uint32_t> depths;   ///< the first inner node of each depth, and their number
+    std::vector<std::uint32_t> children; ///< two per inner node
+    std::vector<std::uint32_t> depths;   ///< first inner node of each depth, then the number of inner nodes
 };
 
-/// Halves the Morton order until one item is left: no path is longer than ceil(log2 items).
+/// Halves the Morton order down to single items: no path is longer than ceil(log2 items).
 Topology halved(std::uint32_t items) {
     struct ValueRange {
         std::uint32_t first, end;
@@ -38,7 +38,7 @@ Topology halved(std::uint32_t items) {
     Topology tree;
     const auto inner = items - 1;
     std::uint32_t numbered = 1;
-    std::vector<ValueRange> row; // the inner nodes of a depth
+    std::vector<ValueRange> row; // inner nodes of one depth
     if (items > 1) row.push_back({0, items});
     while (!row.empty()) {
         tree.depths.push_back(static_cast<std::uint32_t>(tree.children.size() / 2));
@@ -57,18 +57,18 @@ Topology halved(std::uint32_t items) {
     return tree;
 }
 
-/// One tree a body; bodies with one mesh share its rows of children.
+/// One tree per body; bodies with the same mesh share its rows of children.
 class StoredTrees final : public Hierarchy {
 public:
     StoredTrees(const Bodies& bodies, std::uint32_t group_size);
 
     const Bodies& bodies() const { return bodies_; }
-    const Buffer& tree_table() const { return tree_table_; } ///< TREE_WORDS words a body
+    const Buffer& tree_table() const { return tree_table_; } ///< TREE_WORDS words per body
     const Buffer& children() const { return children_; }
-    std::uint32_t most_items() const { return most_items_; } ///< of a body
+    std::uint32_t most_items() const { return most_items_; } ///< maximum over bodies
 
 private:
-    /// A row of lbvh.cl.
+    /// A row of the tree table in lbvh.cl.
     struct Tree {
         std::uint32_t nodes = 0, children = 0, depths = 0, depth_count = 0;
     };
@@ -79,19 +79,20 @@ private:
     std::size_t do_bytes() const override;
 
     std::vector<Tree> lay_out_meshes();
-    void lay_out_bodies(const std::vector<Tree>& of_mesh);
+    void lay_out_bodies(const std::vector<Tree>& mesh_trees);
     void upload_order();
-    void leave_out(const Frame& frame);
+    void flag_skipped(const Frame& frame);
 
     const Bodies& bodies_;
     Device& device_;
     std::uint32_t group_size_;
     std::uint32_t most_items_ = 1;
-    std::uint32_t moving_bodies_ = 0; ///< how many in body_order_ are not fixed; they come first
+    std::uint32_t moving_bodies_ = 0; ///< number of bodies in body_order_ that are not fixed; they come first
     std::uint64_t slots_ = 0;
-    bool fresh_ = true; ///< fixed bodies need a refit: there was no frame yet, or it skipped others
+    /// fixed bodies need a refit: first frame, or the set of skipped tetrahedra has changed
+    bool needs_full_refit_ = true;
     std::vector<Tree> trees_;
-    std::vector<std::vector<std::uint32_t>> skipped_; ///< by the last frame
+    std::vector<std::vector<std::uint32_t>> skipped_; ///< skipped tetrahedra of the last frame
     Buffer nodes_, volumes_, tree_table_, children_, depths_, skipped_flags_, body_order_;
     Kernel kernel_;
 };
@@ -109,27 +110,27 @@ StoredTrees::StoredTrees(const Bodies& bodies, std::uint32_t group_size)
     kernel_ = device_.compile(source(), "refit_trees", geometry_defines(bodies.geometry(), group_size));
 }
 
-/// Uploads the rows of children and depths, which belong to meshes. Returns where those of each mesh are.
+/// Uploads the rows of children and depths of all meshes. Returns where the rows of each mesh start.
 std::vector<StoredTrees::Tree> StoredTrees::lay_out_meshes() {
-    std::vector<Tree> of_mesh;
+    std::vector<Tree> mesh_trees;
     std::vector<std::uint32_t> children, depths;
     for (const auto& mesh : bodies_.scene().meshes) {
         const auto tree = halved(static_cast<std::uint32_t>(mesh.tetrahedra.size()));
-        of_mesh.push_back({0, static_cast<std::uint32_t>(children.size() / 2),
-                           static_cast<std::uint32_t>(depths.size()),
-                           static_cast<std::uint32_t>(tree.depths.size() - 1)});
+        mesh_trees.push_back({0, static_cast<std::uint32_t>(children.size() / 2),
+                              static_cast<std::uint32_t>(depths.size()),
+                              static_cast<std::uint32_t>(tree.depths.size() - 1)});
         children.insert(children.end(), tree.children.begin(), tree.children.end());
         depths.insert(depths.end(), tree.depths.begin(), tree.depths.end());
     }
     children_ = uploaded(device_, bytes_of(children), "children");
     depths_ = uploaded(device_, bytes_of(depths), "depths");
-    return of_mesh;
+    return mesh_trees;
 }
 
-void StoredTrees::lay_out_bodies(const std::vector<Tree>& of_mesh) {
+void StoredTrees::lay_out_bodies(const std::vector<Tree>& mesh_trees) {
     for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
         const auto items = bodies_.row(body).tetrahedron_count;
-        trees_.push_back(of_mesh[bodies_.scene().bodies[body].mesh]);
+        trees_.push_back(mesh_trees[bodies_.scene().bodies[body].mesh]);
         trees_.back().nodes = static_cast<std::uint32_t>(slots_);
         slots_ += 2 * std::uint64_t{items} - 1;
         most_items_ = std::max(most_items_, items);
@@ -156,8 +157,8 @@ std::size_t StoredTrees::do_bytes() const {
     return sum;
 }
 
-/// Flags the leaves that the frame skips, when they are others than those of the frame before.
-void StoredTrees::leave_out(const Frame& frame) {
+/// Flags the leaves that the frame skips, if they differ from those of the previous frame.
+void StoredTrees::flag_skipped(const Frame& frame) {
     if (frame.skipped == skipped_) return;
     std::vector<std::uint32_t> flags(slots_);
     {
@@ -168,15 +169,15 @@ void StoredTrees::leave_out(const Frame& frame) {
             for (const auto tetrahedron : frame.skipped[body]) flags[first_leaf + positions[tetrahedron]] = 1;
         }
     }
-    fresh_ = true;
+    needs_full_refit_ = true;
     const StageScope scope(device_, Stage::write);
     device_.upload(skipped_flags_, bytes_of(flags));
     skipped_ = frame.skipped;
 }
 
 void StoredTrees::do_refit(const Frame& frame, bool all) {
-    leave_out(frame);
-    const auto bodies = all || fresh_ ? bodies_.count() : moving_bodies_;
+    flag_skipped(frame);
+    const auto bodies = all || needs_full_refit_ ? bodies_.count() : moving_bodies_;
     if (bodies == 0) return;
     const StageScope scope(device_, Stage::refit);
     const std::array<Argument, 11> arguments{nodes_,
@@ -191,10 +192,10 @@ void StoredTrees::do_refit(const Frame& frame, bool all) {
                                              bodies_.tetrahedra(),
                                              bodies_.vertices()};
     device_.launch(kernel_, {bodies, group_size_}, arguments);
-    fresh_ = false;
+    needs_full_refit_ = false;
 }
 
-/// A query of body b's tree for every tetrahedron of body a.
+/// Every tetrahedron of body a queries body b's tree.
 class LeafQueries final : public Walker {
 public:
     LeafQueries(const StoredTrees& trees, LaunchShape shape) : trees_(trees), shape_(shape) {}

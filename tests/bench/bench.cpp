@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Microbenchmarks of the stages, on every device there is. Iterations are timed by the host around one wait;
-// ratios within one run mean something, times of a processor nothing about a GPU.
+// Microbenchmarks of the stages, on every available device. The host times iterations around one wait.
+// Compare times within one run only; times on a processor say nothing about a GPU.
 #include "algorithms/broad_phase/broad.h"
 #include "algorithms/broad_phase/broad_stage.h"
 #include "algorithms/narrow_phase/reference.h"
@@ -44,7 +44,7 @@ void transfer(benchmark::State& state, Device& device, bool up) {
     state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations()) * state.range(0));
 }
 
-/// A kernel that does nothing, and the wait for it.
+/// Launches an empty kernel and waits for it.
 void launch_latency(benchmark::State& state, Device& device) {
     const auto kernel = device.compile(kernel_source("algorithms/bounds/ceilings.cl"), "do_nothing",
                                        geometry_defines({}, group_size(device)));
@@ -73,8 +73,8 @@ void refit(benchmark::State& state, Device& device) {
                             * state.range(0));
 }
 
-/// One frame of an algorithm; contacts on or off tells the contact kernel's share, a threshold of 1 the
-/// seeding's.
+/// One frame of an algorithm. Contacts on and off give the contact kernel's fraction; a seed threshold of 1
+/// gives the fraction of seeding.
 void frame(benchmark::State& state, Device& device, const std::string& name, const SettingTexts& given) {
     const auto& traversal = algorithm(name);
     const auto settings = resolve(traversal.parameters(), {}, given, name);
@@ -93,7 +93,7 @@ void frame(benchmark::State& state, Device& device, const std::string& name, con
         benchmark::Counter(static_cast<double>(found), benchmark::Counter::kIsIterationInvariantRate);
 }
 
-/// The device's, after refit: kernels and the wait for them.
+/// Body pairs on the device after refit: kernels and the wait for them.
 void broad_on_device(benchmark::State& state, Device& device) {
     const auto scene = make_scene(fmt::format("pile:bodies={},mesh=grain1,frames=1", state.range(0)));
     testing_support::PreparedTrees on(device, scene, {}, 32, group_size(device));
@@ -123,19 +123,19 @@ void broad(benchmark::State& state, Broad bound) {
     state.SetComplexityN(state.range(0));
 }
 
-/// What a rank does in every frame: whether its bodies are still near where they were.
-void still_near(benchmark::State& state) {
+/// Per-frame check of a rank: all bodies are within their skins.
+void within_skins(benchmark::State& state) {
     const auto scene = make_scene(fmt::format("pile:bodies={},frames=1", state.range(0)));
     const auto frame = scene.frame(0);
     std::vector<std::uint32_t> all(scene.bodies.size());
     std::iota(all.begin(), all.end(), 0u);
-    DisplacementTracker places(scene);
-    places.set_reference(frame, all);
-    for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(places.all_within(frame, all, 0.25));
+    DisplacementTracker tracker(scene);
+    tracker.set_reference(frame, all);
+    for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(tracker.all_within(frame, all, 0.25));
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * state.range(0));
 }
 
-/// Preparation has to be linear in bodies.
+/// Preparation; its time must be linear in the number of bodies.
 void prepare(benchmark::State& state, Device& device) {
     const auto scene = make_scene(fmt::format("pile:bodies={},frames=1", state.range(0)));
     const auto& traversal = algorithm("chunked");
@@ -195,7 +195,7 @@ int main(int argc, char** argv) {
             ->Arg(2000)
             ->Arg(20000)
             ->Unit(benchmark::kMicrosecond);
-    benchmark::RegisterBenchmark("still near", tandem::still_near)
+    benchmark::RegisterBenchmark("still near", tandem::within_skins)
         ->Arg(10'000)
         ->Arg(100'000)
         ->Unit(benchmark::kMicrosecond)

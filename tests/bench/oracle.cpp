@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The oracle: time of one pair by family, and of a million candidate pairs of a scene on all cores.
+// The oracle: time per pair by family, and time of a million candidate pairs of a scene on all cores.
 #include "geometry/contact_truth.h"
 #include "harness/verify/oracle/frame_truth.h"
 #include "harness/verify/reference.h"
@@ -47,8 +47,7 @@ void contacts(benchmark::State& state, const std::vector<OraclePair>& pairs) {
     }
 }
 
-/// A list of a million candidate pairs, as the reference finds them in a crowded pile; with the vertices'
-/// motion.
+/// A million candidate pairs that the reference finds in a crowded pile, with the motion of the vertices.
 void million(benchmark::State& state) {
     static const auto scene = make_scene("pile:bodies=64,frames=1,density=0.6");
     static const auto frame = scene.frame(0);

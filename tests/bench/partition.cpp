@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Microbenchmarks of many ranks in one process: the partitioner, which each rank runs by itself for all
-// bodies, and the ghost lists, which ranks find together. Bodies are jacks of a pile, density 0.2.
+// Microbenchmarks with many ranks in one process: the partitioner, which each rank runs by itself for all
+// bodies, and the ghost lists, which the ranks build together. The scene is a pile of jacks, density 0.2.
 #include "algorithms/distributed/ghost_exchange.h"
 #include "tests/support/thread_ranks.h"
 
@@ -19,9 +19,9 @@ struct BoundedPile {
         : scene(make_scene(fmt::format("pile:bodies={},frames=1", bodies))), frame(scene.frame(0)) {
         std::vector<std::uint32_t> all(scene.bodies.size());
         std::iota(all.begin(), all.end(), 0u);
-        DisplacementTracker places(scene);
-        places.set_reference(frame, all);
-        for (const auto body : all) balls.push_back(places.ball(body));
+        DisplacementTracker tracker(scene);
+        tracker.set_reference(frame, all);
+        for (const auto body : all) balls.push_back(tracker.ball(body));
     }
 
     Scene scene;
@@ -29,7 +29,7 @@ struct BoundedPile {
     std::vector<Ball> balls;
 };
 
-/// The least, the mean and the most of what parts have.
+/// Mean and maximum over parts or ranks.
 struct Spread {
     double sum = 0, most = 0;
     std::size_t count = 0;
@@ -42,18 +42,18 @@ struct Spread {
     double mean() const { return sum / static_cast<double>(std::max<std::size_t>(count, 1)); }
 };
 
-/// Arguments: parts, bodies of each. Counters: bodies that a part owns at most and ghost bodies by their
-/// balls.
+/// Arguments: parts, bodies per part. Counters: own bodies (maximum) and ghost bodies by their balls (mean,
+/// maximum).
 void partition(benchmark::State& state) {
     const auto parts = static_cast<std::size_t>(state.range(0));
     const BoundedPile pile(state.range(0) * state.range(1));
     const std::vector<double> speeds(parts, 1.0);
-    Partitioner deal(pile.scene, {.k = 18}, parts);
-    for ([[maybe_unused]] auto _ : state) deal.partition(pile.balls, speeds);
+    Partitioner partitioner(pile.scene, {.k = 18}, parts);
+    for ([[maybe_unused]] auto _ : state) partitioner.partition(pile.balls, speeds);
     Spread own, ghosts;
-    for (const auto& share : deal.subdomains()) {
-        own.add(static_cast<double>(share.own.size()));
-        ghosts.add(static_cast<double>(share.ghosts.size()));
+    for (const auto& subdomain : partitioner.subdomains()) {
+        own.add(static_cast<double>(subdomain.own.size()));
+        ghosts.add(static_cast<double>(subdomain.ghosts.size()));
     }
     state.counters["own_most"] = own.most;
     state.counters["ghosts_mean"] = ghosts.mean();
@@ -61,43 +61,43 @@ void partition(benchmark::State& state) {
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * state.range(0) * state.range(1));
 }
 
-/// What one rank does to find its ghost bodies, and what it sends.
+/// Counters of one rank's ghost exchange.
 struct GhostCounts {
     Spread ghosts, neighbours, setup_bytes, frame_bytes;
 };
 
-void add_rank(const Subdomain& share, const Partitioner& deal, std::uint64_t setup, std::uint64_t frame,
-              GhostCounts& counts) {
+void add_rank(const Subdomain& subdomain, const Partitioner& partitioner, std::uint64_t setup,
+              std::uint64_t frame, GhostCounts& counts) {
     std::vector<std::size_t> owners;
-    for (const auto body : share.ghosts) owners.push_back(deal.owner_of(body));
+    for (const auto body : subdomain.ghosts) owners.push_back(partitioner.owner_of(body));
     std::ranges::sort(owners);
     const auto repeated = std::ranges::unique(owners);
-    counts.ghosts.add(static_cast<double>(share.ghosts.size()));
+    counts.ghosts.add(static_cast<double>(subdomain.ghosts.size()));
     counts.neighbours.add(static_cast<double>(owners.size() - repeated.size()));
     counts.setup_bytes.add(static_cast<double>(setup));
     counts.frame_bytes.add(static_cast<double>(frame));
 }
 
-/// Arguments: ranks, bodies of each. Ranks are threads, more than there are cores: the time is that of all of
-/// them together and says nothing of a rank. Counters of a rank: ghost bodies, ranks that own them, bytes
-/// sent at the set-up and in a frame.
+/// Arguments: ranks, bodies per rank. Ranks are threads, more than there are cores: the time is that of all
+/// of them together, not of one rank. Counters per rank: ghost bodies, ranks that own them, bytes sent at
+/// set-up and per frame.
 void ghosts(benchmark::State& state) {
     const auto ranks = static_cast<std::size_t>(state.range(0));
     const BoundedPile pile(state.range(0) * state.range(1));
-    Partitioner deal(pile.scene, {.k = 18}, ranks);
-    deal.partition(pile.balls, std::vector<double>(ranks, 1.0));
+    Partitioner partitioner(pile.scene, {.k = 18}, ranks);
+    partitioner.partition(pile.balls, std::vector<double>(ranks, 1.0));
     GhostCounts counts;
     std::mutex counting;
     for ([[maybe_unused]] auto _ : state) {
         counts = {};
         testing_support::ThreadJob(ranks).run([&](Ranks& own) {
-            GhostExchange halo(pile.scene, {.k = 18}, own);
+            GhostExchange ghost_exchange(pile.scene, {.k = 18}, own);
             GhostExchange::Traffic setup, frame;
-            const auto& share = deal.subdomains()[static_cast<std::size_t>(own.rank())];
-            halo.rebuild(share.own, pile.frame, setup);
-            halo.exchange_states(pile.frame, frame);
+            const auto& subdomain = partitioner.subdomains()[static_cast<std::size_t>(own.rank())];
+            ghost_exchange.rebuild(subdomain.own, pile.frame, setup);
+            ghost_exchange.exchange_states(pile.frame, frame);
             const std::scoped_lock lock(counting);
-            add_rank(halo.subdomain(), deal, setup.bytes, frame.bytes, counts);
+            add_rank(ghost_exchange.subdomain(), partitioner, setup.bytes, frame.bytes, counts);
         });
     }
     for (const auto& [name, spread] :
@@ -110,7 +110,7 @@ void ghosts(benchmark::State& state) {
 
 } // namespace
 
-/// Each once: a million bodies are partitioned in seconds.
+/// One iteration each: partitioning a million bodies takes seconds.
 void register_partition() {
     const auto once = [](benchmark::internal::Benchmark* added) {
         return added->Iterations(1)->Repetitions(1)->Unit(benchmark::kMillisecond)->UseRealTime();

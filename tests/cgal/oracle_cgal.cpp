@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The oracle against another exact decision: CGAL's, with exact predicates. Closed sets; both with volume,
-// since CGAL's needs it.
+// The oracle against CGAL's exact predicates. Sets are closed; both tetrahedra have volume because CGAL
+// requires it.
 #include "geometry/facets.h"
 #include "geometry/lattice.h"
 #include "tests/support/oracle_pairs.h"
@@ -26,10 +26,10 @@ bool solid(const OraclePair& pair) {
     return oracle::orientation(lattice.a) != 0 && oracle::orientation(lattice.b) != 0;
 }
 
-/// Whether they agree on closed intersection, from the fast tiers and from the slow one.
+/// Whether the fast tiers and the slow tier agree with CGAL on closed intersection.
 bool agree(const OraclePair& pair) {
-    const bool meet = CGAL::do_intersect(tetrahedron(pair.a), tetrahedron(pair.b));
-    return meet == (relation(pair.a, pair.b) != Relation::disjoint)
+    const bool intersect = CGAL::do_intersect(tetrahedron(pair.a), tetrahedron(pair.b));
+    return intersect == (relation(pair.a, pair.b) != Relation::disjoint)
            && meet == (decide(pair.a, pair.b, Tier::integers).relation != Relation::disjoint);
 }
 

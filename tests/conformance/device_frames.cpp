@@ -57,10 +57,10 @@ protected:
         const auto both = prepare(name, scene, given);
         for (std::size_t i = 0; i < 4; ++i) {
             const Rows rows(scene.frame(i % scene.frame_count), i % 2 == 1);
-            const auto right = here->run(rows.here);
-            const auto frame = rows.there(on);
+            const auto right = here->run(rows.host);
+            const auto frame = rows.uploaded_to(on);
             expect_equal(there->run(frame), right);
-            expect_equal(i % 3 == 0 ? both->run(rows.here) : both->run(frame), right);
+            expect_equal(i % 3 == 0 ? both->run(rows.host) : both->run(frame), right);
             expect_equal(there->run(frame, all_pairs(scene)), right);
         }
     }
@@ -107,7 +107,7 @@ TEST_P(DeviceFrames, LeaveOutWhatAFrameSkips) {
             for (std::uint32_t t = 0; t < 40; ++t) frame.skipped[0].push_back(t);
         }
         const Rows rows(frame, false);
-        expect_equal(there->run(rows.there(on)), here->run(rows.here));
+        expect_equal(there->run(rows.uploaded_to(on)), here->run(rows.host));
     }
 }
 
@@ -116,9 +116,9 @@ TEST_P(DeviceFrames, RunAgainAndInBatches) {
     const auto scene = crowd(6, 16, 1.5);
     const SettingTexts least{{"pair_capacity", "1"}, {"contact_capacity", "1"}, {"body_pair_capacity", "1"}};
     const Rows rows(scene.frame(0), false);
-    const auto right = prepare("chunked", scene, {})->run(rows.here);
+    const auto right = prepare("chunked", scene, {})->run(rows.host);
     const auto session = prepare("chunked", scene, least);
-    const auto frame = rows.there(on);
+    const auto frame = rows.uploaded_to(on);
     const auto again = session->run(frame);
     expect_equal(again, right);
     EXPECT_GT(again.retries, 0u);
@@ -147,13 +147,13 @@ TEST_P(DeviceFrames, ArePackedToTheBitsOfTheHost) {
     for (std::size_t body = 2; body < scene.bodies.size(); ++body) {
         const double length = std::exp2(random.uniform(-400, 400));
         for (std::size_t i = 3; i < 7; ++i) rows.poses[7 * body + i] *= length;
-        rows.here.poses[body] = pose_of_row(&rows.poses[7 * body], body);
+        rows.host.poses[body] = pose_of_row(&rows.poses[7 * body], body);
         const auto& q = rows.poses;
         const auto eigen =
             Eigen::Quaterniond(q[7 * body + 3], q[7 * body + 4], q[7 * body + 5], q[7 * body + 6]);
-        EXPECT_EQ(rows.here.poses[body].rotation.coeffs(), eigen.normalized().coeffs()) << "as --pose";
+        EXPECT_EQ(rows.host.poses[body].rotation.coeffs(), eigen.normalized().coeffs()) << "as --pose";
     }
-    auto other = rows.here; // leaves nothing of the frame before
+    auto other = rows.host; // leaves nothing of the frame before
     for (auto& v : other.deformed[1]) v *= 2;
     std::ranges::fill(other.poses, Pose{});
     for (const auto precision : {Precision::fp32, Precision::fp64}) {
@@ -164,12 +164,12 @@ TEST_P(DeviceFrames, ArePackedToTheBitsOfTheHost) {
         const auto words = [&](const Buffer& buffer, std::size_t count) {
             return reals<std::uint32_t>(buffer, count * real_bytes(geometry) / 4);
         };
-        bodies.update(rows.here);
+        bodies.update(rows.host);
         const auto poses = words(bodies.poses(), 12 * scene.bodies.size());
         const auto vertices = words(bodies.vertices(), 4 * bodies.vertex_total());
         bodies.update(other);
         EXPECT_NE(words(bodies.vertices(), 4 * bodies.vertex_total()), vertices);
-        pack.launch(rows.there(on), Eigen::Vector3d::Zero(), status.buffer());
+        pack.launch(rows.uploaded_to(on), Eigen::Vector3d::Zero(), status.buffer());
         EXPECT_EQ(words(bodies.poses(), 12 * scene.bodies.size()), poses);
         EXPECT_EQ(words(bodies.vertices(), 4 * bodies.vertex_total()), vertices);
     }
@@ -180,7 +180,7 @@ TEST_P(DeviceFrames, OutOfRangeAreTheSentencesOfTheHost) {
     const auto scene = crowd(3, 12, 1.5);
     const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
     const auto session = prepare("tiled", scene, {});
-    const auto good = session->run(Rows(scene.frame(0), false).here);
+    const auto good = session->run(Rows(scene.frame(0), false).host);
     for (const auto& [at, value, words] :
          {std::tuple{7 * 3 + 0, nan, "poses: row 3 is not finite"},
           {7 * 0 + 2, -infinity, "poses: row 0 is not finite"},
@@ -192,31 +192,31 @@ TEST_P(DeviceFrames, OutOfRangeAreTheSentencesOfTheHost) {
         SCOPED_TRACE(words);
         Rows rows(scene.frame(0), false);
         if (at < 0)
-            rows.here.deformed[1][9].y() = value;
+            rows.host.deformed[1][9].y() = value;
         else
             rows.poses[static_cast<std::size_t>(at)] = value;
-        const auto frame = rows.there(on);
+        const auto frame = rows.uploaded_to(on);
         EXPECT_THAT(refusal([&] { session->run(frame); }), HasSubstr(words));
         EXPECT_EQ(refusal([&] {
                       for (std::size_t body = 0; body < scene.bodies.size(); ++body)
                           if (!scene.bodies[body].deformable)
-                              rows.here.poses[body] = pose_of_row(&rows.poses[7 * body], body);
-                      check_range(scene, rows.here, Precision::fp32);
+                              rows.host.poses[body] = pose_of_row(&rows.poses[7 * body], body);
+                      check_range(scene, rows.host, Precision::fp32);
                   }),
                   refusal([&] { session->run(frame); }));
-        expect_equal(session->run(Rows(scene.frame(0), false).there(on)), good);
+        expect_equal(session->run(Rows(scene.frame(0), false).uploaded_to(on)), good);
     }
     for (int i = 3; i < 7; ++i) {
         Rows rows(scene.frame(0), false);
         for (std::size_t j = 3; j < 7; ++j) rows.poses[7 * 4 + j] = 0;
-        EXPECT_THAT(refusal([&] { session->run(rows.there(on)); }),
+        EXPECT_THAT(refusal([&] { session->run(rows.uploaded_to(on)); }),
                     HasSubstr("poses: row 4 has no rotation"));
     }
 }
 
 TEST_P(DeviceFrames, AreRefusedInOneLineWhereTheHostNeedsThem) {
     const auto scene = crowd(3, 6, 1.5);
-    const auto frame = Rows(scene.frame(0), false).there(on);
+    const auto frame = Rows(scene.frame(0), false).uploaded_to(on);
     const auto refused = [&](const SettingTexts& given) {
         const auto session = prepare("chunked", scene, given);
         return refusal([&] { session->run(frame); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ranks as they pass messages: run by mpirun with 1, 2 and 4 processes.
+// Message passing between ranks; mpirun starts it with 1, 2 and 4 processes.
 #include "backends/mpi/mpi_ranks.h"
 
 #include <cstring>
@@ -12,7 +12,7 @@ using Bytes = Ranks::Bytes;
 
 std::unique_ptr<Ranks> ranks;
 
-/// So many bytes that say who made them.
+/// `size` bytes that depend on the sender's rank.
 Bytes bytes_of(int rank, std::size_t size) {
     Bytes bytes(size);
     for (std::size_t i = 0; i < size; ++i)
@@ -20,7 +20,7 @@ Bytes bytes_of(int rank, std::size_t size) {
     return bytes;
 }
 
-TEST(Ranks, NumbersAreThoseOfTheJob) {
+TEST(Ranks, RankAndSizeMatchTheJob) {
     EXPECT_GE(ranks->rank(), 0);
     EXPECT_LT(ranks->rank(), ranks->size());
     EXPECT_EQ(ranks->is_first(), ranks->rank() == 0);
@@ -29,7 +29,7 @@ TEST(Ranks, NumbersAreThoseOfTheJob) {
     }
 }
 
-TEST(Ranks, BroadcastGivesAllTheBytesOfOne) {
+TEST(Ranks, BroadcastCopiesTheBytesOfOneRank) {
     for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{5'000'000}})
         for (int from = 0; from < ranks->size(); ++from) {
             auto bytes = ranks->rank() == from ? bytes_of(from, size) : Bytes(3);
@@ -38,18 +38,19 @@ TEST(Ranks, BroadcastGivesAllTheBytesOfOne) {
         }
 }
 
-TEST(Ranks, GatherGivesAllWhatEachGave) {
+TEST(Ranks, GatherReturnsTheBytesOfEveryRank) {
     const auto size_of = [](int rank) {
         return static_cast<std::size_t>(rank) * 70'000;
-    }; // the first gives none
+    }; // rank 0 sends nothing
     const auto all = ranks->gather_to_all(bytes_of(ranks->rank(), size_of(ranks->rank())));
     ASSERT_EQ(all.size(), static_cast<std::size_t>(ranks->size()));
     for (int rank = 0; rank < ranks->size(); ++rank)
         EXPECT_EQ(all[static_cast<std::size_t>(rank)], bytes_of(rank, size_of(rank)));
 }
 
-/// Longer than the counts of a call can say, in pieces that end within a message and at its end.
-TEST(Ranks, LongMessagesGoInPieces) {
+/// Messages longer than MPI's counts allow: they are sent in pieces, and pieces end both within a message and
+/// at its end.
+TEST(Ranks, LongMessagesAreSentInPieces) {
     const auto in_pieces = mpi_ranks(MPI_COMM_WORLD, 100);
     const auto rank = ranks->rank(), size = ranks->size();
     const auto size_of = [](int from, int to) { return static_cast<std::size_t>(100 * from + 37 * to); };
@@ -72,8 +73,8 @@ TEST(Ranks, LongMessagesGoInPieces) {
     EXPECT_THROW(in_pieces->send(0, Bytes(101)), RanksError);
 }
 
-/// Several between the same two, in order; none is a message too.
-TEST(Ranks, PiecesLieWhereTheyAreWanted) {
+/// Several pieces between the same two ranks, in order; empty ones are allowed.
+TEST(Ranks, PiecesArriveAtTheGivenAddresses) {
     std::vector<Bytes> memory;
     std::vector<Ranks::Piece> out, in;
     const auto size_of = [](int from, int to, int i) {
@@ -85,8 +86,8 @@ TEST(Ranks, PiecesLieWhereTheyAreWanted) {
         for (int i = 0; i < 3; ++i) {
             auto& sent = memory.emplace_back(bytes_of(rank + i, size_of(rank, other, i)));
             out.push_back({other, sent.data(), sent.size()});
-            auto& gotten = memory.emplace_back(size_of(other, rank, i));
-            in.push_back({other, gotten.data(), gotten.size()});
+            auto& received = memory.emplace_back(size_of(other, rank, i));
+            in.push_back({other, received.data(), received.size()});
         }
     ranks->exchange_device(out, in);
     for (int other = 0; other < ranks->size(); ++other)
@@ -95,8 +96,8 @@ TEST(Ranks, PiecesLieWhereTheyAreWanted) {
                       bytes_of(other + i, size_of(other, rank, i)));
 }
 
-/// What a library says of itself, unless the environment knows better.
-TEST(Ranks, ReachTheHostAndWhatTheEnvironmentSays) {
+/// The MPI library's own report, unless the environment overrides it.
+TEST(Ranks, GpuAwarenessFollowsDeviceAndEnvironment) {
     const auto is_gpu_aware = [](const char* id) {
         DeviceInfo info;
         info.id = id;
@@ -111,8 +112,8 @@ TEST(Ranks, ReachTheHostAndWhatTheEnvironmentSays) {
     unsetenv("TANDEM_MPI_CUDA");
 }
 
-/// To itself as well; every third message is empty, one is of megabytes.
-TEST(Ranks, ExchangeBringsEachItsOwn) {
+/// Includes the rank itself; every third message is empty and one has megabytes.
+TEST(Ranks, ExchangeDeliversEachMessageToItsRank) {
     const auto size_of = [](int from, int to) {
         const auto number = from * 4 + to;
         return number % 3 == 0 ? std::size_t{0}
@@ -131,7 +132,7 @@ TEST(Ranks, ExchangeBringsEachItsOwn) {
     }
 }
 
-/// Those of one sender in order, an empty one and a large one among them.
+/// Messages of one sender stay in order, including an empty and a large one.
 TEST(Ranks, MessagesArriveWholeAndInOrder) {
     const std::vector<std::size_t> sizes{4, 0, 3'000'000, 1};
     if (!ranks->is_first()) {
@@ -150,8 +151,8 @@ TEST(Ranks, MessagesArriveWholeAndInOrder) {
     EXPECT_FALSE(ranks->probe());
 }
 
-TEST(Ranks, AMessageIsThereOnceItWasSent) {
-    if (ranks->size() == 1) GTEST_SKIP() << "nobody to send to";
+TEST(Ranks, AMessageIsAvailableAfterItWasSent) {
+    if (ranks->size() == 1) GTEST_SKIP() << "no other rank to send to";
     EXPECT_FALSE(ranks->probe());
     ranks->gather_to_all({});
     if (ranks->rank() == 1) ranks->send(0, bytes_of(1, 9));

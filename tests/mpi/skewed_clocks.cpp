@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// For LD_PRELOAD: each rank of a job has a steady clock of its own pace, and now and then sleeps when it
-// reads it, so that ranks that decide by clocks on their own do not come to the same.
+// For LD_PRELOAD: the steady clock of each rank runs at its own pace, and reading it sometimes sleeps. Ranks
+// that decide by their own clocks then reach different decisions.
 #include <cstdlib>
 #include <ctime>
 #include <dlfcn.h>
@@ -24,7 +24,7 @@ extern "C" int clock_gettime(clockid_t clock, timespec* time) {
         static_cast<unsigned>(1 + 31 * rank + number_of("SKEW_SEED")));
     const int result = original(clock, time);
     if (clock != CLOCK_MONOTONIC || result != 0) return result;
-    // From one rank to the next clocks go half as fast again.
+    // Each rank's clock is faster than that of the rank before by half of real time.
     const long long ns = time->tv_sec * 1'000'000'000LL + time->tv_nsec;
     const long long skewed = ns / 2 * (2 + rank);
     time->tv_sec = skewed / 1'000'000'000;

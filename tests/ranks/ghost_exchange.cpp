@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Who is near bodies of a rank, and who is next, against bounds of all bodies.
+// Ghost bodies of a rank, and those of the next rebuild, against bounds of all bodies.
 #include "algorithms/distributed/ghost_exchange.h"
 
 #include "tests/ranks/job.h"
@@ -15,18 +15,21 @@ using testing::UnorderedElementsAreArray;
 
 using Numbers = std::vector<std::uint32_t>;
 
-constexpr double margin = 0.25, room = 0.5; // of a radius, as halo.cpp has them before margins grow
+// fractions of a radius, as in ghost_exchange.cpp before skins grow
+constexpr double skin = 0.25, next_skin = 0.5;
 
-/// A pile some bodies of which are fixed, as ranks have dealt it.
-struct DealtPile {
-    DealtPile()
-        : frame(scene.frame(0)), places(scene), deal(scene, geometry, static_cast<std::size_t>(job->size())) {
+/// A partitioned pile in which some bodies are fixed.
+struct PartitionedPile {
+    PartitionedPile()
+        : frame(scene.frame(0)),
+          tracker(scene),
+          partitioner(scene, geometry, static_cast<std::size_t>(job->size())) {
         Numbers all(scene.bodies.size());
         std::iota(all.begin(), all.end(), 0u);
-        places.set_reference(frame, all);
+        tracker.set_reference(frame, all);
         std::vector<Ball> balls;
-        for (const auto body : all) balls.push_back(places.ball(body));
-        deal.partition(balls, std::vector<double>(static_cast<std::size_t>(job->size()), 1));
+        for (const auto body : all) balls.push_back(tracker.ball(body));
+        partitioner.partition(balls, std::vector<double>(static_cast<std::size_t>(job->size()), 1));
     }
 
     static Scene some_fixed() {
@@ -35,19 +38,19 @@ struct DealtPile {
         return scene;
     }
 
-    std::vector<double> slab(std::uint32_t body, double share) const {
+    std::vector<double> slab(std::uint32_t body, double fraction) const {
         std::vector<double> ends(2 * sweep.axes());
-        sweep.bound(frame, body, share * places.ball(body).radius, ends.data());
+        sweep.bound(frame, body, fraction * tracker.ball(body).radius, ends.data());
         return ends;
     }
-    /// Bodies that later ranks own, or that are fixed, and meet one of `own` whose bounds are so much wider.
+    /// Bodies that are fixed or owned by later ranks, and overlap one of `own` whose bounds are wider by that
+    /// fraction.
     Numbers near(const Numbers& own, double wider) const {
         Numbers found;
         for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) {
-            if (deal.owner_of(body) <= static_cast<std::size_t>(job->rank())) continue;
-            const auto theirs = slab(body, margin);
-            if (std::ranges::any_of(own,
-                                    [&](auto one) { return overlap(slab(one, margin + wider), theirs); }))
+            if (partitioner.owner_of(body) <= static_cast<std::size_t>(job->rank())) continue;
+            const auto box = slab(body, skin);
+            if (std::ranges::any_of(own, [&](auto one) { return overlap(slab(one, skin + wider), box); }))
                 found.push_back(body);
         }
         return found;
@@ -61,29 +64,29 @@ struct DealtPile {
     Geometry geometry{.k = 18};
     Scene scene = some_fixed();
     Frame frame;
-    DisplacementTracker places;
-    Partitioner deal;
+    DisplacementTracker tracker;
+    Partitioner partitioner;
     BroadSweep sweep{scene, geometry, Broad::tight};
 };
 
-TEST(GhostExchange, HasWhoIsNearAndKnowsWhoIsNext) {
-    const DealtPile pile;
-    const auto& own = pile.deal.subdomains()[static_cast<std::size_t>(job->rank())].own;
-    GhostExchange halo(pile.scene, pile.geometry, *job);
+TEST(GhostExchange, ListsGhostsAndTheGhostsOfTheNextRebuild) {
+    const PartitionedPile pile;
+    const auto& own = pile.partitioner.subdomains()[static_cast<std::size_t>(job->rank())].own;
+    GhostExchange ghost_exchange(pile.scene, pile.geometry, *job);
     GhostExchange::Traffic traffic;
-    EXPECT_TRUE(halo.is_expired(pile.frame, traffic));
-    halo.rebuild(own, pile.frame, traffic);
+    EXPECT_TRUE(ghost_exchange.is_expired(pile.frame, traffic));
+    ghost_exchange.rebuild(own, pile.frame, traffic);
     const auto near = pile.near(own, 0);
-    auto next = pile.near(own, room);
+    auto next = pile.near(own, next_skin);
     std::erase_if(next, [&](auto body) { return std::ranges::binary_search(near, body); });
-    EXPECT_EQ(halo.subdomain().own, own);
-    EXPECT_THAT(halo.subdomain().ghosts, UnorderedElementsAreArray(near));
-    EXPECT_THAT(halo.next_ghosts(), UnorderedElementsAreArray(next));
+    EXPECT_EQ(ghost_exchange.subdomain().own, own);
+    EXPECT_THAT(ghost_exchange.subdomain().ghosts, UnorderedElementsAreArray(near));
+    EXPECT_THAT(ghost_exchange.next_ghosts(), UnorderedElementsAreArray(next));
     if (job->rank() + 1 < job->size()) {
         EXPECT_GT(near.size(), 0u);
         EXPECT_GT(next.size(), 0u);
     }
-    EXPECT_FALSE(halo.is_expired(pile.frame, traffic));
+    EXPECT_FALSE(ghost_exchange.is_expired(pile.frame, traffic));
 }
 
 } // namespace

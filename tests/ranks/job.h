@@ -7,7 +7,7 @@
 
 namespace tandem {
 
-/// The processes that run these tests, every one of which runs every test.
+/// The job whose processes run these tests; every process runs every test.
 extern std::unique_ptr<Ranks> job;
 
 } // namespace tandem

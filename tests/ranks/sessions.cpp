@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sessions on ranks of a job, which a launcher has started: answers together are those of one device, every
-// pair is found once, and an error of one rank is one of all. Every rank runs every test.
+// Sessions on the ranks of a job that a launcher has started. The answers together equal those of one device,
+// every pair is found once, and an error of one rank is an error of all. Every rank runs every test.
 #include "algorithms/answer/digest.h"
 #include "algorithms/bodies/ball.h"
 #include "algorithms/distributed/bytes.h"
@@ -23,7 +23,7 @@ namespace {
 
 using namespace testing_support;
 
-/// A rank's own device: host, or a GPU for each where TANDEM_TEST_RANKS_ON says cuda.
+/// The rank's own device: host, or a GPU each if TANDEM_TEST_RANKS_ON is cuda.
 Device& own_device() {
     const auto* on = std::getenv("TANDEM_TEST_RANKS_ON");
     return device(on == nullptr ? "host" : fmt::format("{}:{}", on, job->rank()));
@@ -33,7 +33,7 @@ Settings settings_of(const Traversal& traversal, const SettingTexts& given = {})
     return resolve(traversal.parameters(), traversal.presets().front().values, given, traversal.name());
 }
 
-/// Of all ranks, added up.
+/// Sum over all ranks.
 template<class T>
 T summed(const T& own) {
     T sum{};
@@ -42,8 +42,9 @@ T summed(const T& own) {
     return sum;
 }
 
-/// Of a frame what a rank has to give of it; the rest is far away, so that it would be missed or met.
-Frame of_own(const Scene& scene, const Session& session, std::size_t number) {
+/// The part of a frame that a rank has to provide. All other bodies are moved far away, so using them by
+/// mistake changes the answer.
+Frame own_frame(const Scene& scene, const Session& session, std::size_t number) {
     auto frame = scene.frame(number);
     std::vector<bool> is_own(scene.bodies.size());
     const auto own = session.owned().value();
@@ -57,7 +58,7 @@ Frame of_own(const Scene& scene, const Session& session, std::size_t number) {
     return frame;
 }
 
-/// A procession of which every body but the fixed one, and every fifth, is deformable.
+/// A procession in which all bodies except the fixed one and every fifth are deformable.
 Scene soft_procession(std::uint32_t bodies, std::size_t frames, double step) {
     auto scene = procession(bodies, frames, step);
     const auto vertices = scene.meshes.front().vertices;
@@ -76,7 +77,7 @@ Scene soft_procession(std::uint32_t bodies, std::size_t frames, double step) {
     return scene;
 }
 
-/// Tetrahedra that touch their neighbours in rows, planes and a lattice of so many to a side.
+/// Tetrahedra in a lattice with `side` of them along each axis; neighbours in a row touch.
 Scene lattice(std::uint32_t side) {
     Scene scene;
     scene.name = scene.key = "lattice";
@@ -96,9 +97,9 @@ Scene lattice(std::uint32_t side) {
 
 class RankSessions : public testing::Test {
 protected:
-    /// A frame by all ranks, and by this one alone on another session.
+    /// Compares a frame run by all ranks with one that this rank runs alone on another session.
     void expect_equal(const Scene& scene, Session& session, Session& alone, std::size_t number) {
-        const auto result = session.run(of_own(scene, session, number));
+        const auto result = session.run(own_frame(scene, session, number));
         const auto right = alone.run(scene.frame(number));
         ASSERT_GT(right.count, 0u);
         EXPECT_EQ(summed(result.count), right.count);
@@ -113,7 +114,7 @@ protected:
         EXPECT_EQ(result.shared[static_cast<std::size_t>(job->rank())].pairs, result.count);
         last_ = result;
     }
-    /// There and back.
+    /// Runs frames 0, 1 and 0 again.
     void expect_frames_equal(const Scene& scene, const Traversal& traversal, Device& on) {
         const auto session = traversal.prepare(on, scene, settings_of(traversal), *job);
         const auto one = alone(traversal, scene);
@@ -127,9 +128,9 @@ protected:
     FrameResult last_;
 };
 
-/// There and back, so that who is near changes; a deformable body's vertices travel; results outlive the
-/// sessions' parts that they lie in.
-TEST_F(RankSessions, AnswersTogetherAreThoseOfOneDevice) {
+/// Frames in both directions, so ghost bodies change. A deformable body's vertices are exchanged, and results
+/// outlive the session parts that contain them.
+TEST_F(RankSessions, CombinedAnswersEqualOneDevice) {
     const auto scene = procession(24, 4, 0.35);
     for (const auto* traversal : algorithms()) {
         SCOPED_TRACE(traversal->name());
@@ -144,8 +145,8 @@ TEST_F(RankSessions, AnswersTogetherAreThoseOfOneDevice) {
     }
 }
 
-/// Of bodies and of meshes, one for every body here.
-TEST_F(RankSessions, OnlyWhatIsNeededIsOnTheDevice) {
+/// Bodies and meshes; here every body has its own mesh.
+TEST_F(RankSessions, UploadOnlyOwnAndGhostBodies) {
     auto scene = procession(400, 1, 0.35);
     scene.meshes.resize(scene.bodies.size(), scene.meshes.front());
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body) scene.bodies[body].mesh = body;
@@ -172,13 +173,13 @@ TEST_F(RankSessions, OnlyWhatIsNeededIsOnTheDevice) {
     EXPECT_LT(own.bodies, 400u / static_cast<unsigned>(job->size()) + 20u);
     if (job->size() > 1) {
         EXPECT_GT(summed(own.exchange_bytes), 0u);
-        EXPECT_LT(own.exchange_bytes, 400u * 144) << "only bodies at the border travel";
+        EXPECT_LT(own.exchange_bytes, 400u * 144) << "only bodies at the border are exchanged";
     }
 }
 
-/// Bodies in a row, of which each is near the next one, by a margin of a quarter of a radius, in frame 0, and
-/// in frame 1 the one after that, which before lacked a fifth of a radius.
-Scene drawn_together(std::uint32_t bodies) {
+/// Bodies in a row. In frame 0 each is within skins (a quarter of a radius) of the next body. In frame 1 it
+/// also comes within skins of the one after that, which was a fifth of a radius too far away.
+Scene approaching_row(std::uint32_t bodies) {
     auto scene = procession(bodies, 2, 0);
     scene.bodies.assign(bodies, Body{});
     const auto& vertices = scene.meshes.front().vertices;
@@ -198,30 +199,31 @@ Scene drawn_together(std::uint32_t bodies) {
     return scene;
 }
 
-/// Once a deal has held for long, so that margins do not grow, every rank but the last gets bodies that are
-/// as near as those that it had. A session that was made anew has other buffers, by kilobytes a body.
-TEST_F(RankSessions, WhoComesNextHasRoom) {
-    const auto scene = drawn_together(200);
+/// After a partition has been valid for long, so that skins do not grow, every rank but the last gets new
+/// ghost bodies. They were next in distance, so the session has capacity for them; a rebuilt session would
+/// have other buffers, by kilobytes a body.
+TEST_F(RankSessions, NextGhostsFitIntoTheSession) {
+    const auto scene = approaching_row(200);
     auto& on = own_device();
     const auto& traversal = algorithm("tiled");
     const auto session =
         traversal.prepare(on, scene, settings_of(traversal, {{"contact_rule", "none"}}), *job);
     const auto bodies = [&](std::size_t frame) {
-        last_ = session->run(of_own(scene, *session, frame));
+        last_ = session->run(own_frame(scene, *session, frame));
         return last_.shared[static_cast<std::size_t>(job->rank())].bodies;
     };
     auto before = bodies(0);
-    for (int held = 0, i = 0; held < 10 && i < 500; ++i) {
+    for (int unchanged = 0, i = 0; unchanged < 10 && i < 500; ++i) {
         before = bodies(0);
-        held = last_.repartitions == 0 ? held + 1 : 0;
+        unchanged = last_.repartitions == 0 ? unchanged + 1 : 0;
     }
     const auto bytes = on.bytes_allocated();
     EXPECT_EQ(bodies(1) > before, job->rank() + 1 < job->size());
     EXPECT_LT(on.bytes_allocated(), bytes + 1000);
 }
 
-/// Every rank says which tetrahedra of its own bodies are skipped, in one frame and not in the next.
-TEST_F(RankSessions, SkippedTetrahedraAreTold) {
+/// Every rank passes the skipped tetrahedra of its own bodies, in one frame and not in the next.
+TEST_F(RankSessions, SkippedTetrahedraAreExchanged) {
     auto scene = procession(24, 4, 0.05);
     scene.frame = [whole = scene.frame](std::size_t number) {
         auto frame = whole(number);
@@ -238,8 +240,8 @@ TEST_F(RankSessions, SkippedTetrahedraAreTold) {
     }
 }
 
-/// Where messages reach devices their vertices go there as rows of four floats; else as three doubles through
-/// the hosts. With placement=exact hosts need them.
+/// If messages reach devices, vertices arrive there as rows of four floats; otherwise as three doubles
+/// through the hosts. With placement=exact the hosts need them.
 TEST_F(RankSessions, VerticesGoFromDeviceToDevice) {
     const auto scene = soft_procession(40, 3, 0.01);
     for (const auto* traversal : algorithms()) {
@@ -260,13 +262,13 @@ TEST_F(RankSessions, VerticesGoFromDeviceToDevice) {
     }
 }
 
-/// OpenCL's memory has no pointers that a message could be of.
-TEST_F(RankSessions, VerticesOfDevicesOutOfReachGoThroughHosts) {
+/// OpenCL memory has no pointers for MPI messages.
+TEST_F(RankSessions, VerticesGoThroughHostsWithoutDevicePointers) {
     expect_frames_equal(soft_procession(20, 2, 0.01), algorithm("tiled"), device("opencl:0"));
 }
 
-/// The first rank has memory for its frame in batches only, for which it has to have all vertices.
-TEST_F(RankSessions, VerticesAreBroughtWhereAFrameTakesBatches) {
+/// The first rank's memory is enough for batches only; batches need all vertices on the host.
+TEST_F(RankSessions, BatchesGetVerticesOnTheHost) {
     const auto scene = soft_procession(40, 3, 0.01);
     const auto& traversal = algorithm("chunked");
     auto& on = own_device();
@@ -275,7 +277,7 @@ TEST_F(RankSessions, VerticesAreBroughtWhereAFrameTakesBatches) {
     const auto session = traversal.prepare(on, scene, settings_of(traversal, small), *job);
     const auto one = alone(traversal, scene);
     if (job->is_first()) on.set_memory_limit(on.bytes_allocated() + 20'000);
-    const auto result = session->run(of_own(scene, *session, 1));
+    const auto result = session->run(own_frame(scene, *session, 1));
     on.set_memory_limit(Device::no_memory_limit);
     const auto right = one->run(scene.frame(1));
     EXPECT_EQ(summed(result.digest()), right.digest());
@@ -285,8 +287,8 @@ TEST_F(RankSessions, VerticesAreBroughtWhereAFrameTakesBatches) {
     for (const std::size_t i : {2u, 0u}) expect_equal(scene, *session, *one, i);
 }
 
-/// A device's search numbers 2^20 bodies at most, a scene on ranks may have more: those of other ranks have
-/// no numbers on a device.
+/// A device's broad phase numbers at most 2^20 bodies. A scene on ranks may have more because bodies of other
+/// ranks have no numbers on the device.
 TEST_F(RankSessions, MoreBodiesThanADeviceCanNumber) {
     ASSERT_GT(job->size(), 1) << "one rank has all bodies";
     constexpr std::uint32_t side = 103;
@@ -313,7 +315,7 @@ TEST_F(RankSessions, CountsAndDigestsWithoutPairs) {
             traversal.prepare(own_device(), scene, settings_of(traversal, {{"output", output}}), *job);
         const auto right = alone(traversal, scene)->run(scene.frame(0));
         for (int i = 0; i < 4; ++i) {
-            const auto result = session->run(of_own(scene, *session, 0));
+            const auto result = session->run(own_frame(scene, *session, 0));
             EXPECT_EQ(summed(result.count), right.count);
             if (output == "digest") {
                 EXPECT_EQ(summed(result.digest()), right.digest());
@@ -322,13 +324,14 @@ TEST_F(RankSessions, CountsAndDigestsWithoutPairs) {
     }
 }
 
-/// A rank may own nothing at all.
+/// A rank may own no bodies.
 TEST_F(RankSessions, MoreRanksThanBodies) {
     expect_frames_equal(procession(3, 2, 0.1), algorithm("gproximity"), own_device());
 }
 
-/// The first rank's device has too little memory: all are told, by name, and go on when it has enough.
-TEST_F(RankSessions, AnErrorOfOneRankIsOneOfAll) {
+/// The first rank's device has too little memory: all ranks report its error by rank number, and continue
+/// when it has enough.
+TEST_F(RankSessions, AnErrorOfOneRankIsReportedByAll) {
     const auto scene = procession(40, 2, 5);
     const auto& traversal = algorithm("tiled");
     auto& on = own_device();
@@ -337,21 +340,21 @@ TEST_F(RankSessions, AnErrorOfOneRankIsOneOfAll) {
     expect_equal(scene, *session, *one, 0);
     last_ = {};
     if (job->is_first()) on.set_memory_limit(1);
-    std::string said;
+    std::string message;
     try {
-        session->run(of_own(scene, *session, 1));
+        session->run(own_frame(scene, *session, 1));
     } catch (const OutOfMemory& error) {
-        said = error.what();
+        message = error.what();
     }
     on.set_memory_limit(Device::no_memory_limit);
-    EXPECT_THAT(said, testing::HasSubstr("rank 0: "));
+    EXPECT_THAT(message, testing::HasSubstr("rank 0: "));
     expect_equal(scene, *session, *one, 1);
     expect_equal(scene, *session, *one, 0);
 }
 
-TEST_F(RankSessions, RefuseWhatOneRankCannotDo) {
+TEST_F(RankSessions, RejectUnsupportedSettingsAndInput) {
     const auto scene = procession(5, 1, 0);
-    const auto refusal = [&](const char* name, const SettingTexts& given) -> std::string {
+    const auto rejection = [&](const char* name, const SettingTexts& given) -> std::string {
         const auto& traversal = algorithm(name);
         try {
             const auto session = traversal.prepare(own_device(), scene, settings_of(traversal, given), *job);
@@ -364,16 +367,17 @@ TEST_F(RankSessions, RefuseWhatOneRankCannotDo) {
     };
     const auto& tiled = algorithm("tiled");
     const auto session = tiled.prepare(own_device(), scene, settings_of(tiled), *job);
-    DeviceFrame there;
-    there.poses = {own_device().allocate(5 * 7 * 8, "poses"), Precision::fp64};
-    there.deformed.resize(5);
-    there.deformed[1] = {own_device().allocate(scene.meshes[0].vertices.size() * 24, "vertices"),
+    DeviceFrame input;
+    input.poses = {own_device().allocate(5 * 7 * 8, "poses"), Precision::fp64};
+    input.deformed.resize(5);
+    input.deformed[1] = {own_device().allocate(scene.meshes[0].vertices.size() * 24, "vertices"),
                          Precision::fp64};
-    EXPECT_THAT([&] { session->run(there); },
+    EXPECT_THAT([&] { session->run(input); },
                 testing::ThrowsMessage<InputError>(testing::HasSubstr("ranks of a job exchange bodies")));
-    EXPECT_THAT(refusal("tiled", {{"broad", "tight"}}), testing::HasSubstr("choose broad=device"));
-    EXPECT_THAT(refusal("chunked", {{"residency", "published"}}), testing::HasSubstr("cannot share a frame"));
-    EXPECT_THAT(refusal("tiled", {}), testing::HasSubstr("which ranks of a job find themselves"));
+    EXPECT_THAT(rejection("tiled", {{"broad", "tight"}}), testing::HasSubstr("choose broad=device"));
+    EXPECT_THAT(rejection("chunked", {{"residency", "published"}}),
+                testing::HasSubstr("cannot share a frame"));
+    EXPECT_THAT(rejection("tiled", {}), testing::HasSubstr("which ranks of a job find themselves"));
 }
 
 } // namespace
