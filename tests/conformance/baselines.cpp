@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Peers: found by name and in no list of all algorithms, with the answer of the project's own or a refusal.
+// Baselines are opt-in: found by name, in no list of all algorithms. Their answers equal those of the
+// project's own algorithms; unsupported settings are rejected.
 #include "backends/host/host_device.h"
 #include "scenes/builtin.h"
 #include "base/error.h"
@@ -25,8 +26,8 @@ Settings of_first_preset(const Traversal& traversal, const SettingTexts& given) 
     return resolve(traversal.parameters(), traversal.presets().front().values, given, traversal.name());
 }
 
-/// Why a device does not take these settings; "no error" when it does.
-std::string refusal(const DeviceInfo& info, const SettingTexts& given) {
+/// Why a device rejects these settings; "no error" if it accepts them.
+std::string rejection(const DeviceInfo& info, const SettingTexts& given) {
     try {
         embree().fitted(of_first_preset(embree(), given), info);
     } catch (const InputError& error) {
@@ -35,12 +36,12 @@ std::string refusal(const DeviceInfo& info, const SettingTexts& given) {
     return "no error";
 }
 
-/// Whether the program was built without the library.
+/// Whether the program was built without Embree.
 bool is_absent() {
-    return refusal(device("host").info(), {}).find("built without Embree") != std::string::npos;
+    return rejection(device("host").info(), {}).find("built without Embree") != std::string::npos;
 }
 
-TEST(Peers, AreFoundByNameAndInNoList) {
+TEST(Baselines, AreFoundByNameAndInNoList) {
     ASSERT_FALSE(baselines().empty());
     for (const auto* baseline : baselines()) {
         EXPECT_EQ(&algorithm(baseline->name()), baseline);
@@ -49,19 +50,19 @@ TEST(Peers, AreFoundByNameAndInNoList) {
     }
 }
 
-TEST(Peers, RefuseWhatTheyDoNotDo) {
+TEST(Baselines, RejectUnsupportedSettings) {
     const auto& host = device("host").info();
     if (is_absent()) {
-        EXPECT_THAT(refusal(host, {}), HasSubstr("install Debian's libembree-dev"));
+        EXPECT_THAT(rejection(host, {}), HasSubstr("install Debian's libembree-dev"));
         EXPECT_THAT(std::string(embree().summary()), HasSubstr("install Debian's libembree-dev"));
         return;
     }
     auto other = host;
     other.id = "cuda:9";
-    EXPECT_EQ(refusal(host, {}), "no error");
-    EXPECT_THAT(refusal(other, {}), HasSubstr("device host only, not on cuda:9"));
-    EXPECT_THAT(refusal(host, {{"k", "18"}}), HasSubstr("choose k=6"));
-    EXPECT_THAT(refusal(host, {{"precision", "double"}}), HasSubstr("choose float"));
+    EXPECT_EQ(rejection(host, {}), "no error");
+    EXPECT_THAT(rejection(other, {}), HasSubstr("device host only, not on cuda:9"));
+    EXPECT_THAT(rejection(host, {{"k", "18"}}), HasSubstr("choose k=6"));
+    EXPECT_THAT(rejection(host, {{"precision", "double"}}), HasSubstr("choose float"));
     const std::array both{&device("host"), &device("opencl:0")};
     EXPECT_THROW(embree().check(both, of_first_preset(embree(), {})), InputError);
 }
@@ -70,18 +71,19 @@ class Embree : public testing::Test {
 protected:
     void SetUp() override {
         if (is_absent()) GTEST_SKIP() << "built without Embree";
-        if (sanitized()) GTEST_SKIP() << "no kernels of k = 6 here";
+        if (sanitized()) GTEST_SKIP() << "a sanitized build has no kernels of k = 6";
     }
 
     std::unique_ptr<Session> session(const Traversal& traversal, const Scene& scene, SettingTexts given) {
         given["k"] = "6";
         for (const std::string capacity : {"pair_capacity", "contact_capacity"})
-            given.emplace(capacity, "65536"); // clearing more would take most of the time
+            given.emplace(capacity, "65536"); // clearing larger buffers would take most of the time
         const std::array devices{on_.get()};
         return traversal.prepare(devices, scene, of_first_preset(traversal, given));
     }
 
-    /// Pairs, digest and contacts of every frame, between the same body pairs; returns how many pairs.
+    /// Compares pairs, digest and contacts of every frame for the same body pairs; returns the number of
+    /// pairs.
     std::uint64_t expect_same(const Scene& scene, std::span<const Frame> frames, const SettingTexts& given) {
         const auto own = session(algorithm("chunked"), scene, given);
         const auto baseline = session(embree(), scene, given);
@@ -147,15 +149,15 @@ TEST_F(Embree, FindsTheSamePairsInHardCases) {
     EXPECT_GT(pairs, 1000u);
 }
 
-/// Where Embree's own arithmetic ends: numbers that it takes for zero, and boxes that it leaves out.
+/// The limits of Embree's own arithmetic: numbers that it treats as zero, and boxes that it ignores.
 TEST_F(Embree, FindsTheSamePairsOfExtremeSizes) {
     for (const double size : {1e-44, 1e-41, 1e-38, 1e-20, 1e17, 1e18, 2e18, 1e19, 1e30, 1e35}) {
-        std::vector<Eigen::Vector3d> places;
+        std::vector<Eigen::Vector3d> positions;
         for (int x = -4; x < 4; ++x)
-            for (int y = -4; y < 4; ++y) places.emplace_back(x * size, y * size, size);
+            for (int y = -4; y < 4; ++y) positions.emplace_back(x * size, y * size, size);
         Scene scene;
         scene.name = scene.key = "sizes";
-        scene.meshes = {tetrahedra_at(places, size), tetrahedra_at({places.front()}, size)};
+        scene.meshes = {tetrahedra_at(positions, size), tetrahedra_at({positions.front()}, size)};
         scene.bodies = {{.mesh = 0}, {.mesh = 0}, {.mesh = 1}};
         Frame frame;
         frame.poses.resize(3);
@@ -172,8 +174,9 @@ TEST_F(Embree, FindsTheSamePairsOfExtremeSizes) {
     }
 }
 
-/// Others in the next frame, all of a body, and none again; trees are built anew, and then refitted.
-TEST_F(Embree, LeavesOutWhatFramesSkip) {
+/// The set of skipped tetrahedra changes between frames and includes a whole body; trees are rebuilt and then
+/// refitted.
+TEST_F(Embree, IgnoresSkippedTetrahedra) {
     const auto scene = boxes_scene(4, 4);
     const auto every = [&](std::uint32_t n, std::uint32_t first) {
         std::vector<std::uint32_t> list;
@@ -196,7 +199,7 @@ TEST_F(Embree, LeavesOutWhatFramesSkip) {
         EXPECT_GT(expect_same(scene, frames, {{"contact_rule", "none"}, {"broad", broad}}), 1000u);
 }
 
-TEST_F(Embree, GrowsAndSplitsAndSums) {
+TEST_F(Embree, GrowsBuffersAndSumsDigests) {
     const auto scene = crowd(31, 12, 0.9);
     const auto frame = scene.frame(0);
     const auto expected = session(algorithm("chunked"), scene, {})->run(frame).digest();
@@ -211,7 +214,7 @@ TEST_F(Embree, GrowsAndSplitsAndSums) {
     EXPECT_GE(grown->run(frame).work.at("leaf_tests"), expected.count);
 }
 
-/// One body pair whose pairs do not fit is walked by windows of items.
+/// One body pair whose pairs do not fit is traversed in windows of items.
 TEST_F(Embree, SplitsABodyPairByItems) {
     auto scene = boxes_scene(6, 2);
     const auto frame = scene.frame(0);
@@ -223,14 +226,14 @@ TEST_F(Embree, SplitsABodyPairByItems) {
         const auto alone = session(embree(), scene, small);
         least = on_->bytes_allocated();
     }
-    on_->set_memory_limit(least + 4 * expected.count); // half of what pairs take
+    on_->set_memory_limit(least + 4 * expected.count); // half of the bytes for the pairs
     const auto result = session(embree(), scene, small)->run(frame, {&only, 1});
     EXPECT_GT(result.batches, 1u);
     EXPECT_EQ(result.digest(), expected);
 }
 
-/// What Embree does is in the trace: as launches, under the stages that the project's own would have.
-TEST_F(Embree, IsBookedAsRefitAndWalk) {
+/// The trace lists Embree's work as launches, under the stages of the project's own algorithms.
+TEST_F(Embree, IsTracedAsRefitAndTraversal) {
     const auto scene = crowd(41, 12, 0.9);
     const auto baseline = session(embree(), scene, {{"contact_rule", "none"}});
     on_->set_clocks(Clocks::on);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Frames that do not fit into memory, and memory that is not to be had: the answer is the same, part after
-// part, and a session that could not go on can be used again.
+// Frames that do not fit into memory, and allocations that fail. The answer in batches is the same, and a
+// session that ran out of memory can be used again.
 #include "tests/support/flawed.h"
 #include "tests/support/limited.h"
 #include "tests/support/long_form.h"
@@ -43,14 +43,15 @@ protected:
     Device& on = device(GetParam());
 };
 
-/// Several body pairs, with every decision, by all algorithms: fewer bytes than pairs and contacts want.
+/// Several body pairs, with every decision, by all algorithms; memory is less than pairs and contacts need.
 TEST_P(Batches, GiveTheSameAnswer) {
     const auto scene = crowd(71, 10, 0.9);
     std::size_t cell = 0;
     for (const auto* traversal : algorithms()) {
         for (const std::string decision : {"fp32", "recheck", "exact"}) {
             for (const std::string precision : {"float", "double"}) {
-                // In short form every decision in one precision: the other one with the next algorithm.
+                // The short form tests each decision in one precision; the other precision follows with the
+                // next algorithm.
                 if (!long_form() && cell++ % 2 != 0) continue;
                 const SettingTexts given{
                     {"decision", decision}, {"precision", precision}, {"contact_rule", "sat"}, {"k", "8"}};
@@ -65,7 +66,8 @@ TEST_P(Batches, GiveTheSameAnswer) {
                 const auto result = session->run(frame);
                 EXPECT_GT(result.batches, 1u);
                 expect_equal(result, right);
-                expect_equal(session->run(frame), right); // begins with as many parts
+                // starts with the number of batches of the first run
+                expect_equal(session->run(frame), right);
                 session->reset();
                 expect_equal(session->run(frame), right);
             }
@@ -74,9 +76,9 @@ TEST_P(Batches, GiveTheSameAnswer) {
     }
 }
 
-/// The paper's data path, whose seeds and pairs are too many: parts of the body pairs, and with less memory
-/// of one body pair.
-TEST_P(Batches, OfThePapersDataPathGiveTheSameAnswer) {
+/// The paper's data path with too many seeds and pairs: batches of body pairs and, with less memory, of one
+/// body pair.
+TEST_P(Batches, GiveTheSameAnswerOnThePapersDataPath) {
     const auto scene = crowd(72, 10, 0.9);
     for (const auto* traversal : algorithms()) {
         if (!declares(*traversal, "residency")) continue;
@@ -99,9 +101,10 @@ TEST_P(Batches, OfThePapersDataPathGiveTheSameAnswer) {
     }
 }
 
-/// One body pair alone is split by its items; the digest that a walk sums, and the count, know no pairs.
+/// A single body pair is split by its items. The digest and the count are summed during traversal and need no
+/// pairs.
 TEST_P(Batches, SplitABodyPairByItems) {
-    auto scene = boxes_scene(7, 2); // of which the first two bodies
+    auto scene = boxes_scene(7, 2); // the first two bodies are used
     auto frame = scene.frame(0);
     scene.bodies.pop_back();
     frame.poses.pop_back();
@@ -123,7 +126,7 @@ TEST_P(Batches, SplitABodyPairByItems) {
         }
 }
 
-TEST_P(Batches, ALimitBelowBodiesAndHierarchySaysWhatTheyTake) {
+TEST_P(Batches, AnErrorBelowTheMinimumNamesTheNeededBytes) {
     const auto scene = crowd(72, 5, 0.9);
     for (const auto* traversal : algorithms()) {
         const Limited limit(on, 5000);
@@ -136,13 +139,14 @@ TEST_P(Batches, ALimitBelowBodiesAndHierarchySaysWhatTheyTake) {
                         HasSubstr(fmt::format("the limit of its memory is {}", on.memory_limit())));
             EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
         }
-        EXPECT_EQ(on.bytes_allocated() + 5000, on.memory_limit()); // nothing is left behind
+        // the failed prepare() has released its memory
+        EXPECT_EQ(on.bytes_allocated() + 5000, on.memory_limit());
     }
 }
 
-/// Too little memory for the lists between the contact stage's kernels: it goes round more than once, in one
-/// batch, and each round begins with empty lists.
-TEST_P(Batches, ContactsGoRoundWhereTheirListsAreShort) {
+/// Too little memory for the lists between the contact stage's kernels: the stage runs several rounds in one
+/// batch, and each round starts with empty lists.
+TEST_P(Batches, ContactsRunInRoundsWhenTheirListsAreShort) {
     auto scene = boxes_scene(7, 2);
     const auto frame = scene.frame(0);
     const auto& traversal = algorithm("tiled");
@@ -150,14 +154,14 @@ TEST_P(Batches, ContactsGoRoundWhereTheirListsAreShort) {
         const auto settings = resolve(traversal.parameters(), {}, {{"contact_rule", rule}}, traversal.name());
         const auto right = reference(scene, frame, {}, true, Method::sweep, contact_settings_of(settings));
         const auto pairs = right.digest.count;
-        ASSERT_GT(pairs, 4000u); // rounds of 1,024 and fewer are not tried
+        ASSERT_GT(pairs, 4000u); // the stage never uses rounds of 1,024 pairs or fewer
         ASSERT_GT(right.contacts, 0u);
         const auto session = prepare(traversal, scene,
                                      {{"contact_rule", rule},
                                       {"pair_capacity", std::to_string(pairs)},
                                       {"contact_capacity", std::to_string(right.contacts)}});
         constexpr std::uint64_t word = 4, lists = 2;
-        const Limited limit(on, pairs * word * lists / 3); // room for a quarter of the pairs
+        const Limited limit(on, pairs * word * lists / 3); // memory for a quarter of the pairs
         for (int run = 0; run < 2; ++run) {
             on.set_clocks(Clocks::on);
             const auto result = session->run(frame);
@@ -165,7 +169,7 @@ TEST_P(Batches, ContactsGoRoundWhereTheirListsAreShort) {
             on.set_clocks(Clocks::off);
             EXPECT_EQ(result.batches, 1u);
             EXPECT_EQ(result.retries, 0u);
-            // Once it knows that there are so few, a GPU does it at once.
+            // After the first run a GPU uses one round because it knows that few pairs remain.
             if (run == 0 || !on.info().is_gpu) {
                 EXPECT_GE(std::ranges::count(trace.events, "separate_pairs", &Event::label), 4);
             }
@@ -174,7 +178,7 @@ TEST_P(Batches, ContactsGoRoundWhereTheirListsAreShort) {
     }
 }
 
-/// No memory at all for more than there is: the run fails, and the next one, with memory again, is right.
+/// No memory beyond what is allocated: the run fails. The next run, with memory, is correct.
 TEST_P(Batches, ASessionWithoutMemoryCanBeUsedAgain) {
     const auto scene = crowd(73, 2, 0.4);
     const auto frame = scene.frame(0);
@@ -187,7 +191,7 @@ TEST_P(Batches, ASessionWithoutMemoryCanBeUsedAgain) {
             for (int i = 0; i < 2; ++i) {
                 const Limited limit(on, 0);
                 try {
-                    expect_equal(session->run(frame), right); // in batches of what there was
+                    expect_equal(session->run(frame), right); // in batches of the existing capacities
                 } catch (const OutOfMemory&) {}
             }
             auto expected = reference(scene, frame, {}, true, Method::brute_force,
@@ -196,7 +200,7 @@ TEST_P(Batches, ASessionWithoutMemoryCanBeUsedAgain) {
         }
 }
 
-/// An answer belongs to who holds it: the next runs leave it alone, and take no memory once it is gone.
+/// A result owns its answer: later runs do not change it, and need no memory after its release.
 TEST_P(Batches, AnAnswerOutlivesTheNextRuns) {
     const auto scene = crowd(74, 8, 0.8);
     for (const auto* traversal : algorithms())
@@ -219,7 +223,7 @@ TEST_P(Batches, AnAnswerOutlivesTheNextRuns) {
 INSTANTIATE_TEST_SUITE_P(Devices, Batches, testing::ValuesIn(device_names()),
                          [](const auto& test) { return device_label(test.param); });
 
-/// One cell on several devices, among them the same kind twice.
+/// One cell on several devices, one of them twice.
 class Split : public testing::Test {
 protected:
     static std::unique_ptr<Session> prepare(const Traversal& traversal, const Scene& scene,
@@ -235,7 +239,8 @@ TEST_F(Split, PartsAddUp) {
     for (const auto* traversal : algorithms())
         for (const std::string output : {"pairs", "digest", "count"})
             for (const std::string broad : {"device", "sphere"}) {
-                // In short form one broad phase with each output, the other one with the next.
+                // The short form runs one broad phase with each output, and the other one with the next
+                // output.
                 if (!long_form() && (output == "digest") == (broad == "device")) continue;
                 SCOPED_TRACE(fmt::format("{} {} {}", traversal->name(), output, broad));
                 const auto session = prepare(*traversal, scene, {{"output", output}, {"broad", broad}});
@@ -256,7 +261,7 @@ TEST_F(Split, PartsAddUp) {
             }
 }
 
-TEST_F(Split, ThePapersDataPathIsOneDevices) {
+TEST_F(Split, ThePapersDataPathNeedsASingleDevice) {
     const auto scene = crowd(76, 3, 0.9);
     for (const auto* traversal : algorithms()) {
         if (!declares(*traversal, "residency")) continue;

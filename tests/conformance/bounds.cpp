@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The hierarchies on the device: containment, equal bits on host and OpenCL, the memory they take.
+// The hierarchies on the device: containment, equal bits on host and OpenCL, and memory use.
 #include "tests/support/prepared_trees.h"
 #include "algorithms/bodies/pack.h"
 #include "tests/support/cells.h"
@@ -21,7 +21,7 @@ std::vector<Geometry> geometries() {
     for (const int k : sanitized() ? std::vector{8, 18} : std::vector{6, 8, 12, 14, 16, 18, 20, 24, 26})
         for (const auto precision : {Precision::fp32, Precision::fp64}) {
             all.push_back({.k = k, .precision = precision});
-            if (k != 8 && k != 26) continue; // these have every kind of direction
+            if (k != 8 && k != 26) continue; // these contain every kind of direction
             for (const auto rounding : {Rounding::nearest, Rounding::published})
                 all.push_back({.k = k, .precision = precision, .rounding = rounding});
             all.push_back({.k = k, .precision = precision, .placement = Placement::exact});
@@ -37,7 +37,7 @@ std::vector<std::byte> bytes_in(const PreparedTrees& on_device, const Buffer& bu
     return bytes;
 }
 
-/// A vertex in world coordinates as the device computes it.
+/// A vertex in world coordinates, as the device computes it.
 template<class Real>
 std::array<Real, 3> world(const Scene& scene, const Frame& frame, std::uint32_t body, std::uint32_t vertex) {
     if (scene.bodies[body].deformable) {
@@ -55,8 +55,8 @@ std::array<Real, 3> world(const Scene& scene, const Frame& frame, std::uint32_t 
     return result;
 }
 
-/// Checks that the body's root slabs hold the exact projection of every vertex; returns how many were
-/// checked.
+/// Checks that the body's root slabs contain the exact projection of every vertex; returns the number of
+/// checks.
 template<class Real>
 std::uint64_t check_roots(const Scene& scene, const Frame& frame, const PreparedTrees& on_device,
                           long double slack) {
@@ -71,7 +71,7 @@ std::uint64_t check_roots(const Scene& scene, const Frame& frame, const Prepared
             const auto p = world<Real>(scene, frame, body, v);
             for (std::size_t axis = 0; axis < axes.size(); ++axis) {
                 long double exact =
-                    0; // 64-bit significands hold these sums of float exactly, of double to 2^-64
+                    0; // 64-bit significands represent these sums exactly for float, and to 2^-64 for double
                 for (std::size_t i = 0; i < 3; ++i)
                     exact += static_cast<long double>(axes[axis][i]) * static_cast<long double>(p[i]);
                 EXPECT_LE(static_cast<long double>(root[axis]), exact + slack * std::fabs(exact));
@@ -89,8 +89,8 @@ TEST(Bounds, SafeRootsContainEveryVertex) {
     const auto frame = scene.frame(1);
     std::uint64_t checked = 0;
     for (const auto& geometry : geometries()) {
-        // Directions with at most two non-zeros keep comparisons safe, not containment: their one rounding is
-        // allowed.
+        // Directions with at most two non-zeros guarantee comparisons, not containment: their single rounding
+        // is allowed.
         if (geometry.rounding != Rounding::safe) continue;
         PreparedTrees on_device(device("host"), scene, geometry, 4, 1);
         on_device.update(frame);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The kernels of the device's broad phase: their body pairs against those of a plain double loop over the
-// root volumes that lie on the device.
+// The kernels of the device's broad phase: their body pairs against those of a double loop over the root
+// volumes on the device.
 #include "broad_support.h"
 
 namespace tandem {
@@ -8,7 +8,7 @@ namespace {
 
 using namespace testing_support;
 
-/// From 0 to 1 along each axis.
+/// A cube from 0 to 1 along each axis.
 Mesh unit_cube() {
     Random random(1);
     auto cube = shaken_box(1, random);
@@ -17,22 +17,22 @@ Mesh unit_cube() {
     return cube;
 }
 
-/// side x side x side cubes, all of which touch their neighbours and no more.
+/// side x side x side cubes that touch their neighbours without overlapping in depth.
 Scene lattice(std::uint32_t side) {
-    std::vector<Eigen::Vector3d> places;
+    std::vector<Eigen::Vector3d> positions;
     for (std::uint32_t i = 0; i < side * side * side; ++i)
-        places.emplace_back(i % side, i / side % side, i / side / side);
-    return still_scene(unit_cube(), {places});
+        positions.emplace_back(i % side, i / side % side, i / side / side);
+    return still_scene(unit_cube(), {positions});
 }
 
-/// A row of cubes that touch along x, which frame 1 turns round.
+/// A row of cubes that touch along x; frame 1 reverses the row.
 Scene row_of_cubes(std::uint32_t bodies) {
-    std::vector<std::vector<Eigen::Vector3d>> places(2);
+    std::vector<std::vector<Eigen::Vector3d>> positions(2);
     for (std::uint32_t i = 0; i < bodies; ++i) {
-        places[0].emplace_back(i, 0, 0);
-        places[1].emplace_back(bodies - i, 0, 0);
+        positions[0].emplace_back(i, 0, 0);
+        positions[1].emplace_back(bodies - i, 0, 0);
     }
-    return still_scene(unit_cube(), places);
+    return still_scene(unit_cube(), positions);
 }
 
 class BroadKernel : public testing::TestWithParam<std::string> {};
@@ -54,8 +54,8 @@ TEST_P(BroadKernel, EqualsADoubleLoopOverTheRootVolumes) {
     }
 }
 
-/// 25 tiles, of which a group takes several, by batches of as many as it has work-items; an order that is no
-/// longer right; every third body fixed, so that a tile is fixed in part and others are as a whole.
+/// 25 tiles, several per work-group, in batches of as many as the group has work-items. The sorting order is
+/// out of date. Every third body is fixed, so some tiles are fixed partly and others completely.
 TEST_P(BroadKernel, ManyTilesInAnyOrder) {
     auto& on = device(GetParam());
     const auto scene = gravel(3, 800, 12, 3);
@@ -79,13 +79,13 @@ TEST_P(BroadKernel, TouchingOverlaps) {
         Search search(on, scene, geometry, 32, 100);
         search.sort_by(0);
         search.go_to(0);
-        // Neighbours by a face, an edge or a corner: ((3 * 5 - 2)^3 - 5^3) / 2.
+        // Neighbours share a face, an edge or a corner: ((3 * 5 - 2)^3 - 5^3) / 2.
         EXPECT_EQ(search.expected().size(), 1036u);
         search.expect_right();
     }
 }
 
-/// Unions of tiles that touch and do no more, from either side.
+/// Unions of tiles that only touch, from either side.
 TEST_P(BroadKernel, TouchingTilesOverlap) {
     auto& on = device(GetParam());
     const auto scene = row_of_cubes(100);
@@ -100,7 +100,7 @@ TEST_P(BroadKernel, TouchingTilesOverlap) {
     }
 }
 
-TEST_P(BroadKernel, FixedBodiesMeetMovingOnesOnly) {
+TEST_P(BroadKernel, FixedBodiesPairWithMovingOnesOnly) {
     auto& on = device(GetParam());
     for (const std::uint32_t moving : {0u, 1u, 33u}) {
         auto scene = lattice(4);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sessions that find their body pairs on the device: every algorithm and preset with every broad phase
-// against brute force, capacities of the pairs' buffer, and the commands of a frame.
+// against brute force, capacities of the body pair buffer, and the commands of a frame.
 #include "broad_support.h"
 
 #include "algorithms/bounds/geometry.h"
@@ -16,7 +16,7 @@ using namespace testing_support;
 
 class BroadSessions : public testing::TestWithParam<std::string> {};
 
-bool refused(const Traversal& traversal, std::span<Device* const> devices, const Settings& settings) {
+bool rejected(const Traversal& traversal, std::span<Device* const> devices, const Settings& settings) {
     try {
         traversal.check(devices, settings);
         return false;
@@ -25,7 +25,7 @@ bool refused(const Traversal& traversal, std::span<Device* const> devices, const
     }
 }
 
-/// Every preset with every broad phase gives the answer of the reference, or says why it cannot.
+/// Every preset with every broad phase gives the reference's answer, or is rejected with a reason.
 TEST_P(BroadSessions, EveryPresetWithEveryBroadPhase) {
     auto& on = device(GetParam());
     const auto scene = crowd(5, 12, 1.5);
@@ -38,8 +38,9 @@ TEST_P(BroadSessions, EveryPresetWithEveryBroadPhase) {
                 const auto settings = resolve(traversal->parameters(), p.values, given, traversal->name());
                 const std::array devices{&on};
                 SCOPED_TRACE(fmt::format("{} {}{}", traversal->name(), p.name, text(given)));
-                if (refused(*traversal, devices, settings)) {
-                    // Only where the host makes what a launch starts from, and for the first preset of none.
+                if (rejected(*traversal, devices, settings)) {
+                    // Only presets whose launches start from host data are rejected, never an algorithm's
+                    // first preset.
                     EXPECT_EQ(broad, "device");
                     EXPECT_NE(p.name, traversal->presets().front().name);
                     continue;
@@ -63,7 +64,7 @@ TEST_P(BroadSessions, EveryPresetWithEveryBroadPhase) {
     EXPECT_GE(cells, 20u);
 }
 
-/// A buffer for all pairs but one grows once, one for all of them not at all.
+/// A buffer that lacks one pair grows once; a buffer of exactly all pairs does not grow.
 TEST_P(BroadSessions, ACapacityOfExactlyTheBodyPairsNeedsNoRetry) {
     auto& on = device(GetParam());
     const auto scene = crowd(8, 14, 1.5);
@@ -89,8 +90,8 @@ TEST_P(BroadSessions, ACapacityOfExactlyTheBodyPairsNeedsNoRetry) {
     }
 }
 
-/// Whoever finds them otherwise: pairs that are given are those that are walked, and only in that run.
-TEST_P(BroadSessions, GivenPairsAreWalkedInstead) {
+/// Explicit body pairs replace those of any broad phase, for that run only.
+TEST_P(BroadSessions, ExplicitPairsReplaceTheBroadPhase) {
     auto& on = device(GetParam());
     const auto scene = crowd(8, 6, 0.5);
     const auto frame = scene.frame(0);
@@ -110,8 +111,8 @@ TEST_P(BroadSessions, GivenPairsAreWalkedInstead) {
         }
 }
 
-/// The commands of a resident chunked frame: the same for frames of different answers, one wait, and the
-/// search booked as what it is.
+/// The commands of a resident chunked frame: the same for frames with different answers, with one wait; the
+/// trace lists the search under the broad stage.
 TEST_P(BroadSessions, ResidentChunkedIsOneSequence) {
     auto& on = device(GetParam());
     const auto scene = gravel(10, 300, 5, 1000);
@@ -119,7 +120,7 @@ TEST_P(BroadSessions, ResidentChunkedIsOneSequence) {
     const auto settings = resolve(traversal.parameters(), {}, {{"broad", "device"}}, traversal.name());
     const std::array devices{&on};
     const auto session = traversal.prepare(devices, scene, settings);
-    session->run(scene.frame(0)); // sorts the bodies
+    session->run(scene.frame(0)); // the first run sorts the bodies
     on.set_clocks(Clocks::on);
     std::vector<std::vector<std::string>> sequences;
     std::vector<std::uint64_t> found;

@@ -13,17 +13,17 @@ namespace tandem::testing_support {
 
 constexpr std::uint32_t guard = 0xabcdabcd;
 
-/// `places`: those of each body by frame. Bodies of one mesh that do not turn.
-inline Scene still_scene(Mesh mesh, const std::vector<std::vector<Eigen::Vector3d>>& places) {
+/// `positions`: per frame, those of each body. The bodies share a mesh and do not rotate.
+inline Scene still_scene(Mesh mesh, const std::vector<std::vector<Eigen::Vector3d>>& positions) {
     Scene scene;
     scene.name = scene.key = "still";
     scene.meshes = {std::move(mesh)};
-    scene.bodies.resize(places.front().size());
-    scene.frame_count = places.size();
-    scene.frame = [places](std::size_t frame) {
+    scene.bodies.resize(positions.front().size());
+    scene.frame_count = positions.size();
+    scene.frame = [positions](std::size_t frame) {
         Frame result;
-        result.deformed.resize(places[frame].size());
-        for (const auto& place : places[frame])
+        result.deformed.resize(positions[frame].size());
+        for (const auto& place : positions[frame])
             result.poses.push_back({Eigen::Quaterniond::Identity(), place});
         return result;
     };
@@ -40,23 +40,23 @@ inline Mesh one_tetrahedron() {
     return mesh;
 }
 
-/// Single tetrahedra strewn in a cube, somewhere else in each of two frames but for the fixed ones: every
-/// `fixed_step`-th body.
+/// Single tetrahedra scattered in a cube, at different positions in the two frames except for the fixed ones:
+/// every `fixed_step`-th body.
 inline Scene gravel(std::uint64_t seed, std::uint32_t bodies, double spread, std::uint32_t fixed_step) {
     Random random(seed);
-    std::vector<std::vector<Eigen::Vector3d>> places(2);
+    std::vector<std::vector<Eigen::Vector3d>> positions(2);
     for (std::uint32_t i = 0; i < bodies; ++i) {
-        for (auto& frame : places)
+        for (auto& frame : positions)
             frame.emplace_back(random.uniform() * spread, random.uniform() * spread,
                                random.uniform() * spread);
-        if (i % fixed_step == 0) places[1].back() = places[0].back();
+        if (i % fixed_step == 0) positions[1].back() = positions[0].back();
     }
-    auto scene = still_scene(one_tetrahedron(), places);
+    auto scene = still_scene(one_tetrahedron(), positions);
     for (std::uint32_t i = 0; i < bodies; i += fixed_step) scene.bodies[i].fixed = true;
     return scene;
 }
 
-/// Closed overlap of two root volumes.
+/// Whether two root volumes overlap; touching counts.
 template<class Real>
 bool overlapping(const Real* a, const Real* b, std::size_t axes) {
     for (std::size_t axis = 0; axis < axes; ++axis)
@@ -74,7 +74,7 @@ std::vector<BodyPair> expected_pairs(const PreparedTrees& on, const Scene& scene
     return pairs;
 }
 
-/// The broad phase alone, on a scene that has been refitted.
+/// The broad phase alone, on a refitted scene.
 class Search {
 public:
     Search(Device& device, const Scene& scene, const Geometry& geometry, std::uint32_t group_size,

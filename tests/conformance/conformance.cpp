@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Every algorithm and preset against brute force, on the host and on OpenCL, over a pairwise covering array
-// of settings and group sizes. Iterates the list of algorithms: a new one is covered by being listed.
+// of settings and group sizes. The tests iterate the list of algorithms, so they cover new entries
+// automatically.
 #include "tests/support/cells.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/scenes.h"
@@ -14,7 +15,7 @@ namespace {
 
 using namespace testing_support;
 
-/// Axes of settings that `traversal` declares.
+/// Value axes of the settings that `traversal` declares.
 std::vector<Axis> axes_of(const Traversal& traversal) {
     const auto of = [](const std::string& name, const std::vector<std::string>& values) {
         Axis axis;
@@ -43,7 +44,7 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
                            of("body_pair_capacity", {"1", "65536"}),
                            of("pair_capacity", {"1", "100000"}),
                            of("contact_capacity", {"1", "100000"}),
-                           // What some have for themselves.
+                           // Settings of single algorithms.
                            of("leaves", {"2", "4", "32"}),
                            of("seed_threshold", {"0", "1", "40", "1e7"}),
                            of("seed_target", {"1000", "1048576"}),
@@ -71,8 +72,8 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
     return axes;
 }
 
-/// A row that asks for the device's broad phase and for what does not go with it makes two: without the one
-/// and without the other.
+/// Splits a row that combines the device's broad phase with settings it does not support: one row with that
+/// broad phase, one with those settings.
 std::vector<SettingTexts> possible(const std::vector<SettingTexts>& rows) {
     std::vector<SettingTexts> all;
     for (const auto& row : rows) {
@@ -90,7 +91,7 @@ std::vector<SettingTexts> possible(const std::vector<SettingTexts>& rows) {
     return all;
 }
 
-/// The row with groups as large as the device has local memory for.
+/// The row with the largest group size whose local memory the device can provide.
 SettingTexts fitted(const Traversal& traversal, Device& on, SettingTexts row) {
     const std::array devices{&on};
     for (;;) {
@@ -131,7 +132,7 @@ void expect_right(Device& on, const Traversal& traversal, const Scene& scene, co
 
 class Conformance : public testing::TestWithParam<std::string> {};
 
-/// A device and a part of the rows: compiling them takes most of the time, and parts can run side by side.
+/// A device and a part of the rows: compilation takes most of the time, and parts can run in parallel.
 class CoveringArray : public testing::TestWithParam<std::tuple<std::string, std::size_t>> {
 public:
     static constexpr std::size_t parts = 6;
@@ -156,7 +157,7 @@ protected:
 };
 
 TEST_P(CoveringArray, Chunked) { cover("chunked", 100, 7); }
-// With queues of four items and a balance after each, every body pair takes thousands of launches.
+// Queues of four items with a balance after each would need thousands of launches per body pair.
 TEST_P(CoveringArray, Gproximity) { cover("gproximity", 200, 4); }
 TEST_P(CoveringArray, Tiled) { cover("tiled", 400, 7); }
 TEST_P(CoveringArray, EveryOther) {
@@ -173,7 +174,7 @@ TEST_P(Conformance, EveryPreset) {
         for (const auto& p : traversal->presets()) {
             auto given = p.texts();
             if (given.contains("groups"))
-                given["queue_bytes"] = "1048576"; // 64 MiB a batch would only take time
+                given["queue_bytes"] = "1048576"; // 64 MiB a batch would only cost time
             std::uint64_t pairs = 0;
             std::uint64_t contacts = 0;
             expect_right(on, *traversal, scene, given, pairs, contacts);
@@ -257,9 +258,9 @@ TEST_P(Conformance, TenRunsGiveTheSameSet) {
     }
 }
 
-/// A session gets the memory of the one before, at the same addresses: what a device remembers of the last
-/// one's commands is of no use.
-TEST_P(Conformance, TheSameSessionAgain) {
+/// A session gets the memory of the previous one, at the same addresses. Cached state of the previous
+/// session's commands must not be reused.
+TEST_P(Conformance, RepeatedSessionsAtTheSameAddresses) {
     const auto scene = crowd(48, 6, 0.8);
     const auto right = reference(scene, scene.frame(0), {}, true, Method::brute_force);
     const std::array devices{&device(GetParam())};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Contact rules and decisions through sessions, on stones that touch: both algorithms' buffers and schedules.
+// Contact rules and decisions through sessions, on stones that touch: buffers and schedules of both
+// algorithms.
 #include "algorithms/narrow_phase/contact_settings.h"
 #include "harness/verify/oracle/frame_truth.h"
 #include "scenes/builtin.h"
@@ -15,7 +16,7 @@ namespace {
 
 using namespace testing_support;
 
-/// A frame of bodies of one tetrahedron each.
+/// A frame of bodies with one tetrahedron each.
 Scene bodies_of(const std::string& name, const std::vector<TetraCorners>& tetrahedra) {
     Scene scene;
     scene.name = scene.key = name;
@@ -39,7 +40,7 @@ Scene bodies_of(const std::string& name, const std::vector<TetraCorners>& tetrah
     return scene;
 }
 
-/// Coordinates spread over thirty powers of ten: of many pairs not even double can tell whether they meet.
+/// Coordinates spread over thirty powers of ten: not even double can decide many of the pairs.
 Scene hard_pairs(std::size_t bodies) {
     Random random(8);
     std::vector<TetraCorners> tetrahedra;
@@ -47,7 +48,7 @@ Scene hard_pairs(std::size_t bodies) {
     return bodies_of("hard pairs", tetrahedra);
 }
 
-/// Three pairs of each way in which one is inside the other, and whatever others these make.
+/// Three pairs per kind of nesting, and all other pairs that these make.
 Scene nested_pairs() {
     NestedMaker maker(9);
     std::vector<TetraCorners> tetrahedra;
@@ -71,7 +72,7 @@ protected:
                                  resolve(traversal.parameters(), {}, given, traversal.name()));
     }
 
-    /// Runs the frame and compares with the reference.
+    /// Runs the frame and compares it with the reference.
     FrameResult expect_right(const std::string& algorithm_name, const SettingTexts& given) {
         SCOPED_TRACE(algorithm_name + " on " + on.info().id + text(given));
         const auto session = prepare(algorithm_name, given);
@@ -108,7 +109,7 @@ TEST_P(ContactConformance, EveryDecisionEqualsTheReferenceInEveryResidency) {
                                  {"seed_threshold", "1"}});
 }
 
-TEST_P(ContactConformance, RulesThatAskForTheBoundaryEqualTheReference) {
+TEST_P(ContactConformance, RulesThatUseTheBoundaryEqualTheReference) {
     const auto sat = expect_right("chunked", {{"contact_rule", "sat"}});
     const auto restricted = expect_right("gproximity", {{"contact_rule", "restricted"}});
     EXPECT_EQ(restricted.contacts, sat.contacts); // every tetrahedron of a stone has boundary faces
@@ -127,7 +128,7 @@ TEST_P(ContactConformance, NestedPairsEqualTheReference) {
             expect_right("chunked", {{"contact_rule", rule}, {"precision", precision}});
 }
 
-TEST_P(ContactConformance, ExactTellsApartWhatTheOracleDoes) {
+TEST_P(ContactConformance, ExactRejectsTheDisjointPairsOfTheOracle) {
     const auto session = prepare("chunked", {{"decision", "exact"}});
     const auto result = run_among_all(*session, scene, frame);
     const auto truth = decide_pairs(scene, frame, Precision::fp32, result.download());
@@ -137,7 +138,7 @@ TEST_P(ContactConformance, ExactTellsApartWhatTheOracleDoes) {
     EXPECT_GT(disjoint, 0);
 }
 
-TEST_P(ContactConformance, ExactTellsApartWhatDoubleCannot) {
+TEST_P(ContactConformance, ExactDecidesWhatDoubleCannot) {
     scene = hard_pairs(60);
     frame = scene.frame(0);
     const auto expected = [&](const std::string& decision) {

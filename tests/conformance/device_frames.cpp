@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Frames whose numbers are in a device's memory: the bits and the answer of the same frame in the host's, the
-// same sentences for what cannot be, and one line for what needs the host.
+// Frames whose numbers are in device memory: the same bits and answers as for the same frame in host memory,
+// the same errors for invalid values, and a one-line error for settings that need the host.
 #include "algorithms/answer/status.h"
 #include "algorithms/bodies/frame_on_device.h"
 #include "algorithms/bodies/pack_stage.h"
@@ -20,9 +20,9 @@ namespace {
 using namespace testing_support;
 using ::testing::HasSubstr;
 
-/// The InputError of `work`; empty without one.
+/// Message of the InputError of `work`; empty if there is none.
 template<class Work>
-std::string refusal(const Work& work) {
+std::string rejection(const Work& work) {
     try {
         work();
     } catch (const InputError& error) {
@@ -49,19 +49,19 @@ protected:
         EXPECT_EQ(there.download_contacts().size(), here.download_contacts().size());
     }
 
-    /// Frames of the scene from both memories, each by a session of its own and in turns by a third.
+    /// Frames of the scene from both memories: a session for each, and a third session that alternates.
     void expect_same_answers(std::string_view name, const Scene& scene, const SettingTexts& given) {
         SCOPED_TRACE(fmt::format("{}{}", name, text(given)));
-        const auto here = prepare(name, scene, given);
-        const auto there = prepare(name, scene, given);
+        const auto from_host = prepare(name, scene, given);
+        const auto from_device = prepare(name, scene, given);
         const auto both = prepare(name, scene, given);
         for (std::size_t i = 0; i < 4; ++i) {
             const Rows rows(scene.frame(i % scene.frame_count), i % 2 == 1);
-            const auto right = here->run(rows.host);
+            const auto right = from_host->run(rows.host);
             const auto frame = rows.uploaded_to(on);
-            expect_equal(there->run(frame), right);
+            expect_equal(from_device->run(frame), right);
             expect_equal(i % 3 == 0 ? both->run(rows.host) : both->run(frame), right);
-            expect_equal(there->run(frame, all_pairs(scene)), right);
+            expect_equal(from_device->run(frame, all_pairs(scene)), right);
         }
     }
 
@@ -76,7 +76,7 @@ protected:
     Device& on = device(GetParam());
 };
 
-TEST_P(DeviceFrames, HaveTheAnswerOfFramesInTheHostsMemory) {
+TEST_P(DeviceFrames, GiveTheAnswerOfFramesInHostMemory) {
     const auto scene = crowd(3, 12, 1.5);
     for (const auto* traversal : algorithms())
         for (const auto& given :
@@ -85,7 +85,7 @@ TEST_P(DeviceFrames, HaveTheAnswerOfFramesInTheHostsMemory) {
     expect_same_answers("tiled", scene, {{"k", "18"}, {"submission", "each"}, {"pair_layout", "items"}});
 }
 
-TEST_P(DeviceFrames, CountCoordinatesFromTheSessionsOrigin) {
+TEST_P(DeviceFrames, UseTheOriginOfTheSession) {
     auto scene = crowd(5, 8, 1.2);
     scene.frame = [inner = scene.frame](std::size_t i) {
         auto frame = inner(i);
@@ -97,9 +97,9 @@ TEST_P(DeviceFrames, CountCoordinatesFromTheSessionsOrigin) {
     expect_same_answers("tiled", scene, {{"k", "18"}, {"origin", "auto"}, {"precision", "double"}});
 }
 
-TEST_P(DeviceFrames, LeaveOutWhatAFrameSkips) {
+TEST_P(DeviceFrames, IgnoreSkippedTetrahedra) {
     const auto scene = crowd(4, 9, 1.2);
-    const auto here = prepare("chunked", scene, {}), there = prepare("chunked", scene, {});
+    const auto from_host = prepare("chunked", scene, {}), from_device = prepare("chunked", scene, {});
     for (std::size_t i = 0; i < 3; ++i) {
         auto frame = scene.frame(0);
         if (i == 1) {
@@ -107,12 +107,12 @@ TEST_P(DeviceFrames, LeaveOutWhatAFrameSkips) {
             for (std::uint32_t t = 0; t < 40; ++t) frame.skipped[0].push_back(t);
         }
         const Rows rows(frame, false);
-        expect_equal(there->run(rows.uploaded_to(on)), here->run(rows.host));
+        expect_equal(from_device->run(rows.uploaded_to(on)), from_host->run(rows.host));
     }
 }
 
-/// Every room begins with one row, and memory with so little that the frame runs in batches.
-TEST_P(DeviceFrames, RunAgainAndInBatches) {
+/// Every buffer starts with one row, and memory is so limited that the frame runs in batches.
+TEST_P(DeviceFrames, RunWithRetriesAndInBatches) {
     const auto scene = crowd(6, 16, 1.5);
     const SettingTexts least{{"pair_capacity", "1"}, {"contact_capacity", "1"}, {"body_pair_capacity", "1"}};
     const Rows rows(scene.frame(0), false);
@@ -132,7 +132,8 @@ TEST_P(DeviceFrames, RunAgainAndInBatches) {
     expect_equal(parts, right);
 }
 
-/// Poses and vertices as Bodies::update uploads them, of quaternions of every length and direction.
+/// Poses and vertices have the bits that Bodies::update uploads, for quaternions of all lengths and
+/// directions.
 TEST_P(DeviceFrames, ArePackedToTheBitsOfTheHost) {
     Random random(11);
     Scene scene = crowd(7, 2, 1);
@@ -153,7 +154,7 @@ TEST_P(DeviceFrames, ArePackedToTheBitsOfTheHost) {
             Eigen::Quaterniond(q[7 * body + 3], q[7 * body + 4], q[7 * body + 5], q[7 * body + 6]);
         EXPECT_EQ(rows.host.poses[body].rotation.coeffs(), eigen.normalized().coeffs()) << "as --pose";
     }
-    auto other = rows.host; // leaves nothing of the frame before
+    auto other = rows.host; // overwrites everything of the previous frame
     for (auto& v : other.deformed[1]) v *= 2;
     std::ranges::fill(other.poses, Pose{});
     for (const auto precision : {Precision::fp32, Precision::fp64}) {
@@ -175,8 +176,8 @@ TEST_P(DeviceFrames, ArePackedToTheBitsOfTheHost) {
     }
 }
 
-/// What is out of range ends in the sentence that it has in the host's memory, and the next frame runs.
-TEST_P(DeviceFrames, OutOfRangeAreTheSentencesOfTheHost) {
+/// Values out of range give the same error as in host memory, and the next frame runs.
+TEST_P(DeviceFrames, OutOfRangeValuesGiveTheErrorsOfTheHost) {
     const auto scene = crowd(3, 12, 1.5);
     const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
     const auto session = prepare("tiled", scene, {});
@@ -196,39 +197,39 @@ TEST_P(DeviceFrames, OutOfRangeAreTheSentencesOfTheHost) {
         else
             rows.poses[static_cast<std::size_t>(at)] = value;
         const auto frame = rows.uploaded_to(on);
-        EXPECT_THAT(refusal([&] { session->run(frame); }), HasSubstr(words));
-        EXPECT_EQ(refusal([&] {
+        EXPECT_THAT(rejection([&] { session->run(frame); }), HasSubstr(words));
+        EXPECT_EQ(rejection([&] {
                       for (std::size_t body = 0; body < scene.bodies.size(); ++body)
                           if (!scene.bodies[body].deformable)
                               rows.host.poses[body] = pose_of_row(&rows.poses[7 * body], body);
                       check_range(scene, rows.host, Precision::fp32);
                   }),
-                  refusal([&] { session->run(frame); }));
+                  rejection([&] { session->run(frame); }));
         expect_equal(session->run(Rows(scene.frame(0), false).uploaded_to(on)), good);
     }
     for (int i = 3; i < 7; ++i) {
         Rows rows(scene.frame(0), false);
         for (std::size_t j = 3; j < 7; ++j) rows.poses[7 * 4 + j] = 0;
-        EXPECT_THAT(refusal([&] { session->run(rows.uploaded_to(on)); }),
+        EXPECT_THAT(rejection([&] { session->run(rows.uploaded_to(on)); }),
                     HasSubstr("poses: row 4 has no rotation"));
     }
 }
 
-TEST_P(DeviceFrames, AreRefusedInOneLineWhereTheHostNeedsThem) {
+TEST_P(DeviceFrames, AreRejectedInOneLineWhereTheHostNeedsThem) {
     const auto scene = crowd(3, 6, 1.5);
     const auto frame = Rows(scene.frame(0), false).uploaded_to(on);
-    const auto refused = [&](const SettingTexts& given) {
+    const auto rejection_with = [&](const SettingTexts& given) {
         const auto session = prepare("chunked", scene, given);
-        return refusal([&] { session->run(frame); });
+        return rejection([&] { session->run(frame); });
     };
-    EXPECT_THAT(refused({{"residency", "published"}, {"broad", "sphere"}}),
+    EXPECT_THAT(rejection_with({{"residency", "published"}, {"broad", "sphere"}}),
                 HasSubstr("residency=published converts every frame"));
-    EXPECT_THAT(refused({{"placement", "exact"}}), HasSubstr("placement=exact bounds on the host"));
+    EXPECT_THAT(rejection_with({{"placement", "exact"}}), HasSubstr("placement=exact bounds on the host"));
     const auto session = prepare("tiled", scene, {});
     const auto without = [&](const auto& change) {
         auto changed = frame;
         change(changed);
-        return refusal([&] { session->run(changed); });
+        return rejection([&] { session->run(changed); });
     };
     EXPECT_THAT(without([](auto& f) { f.deformed[1] = {}; }),
                 HasSubstr("vertices of body 1: a buffer of 0 bytes"));
@@ -240,7 +241,7 @@ TEST_P(DeviceFrames, AreRefusedInOneLineWhereTheHostNeedsThem) {
     const std::array both{&device("host"), &device("opencl:0")};
     const auto& tiled = algorithm("tiled");
     const auto split = tiled.prepare(both, scene, resolve(tiled.parameters(), {}, {}, "tiled"));
-    EXPECT_THAT(refusal([&] { split->run(frame); }), HasSubstr("several devices share a frame"));
+    EXPECT_THAT(rejection([&] { split->run(frame); }), HasSubstr("several devices share a frame"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, DeviceFrames, testing::ValuesIn(device_names()),

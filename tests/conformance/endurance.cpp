@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A session that runs for days: the memory of the process stays what it was, frame after frame.
+// A session that runs for days: memory of the process does not grow from frame to frame.
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
 
@@ -12,16 +12,16 @@ namespace {
 
 using namespace testing_support;
 
-/// Bytes of memory that the process holds.
+/// Resident bytes of the process.
 std::int64_t resident_bytes() {
     std::int64_t size = 0, resident = 0;
     std::ifstream("/proc/self/statm") >> size >> resident;
     return resident * sysconf(_SC_PAGESIZE);
 }
 
-/// Frames of bodies that meet and part, every result asked and dropped, every hundredth kept for a while, as
-/// a simulator would. The first tenth may fill caches; what comes then may not hold more than a page for
-/// every thousand frames.
+/// Frames of bodies that collide and separate. As in a simulator, every result is used and dropped, and every
+/// hundredth is kept for a while. The first tenth may fill caches; after that, memory may grow by at most one
+/// page per thousand frames.
 void expect_flat_memory(const std::string& on, std::size_t frames) {
     const auto scene = crowd(3, 5, 2.2); // a few pairs
     for (const auto* traversal : algorithms()) {
@@ -49,7 +49,7 @@ void expect_flat_memory(const std::string& on, std::size_t frames) {
 
 TEST(Endurance, ThousandsOfFramesLeaveMemoryFlat) { expect_flat_memory("host", 2500); }
 
-/// On every device; those with kernels to launch take long for a frame.
+/// On every device; fewer frames where each needs kernel launches.
 TEST(EnduranceLong, AHundredThousandFramesLeaveMemoryFlat) {
     for (const auto& on : device_names()) expect_flat_memory(on, on == "host" ? 100000 : 20000);
 }

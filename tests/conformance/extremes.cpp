@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Scenes where everything touches and nothing overlaps, and where everything overlaps: what random crowds
-// hardly ever have.
+// Scenes in which everything touches without overlapping, and scenes in which everything overlaps. Random
+// crowds almost never contain either.
 #include "tests/support/cells.h"
 #include "tests/support/long_form.h"
 #include "tests/support/scenes.h"
@@ -29,11 +29,11 @@ Scene still(Mesh mesh, std::vector<Pose> poses) {
     return scene;
 }
 
-/// Two boxes side by side, every number exact in float: their faces touch.
+/// Two adjacent boxes whose faces touch; every number is exact in float.
 Scene touching() {
     Random random(1);
     auto mesh = shaken_box(2, random);
-    for (auto& v : mesh.vertices) v = (v * 2).array().round() / 2; // the lattice again
+    for (auto& v : mesh.vertices) v = (v * 2).array().round() / 2; // back to the lattice
     complete_mesh(mesh, "touching");
     mesh.name = "touching";
     Pose beside;
@@ -43,7 +43,7 @@ Scene touching() {
 
 constexpr std::uint32_t crossing = 128;
 
-/// Tetrahedra of one size around one point, so that each overlaps each.
+/// Tetrahedra of one size around one point, so each overlaps every other.
 Scene all_overlapping() {
     Random random(2);
     Mesh mesh;
@@ -59,8 +59,8 @@ Scene all_overlapping() {
     return still(mesh, std::vector<Pose>(3));
 }
 
-/// Every algorithm, every schedule, groups of several sizes, on every device; but in short form of `only` one
-/// size where a compiler comes first.
+/// Every algorithm and schedule with several group sizes, on every device. The short form uses one group
+/// size, `only`, on devices that compile kernels.
 void expect_everywhere(const Scene& scene, std::uint64_t at_least, std::string_view only) {
     const auto frame = scene.frame(0);
     const auto expected = reference(scene, frame, {}, false, Method::brute_force);

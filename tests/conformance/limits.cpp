@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Kernels at body pairs past 2^31, where twice a number wraps in 32 bits. No scene has so many: tables that
-// are empty but for one row are mapped without memory behind them, and a walk is given one seed, or one item,
-// of that pair. Host kernels are the text of all others.
+// Kernels at body pairs past 2^31, where twice an index wraps in 32 bits. No scene has so many pairs: tables
+// are mapped without memory behind them and have one nonzero row. A traversal gets one seed, or one item, of
+// that pair. Host kernels compile from the same source as all others.
 #include "algorithms/chunked/levels.clh"
 #include "algorithms/gproximity/queues.clh"
 #include "algorithms/sources.h"
@@ -17,10 +17,10 @@ namespace {
 
 using namespace testing_support;
 
-constexpr std::uint32_t far_pair = 0x80000005; ///< twice it is 10 in 32 bits
+constexpr std::uint32_t far_pair = 0x80000005; ///< twice this is 10 in 32 bits
 constexpr std::uint32_t pair_count = 0x80000008;
 
-/// Zeros of any size, of which only what is touched takes memory.
+/// Zeros of any size; only touched pages take memory.
 class Zeros {
 public:
     explicit Zeros(std::size_t bytes)
@@ -78,21 +78,21 @@ protected:
 
     Device& host = device("host");
     Scene scene = boxes_scene(3, 2);
-    PreparedTrees on{host, scene, {}, 16384, 1}; ///< one chunk a body
+    PreparedTrees on{host, scene, {}, 16384, 1}; ///< one chunk per body
     Zeros pairs{8 * std::size_t{pair_count}};
     Zeros starts{8 * (std::size_t{pair_count} + 1)};
     std::vector<std::uint32_t> words = std::vector<std::uint32_t>(STATUS_WORDS);
     std::uint64_t expected = 0;
 };
 
-TEST_F(Limits, ChunkedWalksAPairPastHalfOfAllNumbers) {
+TEST_F(Limits, ChunkedTraversesABodyPairPastHalfTheRange) {
     ASSERT_GT(expected, 100u);
     for (const auto* entry : {"traverse", "traverse_in_groups"}) {
         words.assign(STATUS_WORDS, 0);
         words[STATUS_BODY_PAIRS] = pair_count;
-        words[STATUS_LEVELS] = 1; // a seed that was handed down
+        words[STATUS_LEVELS] = 1; // one seed from the previous level
         const auto status = uploaded(bytes_of(words));
-        const auto handed = uploaded(bytes_of(std::vector<std::uint32_t>{far_pair, 0, 0}));
+        const auto seed = uploaded(bytes_of(std::vector<std::uint32_t>{far_pair, 0, 0}));
         const auto found = host.allocate(expected * 16, "found");
         const auto table = pairs.adopted(host);
         const auto seeds = starts.adopted(host);
@@ -105,9 +105,9 @@ TEST_F(Limits, ChunkedWalksAPairPastHalfOfAllNumbers) {
                                                  pair_count,
                                                  0u,
                                                  seeds,
-                                                 handed,
+                                                 seed,
                                                  1u,
-                                                 handed,
+                                                 seed,
                                                  0u,
                                                  found,
                                                  static_cast<std::uint32_t>(expected),
@@ -123,7 +123,7 @@ TEST_F(Limits, ChunkedWalksAPairPastHalfOfAllNumbers) {
     }
 }
 
-TEST_F(Limits, QueuesWalkAPairPastHalfOfAllNumbers) {
+TEST_F(Limits, QueuesTraverseABodyPairPastHalfTheRange) {
     const auto status = uploaded(bytes_of(words));
     constexpr std::uint32_t capacity = 100000;
     std::vector<std::uint32_t> items(3 * capacity);

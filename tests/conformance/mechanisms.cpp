@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What single algorithms are made of: that each of their mechanisms is at work, and does what it is there
-// for.
+// Mechanisms of single algorithms: each of them runs and has the intended effect.
 #include "tests/support/cells.h"
 #include "tests/support/flawed.h"
 #include "tests/support/scenes.h"
@@ -15,8 +14,7 @@ using namespace testing_support;
 
 class Mechanisms : public testing::TestWithParam<std::string> {};
 
-/// Eight queues, tiny local queues and a low idle limit: balancing, refills, spills and growth all have to
-/// happen.
+/// Eight queues, tiny local queues and a low idle limit force balancing, refills, spills and growth.
 TEST_P(Mechanisms, GproximityIsForcedThroughEveryMechanism) {
     auto& on = device(GetParam());
     const auto scene = crowd(41, 12, 0.6);
@@ -51,8 +49,9 @@ TEST_P(Mechanisms, GproximityIsForcedThroughEveryMechanism) {
     }
 }
 
-/// A target shared by the pairs of a frame seeds as the threshold that is each pair's share does.
-TEST_P(Mechanisms, ChunkedSharesItsTargetOfSeeds) {
+/// A seed target divided among the pairs of a frame gives the same seeds as the equivalent threshold per
+/// pair.
+TEST_P(Mechanisms, ChunkedDividesItsSeedTargetAmongPairs) {
     auto& on = device(GetParam());
     const auto scene = crowd(53, 10, 0.9);
     const auto& traversal = algorithm("chunked");
@@ -79,8 +78,8 @@ TEST_P(Mechanisms, ChunkedSharesItsTargetOfSeeds) {
     EXPECT_EQ(seeds("0", "1e9", pairs), fine);
 }
 
-/// Boxes of 1296 tetrahedra beside others a tenth of their size: descending both at once meets many small
-/// parts of the small one with large parts of the large one. Both schedules count the same tests.
+/// Boxes of 1296 tetrahedra next to boxes a tenth of their size. Descending both nodes at once tests many
+/// small parts of the small box against large parts of the large one. Both schedules count the same tests.
 TEST_P(Mechanisms, DescendingTheLargerOfUnlikeNodesNeedsFewerTests) {
     auto& on = device(GetParam());
     auto scene = boxes_scene(6, 4);
@@ -100,15 +99,15 @@ TEST_P(Mechanisms, DescendingTheLargerOfUnlikeNodesNeedsFewerTests) {
         digest = result.digest();
         return result.work.at("bvtt_nodes");
     };
-    Digest of_larger, of_both, again;
-    const auto larger = tests("larger", "group", of_larger);
-    const auto both = tests("both", "group", of_both);
-    EXPECT_GT(of_both.count, 1000u);
-    EXPECT_EQ(of_larger, of_both);
+    Digest larger_digest, both_digest, again;
+    const auto larger = tests("larger", "group", larger_digest);
+    const auto both = tests("both", "group", both_digest);
+    EXPECT_GT(both_digest.count, 1000u);
+    EXPECT_EQ(larger_digest, both_digest);
     EXPECT_LT(5 * larger, 4 * both);
     EXPECT_EQ(tests("larger", "item", again), larger);
     EXPECT_EQ(tests("both", "item", again), both);
-    EXPECT_EQ(again, of_both);
+    EXPECT_EQ(again, both_digest);
 }
 
 TEST_P(Mechanisms, ResidentChunkedWaitsOnce) {

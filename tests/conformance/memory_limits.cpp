@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Frames under every kind of memory limit: the answer is that of a session without one, or OutOfMemory, and
-// no kernel writes past the end of a buffer (guards of support/cells.h, or the address sanitizer).
+// Frames under every kind of memory limit: the answer is that of an unlimited session, or OutOfMemory. No
+// kernel writes past the end of a buffer (guards of support/cells.h, or the address sanitizer).
 #include "tests/support/limited.h"
 #include "tests/support/long_form.h"
 #include "tests/support/sanitized.h"
@@ -15,14 +15,14 @@ namespace {
 
 using namespace testing_support;
 
-/// A device, an algorithm and a precision.
+/// Parameters: device, algorithm, precision.
 class MemoryLimits : public testing::TestWithParam<std::tuple<std::string, std::string, std::string>> {
 protected:
     MemoryLimits() {
         for (std::size_t i = 0; i < scene.frame_count; ++i) frames.push_back(scene.frame(i));
     }
 
-    /// Frames of one cell under `count` limits: `least` to ten times that.
+    /// Frames of one cell under `count` limits, from `least` to ten times that.
     void scan(const SettingTexts& given, int count) {
         SCOPED_TRACE(std::string(traversal.name()) + text(given));
         std::vector<Answer> right;
@@ -44,7 +44,7 @@ protected:
         try {
             session = prepare_on(on, traversal, scene, given);
         } catch (const OutOfMemory&) {
-            ++refused_;
+            ++out_of_memory_;
             return;
         }
         for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -53,17 +53,17 @@ protected:
                 EXPECT_EQ(Answer(result), right[i]) << "frame " << i;
                 ++(result.batches > 1 ? in_batches_ : whole_);
             } catch (const OutOfMemory&) {
-                ++refused_;
+                ++out_of_memory_;
             }
         }
     }
 
-    /// Every outcome was there, so that the limits are those that matter.
+    /// The limits are relevant only if every outcome occurs.
     void expect_all_outcomes() const {
-        fmt::print("{} frames whole, {} in batches, {} refused\n", whole_, in_batches_, refused_);
+        fmt::print("{} frames whole, {} in batches, {} out of memory\n", whole_, in_batches_, out_of_memory_);
         EXPECT_GT(whole_, 0);
         EXPECT_GT(in_batches_, 0);
-        EXPECT_GT(refused_, 0);
+        EXPECT_GT(out_of_memory_, 0);
     }
 
     Device& on = device(std::get<0>(GetParam()));
@@ -72,16 +72,16 @@ protected:
     std::vector<Frame> frames;
 
 private:
-    int whole_ = 0, in_batches_ = 0, refused_ = 0;
+    int whole_ = 0, in_batches_ = 0, out_of_memory_ = 0;
 };
 
-/// All contact rules and layouts; decisions and data paths take turns.
+/// All contact rules and layouts; decisions and data paths alternate.
 TEST_P(MemoryLimits, KeepTheAnswer) {
     constexpr std::array decisions{"fp32", "recheck", "exact", "fp64"};
     constexpr std::array layouts{"slots", "items"};
     const auto& precision = std::get<2>(GetParam());
     const bool on_host = on.info().id == "host";
-    // Sanitized kernels are many times slower: they take the short form.
+    // Sanitized kernels are many times slower and use the short form.
     const bool every_one = long_form() && !sanitized();
     const int limits = !every_one ? 6 : on_host ? 40 : 12;
     const auto paths = residencies_of(traversal);
@@ -90,8 +90,8 @@ TEST_P(MemoryLimits, KeepTheAnswer) {
     for (const auto& word : parameters::contact_rule.choices())
         for (std::size_t layout = 0; layout < layouts.size(); ++layout) {
             const auto rule = turn++ / layouts.size();
-            // In short form every other rule with each precision, with one layout; where kernels are compiled
-            // first, one rule.
+            // The short form runs every other rule with each precision and one layout. Where kernels must be
+            // compiled, it runs one rule.
             const bool is_short = rule % 2 == first && layout == rule / 2 % 2 && (on_host || rule == first);
             if (!every_one && !is_short) continue;
             SettingTexts given = paths[(turn + first) / 3 % paths.size()];
@@ -128,9 +128,9 @@ struct Line {
     std::size_t limit;
 };
 
-/// Runs that ended with a corrupt heap when contact ids and contact values were two buffers of unlike
-/// capacities.
-TEST(MemoryLimitsOnHost, RunsThatOverwroteMemoryAreRight) {
+/// Regression test: these runs corrupted the heap when contact ids and contact values were two buffers of
+/// different capacities.
+TEST(MemoryLimitsOnHost, RunsThatCorruptedTheHeapAreRight) {
     if (sanitized()) GTEST_SKIP() << "the limits are those of kernels that are not sanitized";
     const SettingTexts other{{"precision", "double"}, {"pair_layout", "items"}, {"k", "8"}};
     auto& on = device("host");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sessions on several devices, each of which owns bodies: who needs what, deals that end, pairs that are
-// given, and answers that are those of one device whatever happens.
+// Sessions on several devices, each of which owns bodies: which bodies a device needs, partitions that
+// expire, explicit pairs, and answers that always equal those of one device.
 #include "algorithms/resident_session.h"
 #include "harness/verify/reference.h"
 #include "tests/support/cells.h"
@@ -16,22 +16,22 @@ namespace {
 using namespace testing_support;
 using testing::HasSubstr;
 
-class Shares : public testing::Test {
+class Partitions : public testing::Test {
 protected:
     static Settings settings_of(const Traversal& traversal, const SettingTexts& given) {
         return resolve(traversal.parameters(), traversal.presets().front().values, given, traversal.name());
     }
-    static std::unique_ptr<Session> shared(const Traversal& traversal, const Scene& scene,
-                                           const SettingTexts& given = {}) {
+    static std::unique_ptr<Session> on_two_devices(const Traversal& traversal, const Scene& scene,
+                                                   const SettingTexts& given = {}) {
         const std::array devices{&device("host"), &device("opencl:0")};
         return traversal.prepare(devices, scene, settings_of(traversal, given));
     }
-    static std::unique_ptr<Session> alone(const Traversal& traversal, const Scene& scene,
-                                          const SettingTexts& given = {}) {
+    static std::unique_ptr<Session> on_host(const Traversal& traversal, const Scene& scene,
+                                            const SettingTexts& given = {}) {
         const std::array devices{&device("host")};
         return traversal.prepare(devices, scene, settings_of(traversal, given));
     }
-    /// Every bit, and the number of body pairs where both find them alike.
+    /// Every bit, and the number of body pairs where both sessions find the same ones.
     static void expect_equal(const FrameResult& result, const FrameResult& right) {
         EXPECT_EQ(result.count, right.count);
         EXPECT_EQ(result.body_pairs, right.body_pairs);
@@ -40,47 +40,47 @@ protected:
     }
 };
 
-/// Frames of a scene that moves, there and back, so that deals end: the same as one device's in every frame.
-TEST_F(Shares, AnswersAreThoseOfOneDevice) {
+/// Frames of a moving scene in both directions, so partitions expire. Every frame equals that of one device.
+TEST_F(Partitions, AnswersEqualOneDevice) {
     const auto scene = procession(24, 4, 0.35);
     for (const auto* traversal : algorithms())
         for (const std::string broad : {"device", "tight"}) {
             SCOPED_TRACE(fmt::format("{} {}", traversal->name(), broad));
-            const auto both = shared(*traversal, scene, {{"broad", broad}});
-            const auto one = alone(*traversal, scene, {{"broad", broad}});
-            std::uint64_t deals = 0;
+            const auto both = on_two_devices(*traversal, scene, {{"broad", broad}});
+            const auto one = on_host(*traversal, scene, {{"broad", broad}});
+            std::uint64_t repartitions = 0;
             for (const std::size_t i : {0u, 1u, 2u, 3u, 0u, 3u, 3u}) {
                 const auto result = both->run(scene.frame(i));
                 ASSERT_GT(result.count, 0u);
                 expect_equal(result, one->run(scene.frame(i)));
-                deals += result.repartitions;
+                repartitions += result.repartitions;
             }
-            EXPECT_GT(deals, 1u);
+            EXPECT_GT(repartitions, 1u);
         }
 }
 
-/// In a row a device needs its own half and what meets it at the cut, and does all of it.
-TEST_F(Shares, EachDeviceMovesOnlyWhatItNeeds) {
+/// In a row, a device needs its own half and the neighbours at the cut, and processes all of them.
+TEST_F(Partitions, EachDeviceRefitsOnlyTheBodiesItNeeds) {
     const auto scene = procession(60, 2, 0.01);
-    const auto session = shared(algorithm("tiled"), scene);
+    const auto session = on_two_devices(algorithm("tiled"), scene);
     const auto result = session->run(scene.frame(0));
     ASSERT_EQ(result.shared.size(), 2u);
     EXPECT_EQ(result.shared[0].pairs + result.shared[1].pairs, result.count);
     EXPECT_EQ(result.shared[0].body_pairs + result.shared[1].body_pairs, result.body_pairs);
-    for (const auto& share : result.shared) {
-        EXPECT_GT(share.bodies, 20u);
-        EXPECT_LT(share.bodies, 40u);
-        EXPECT_GT(share.ns, 0);
+    for (const auto& work : result.shared) {
+        EXPECT_GT(work.bodies, 20u);
+        EXPECT_LT(work.bodies, 40u);
+        EXPECT_GT(work.ns, 0);
     }
     EXPECT_EQ(result.repartitions, 1u);
-    EXPECT_EQ(session->run(scene.frame(1)).repartitions, 0u) << "the deal holds: nothing went far";
+    EXPECT_EQ(session->run(scene.frame(1)).repartitions, 0u) << "the partition is valid: no body moved far";
 }
 
-/// Bodies that jump so far in every frame that no margin is of use: soon both devices have them all.
-TEST_F(Shares, BodiesThatJumpAreEverybodys) {
+/// Bodies jump so far in every frame that no skin helps: soon both devices have all bodies.
+TEST_F(Partitions, JumpingBodiesAreOnAllDevices) {
     const auto scene = procession(12, 2, 40);
-    const auto both = shared(algorithm("chunked"), scene);
-    const auto one = alone(algorithm("chunked"), scene);
+    const auto both = on_two_devices(algorithm("chunked"), scene);
+    const auto one = on_host(algorithm("chunked"), scene);
     for (std::size_t i = 0; i < 12; ++i) {
         const auto result = both->run(scene.frame(i % 2));
         expect_equal(result, one->run(scene.frame(i % 2)));
@@ -90,13 +90,13 @@ TEST_F(Shares, BodiesThatJumpAreEverybodys) {
     }
 }
 
-/// Pairs of bodies that are far from each other, which no deal has foreseen.
-TEST_F(Shares, PairsThatAreGivenMayBeOfAnyBodies) {
+/// Explicit pairs of distant bodies, which no partition provides for.
+TEST_F(Partitions, ExplicitPairsMayNameAnyBodies) {
     const auto scene = procession(10, 1, 0);
     for (const auto* traversal : algorithms()) {
         SCOPED_TRACE(traversal->name());
-        const auto both = shared(*traversal, scene);
-        const auto one = alone(*traversal, scene);
+        const auto both = on_two_devices(*traversal, scene);
+        const auto one = on_host(*traversal, scene);
         for (const auto& pairs :
              {std::vector<BodyPair>{{0, 9}, {3, 4}, {4, 5}, {2, 8}}, all_pairs(scene), {}})
             expect_equal(both->run(scene.frame(0), pairs), one->run(scene.frame(0), pairs));
@@ -104,8 +104,8 @@ TEST_F(Shares, PairsThatAreGivenMayBeOfAnyBodies) {
     }
 }
 
-/// One body that moves, and one that does not: a device has nothing to do.
-TEST_F(Shares, MoreDevicesThanBodies) {
+/// One moving and one fixed body: one device has no work.
+TEST_F(Partitions, MoreDevicesThanBodies) {
     auto scene = procession(3, 1, 0);
     scene.bodies[1] = {.mesh = 0, .fixed = true};
     const auto frame = scene.frame;
@@ -117,21 +117,21 @@ TEST_F(Shares, MoreDevicesThanBodies) {
     };
     for (const auto* traversal : algorithms()) {
         SCOPED_TRACE(traversal->name());
-        const auto result = shared(*traversal, scene)->run(scene.frame(0));
+        const auto result = on_two_devices(*traversal, scene)->run(scene.frame(0));
         ASSERT_GT(result.count, 0u);
-        expect_equal(result, alone(*traversal, scene)->run(scene.frame(0)));
+        expect_equal(result, on_host(*traversal, scene)->run(scene.frame(0)));
     }
 }
 
-/// Buffers with room for one row, and skipped tetrahedra, in shares.
-TEST_F(Shares, RoomForOneAndTetrahedraLeftOut) {
+/// Partitioned work with buffers of one row and with skipped tetrahedra.
+TEST_F(Partitions, CapacitiesOfOneAndSkippedTetrahedra) {
     const auto scene = procession(8, 2, 0.3);
     for (const auto* traversal : algorithms()) {
         SCOPED_TRACE(traversal->name());
         const SettingTexts given{
             {"pair_capacity", "1"}, {"contact_capacity", "1"}, {"body_pair_capacity", "1"}};
-        const auto both = shared(*traversal, scene, given);
-        const auto one = alone(*traversal, scene);
+        const auto both = on_two_devices(*traversal, scene, given);
+        const auto one = on_host(*traversal, scene);
         for (std::size_t i = 0; i < 2; ++i) {
             auto frame = scene.frame(i);
             expect_equal(both->run(frame), one->run(frame));
@@ -143,8 +143,8 @@ TEST_F(Shares, RoomForOneAndTetrahedraLeftOut) {
     }
 }
 
-/// A frame that is expected has room, and need not run twice.
-TEST_F(Shares, ExpectedFramesRunOnce) {
+/// A frame announced with expect() fits into its buffers and needs no retry.
+TEST_F(Partitions, ExpectedFramesRunOnce) {
     const auto scene = procession(8, 1, 0);
     const auto settings =
         settings_of(algorithm("tiled"), {{"pair_capacity", "1"}, {"contact_capacity", "1"}});
@@ -152,9 +152,9 @@ TEST_F(Shares, ExpectedFramesRunOnce) {
         return ResidentSession(algorithm("tiled"), device("host"), scene,
                                algorithm("tiled").fitted(settings, device("host").info()));
     };
-    auto surprised = session(), prepared = session();
+    auto unprepared = session(), prepared = session();
     const auto frame = scene.frame(0);
-    const auto result = surprised.run(frame);
+    const auto result = unprepared.run(frame);
     EXPECT_GT(result.retries, 0u);
     ASSERT_GT(result.contacts, 0u);
     prepared.expect(result.count, result.contacts_a_pair());
@@ -162,7 +162,7 @@ TEST_F(Shares, ExpectedFramesRunOnce) {
     EXPECT_EQ(again.retries, 0u);
     expect_equal(again, result);
     EXPECT_EQ(prepared.run(frame).retries, 0u) << "while the last answer is kept, with other buffers";
-    // Buffers take turns where the last answer is kept.
+    // Buffers alternate while the last answer is kept.
     auto apart = frame;
     for (std::size_t body = 0; body < 8; ++body) {
         apart.poses[body].translation.x() = 100.0 * static_cast<double>(body);
@@ -176,55 +176,55 @@ TEST_F(Shares, ExpectedFramesRunOnce) {
     ASSERT_GT(last.retries, 0u);
     for (int i = 0; i < 4; ++i) {
         last = later.run(frame);
-        EXPECT_EQ(last.retries, 0u) << "there was as much room before";
+        EXPECT_EQ(last.retries, 0u) << "the capacities were sufficient before";
     }
 }
 
-/// Batches for want of memory look for their pairs among the share's alone, wherever they are found.
-TEST_F(Shares, FramesInBatches) {
+/// Batches, needed for lack of memory, search only the subdomain's body pairs, on the device and on the host.
+TEST_F(Partitions, FramesInBatches) {
     const auto scene = procession(30, 1, 0);
-    const auto one = alone(algorithm("tiled"), scene)->run(scene.frame(0));
-    auto& little = device("opencl:0");
-    // With room for some body pairs, and without: then the host finds them.
+    const auto one = on_host(algorithm("tiled"), scene)->run(scene.frame(0));
+    auto& limited = device("opencl:0");
+    // With memory for some body pairs, and with none: then the host finds them.
     for (const std::size_t left : {3'000u, 0u}) {
-        const auto both =
-            shared(algorithm("tiled"), scene,
-                   {{"pair_capacity", "256"}, {"contact_capacity", "256"}, {"body_pair_capacity", "1"}});
+        const auto both = on_two_devices(
+            algorithm("tiled"), scene,
+            {{"pair_capacity", "256"}, {"contact_capacity", "256"}, {"body_pair_capacity", "1"}});
         const std::vector<BodyPair> few{{2, 3}};
-        both->run(scene.frame(0), few); // deals, and grows nothing that body pairs lie in
-        little.set_memory_limit(little.bytes_allocated() + left);
+        both->run(scene.frame(0), few); // partitions, and grows no buffer of body pairs
+        limited.set_memory_limit(limited.bytes_allocated() + left);
         const auto result = both->run(scene.frame(0));
-        little.set_memory_limit(Device::no_memory_limit);
+        limited.set_memory_limit(Device::no_memory_limit);
         EXPECT_GT(result.batches, 2u);
         EXPECT_LE(result.body_pairs, BroadSweep(scene, {}, Broad::tight).pairs(scene.frame(0)).size())
-            << "no pair is of two shares";
+            << "no pair belongs to two subdomains";
         EXPECT_EQ(result.count, one.count);
         EXPECT_EQ(result.digest(), one.digest());
         EXPECT_EQ(result.contact_digest(), one.contact_digest());
     }
 }
 
-/// A device that cannot go on says which it is; with memory again, the session goes on.
-TEST_F(Shares, ADeviceThatFailsIsNamed) {
+/// The error names the device that ran out of memory; with memory again, the session continues.
+TEST_F(Partitions, AnErrorNamesTheFailingDevice) {
     const auto scene = procession(30, 2, 5);
-    const auto both = shared(algorithm("tiled"), scene);
-    const auto one = alone(algorithm("tiled"), scene);
+    const auto both = on_two_devices(algorithm("tiled"), scene);
+    const auto one = on_host(algorithm("tiled"), scene);
     expect_equal(both->run(scene.frame(0)), one->run(scene.frame(0)));
-    auto& little = device("opencl:0");
-    little.set_memory_limit(1);
-    std::string said;
+    auto& limited = device("opencl:0");
+    limited.set_memory_limit(1);
+    std::string message;
     try {
         both->run(scene.frame(1));
     } catch (const OutOfMemory& error) {
-        said = error.what();
+        message = error.what();
     }
-    little.set_memory_limit(Device::no_memory_limit);
-    EXPECT_THAT(said, HasSubstr("opencl:0"));
+    limited.set_memory_limit(Device::no_memory_limit);
+    EXPECT_THAT(message, HasSubstr("opencl:0"));
     for (const std::size_t i : {1u, 0u}) expect_equal(both->run(scene.frame(i)), one->run(scene.frame(i)));
 }
 
-/// On the device, and of pairs that were brought to the host.
-TEST_F(Shares, PairsAreCountedByBody) {
+/// Counts on the device, and for pairs downloaded to the host.
+TEST_F(Partitions, PairsAreCountedByBody) {
     const auto scene = procession(12, 1, 0);
     for (const std::string name : {"host", "opencl:0"}) {
         const std::array one{&device(name)};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Numbers past 32 bits, where no scene is large enough: gProximity's sum of its queues, and body pairs given.
+// Numbers past 32 bits, for which no scene is large enough: the sum of gProximity's queues, and explicit body
+// pairs.
 #include "algorithms/gproximity/queues.clh"
 #include "algorithms/sources.h"
 #include "tests/support/cells.h"
@@ -15,8 +16,8 @@ using namespace testing_support;
 
 class Queues : public testing::TestWithParam<std::string> {
 protected:
-    /// {items, whether to balance} of queues that hold `counts`, by a group of `group_size`; the sums before
-    /// each queue and behind the last in `starts`. Queues below 2 items ask for balance.
+    /// Plans queues that contain `counts` with a work-group of `group_size`. Returns {items, whether to
+    /// balance}; `starts` receives the prefix sums and the total. Queues below 2 items request balancing.
     std::array<std::uint32_t, 2> plan(std::uint32_t group_size, const std::vector<std::uint32_t>& counts,
                                       std::vector<std::uint32_t>& starts) {
         auto& on = device(GetParam());
@@ -62,8 +63,8 @@ TEST_P(Queues, AreSummed) {
     }
 }
 
-/// One less than counting reaches; exactly as many; sums that would be 0, 4 and 2^31 + 4 in 32 bits.
-TEST_P(Queues, SumsEndWhereCountingDoes) {
+/// One below the limit, exactly the limit, and sums that are 0, 4 and 2^31 + 4 modulo 2^32.
+TEST_P(Queues, SumsSaturateAtTheLargestCount) {
     const auto most = MOST_QUEUE_ITEMS;
     for (const auto group_size : group_sizes()) {
         Starts starts;
@@ -75,7 +76,7 @@ TEST_P(Queues, SumsEndWhereCountingDoes) {
     }
 }
 
-TEST_P(Queues, BodyPairsThatCannotBeNumberedAreRefused) {
+TEST_P(Queues, TooManyBodyPairsAreRejected) {
     auto& on = device(GetParam());
     const auto scene = crowd(3, 2, 0.5);
     const BodyPair pair{0, 1};
@@ -83,7 +84,7 @@ TEST_P(Queues, BodyPairsThatCannotBeNumberedAreRefused) {
         const auto settings = resolve(traversal->parameters(), {}, {{"broad", "sphere"}}, traversal->name());
         const std::array devices{&on};
         const auto session = traversal->prepare(devices, scene, settings);
-        // Refused before the first of them is read.
+        // Rejected before the first pair is read.
         EXPECT_THROW(session->run(scene.frame(0), {&pair, std::size_t{1} << 32}), InputError);
         EXPECT_GT(session->run(scene.frame(0), {&pair, 1}).count, 0u);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the others are compared with: the sweep against brute force, and the host's broad phases against both.
+// The reference: the sweep against brute force, and the host's broad phases against both.
 #include "algorithms/broad_phase/broad.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
@@ -53,8 +53,8 @@ TEST(Broad, NeverDropsAPairWithCandidates) {
     EXPECT_GT(pairs, 1000u);
 }
 
-/// Two tetrahedra that meet in one corner, in units of `unit`: at 0.6 and 1.4 of the x-axis, which both
-/// round to 1 where it is the least number that there is.
+/// Two tetrahedra that share one corner, in units of `unit`. At 0.6 and 1.4 along x, both corners round to 1
+/// if `unit` is the smallest representable number.
 Scene corner_to_corner(double unit, double left, double right) {
     Scene scene;
     for (const auto& [corner, far] : {std::pair{left, -400.0}, {right, 400.0}}) {
@@ -69,25 +69,25 @@ Scene corner_to_corner(double unit, double left, double right) {
     return scene;
 }
 
-TEST(Broad, KeepsBodiesBelowTheLeastNormalNumber) {
-    // The least floats; the least doubles; doubles whose squares are zero.
+TEST(Broad, KeepsBodiesBelowTheSmallestNormalNumber) {
+    // The smallest floats; the smallest doubles; doubles whose squares underflow to zero.
     const auto least_floats = corner_to_corner(0x1p-149, 0.6, 1.4);
     const auto least_doubles = corner_to_corner(0x1p-1074, 1, 1);
     const auto no_squares = corner_to_corner(0x1p-600, 1, 1);
     for (const int k : {6, 8, 18})
         for (const auto rounding : {Rounding::safe, Rounding::published})
             for (const auto bound : {Broad::sphere, Broad::tight}) {
-                const auto what = testing::Message() << "k = " << k << " " << int(rounding) << int(bound);
+                const auto trace = testing::Message() << "k = " << k << " " << int(rounding) << int(bound);
                 const Geometry single{.k = k, .rounding = rounding};
                 const Geometry doubled{.k = k, .precision = Precision::fp64, .rounding = rounding};
                 for (const auto& [scene, geometry] :
                      {std::pair{&least_floats, single}, {&least_doubles, doubled}, {&no_squares, doubled}}) {
                     const auto frame = scene->frame(0);
                     EXPECT_EQ(reference(*scene, frame, geometry, false, Method::brute_force).pairs.size(), 1u)
-                        << what;
+                        << trace;
                     EXPECT_EQ(BroadSweep(*scene, geometry, bound).pairs(frame),
                               (std::vector<BodyPair>{{0, 1}}))
-                        << what;
+                        << trace;
                 }
             }
 }

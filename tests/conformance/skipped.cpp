@@ -19,7 +19,7 @@ using namespace testing_support;
 
 using Skipped = std::vector<std::vector<std::uint32_t>>;
 
-/// Every n-th tetrahedron of each body, from the `first` on; n = 0: none.
+/// Every n-th tetrahedron of each body, starting at `first`; n = 0: none.
 Skipped every(const Scene& scene, const std::array<std::uint32_t, 3>& n, std::uint32_t first) {
     Skipped result(scene.bodies.size());
     for (std::size_t body = 0; body < result.size(); ++body)
@@ -29,7 +29,7 @@ Skipped every(const Scene& scene, const std::array<std::uint32_t, 3>& n, std::ui
     return result;
 }
 
-/// Frames that skip nothing, some of each body, others, all of one body, and nothing again.
+/// Frames that skip nothing, some of each body, a different set, all of one body, and again nothing.
 std::vector<Frame> frames_of(const Scene& scene) {
     const std::vector<Skipped> skipped{
         {}, every(scene, {7, 3, 2}, 0), every(scene, {0, 5, 1}, 3), every(scene, {0, 1, 0}, 0), {}};
@@ -41,7 +41,7 @@ std::vector<Frame> frames_of(const Scene& scene) {
     return frames;
 }
 
-/// What is left of the pairs of all tetrahedra.
+/// The pairs of all tetrahedra, without those of skipped ones.
 std::vector<Pair> expected(const Scene& scene, const Frame& frame, const Geometry& geometry) {
     auto whole = frame;
     whole.skipped.clear();
@@ -52,8 +52,8 @@ std::vector<Pair> expected(const Scene& scene, const Frame& frame, const Geometr
 
 class Skipping : public testing::TestWithParam<std::string> {
 protected:
-    static void expect_the_rest(const Traversal& traversal, const Preset& preset, const SettingTexts& given,
-                                const Scene& scene) {
+    static void expect_other_pairs(const Traversal& traversal, const Preset& preset,
+                                   const SettingTexts& given, const Scene& scene) {
         auto settings = resolve(traversal.parameters(), preset.values, given, traversal.name());
         SCOPED_TRACE(fmt::format("{} {}{}", traversal.name(), preset.name, text(given)));
         const std::array devices{&device(GetParam())};
@@ -74,25 +74,25 @@ protected:
     }
 };
 
-TEST_P(Skipping, LeavesTheRestAsItIsWithEveryPreset) {
+TEST_P(Skipping, KeepsAllOtherPairsWithEveryPreset) {
     const auto scene = boxes_scene(3, 4);
     for (const auto* traversal : algorithms())
         for (const auto& preset : traversal->presets()) {
             SettingTexts given{{"contact_rule", "none"}};
             if (traversal->name() == "gproximity") given["queue_bytes"] = "1048576";
-            expect_the_rest(*traversal, preset, given, scene);
+            expect_other_pairs(*traversal, preset, given, scene);
         }
 }
 
-/// Small chunks make many levels, of which empty_nodes does more than the first.
-TEST_P(Skipping, LeavesTheRestAsItIsAtEveryLevel) {
+/// Small chunks make many levels; empty_nodes processes more than the first of them.
+TEST_P(Skipping, KeepsAllOtherPairsAtEveryLevel) {
     const auto scene = boxes_scene(7, 4); // 2058 tetrahedra: two levels of more than 1024 items
     const auto& traversal = algorithm("chunked");
     for (const std::string leaves : {"2", "4"})
         for (const std::string broad : {"device", "tight"})
-            expect_the_rest(traversal, preset(traversal, "grouped"),
-                            {{"leaves", leaves}, {"k", "8"}, {"broad", broad}, {"contact_rule", "none"}},
-                            scene);
+            expect_other_pairs(traversal, preset(traversal, "grouped"),
+                               {{"leaves", leaves}, {"k", "8"}, {"broad", broad}, {"contact_rule", "none"}},
+                               scene);
 }
 
 TEST_P(Skipping, WorksInEveryRoundingAndPrecision) {
@@ -101,19 +101,19 @@ TEST_P(Skipping, WorksInEveryRoundingAndPrecision) {
     for (const auto* traversal : algorithms()) {
         for (const std::string precision : {"float", "double"})
             for (const std::string rounding : {"safe", "nearest", "published"})
-                // In short form every second cell, of the next algorithm the others.
+                // The short form runs every second cell, and the other half with the next algorithm.
                 if (long_form() || cell++ % 2 == 0)
-                    expect_the_rest(*traversal, traversal->presets().front(),
-                                    {{"k", "18"},
-                                     {"precision", precision},
-                                     {"rounding", rounding},
-                                     {"contact_rule", "none"}},
-                                    scene);
+                    expect_other_pairs(*traversal, traversal->presets().front(),
+                                       {{"k", "18"},
+                                        {"precision", precision},
+                                        {"rounding", rounding},
+                                        {"contact_rule", "none"}},
+                                       scene);
         ++cell;
     }
 }
 
-/// Every inner node is what its children are, skipped leaves hold nothing, and nothing else is empty.
+/// Checks that every inner node is the union of its children, skipped leaves are empty, and no other node is.
 template<class Real>
 std::size_t check_nodes(const Scene& scene, const Frame& frame, const PreparedTrees& on_device) {
     const auto k = static_cast<std::size_t>(on_device.geometry().k);
@@ -161,7 +161,7 @@ std::size_t check_nodes(const Scene& scene, const Frame& frame, const PreparedTr
     return empty;
 }
 
-TEST_P(Skipping, NodesHoldTheRestOnly) {
+TEST_P(Skipping, NodesBoundUnskippedTetrahedraOnly) {
     for (const std::uint32_t cells : {2u, 7u}) {
         const auto scene = boxes_scene(cells, 4);
         for (const std::uint32_t leaves : {2u, 32u, 4096u})
@@ -184,8 +184,9 @@ TEST_P(Skipping, NodesHoldTheRestOnly) {
     }
 }
 
-/// A body whose only near part is skipped is far from everything: bounds have shrunk, on the device too.
-TEST_P(Skipping, BodiesWithoutTheirNearPartsAreNoBodyPairs) {
+/// The only part of a body near the others is skipped, so bounds shrink and no body pair is left, on the
+/// device too.
+TEST_P(Skipping, BodiesWhoseNearPartsAreSkippedFormNoPair) {
     auto scene = boxes_scene(2, 4);
     const auto still = scene.frame(0);
     scene.frame = [still](std::size_t) {
@@ -210,7 +211,8 @@ TEST_P(Skipping, BodiesWithoutTheirNearPartsAreNoBodyPairs) {
     EXPECT_EQ(without.count, 0u);
 }
 
-/// What is not finite and what is flat, through the door that the commands use, against the truth.
+/// Coordinates that are not finite and flat tetrahedra, skipped as the commands do it, against the exact
+/// truth.
 TEST_P(Skipping, AgreesWithTheTruth) {
     const auto whole = boxes_scene(3, 4);
     std::vector<Frame> frames{whole.frame(0), whole.frame(1)};

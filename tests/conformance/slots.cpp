@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Candidate pairs of 8 and of 16 bytes: slots lead to their tetrahedra, and both layouts say the same.
+// Candidate pairs of 8 and of 16 bytes: slots map to their tetrahedra, and both layouts give the same pairs.
 #include "algorithms/bodies/bodies.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
@@ -25,15 +25,15 @@ protected:
     }
 };
 
-/// Bodies of 1, 32 and 33 tetrahedra and more, some fixed, two with one mesh.
+/// Bodies of 1, 32, 33 and more tetrahedra, some of them fixed, two with the same mesh.
 Scene uneven() {
     Random random(5);
     Scene scene;
     for (const std::size_t count : {1, 32, 33, 70}) {
-        std::vector<Eigen::Vector3d> places;
+        std::vector<Eigen::Vector3d> positions;
         for (std::size_t i = 0; i < count; ++i)
-            places.push_back({random.uniform(), random.uniform(), random.uniform()});
-        scene.meshes.push_back(tetrahedra_at(places));
+            positions.push_back({random.uniform(), random.uniform(), random.uniform()});
+        scene.meshes.push_back(tetrahedra_at(positions));
     }
     for (const std::uint32_t mesh : {2u, 0u, 1u, 3u, 2u, 0u})
         scene.bodies.push_back({mesh, scene.bodies.size() % 2 == 0, false});
@@ -56,34 +56,34 @@ TEST_P(Slots, NumberEveryTetrahedronOnce) {
             EXPECT_EQ(bodies.slot_owner(slot).body, body);
             EXPECT_EQ(bodies.slot_owner(slot).item, item);
             const auto& block = rows.at(slot / Bodies::block_slots);
-            EXPECT_EQ(block.tetrahedron_count, body); // in its place (rows.clh)
+            EXPECT_EQ(block.tetrahedron_count, body); // stored in that field (rows.clh)
             EXPECT_EQ(block.tetrahedra + slot % Bodies::block_slots, own.tetrahedra + item);
             EXPECT_EQ(block.vertices, own.vertices);
         }
-        for (std::uint32_t other = 0; other < bodies.count(); ++other) { // those that move come first
+        for (std::uint32_t other = 0; other < bodies.count(); ++other) { // moving bodies come first
             if (scene.bodies[body].fixed || !scene.bodies[other].fixed) continue;
             EXPECT_LT(bodies.first_slot(body), bodies.first_slot(other));
         }
     }
 }
 
-TEST_P(Slots, GiveWayToItemsWhereThereAreTooMany) {
+TEST_P(Slots, FallBackToItemsAboveTheirLimit) {
     auto scene = uneven();
     Random random(6);
-    std::vector<Eigen::Vector3d> places;
+    std::vector<Eigen::Vector3d> positions;
     for (std::size_t i = 0; i < 100'000; ++i)
-        places.push_back({random.uniform(), random.uniform(), random.uniform()});
-    scene.meshes = {tetrahedra_at(places)};
+        positions.push_back({random.uniform(), random.uniform(), random.uniform()});
+    scene.meshes = {tetrahedra_at(positions)};
     constexpr std::size_t blocks_of_body = 3125, most_blocks = std::size_t{1} << 27;
     scene.bodies.assign(most_blocks / blocks_of_body, {});
-    scene.bodies.push_back({}); // one more than fit
+    scene.bodies.push_back({}); // one more than fits
     const Bodies bodies(on, scene, {}, Bodies::Sharing::by_mesh);
     EXPECT_EQ(bodies.pair_layout(), PairLayout::items);
     EXPECT_EQ(bodies.owners().bytes(), bodies.row_table().bytes());
     EXPECT_EQ(bodies.row(bodies.count() - 1).flags, 0u);
 }
 
-/// Rows of every algorithm in both layouts, expanded on the device, whole and in part.
+/// Rows of every algorithm in both layouts, expanded on the device, completely and in part.
 TEST_P(Slots, ExpandToTheSamePairs) {
     const auto scene = crowd(53, 6, 0.8);
     const auto right = reference(scene, scene.frame(0), {}, true, Method::brute_force);
@@ -118,8 +118,8 @@ TEST_P(Slots, ExpandToTheSamePairs) {
         }
 }
 
-/// The published data path has the release's rows, whatever is asked for.
-TEST_P(Slots, AreNoneOfThePublishedPath) {
+/// The published data path uses the release's rows whatever layout is requested.
+TEST_P(Slots, AreUnusedOnThePublishedPath) {
     const auto scene = crowd(53, 3, 0.8);
     const std::array devices{&on};
     const auto& chunked = algorithm("chunked");

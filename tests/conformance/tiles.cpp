@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Trees of tiles: the bounds are those of the chunk trees, bit for bit, on every device and for every level,
-// and what a frame skips is in none.
+// Trees of tiles: the bounds equal those of the chunk trees, bit for bit, on every device and for every
+// level. Skipped tetrahedra are in no bound.
 #include "algorithms/hierarchy/heap.h"
 #include "algorithms/hierarchy/tile_trees.h"
 #include "tests/support/cells.h"
@@ -30,8 +30,9 @@ protected:
         return words;
     }
 
-    /// Leaves, every root and every box above, against the leaves of chunk trees over the same bodies. In
-    /// units of 32 leaf tiles, and in those of a device that could run more of them at once than there are.
+    /// Compares leaves, every root and every box above with the leaves of chunk trees over the same bodies.
+    /// The refit runs in units of 32 leaf tiles, and in units for a device that could run more units at once
+    /// than there are.
     void expect_the_same_bounds(const Scene& scene, const Frame& frame, const Geometry& geometry,
                                 Slabs slabs) {
         for (const std::uint32_t units_at_once : {0u, 100000u})
@@ -53,7 +54,7 @@ protected:
         const auto directions = slabs == Slabs::three ? std::min<std::size_t>(3, half) : half;
         EXPECT_EQ(words_of(tiles.volumes()), chunks.volumes<float>());
         for (std::uint32_t body = 0; body < bodies.count(); ++body) {
-            std::vector<std::vector<float>> below; // the boxes of a level
+            std::vector<std::vector<float>> below; // boxes of one level
             const auto items = bodies.row(body).tetrahedron_count;
             for (std::uint32_t item = 0; item < items; ++item)
                 below.push_back(chunk_leaf(chunks, nodes, body, item, k));
@@ -112,7 +113,7 @@ TEST_P(Tiles, HaveTheBoundsOfChunkTrees) {
     expect_the_same_bounds(scene, frame, {.k = 18}, Slabs::three);
 }
 
-/// One tetrahedron, 32, 33, 1024 and 1025: tiles that are full, and ones with a single box.
+/// One tetrahedron, 32, 33, 1024 and 1025: full tiles, and tiles with a single box.
 TEST_P(Tiles, OfEverySize) {
     for (const std::uint32_t items : {1u, 31u, 32u, 33u, 1023u, 1024u, 1025u}) {
         SCOPED_TRACE(items);
@@ -142,8 +143,9 @@ TEST_P(Tiles, OfEverySize) {
     }
 }
 
-/// A frame has as many groups as the last one had work for: of bodies far apart next to none.
-TEST_P(Tiles, AFrameWithMuchMoreThanTheLast) {
+/// A frame launches as many groups as the previous frame had work for. Here that is almost none because the
+/// bodies were far apart.
+TEST_P(Tiles, AFrameWithMuchMoreWorkThanTheLast) {
     const auto scene = boxes_scene(5, 3);
     const auto frame = scene.frame(0);
     auto apart = frame;
@@ -163,17 +165,17 @@ TEST_P(Tiles, AFrameWithMuchMoreThanTheLast) {
     }
 }
 
-/// Few bodies of few tiles below their tops begin with these; many, or one without such tiles, with their
-/// tops.
-TEST_P(Tiles, FewBodiesBeginBelowTheirTops) {
+/// Few bodies with few tiles below their top tiles start the traversal at those tiles. Many bodies, or bodies
+/// without such tiles, start at the tops.
+TEST_P(Tiles, FewBodiesStartBelowTheirTops) {
     const auto scene_of = [](const std::vector<std::size_t>& counts, std::size_t bodies) {
         Random random(9);
         Scene scene;
         for (const auto count : counts) {
-            std::vector<Eigen::Vector3d> places;
+            std::vector<Eigen::Vector3d> positions;
             for (std::size_t i = 0; i < count; ++i)
-                places.push_back({random.uniform(), random.uniform(), random.uniform()});
-            scene.meshes.push_back(tetrahedra_at(places, 0.05));
+                positions.push_back({random.uniform(), random.uniform(), random.uniform()});
+            scene.meshes.push_back(tetrahedra_at(positions, 0.05));
         }
         for (std::uint32_t body = 0; body < bodies; ++body)
             scene.bodies.push_back({.mesh = body % static_cast<std::uint32_t>(counts.size())});
@@ -190,11 +192,11 @@ TEST_P(Tiles, FewBodiesBeginBelowTheirTops) {
     struct Case {
         std::vector<std::size_t> counts;
         std::size_t bodies;
-        std::uint32_t most_seeds, levels, walked, begins;
+        std::uint32_t most_seeds, levels, walked, starts;
     };
     const std::array devices{&on};
     const auto& traversal = algorithm("tiled");
-    for (const auto& [counts, count, most_seeds, levels, walked, begins] :
+    for (const auto& [counts, count, most_seeds, levels, walked, starts] :
          {Case{{64}, 3, 12, 2, 1, 2}, Case{{64}, 3, 11, 2, 2, 1}, Case{{40, 96, 128}, 4, 96, 2, 1, 4},
           Case{{1100, 2100}, 2, 256, 3, 2, 3}, Case{{1100, 2100}, 2, 16384, 3, 1, 66},
           Case{{129}, 3, 256, 2, 1, 5}, Case{{64, 20}, 4, 256, 2, 1, 2}, Case{{1100, 20}, 2, 256, 3, 3, 1},
@@ -206,7 +208,7 @@ TEST_P(Tiles, FewBodiesBeginBelowTheirTops) {
         const TileTrees trees(bodies, Slabs::three, group_size, most_seeds);
         EXPECT_EQ(trees.levels(), levels);
         EXPECT_EQ(trees.walked_levels(), walked);
-        EXPECT_EQ(trees.begins(walked - 1), begins);
+        EXPECT_EQ(trees.begins(walked - 1), starts);
         const auto right = reference(scene, scene.frame(0), {}, true, Method::brute_force);
         ASSERT_GT(right.digest.count, 0u);
         const auto session_by = [&, most_seeds = most_seeds](const std::string& broad) {
@@ -219,8 +221,8 @@ TEST_P(Tiles, FewBodiesBeginBelowTheirTops) {
             const auto session = session_by(broad);
             for (int i = 0; i < 2; ++i) EXPECT_EQ(session->run(scene.frame(0)).download(), right.pairs);
         }
-        if (begins < 8) continue;
-        // Of so many beginnings those whose roots are apart are not tested: most.
+        if (starts < 8) continue;
+        // Start pairs whose roots are disjoint, here most of them, are not tested.
         const auto session = session_by("sphere");
         session->count_work(true);
         const auto seeds = session->run(scene.frame(0)).work.at("seeds");
@@ -229,13 +231,13 @@ TEST_P(Tiles, FewBodiesBeginBelowTheirTops) {
     }
 }
 
-/// Body pairs given so often that the pairs of tiles they begin with could not be told by a word are refused,
-/// and the session goes on.
-TEST_P(Tiles, MoreBeginningsThanAWord) {
-    std::vector<Eigen::Vector3d> places(66 * 32, Eigen::Vector3d::Zero());
-    for (std::size_t i = 0; i < places.size(); ++i) places[i].x() = static_cast<double>(i);
+/// Explicit body pairs are rejected if 32 bits cannot number their start pairs of tiles. The session then
+/// continues.
+TEST_P(Tiles, StartPairsPastTheRangeOfAWordAreRejected) {
+    std::vector<Eigen::Vector3d> positions(66 * 32, Eigen::Vector3d::Zero());
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i].x() = static_cast<double>(i);
     Scene scene;
-    scene.meshes = {tetrahedra_at(places, 0.5)};
+    scene.meshes = {tetrahedra_at(positions, 0.5)};
     scene.bodies = {{.mesh = 0}, {.mesh = 0}};
     Frame frame;
     frame.poses.resize(2);
@@ -247,7 +249,7 @@ TEST_P(Tiles, MoreBeginningsThanAWord) {
         devices, scene, resolve(traversal.parameters(), {}, {{"most_seeds", "16384"}}, "tiled"));
     const std::vector<BodyPair> most(0xffffffffu / (66 * 66) + 1, BodyPair{0, 1});
     EXPECT_THROW(session->run(frame, most), InputError);
-    EXPECT_EQ(session->run(frame, std::span(most).first(1)).count, places.size());
+    EXPECT_EQ(session->run(frame, std::span(most).first(1)).count, positions.size());
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, Tiles, testing::ValuesIn(device_names()),

@@ -32,8 +32,7 @@ TEST(Hull, DistanceFromFewPoints) {
     EXPECT_NEAR(distance_to_hull(flat, {0.3, 0.9, -2}), 2, 1e-15);
 }
 
-/// Points on a segment between two hull points are in the hull; beyond the far end of a support direction
-/// they are not.
+/// Points between two hull points are in the hull; points beyond the extreme point along a direction are not.
 TEST(Hull, AgreesWithConvexCombinations) {
     Random random(5);
     for (int i = 0; i < 500; ++i) {
@@ -68,7 +67,7 @@ TEST(Hull, HausdorffIsTheLargerOfBothSides) {
     EXPECT_DOUBLE_EQ(hausdorff_distance(p, p), 0);
 }
 
-/// The unit tetrahedron and a copy, moved along x; body 0 at the origin.
+/// The unit tetrahedron and a copy moved along x; body 0 is at the origin.
 Scene two_units(double x) {
     Scene scene;
     scene.name = scene.key = "two";
@@ -90,7 +89,7 @@ Scene two_units(double x) {
 
 const Pair the_pair{0, 0, 1, 0};
 
-/// What `contacts` and candidates get for the two tetrahedra.
+/// Errors of an answer for the two tetrahedra: `pairs` with `contacts`.
 AnswerErrors errors_of(double x, std::vector<Pair> pairs, std::vector<ContactPoint> contacts) {
     const auto scene = two_units(x);
     const FrameRange range(scene, 0, 0);
@@ -102,8 +101,8 @@ AnswerErrors errors_of(double x, std::vector<Pair> pairs, std::vector<ContactPoi
     return truths.errors(Geometry{}, 0, answer);
 }
 
-/// Moved by 3/4 along x the two share the tetrahedron of legs 1/4 at (3/4, 0, 0); the least way apart is
-/// along x, as long as the leg, or along (1,1,1): 1/4 / sqrt(3), which is shorter.
+/// Moved by 3/4 along x, the two share a tetrahedron with legs of 1/4 at (3/4, 0, 0). The least translation
+/// is along x, as long as the leg, or along (1,1,1): 1/4 / sqrt(3), which is shorter.
 TEST(Accuracy, ARightContactHasNoError) {
     const double root = std::sqrt(3.0);
     const auto e = errors_of(0.75, {the_pair},
@@ -119,8 +118,8 @@ TEST(Accuracy, ARightContactHasNoError) {
     EXPECT_TRUE(e.every_contact);
 }
 
-/// The tetrahedron of legs 1/4, all of it, half of it, and a face of it only.
-TEST(Accuracy, VolumesAreThoseOfTheContactPointsHull) {
+/// The shared tetrahedron with legs of 1/4: all of it, half of it, and only one face.
+TEST(Accuracy, VolumesAreThoseOfTheHullOfContactPoints) {
     const auto with = [](const std::vector<Point>& points) {
         std::vector<ContactPoint> contacts;
         for (const auto& p : points)
@@ -133,12 +132,12 @@ TEST(Accuracy, VolumesAreThoseOfTheContactPointsHull) {
     EXPECT_NEAR(with({corner, x, y, {0.75, 0, 0.75}}).contacts->volume_relative.at(0), 2, 1e-15);
     EXPECT_EQ(with({corner, x, y}).contacts->volume_relative.at(0), 1);
     EXPECT_EQ(with({corner, x, y, z}).contacts->no_volume, 0u);
-    EXPECT_TRUE(with({}).contacts->volume_relative.empty()); // unanswered
+    EXPECT_TRUE(with({}).contacts->volume_relative.empty()); // no contact points
 }
 
-/// Float takes a gap or an overlap of 2^-30 for a touch. With placement=exact pairs, decisions and contacts
-/// are judged by what the poses say.
-TEST(Accuracy, PairsAreJudgedByTheTruthThatTheirBoundsAreFor) {
+/// Float treats a gap or an overlap of 2^-30 as touching. With placement=exact, the poses decide about pairs,
+/// decisions and contacts.
+TEST(Accuracy, PairsAreComparedWithTheTruthOfTheirPlacement) {
     const Geometry vertices, poses{.placement = Placement::exact};
     for (const double gap : {0x1p-30, -0x1p-30}) {
         const auto scene = two_units(1 + gap);
@@ -158,15 +157,16 @@ TEST(Accuracy, PairsAreJudgedByTheTruthThatTheirBoundsAreFor) {
         EXPECT_EQ(of_vertices.contacts->overlapping, 0u);
         EXPECT_EQ(of_poses.contacts->overlapping, gap > 0 ? 0u : 1u);
         answer.download = [] { return std::vector<Pair>{}; };
-        answer.pairs.count = 7; // another answer
+        answer.pairs.count = 7; // a different answer
         EXPECT_EQ(truths.errors(vertices, 0, answer).pairs.missed_touching, 1u);
         EXPECT_EQ(truths.errors(poses, 0, answer).pairs.missed_overlapping, gap > 0 ? 0u : 1u);
         EXPECT_EQ(truths.errors(poses, 0, answer).missed(), gap > 0 ? 0u : 1u);
     }
 }
 
-/// The shared tetrahedron of legs 1/4 at 1000.1, which floats put 2e-5 aside unless they count from nearby.
-TEST(Accuracy, FarContactsAreJudgedByVerticesThatCountFromTheOrigin) {
+/// The shared tetrahedron with legs of 1/4 at 1000.1: floats displace it by 2e-5 unless they are relative to
+/// a near origin.
+TEST(Accuracy, FarContactsAreComparedInCoordinatesFromTheOrigin) {
     auto scene = two_units(0.75);
     scene.frame = [near = scene.frame](std::size_t i) {
         auto frame = near(i);
@@ -194,8 +194,8 @@ TEST(Accuracy, FarContactsAreJudgedByVerticesThatCountFromTheOrigin) {
     EXPECT_LT(point({.placement = Placement::exact, .origin = Origin::automatic}), 1e-11);
 }
 
-/// 1e-120 is a size whose cube no double holds.
-TEST(Accuracy, PairsWhoseVolumeRoundsToZeroAreCountedApart) {
+/// At 1e-120, the cube of a length underflows in double.
+TEST(Accuracy, PairsWhoseVolumeRoundsToZeroAreCountedSeparately) {
     auto scene = two_units(0.75e-120);
     for (auto& v : scene.meshes[0].vertices) v *= 1e-120;
     const FrameRange range(scene, 0, 0);
@@ -214,7 +214,7 @@ TEST(Accuracy, PairsWhoseVolumeRoundsToZeroAreCountedApart) {
     EXPECT_EQ(e.contacts->depth_relative.size(), 1u);
 }
 
-TEST(Accuracy, AWrongContactHasTheErrorItHas) {
+TEST(Accuracy, AWrongContactHasItsKnownError) {
     const auto e = errors_of(0.75, {the_pair}, {{the_pair, 0, {0.75, 0, -1}, {1, 0, 0}, -0.25}});
     const double exact = 0.25 / std::sqrt(3.0);
     ASSERT_TRUE(e.contacts);
@@ -243,13 +243,13 @@ TEST(Accuracy, MissedFalseAndUnansweredPairsAreCounted) {
     EXPECT_EQ(touching.missed_upper95(), 1.0);
 }
 
-TEST(Accuracy, NumbersThatAreNotFiniteAreCountedAndInNoSample) {
+TEST(Accuracy, NonFiniteNumbersAreCountedAndNotSampled) {
     const auto e = errors_of(0.75, {the_pair}, {{the_pair, 0, {0.75, 0, NAN}, {1, 0, 0}, -0.25}});
     EXPECT_EQ(e.contacts->not_finite, 1u);
     EXPECT_TRUE(e.contacts->depth_relative.empty());
 }
 
-TEST(Accuracy, EqualAnswersAreComparedOnceAndASampleSaysSo) {
+TEST(Accuracy, EqualAnswersAreComparedOnceAndTheSampleRecordsIt) {
     const auto scene = crowd(3, 9, 1.2);
     const FrameRange range(scene, 0, 0);
     const auto truth = frame_truth(scene, scene.frame(0), Precision::fp32);
@@ -275,7 +275,7 @@ TEST(Accuracy, EqualAnswersAreComparedOnceAndASampleSaysSo) {
     EXPECT_EQ(downloads, 2);
 }
 
-TEST(Accuracy, AnAnswerThatCouldNotBeReadIsAskedForAgain) {
+TEST(Accuracy, AFailedReadOfAnAnswerIsRetried) {
     const auto scene = crowd(3, 9, 1.2);
     const FrameRange range(scene, 0, 0);
     const auto truth = frame_truth(scene, scene.frame(0), Precision::fp32);
@@ -287,7 +287,7 @@ TEST(Accuracy, AnAnswerThatCouldNotBeReadIsAskedForAgain) {
     EXPECT_EQ(truths.errors(Geometry{}, 0, answer).pairs.overlapping, truth.overlapping.size());
 }
 
-TEST(Accuracy, ErrorsOfFramesAddUp) {
+TEST(Accuracy, ErrorsOfFramesAreMerged) {
     AnswerErrors one, other, sum;
     one.pairs = {1, 2, 3, 4, 5, 6, 7};
     other.pairs = {10, 20, 30, 40, 50, 60, 70};
@@ -302,7 +302,7 @@ TEST(Accuracy, ErrorsOfFramesAddUp) {
     EXPECT_EQ(sum.pairs, (PairErrors{11, 22, 33, 44, 55, 66, 77}));
     EXPECT_EQ(sum.decisions, one.decisions);
     EXPECT_EQ(sum.contacts->depth_ulps, (std::vector<double>{8, 9}));
-    EXPECT_EQ(sum.drift->vertices, 1u); // of the first frame
+    EXPECT_EQ(sum.drift->vertices, 1u); // vertices of the first frame
     EXPECT_FALSE(sum.every_contact);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// tandem inside a host application's OpenCL context: its queue and its memory.
+// tandem on the OpenCL context, queue and memory of a host application.
 #define CL_TARGET_OPENCL_VERSION 120
 #include "backends/opencl/opencl_device.h"
 
@@ -34,7 +34,7 @@ TEST(Adopt, WorksOnTheApplicationsQueueAndMemory) {
         device->finish();
         EXPECT_EQ(device->bytes_allocated(), 0u);
     }
-    // The application's objects outlive the device and hold what it wrote.
+    // The application's objects outlive the device and contain what it wrote.
     ASSERT_EQ(clEnqueueReadBuffer(queue, memory, CL_TRUE, 0, 16, words.data(), 0, nullptr, nullptr),
               CL_SUCCESS);
     EXPECT_EQ(words, (std::vector<std::uint32_t>{0, 2, 3, 4}));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Candidate pairs by rounding and placement: which answers have to be equal, which must not be compared, and
-// that kernels, reference and broad phase mean the same slabs.
+// Candidate pairs by rounding and placement: which answers must be equal, which must not be compared, and
+// whether kernels, reference and broad phase use the same slabs.
 #include "algorithms/broad_phase/broad.h"
 #include "algorithms/broad_phase/broad.h"
 #include "harness/sampling/local_sampler.h"
@@ -19,7 +19,7 @@ namespace {
 using namespace testing_support;
 using testing::HasSubstr;
 
-/// The crowd moved away from the origin, where rounding bites.
+/// The crowd moved away from the origin, where rounding matters.
 Scene far_crowd(std::uint64_t seed, double offset) {
     auto scene = crowd(seed, 9, 1.0);
     scene.frame = [near = scene.frame, offset](std::size_t i) {
@@ -27,7 +27,7 @@ Scene far_crowd(std::uint64_t seed, double offset) {
         for (auto& pose : frame.poses) pose.translation.array() += offset;
         for (auto& body : frame.deformed)
             for (auto& v : body) v.array() += offset;
-        frame.poses[1] = {}; // of the deformable body
+        frame.poses[1] = {}; // pose of the deformable body
         return frame;
     };
     return scene;
@@ -65,7 +65,7 @@ TEST(BoundsAnswers, SafeAndNearestAgreeWithoutCornersAndEveryCellWithItsOwnRefer
     }
 }
 
-TEST(BoundsAnswers, WiderTruthFindsMore) {
+TEST(BoundsAnswers, ExactPlacementFindsMorePairs) {
     const auto scene = far_crowd(82, 1000);
     for (const auto precision : {Precision::fp32, Precision::fp64}) {
         const auto at = [&](Placement placement) {
@@ -79,7 +79,7 @@ TEST(BoundsAnswers, WiderTruthFindsMore) {
     }
 }
 
-/// All pairs of tetrahedra that leaf slabs of the kernels do not separate.
+/// All pairs of tetrahedra that the kernels' leaf slabs do not separate.
 template<class Real>
 std::vector<Pair> kernel_pairs(const PairScene& scene, const Geometry& geometry) {
     const LeafSlabs<Real> slabs(device("host"), scene, geometry);
@@ -91,9 +91,9 @@ std::vector<Pair> kernel_pairs(const PairScene& scene, const Geometry& geometry)
     return pairs;
 }
 
-/// Directed sums are made in two ways: exact sums tell the kernels' host dialect, the processor's modes the
-/// reference.
-TEST(BoundsAnswers, KernelsAndReferenceMeanTheSameSlabsInEveryRounding) {
+/// Directed sums have two implementations: the host dialect of the kernels computes exact sums, the reference
+/// uses the processor's rounding modes.
+TEST(BoundsAnswers, KernelsAndReferenceUseTheSameSlabsInEveryRounding) {
     SlabTouchMaker<float> maker(83, 300);
     std::vector<OraclePair> pairs;
     for (std::size_t i = 0; i < 150; ++i)

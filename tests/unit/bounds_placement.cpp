@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The two placements of vertices: what moves vertices with rounding may be off by at most drift_bound, and
-// slabs widened by it (placement exact) keep every pair that meets where the poses put it exactly.
+// The two placements of vertices. Rounded transforms displace vertices by at most drift_bound. Slabs widened
+// by it (placement=exact) keep every pair that touches or overlaps at the exact poses.
 #include "algorithms/bodies/drift.h"
 #include "algorithms/bodies/pack.h"
 #include "harness/verify/oracle/drift.h"
@@ -26,9 +26,9 @@ Geometry posed_geometry(int k, Rounding rounding, Precision precision) {
     return {.k = k, .precision = precision, .rounding = rounding, .placement = Placement::exact};
 }
 
-TEST(Posed, RotationsAreThoseOfTheNormalisedQuaternion) {
+TEST(Posed, RotationsUseTheNormalisedQuaternion) {
     Pose pose;
-    pose.rotation = Eigen::Quaterniond(3, 0, 0, 4); // not of unit length: half a turn and more about z
+    pose.rotation = Eigen::Quaterniond(3, 0, 0, 4); // not of unit length: more than half a turn about z
     pose.translation = {0.5, -2, 1e300};
     const auto p = posed_point(pose, {1, 2, 3});
     // R = {{-7, -24, 0}, {24, -7, 0}, {0, 0, 25}} / 25
@@ -37,7 +37,7 @@ TEST(Posed, RotationsAreThoseOfTheNormalisedQuaternion) {
     EXPECT_EQ(p[2], mpq_class(1e300) + 3);
 }
 
-TEST(Posed, RelationsAreThoseOfTheOracleUnderAnyPose) {
+TEST(Posed, RelationsEqualTheOracleUnderAnyPose) {
     Random random(8);
     TouchMaker maker(8);
     std::array<int, 3> seen{};
@@ -54,10 +54,10 @@ TEST(Posed, RelationsAreThoseOfTheOracleUnderAnyPose) {
     EXPECT_THAT(seen, testing::Each(testing::Gt(2)));
 }
 
-/// Two bodies turned about a slab direction, which the turn leaves as it is, and shifted along it: contact
-/// planes of the meshes stay perpendicular to it, exactly.
+/// Two bodies rotated about a slab direction, which the rotation preserves, and shifted along it: contact
+/// planes of the meshes remain exactly perpendicular to it.
 struct TurnedPairs {
-    std::vector<OraclePair> pairs; ///< in the frames of the meshes
+    std::vector<OraclePair> pairs; ///< in mesh coordinates
     std::array<Pose, 2> poses;
 };
 
@@ -71,7 +71,8 @@ TurnedPairs turned_pairs(Random& random, double offset, std::size_t count) {
     const Eigen::Vector3d turn = random.uniform(-2, 2) * direction;
     Pose pose;
     pose.rotation = Eigen::Quaterniond(random.uniform(0.1, 1), turn.x(), turn.y(), turn.z());
-    for (auto& t : pose.translation) // of a length that double holds with the shift, and float does not
+    // a length that double represents together with the shift, but float does not
+    for (auto& t : pose.translation)
         t = std::ldexp(std::floor(std::ldexp(offset * random.uniform(-1, 1), 20)), -20);
     result.poses = {pose, pose};
     result.poses[1].translation += shift * direction;
@@ -84,7 +85,7 @@ TurnedPairs turned_pairs(Random& random, double offset, std::size_t count) {
     return result;
 }
 
-/// Pairs of a batch, all of which touch, that some axis tells apart.
+/// Number of touching pairs of a batch that some axis separates.
 template<class Real>
 std::uint64_t missed(const TurnedPairs& turned, const Geometry& geometry) {
     const PairScene scene(turned.pairs, turned.poses);
@@ -94,7 +95,7 @@ std::uint64_t missed(const TurnedPairs& turned, const Geometry& geometry) {
     return result;
 }
 
-TEST(Truth, T2KeepsWhatThePosesMakeTouchAndT1DoesNot) {
+TEST(Truth, ExactPlacementKeepsPairsThatTouchAtTheirPoses) {
     const char* given = std::getenv("TANDEM_DRAWS");
     constexpr std::size_t batch = 100;
     const auto batches = (given == nullptr ? 8000 : std::strtoull(given, nullptr, 10)) / batch;
@@ -119,8 +120,8 @@ TEST(Truth, T2KeepsWhatThePosesMakeTouchAndT1DoesNot) {
             lost["rounded double"] += missed<double>(turned, {.k = k, .precision = Precision::fp64});
         }
     }
-    fmt::print("{} pairs that touch, k = 8 and 18: t1 misses {} in float and {} in double\n", checked,
-               lost["rounded"], lost["rounded double"]);
+    fmt::print("{} pairs that touch, k = 8 and 18: placement=rounded misses {} in float and {} in double\n",
+               checked, lost["rounded"], lost["rounded double"]);
     EXPECT_GT(checked, 1000u);
     EXPECT_EQ(lost["exact"], 0u);
     EXPECT_EQ(lost["exact double"], 0u);
@@ -128,30 +129,32 @@ TEST(Truth, T2KeepsWhatThePosesMakeTouchAndT1DoesNot) {
     EXPECT_GT(lost["rounded double"], 0u);
 }
 
-/// The truth of a frame knows them all, in any precision; that of the rounded vertices does not.
-TEST(Truth, OfPosesKnowsWhatTheyMakeTouch) {
+/// The truth of a frame at its exact poses contains all pairs in any precision; that of rounded vertices does
+/// not.
+TEST(Truth, OfPosesContainsPairsThatTouchAtTheirPoses) {
     Random random(10);
     std::uint64_t lost = 0, known = 0, exact = 0;
-    for (int i = 0; i < 36; ++i) { // along every slab direction, those of boxes too
+    for (int i = 0; i < 36; ++i) { // along every slab direction, including those of boxes
         const auto turned = turned_pairs(random, std::pow(10.0, i % 6 - 1), 10);
         const PairScene scene(turned.pairs, turned.poses);
-        const auto of_poses = frame_truth(scene.scene(), scene.frame(), {Precision::fp32, Placement::exact});
-        const auto of_vertices = frame_truth(scene.scene(), scene.frame(), Precision::fp32);
+        const auto pose_truth =
+            frame_truth(scene.scene(), scene.frame(), {Precision::fp32, Placement::exact});
+        const auto vertex_truth = frame_truth(scene.scene(), scene.frame(), Precision::fp32);
         for (std::uint32_t j = 0; j < turned.pairs.size(); ++j) {
             const Pair pair{0, j, 1, j};
-            known += std::ranges::binary_search(of_poses.touching, pair);
-            lost += !std::ranges::binary_search(of_vertices.touching, pair)
-                    && !std::ranges::binary_search(of_vertices.overlapping, pair);
+            known += std::ranges::binary_search(pose_truth.touching, pair);
+            lost += !std::ranges::binary_search(vertex_truth.touching, pair)
+                    && !std::ranges::binary_search(vertex_truth.overlapping, pair);
         }
-        exact += of_poses.decisions[Tier::big_integers];
+        exact += pose_truth.decisions[Tier::big_integers];
     }
     EXPECT_EQ(known, 360u);
     EXPECT_GE(exact, 360u);
     EXPECT_GT(lost, 10u);
 }
 
-/// Deformable bodies have no pose; what float drops of their vertices counts as drift.
-TEST(Truth, T2KeepsDeformablePairsThatTouchInDoubleOnly) {
+/// Deformable bodies have no pose; the rounding of their vertices to float counts as drift.
+TEST(Truth, ExactPlacementKeepsDeformablePairsThatTouchInDoubleOnly) {
     for (const double offset : {0.0, 10.0, 1e4}) {
         SlabTouchMaker<double> maker(11, offset);
         std::vector<OraclePair> pairs;
@@ -166,7 +169,7 @@ TEST(Truth, T2KeepsDeformablePairsThatTouchInDoubleOnly) {
             for (std::size_t i = 0; i < pairs.size(); ++i) lost += slabs.separated(i) ? 1 : 0;
             return lost;
         };
-        // E, which k = 8 adds anyway, happens to be enough.
+        // E, which k = 8 adds in any case, happens to be sufficient.
         EXPECT_GT(lost_of({.k = 18}), 0u) << "at " << offset;
         for (const int k : {8, 18}) {
             for (const auto rounding : {Rounding::safe, Rounding::directed})
@@ -176,7 +179,7 @@ TEST(Truth, T2KeepsDeformablePairsThatTouchInDoubleOnly) {
     }
 }
 
-TEST(Truth, DriftStaysWithinItsBoundAndComesNearIt) {
+TEST(Truth, DriftIsWithinItsBoundAndCloseToIt) {
     for (const auto precision : {Precision::fp32, Precision::fp64}) {
         double largest = 0;
         for (const double offset : {0.0, 1.0, 1e3, 1e6}) {
@@ -210,7 +213,7 @@ TEST(Truth, DriftIsZeroWhereNothingIsRounded) {
     auto frame = scene.frame(0);
     for (auto& pose : frame.poses) pose = {};
     EXPECT_EQ(vertex_drift(scene, frame, Precision::fp64).max, 0);
-    // In float the vertices themselves are rounded: by half an ulp at most.
+    // In float the vertices themselves are rounded, by at most half an ulp.
     const auto drift = vertex_drift(scene, frame, Precision::fp32);
     EXPECT_GT(drift.max, 0.2);
     EXPECT_LE(drift.max, 0.5);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What each rounding of slabs promises, on the slabs that the host's kernels make: pairs that touch or
-// overlap (the oracle says which), drawn so that rounding has every chance to tell them apart.
-// TANDEM_DRAWS=N: N pairs for each precision instead of a few.
+// The guarantee of each rounding of slabs, checked on slabs from the host's kernels. The pairs touch or
+// overlap according to the oracle, and are chosen so that rounding errors could separate them. TANDEM_DRAWS=N
+// draws N pairs for each precision.
 #include "geometry/decision.h"
 #include "tests/support/cells.h"
 #include "tests/support/leaf_slabs.h"
@@ -19,8 +19,8 @@ using namespace testing_support;
 const auto all_k = sanitized() ? std::vector{8, 18} : std::vector{6, 8, 12, 14, 16, 18, 20, 24, 26};
 const std::uint64_t usual_draws = sanitized() ? 14000 : 140000;
 constexpr double offsets[] = {0, 1, 10, 100, 1000, 1e4, 1e6};
-/// Where the origin may be: corners of a cube, an edge, and where x + y + z cancels.
-constexpr std::array<double, 3> places[] = {{1, 1, 1}, {1, -1, 1}, {-1, 1, 0}, {0.5, 0.5, -1}, {1, -1, 0}};
+/// Directions to the origin: corners of a cube, an edge, and cases in which x + y + z cancels.
+constexpr std::array<double, 3> origins[] = {{1, 1, 1}, {1, -1, 1}, {-1, 1, 0}, {0.5, 0.5, -1}, {1, -1, 0}};
 
 std::uint64_t draws(std::uint64_t usual) {
     const char* given = std::getenv("TANDEM_DRAWS");
@@ -32,16 +32,16 @@ bool meet(const OraclePair& pair) {
     return found == Relation::touching || found == Relation::overlapping;
 }
 
-/// Pairs that touch or overlap in spite of the odd unit between them, about `count`.
+/// About `count` pairs that touch or overlap although some are moved apart by one lattice unit.
 template<class Real>
-std::vector<OraclePair> meeting_pairs(std::uint64_t seed, std::uint64_t count) {
+std::vector<OraclePair> intersecting_pairs(std::uint64_t seed, std::uint64_t count) {
     const auto along = directions({.k = 26});
     std::vector<OraclePair> pairs;
     for (std::size_t o = 0; o < std::size(offsets); ++o) {
         SlabTouchMaker<Real> maker(seed + o, offsets[o]);
         for (std::uint64_t i = 0; i < count / std::size(offsets); ++i) {
             const int shift = i % 8 == 0 ? static_cast<int>(i / 8 % 3) - 1 : 0;
-            auto pair = maker.touching(along[i % along.size()], places[i / 13 % std::size(places)], shift);
+            auto pair = maker.touching(along[i % along.size()], origins[i / 13 % std::size(origins)], shift);
             if (meet(pair)) pairs.push_back(std::move(pair));
         }
     }
@@ -57,7 +57,7 @@ std::uint64_t misses(const PairScene& pairs, const Geometry& geometry) {
     return result;
 }
 
-/// The least value and the largest that an end of a slab may have when slabs contain the exact projections.
+/// Number of slab ends outside the range that containment of the exact projections allows.
 template<class Real>
 std::uint64_t uncontained(const std::vector<OraclePair>& pairs, const PairScene& scene,
                           const Geometry& geometry, bool corners_only) {
@@ -69,7 +69,7 @@ std::uint64_t uncontained(const std::vector<OraclePair>& pairs, const PairScene&
             const auto& d = along[axis];
             if (corners_only && (d[0] == 0 || d[1] == 0 || d[2] == 0)) continue;
             for (const auto& corner : pairs[i].a) {
-                long double exact = 0; // 64 bits hold sums of three numbers of one lattice of 53
+                long double exact = 0; // 64 bits represent sums of three numbers of a 53-bit lattice exactly
                 for (unsigned k = 0; k < 3; ++k) exact += d[k] * static_cast<long double>(corner[k]);
                 outside += static_cast<long double>(slabs.lower(0, i, axis)) <= exact
                                    && exact <= static_cast<long double>(slabs.upper(0, i, axis))
@@ -87,7 +87,7 @@ void expect_kept(std::uint64_t seed, std::uint64_t count) {
     std::map<std::pair<int, Rounding>, std::uint64_t> missed;
     std::uint64_t checked = 0;
     for (std::uint64_t done = 0; done < count; done += batch) {
-        const auto pairs = meeting_pairs<Real>(seed + done, std::min(batch, count - done));
+        const auto pairs = intersecting_pairs<Real>(seed + done, std::min(batch, count - done));
         ASSERT_GT(pairs.size(), std::min(batch, count - done) * 8 / 10) << "too few of the draws touch";
         const PairScene scene(pairs);
         for (const int k : all_k)
@@ -102,10 +102,10 @@ void expect_kept(std::uint64_t seed, std::uint64_t count) {
         EXPECT_EQ((missed[{k, Rounding::directed}]), 0u) << "k = " << k;
         const bool has_corners = k != 6 && k != 12 && k != 16 && k != 18;
         EXPECT_EQ((missed[{k, Rounding::nearest}] > 0), has_corners) << "k = " << k;
-        // Of doubles the fixed tolerance hides everything.
+        // In double the fixed tolerance hides every error.
         EXPECT_EQ((missed[{k, Rounding::published}] > 0), k != 6 && precision == Precision::fp32)
             << "k = " << k;
-        fmt::print("k = {:>2}: nearest misses {}, published {} of {} pairs that meet\n", k,
+        fmt::print("k = {:>2}: nearest misses {}, published {} of {} intersecting pairs\n", k,
                    missed[{k, Rounding::nearest}], missed[{k, Rounding::published}], checked);
     }
 }
@@ -118,7 +118,7 @@ TEST(BoundsRounding, SafeAndDirectedKeepEveryPairInDouble) {
 template<class Real>
 void expect_contained(std::uint64_t seed, std::uint64_t count) {
     const auto precision = sizeof(Real) == 8 ? Precision::fp64 : Precision::fp32;
-    const auto pairs = meeting_pairs<Real>(seed, count);
+    const auto pairs = intersecting_pairs<Real>(seed, count);
     const PairScene scene(pairs);
     for (const int k : all_k) {
         const auto outside = [&](Rounding rounding, bool corners_only) {
@@ -138,9 +138,9 @@ TEST(BoundsRounding, DirectedSlabsAndSafeCornersContainTheExactOnes) {
     expect_contained<double>(4, 1400);
 }
 
-/// Another program's 20,000 pairs that touch along a slab direction of k = 8 had 7.30 % missed at distance
-/// 100 from the origin, and 7.98 % at 1,000. A share of so many draws has a standard deviation of 0.2 %, the
-/// difference of two 0.3 %.
+/// An independent program missed 7.30 % of 20,000 pairs that touch along a slab direction of k = 8 at
+/// distance 100 from the origin, and 7.98 % at 1,000. The standard deviation of such a fraction is 0.2 %,
+/// that of the difference of two is 0.3 %.
 TEST(BoundsRounding, PublishedMissesOneSlabAlignedPairInThirteen) {
     for (const auto& [offset, expected] : {std::pair{100.0, 0.0730}, std::pair{1000.0, 0.0798}}) {
         SlabTouchMaker<float> maker(5, offset);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A process that answers line by line: what it prints besides, its end, and limits.
+// A child process that answers line by line: its other output, its end, and limits.
 #include "harness/sampling/isolation/child_process.h"
 
 #include <array>
@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 constexpr const char* is_child = "TANDEM_TEST_IS_CHILD";
 
-/// What a child of this program does in place of its tests.
+/// Main loop of this program as a child process, in place of the tests.
 [[maybe_unused]] const bool answered = [] {
     if (std::getenv(is_child) == nullptr) return false;
     for (std::string line; std::getline(std::cin, line);) {
@@ -48,18 +48,18 @@ TEST_F(ChildProcesses, AnswerLineByLine) {
     }
 }
 
-TEST_F(ChildProcesses, ThatEndAreOver) {
+TEST_F(ChildProcesses, ReportTheirExitCode) {
     EXPECT_EQ(ask("leave").failure, "ended with code 7");
     EXPECT_TRUE(child.has_ended());
 }
 
-TEST_F(ChildProcesses, ThatCrashAreOver) {
+TEST_F(ChildProcesses, ReportTheirSignal) {
     ask("one");
     EXPECT_THAT(ask("crash").failure, HasSubstr("ended by signal 6"));
     EXPECT_TRUE(child.has_ended());
 }
 
-TEST_F(ChildProcesses, ThatHangAreEnded) {
+TEST_F(ChildProcesses, AreKilledAfterTheTimeout) {
     EXPECT_EQ(ask("hang", 0.2).failure, "took longer than 0.2 s and was ended");
     EXPECT_TRUE(child.has_ended());
 }

@@ -36,7 +36,7 @@ protected:
     }
 };
 
-TEST_F(ChoosingCache, GivesBackWhatItKept) {
+TEST_F(ChoosingCache, ReturnsWhatItStored) {
     const ChoiceCache cache(path("a/b"), "1");
     EXPECT_EQ(cache.find(question_, warning_), std::nullopt);
     EXPECT_EQ(cache.keep(question_, made()), "");
@@ -45,10 +45,11 @@ TEST_F(ChoosingCache, GivesBackWhatItKept) {
     EXPECT_EQ(choice_json(*found), choice_json(made()));
     EXPECT_NEAR(found->margin().value(), 0.5, 1e-3);
     EXPECT_EQ(warning_, "");
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("a/b")), {}), 1); // nothing beside it
+    // no other file beside it
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("a/b")), {}), 1);
 }
 
-TEST_F(ChoosingCache, AnotherProgramMakesItsOwn) {
+TEST_F(ChoosingCache, AnotherProgramVersionHasItsOwnChoices) {
     ChoiceCache(path(""), "1").keep(question_, made());
     EXPECT_EQ(ChoiceCache(path(""), "2").find(question_, warning_), std::nullopt);
     EXPECT_EQ(warning_, "");
@@ -75,23 +76,23 @@ TEST_F(ChoosingCache, SurvivesEveryDamage) {
     }
 }
 
-TEST_F(ChoosingCache, SaysWhatCannotBeWritten) {
+TEST_F(ChoosingCache, ReportsAFolderThatCannotBeWritten) {
     write_bytes(path("file"), "in the way");
     const ChoiceCache cache(path("file") + "/below", "1");
     EXPECT_THAT(cache.keep(question_, made()), HasSubstr("cannot be written"));
-    EXPECT_EQ(ChoiceCache("", "1").keep(question_, made()), ""); // nothing is to be kept
+    EXPECT_EQ(ChoiceCache("", "1").keep(question_, made()), ""); // caching is off
     EXPECT_EQ(ChoiceCache("", "1").find(question_, warning_), std::nullopt);
 }
 
-TEST_F(ChoosingCache, AsksByClassAndByWhatIsFixed) {
-    EXPECT_EQ(question_of(cell_, scene_, 200), question_); // 4^3 both
+TEST_F(ChoosingCache, KeysByClassAndByFixedSettings) {
+    EXPECT_EQ(question_of(cell_, scene_, 200), question_); // both round up to 4^3
     EXPECT_NE(question_of(cell_, scene_, 256), question_);
     EXPECT_NE(question_of(cell_, scene_, 0), question_);
     EXPECT_EQ(question_of(cell_, make_scene("pile:bodies=5,frames=1"), 100), question_);
     EXPECT_NE(question_of(cell_, make_scene("pile:bodies=20,frames=1"), 100), question_);
     for (const auto& given : {SettingTexts{{"k", "6"}}, {{"contact_rule", "none"}}, {{"threads", "1"}}})
         EXPECT_NE(question_of(undecided_cell({}, given, cell_.devices), scene_, 100), question_);
-    // A default that is given leaves less to choose only where something was to be chosen.
+    // An explicit default matters only for an algorithm that has not been chosen yet.
     EXPECT_EQ(question_of(undecided_cell({}, {{"k", "18"}}, cell_.devices), scene_, 100), question_);
 }
 

@@ -31,7 +31,7 @@ std::set<std::string> values_of(const std::vector<Cell>& cells, std::string_view
 
 TEST(ChoosingCandidates, EveryAlgorithmWithEveryAlternative) {
     const auto cells = of({});
-    for (std::size_t i = 0; i < algorithms().size(); ++i) { // unchanged ones first
+    for (std::size_t i = 0; i < algorithms().size(); ++i) { // unchanged presets first
         EXPECT_EQ(cells[i].algorithm, algorithms()[i]);
         EXPECT_EQ(cells[i].preset, algorithms()[i]->presets().front().name);
     }
@@ -42,8 +42,8 @@ TEST(ChoosingCandidates, EveryAlgorithmWithEveryAlternative) {
         EXPECT_EQ(values_of(cells, traversal->name(), "builder"), (std::set<std::string>{"morton", "sah"}));
 }
 
-/// Where groups are of one work-item anyhow their sizes are one candidate.
-TEST(ChoosingCandidates, NoneTwice) {
+/// On a device with groups of one work-item, all group sizes are one candidate.
+TEST(ChoosingCandidates, AreAllDifferent) {
     const auto cells = of({});
     std::set<std::string> different;
     for (const auto& cell : cells) {
@@ -53,7 +53,7 @@ TEST(ChoosingCandidates, NoneTwice) {
     EXPECT_EQ(different.size(), cells.size());
 }
 
-TEST(ChoosingCandidates, WhatIsGivenIsKept) {
+TEST(ChoosingCandidates, ExplicitSettingsAreKept) {
     const auto cells = of({{"k", "8"}, {"builder", "morton"}, {"leaves", "32"}, {"contact_rule", "none"}});
     ASSERT_FALSE(cells.empty());
     for (const auto& cell : cells) {
@@ -62,12 +62,12 @@ TEST(ChoosingCandidates, WhatIsGivenIsKept) {
         EXPECT_EQ(cell.settings.text("contact_rule"), "none");
     }
     EXPECT_EQ(values_of(cells, "chunked", "leaves"), std::set<std::string>{"32"});
-    // Leaves over it would say something else than the chunk's bytes.
+    // A value of `leaves` would override the chunk's bytes.
     EXPECT_EQ(values_of(of({{"chunk_bytes", "20000"}}), "chunked", "leaves"), std::set<std::string>{"0"});
 }
 
-/// The paper's presets are of k = 8, the others of 18: the first that is named says which.
-TEST(ChoosingCandidates, OnlyWithOneAnswer) {
+/// The paper's presets use k = 8, all others 18: the first preset named decides.
+TEST(ChoosingCandidates, HaveOneAnswer) {
     for (const auto& presets : {std::vector<std::string>{"all"}, {"published"}}) {
         const auto cells = of({}, presets);
         for (const auto& cell : cells) EXPECT_EQ(cell.settings.text("k"), cells.front().settings.text("k"));
@@ -75,19 +75,19 @@ TEST(ChoosingCandidates, OnlyWithOneAnswer) {
     EXPECT_EQ(of({}, {"published"}).front().settings.text("k"), "8");
 }
 
-TEST(ChoosingCandidates, WhatFitsNoneIsRefused) {
+TEST(ChoosingCandidates, SettingsOfNoCandidateAreRefused) {
     EXPECT_EQ(testing_support::declares(*algorithms().front(), "axes"), true);
     EXPECT_THROW(of({{"axes", "coordinate"}}), InputError);
     EXPECT_THROW(of({{"k", "10"}}), InputError);
 }
 
-TEST(ChoosingCandidates, AutoIsNamedAndNotAmongAll) {
+TEST(ChoosingCandidates, AutoIsSelectedByNameOnly) {
     Request request;
     const std::vector<DeviceGroup> devices{on_host()};
     for (const auto& cell : plan(request, devices)) EXPECT_TRUE(cell.candidates.empty());
     request.algorithms = {"auto", "chunked"};
     request.sets = {{"k", {"6", "18"}}};
-    EXPECT_THROW(plan(request, devices), InputError); // nothing is chosen there
+    EXPECT_THROW(plan(request, devices), InputError); // a plan does not choose
     request.may_choose = true;
     const auto cells = plan(request, devices);
     ASSERT_EQ(cells.size(), 4u);

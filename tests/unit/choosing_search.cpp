@@ -15,15 +15,15 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Not;
 
-/// Candidates that take as long as they are told, with a clock that only they move.
+/// Candidates with given times, and a clock that only their replays advance.
 struct Bench {
-    std::vector<std::int64_t> times;                    ///< ns of each
-    std::int64_t preparing_ns = 0;                      ///< of each
-    std::vector<std::size_t> failing{};                 ///< at once
-    std::function<double()> noise = [] { return 1.0; }; ///< what a replay's time is multiplied by
+    std::vector<std::int64_t> times;                    ///< ns per replay of each candidate
+    std::int64_t preparing_ns = 0;                      ///< per candidate
+    std::vector<std::size_t> failing{};                 ///< candidates that fail at once
+    std::function<double()> noise = [] { return 1.0; }; ///< factor on the time of a replay
     double measured = 0, preparing = 0;
-    std::vector<std::size_t> order{};   ///< of the replays
-    std::vector<std::size_t> dropped{}; ///< in that order
+    std::vector<std::size_t> order{};   ///< candidate of every replay
+    std::vector<std::size_t> dropped{}; ///< candidates in the order of elimination
 
     SearchResult run(const SearchLimits& limits = {10, 60}) {
         SearchSteps steps;
@@ -51,16 +51,16 @@ TEST(ChoosingSearch, RanksAllByTheirTimes) {
     EXPECT_THAT(bench.run().ranking, ElementsAre(3, 1, 2, 0, 4));
 }
 
-TEST(ChoosingSearch, DropsTheHopelessAfterOneReplay) {
+TEST(ChoosingSearch, DropsClearlySlowerCandidatesAfterOneReplay) {
     Bench bench{{50 * ms, 10 * ms, 39 * ms, 41 * ms}};
     const auto found = bench.run();
     EXPECT_EQ(found.ranking.front(), 1u);
-    EXPECT_EQ(found.replays[0].size(), 1u); // when the second had been seen
+    EXPECT_EQ(found.replays[0].size(), 1u); // when the second had been measured
     EXPECT_EQ(found.replays[3].size(), 1u);
     EXPECT_GT(found.replays[2].size(), 1u);
 }
 
-/// Single replays mislead in most of these searches; the best is 10 % before the next of 14.
+/// Single replays mislead in most of these searches; the best is 10 % faster than the next of 14.
 TEST(ChoosingSearch, FindsTheBestUnderNoise) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         Random random(seed);
@@ -77,8 +77,8 @@ TEST(ChoosingSearch, FindsTheBestUnderNoise) {
     }
 }
 
-/// Replays of all eight overlap, so that nothing but the rounds tells them apart.
-TEST(ChoosingSearch, GivesTheTimeToThoseInQuestion) {
+/// The times of all eight overlap, so only repeated rounds separate them.
+TEST(ChoosingSearch, SpendsItsTimeOnCloseCandidates) {
     Random random(3);
     Bench bench{{10 * ms, 11 * ms, 12 * ms, 13 * ms, 14 * ms, 15 * ms, 16 * ms, 17 * ms}};
     bench.noise = [&] { return random.next() % 3 == 0 ? 2.0 : 1.0; };
@@ -94,27 +94,27 @@ TEST(ChoosingSearch, InterleavesTheReplaysOfARound) {
                 ElementsAre(0, 1, 2, 0, 1, 2, 2, 1, 0));
 }
 
-/// 100 candidates of 1 s: ten seconds are over before all were tried.
-TEST(ChoosingSearch, TakesNoLongerThanItMay) {
+/// 100 candidates of 1 s: the ten seconds are over before all were tried.
+TEST(ChoosingSearch, RespectsItsTimeLimit) {
     Bench slow{std::vector<std::int64_t>(100, 1000 * ms)};
     const auto found = slow.run();
     EXPECT_LE(slow.measured, 11);
-    EXPECT_EQ(found.ranking.size(), 5u); // half of the time is for trying
+    EXPECT_EQ(found.ranking.size(), 5u); // half of the time is for first trials
     EXPECT_THAT(found.replays[5], IsEmpty());
     Bench compiling{std::vector<std::int64_t>(100, 1 * ms), 20000 * ms};
     EXPECT_EQ(compiling.run().ranking.size(), 3u);
     EXPECT_LE(compiling.preparing, 60);
     Bench hurried{{5 * ms, 3 * ms}};
-    EXPECT_THAT(hurried.run({0, 0}).ranking, ElementsAre(0)); // one in any case
+    EXPECT_THAT(hurried.run({0, 0}).ranking, ElementsAre(0)); // at least one in any case
 }
 
-TEST(ChoosingSearch, EndsWhenTheBestIsPlain) {
+TEST(ChoosingSearch, EndsWhenTheBestIsClear) {
     Bench bench{{10 * ms, 20 * ms, 30 * ms, 35 * ms}};
     bench.run();
     EXPECT_LT(bench.order.size(), 40u);
 }
 
-TEST(ChoosingSearch, GoesOnWithoutWhatFails) {
+TEST(ChoosingSearch, ContinuesWithoutFailingCandidates) {
     Bench some{{1 * ms, 2 * ms, 3 * ms}, 0, {0}};
     const auto found = some.run();
     EXPECT_THAT(found.ranking, ElementsAre(1, 2));

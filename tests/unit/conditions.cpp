@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the machine was like, from trees of files in place of /proc and /sys.
+// Conditions of the machine, read from folders that replace /proc and /sys.
 #include "harness/sampling/conditions.h"
 #include "harness/sampling/isolation/isolated_sampler.h"
 
@@ -22,14 +22,14 @@ using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::Optional;
 
-/// Of a processor of which no more is known.
-ProcessorCondition of_cores(unsigned cores) {
+/// Condition of a processor of which only the core count is known.
+ProcessorCondition processor_of_cores(unsigned cores) {
     ProcessorCondition condition;
     condition.cores = cores;
     return condition;
 }
 
-/// Of a GPU whose clocks are as they are for these reasons, while others compute on it.
+/// Condition of a GPU that other processes use, with the given throttle reasons.
 GpuCondition shared_gpu(std::uint64_t throttle, unsigned processes) {
     GpuCondition condition;
     condition.throttle = throttle;
@@ -37,7 +37,7 @@ GpuCondition shared_gpu(std::uint64_t throttle, unsigned processes) {
     return condition;
 }
 
-/// A machine of four cores, of which this process may run on 0 and 2. Times in seconds.
+/// A machine of four cores; this process may run on cores 0 and 2. Times in seconds.
 class Conditions : public testing_support::FolderTest {
 protected:
     void write(const std::string& file, const std::string& text) const {
@@ -46,7 +46,7 @@ protected:
         testing_support::write_bytes(place, text);
     }
 
-    /// `busy` seconds on each of the two cores, of `elapsed`; the other two are busy all the time.
+    /// `busy` seconds of `elapsed` on each of the two cores; the other two are busy all the time.
     void write_stat(double elapsed, double busy) const {
         const auto ticks = static_cast<double>(sysconf(_SC_CLK_TCK));
         std::string text = "cpu 1 2 3 4 5 6 7 8 9 10\n";
@@ -68,7 +68,7 @@ protected:
     double own = 0;
 };
 
-TEST_F(Conditions, OwnWorkIsNotOthers) {
+TEST_F(Conditions, OwnWorkDoesNotCountAsOthers) {
     write_stat(1000, 100);
     auto processor = reader();
     own = 8;
@@ -93,7 +93,7 @@ TEST_F(Conditions, OthersAreCountedOnTheCoresOfThisProcess) {
     EXPECT_EQ(disturbance(before, after, {.others = 0.5}), std::nullopt);
 }
 
-TEST_F(Conditions, DifferencesStartAnew) {
+TEST_F(Conditions, EachReadingStartsANewPeriod) {
     write_stat(1000, 100);
     auto processor = reader();
     write_stat(1010, 110);
@@ -102,7 +102,7 @@ TEST_F(Conditions, DifferencesStartAnew) {
     EXPECT_THAT(processor.read().others, Optional(DoubleNear(0, 1e-9)));
 }
 
-TEST_F(Conditions, ShortPeriodsAreAddedUp) {
+TEST_F(Conditions, ShortPeriodsAreMerged) {
     write_stat(1000, 100);
     auto processor = reader();
     write_stat(1001, 101);
@@ -115,7 +115,7 @@ TEST_F(Conditions, ShortPeriodsAreAddedUp) {
     EXPECT_THAT(processor.read().others, Optional(DoubleNear(2 * 0.24 / 0.36, 1e-6))) << "of all its parts";
 }
 
-TEST_F(Conditions, AnotherSetOfCoresStartsAnew) {
+TEST_F(Conditions, ADifferentSetOfCoresRestartsThePeriod) {
     write_stat(1000, 100);
     auto processor = reader();
     cores = {0};
@@ -123,7 +123,7 @@ TEST_F(Conditions, AnotherSetOfCoresStartsAnew) {
     EXPECT_EQ(processor.read().others, std::nullopt);
     write_stat(1020, 102);
     EXPECT_THAT(processor.read().others, Optional(DoubleNear(0.1, 1e-9)));
-    write_stat(900, 0); // another machine, as after a move of a container
+    write_stat(900, 0); // another machine, as after the migration of a container
     EXPECT_EQ(processor.read().others, std::nullopt);
 }
 
@@ -197,17 +197,17 @@ TEST_F(Conditions, QuotaOfAContainerOfVersion1) {
     EXPECT_EQ(read_control_group(path("")).cores, std::nullopt);
 }
 
-TEST_F(Conditions, NothingToReadIsUnknown) {
+TEST_F(Conditions, MissingFilesGiveUnknown) {
     auto processor = reader();
     const auto c = processor.read();
-    EXPECT_EQ(c, of_cores(2));
+    EXPECT_EQ(c, processor_of_cores(2));
     EXPECT_EQ(disturbance({c, {}}, {c, {}}), std::nullopt);
     EXPECT_EQ(condition_json({}).dump(), R"({"processor":{"cores":null,"quota_cores":null,"own_cores":null,)"
                                          R"("other_cores":null,"governor":null,"mhz":null,)"
                                          R"("throttled_periods":null,"pressure_percent":null},"gpus":[]})");
 }
 
-TEST_F(Conditions, GarbageIsUnknown) {
+TEST_F(Conditions, InvalidContentGivesUnknown) {
     for (const auto* garbage :
          {"", "\n", ":", "cpu", "cpu0 x", "cpu0 1 2\ncpu2 1 2 3 4\n", "0:", "0::", "some nan",
           "some avg10=", "processor : -1\ncpu MHz : 5\n", "processor : 0\ncpu MHz : nan\n", "nr_throttled -",
@@ -219,7 +219,7 @@ TEST_F(Conditions, GarbageIsUnknown) {
         for (const auto* groups : {garbage, "0::/\n"}) {
             write("proc/self/cgroup", groups);
             auto processor = reader();
-            EXPECT_EQ(processor.read(), of_cores(2)) << garbage;
+            EXPECT_EQ(processor.read(), processor_of_cores(2)) << garbage;
         }
     }
 }
@@ -242,7 +242,7 @@ TEST(Disturbance, OfAGpu) {
     const Condition capped{{}, {shared_gpu(0x4, 0)}};
     EXPECT_EQ(disturbance(quiet, capped), "throttled: power cap");
     EXPECT_EQ(disturbance(capped, quiet), "throttled: power cap");
-    Condition shared{of_cores(4), {shared_gpu(0x4, 2)}};
+    Condition shared{processor_of_cores(4), {shared_gpu(0x4, 2)}};
     shared.processor.others = 0.5;
     shared.processor.throttled = 1;
     EXPECT_EQ(disturbance(quiet, shared), "busy: other processes use 0.5 of 4 cores; quota: throttled once; "
@@ -285,13 +285,13 @@ TEST(Disturbance, InJson) {
 }
 
 TEST(HardwareDigest, IsFnv1a) {
-    // Of the authors' list of values.
+    // From the authors' list of test values.
     EXPECT_EQ(hardware_digest(""), "cbf29ce484222325");
     EXPECT_EQ(hardware_digest("a"), "af63dc4c8601ec8c");
     EXPECT_EQ(hardware_digest("foobar"), "85944171f73967e8");
 }
 
-TEST(HardwareDigest, StandsInRecordsForTheUuid) {
+TEST(HardwareDigest, ReplacesTheUuidInRecords) {
     DeviceInfo info;
     info.hardware = "GPU-5a5a5a5a-5a5a-5a5a-5a5a-5a5a5a5a5a5a";
     EXPECT_EQ(record_device(info)["hardware"], hardware_digest(info.hardware));
@@ -299,7 +299,7 @@ TEST(HardwareDigest, StandsInRecordsForTheUuid) {
     EXPECT_TRUE(record_device({})["hardware"].is_null());
 }
 
-TEST(ConditionsJson, ReadingsStandTogether) {
+TEST(ConditionsJson, ReadingsAreArrays) {
     Condition quiet, busy, unknown;
     for (auto* condition : {&quiet, &busy}) {
         condition->processor.cores = 2;
@@ -323,7 +323,7 @@ TEST(ConditionsJson, ReadingsStandTogether) {
     EXPECT_EQ(conditions_json(std::vector{unknown, unknown})["gpus"].dump(), "[null]");
 }
 
-TEST(ConditionsOfAnotherProcess, LeaveThisOneOut) {
+TEST(ConditionsOfAnotherProcess, ExcludeThisProcess) {
     const auto of = [](std::optional<unsigned> processes) {
         Condition condition;
         condition.gpus.resize(1);

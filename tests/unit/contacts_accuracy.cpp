@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Depth and normal of every rule against the exact least translation. TANDEM_PRINT=1 prints the table of the
-// room's README.
+// README in algorithms/narrow_phase.
 #include "contacts_pairs.h"
 
 #include "harness/verify/accuracy/answer_errors.h"
@@ -16,11 +16,11 @@ namespace {
 
 using namespace testing_support;
 
-/// How one rule did on pairs that overlap.
+/// Errors of one rule over overlapping pairs.
 struct Errors {
-    std::size_t pairs = 0, silent = 0; ///< silent: without a contact
-    std::vector<double> depth;         ///< |d - d*| / (u L), L the longest edge
-    std::vector<double> angle;         ///< degrees to the nearest of the best normals
+    std::size_t pairs = 0, without_contact = 0; ///< pairs without a contact
+    std::vector<double> depth;                  ///< |d - d*| / (u L), L the longest edge
+    std::vector<double> angle;                  ///< degrees to the nearest of the best normals
 
     static double at(std::vector<double> values, double share) {
         if (values.empty()) return 0;
@@ -34,7 +34,7 @@ void add(Errors& errors, const OraclePair& pair, const ContactTruth& truth, Cont
     const auto contacts = reference_contacts(narrowed(pair.a), narrowed(pair.b), 15, 15, counts,
                                              {rule, DecisionPrecision::fp32});
     ++errors.pairs;
-    errors.silent += contacts.empty() ? 1 : 0;
+    errors.without_contact += contacts.empty() ? 1 : 0;
     if (contacts.empty()) return;
     const auto& deepest = *std::min_element(contacts.begin(), contacts.end(),
                                             [](const auto& p, const auto& q) { return p.depth < q.depth; });
@@ -65,8 +65,8 @@ bool printing() { return std::getenv("TANDEM_PRINT") != nullptr; }
 
 void print(const char* family, const char* rule, const Errors& e) {
     if (!printing()) return;
-    std::printf("| %s | %s | %zu | %zu | %.2g, %.2g | %.2g, %.2g |\n", family, rule, e.pairs, e.silent,
-                Errors::at(e.depth, 0.5), Errors::at(e.depth, 1), Errors::at(e.angle, 0.5),
+    std::printf("| %s | %s | %zu | %zu | %.2g, %.2g | %.2g, %.2g |\n", family, rule, e.pairs,
+                e.without_contact, Errors::at(e.depth, 0.5), Errors::at(e.depth, 1), Errors::at(e.angle, 0.5),
                 Errors::at(e.angle, 1));
 }
 
@@ -107,9 +107,9 @@ TEST(ContactsAccuracy, OfGenericPairsSatHasTheBestNormalAndClipTheNextBest) {
     const auto opposing = errors_of(ContactRule::opposing, Family::generic);
     EXPECT_LT(Errors::at(sat.angle, 1), 1e-4);
     EXPECT_LT(Errors::at(clip.angle, 0.5), Errors::at(opposing.angle, 0.5));
-    EXPECT_EQ(sat.silent, 0u);
-    EXPECT_EQ(clip.silent, 0u);
-    EXPECT_GT(opposing.silent, 0u);
+    EXPECT_EQ(sat.without_contact, 0u);
+    EXPECT_EQ(clip.without_contact, 0u);
+    EXPECT_GT(opposing.without_contact, 0u);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rules restricted, vertex, consistent and growth on pairs whose answers are known by hand and differ.
+// Rules restricted, vertex, consistent and growth on pairs whose answers are known by hand and differ between
+// the rules.
 #include "contacts_pairs.h"
 
 #include <gtest/gtest.h>
@@ -14,13 +15,13 @@ class ContactsBoundary : public testing::Test {
 protected:
     using Vector = std::array<Real, 3>;
 
-    /// Its face 3 lies in z = 0, normal up; y + z = -4 below its face 2.
+    /// Its face 3 lies in z = 0, normal up; below its face 2, y + z = -4.
     const Corners<Real> block{{{-4, -4, 0}, {4, -4, 0}, {0, 4, 0}, {0, 0, -4}}};
-    /// Corner 0 is 1/2 below the block's top, the others are above it.
+    /// Corner 0 is 1/2 below the block's top; the other three are above it.
     const Corners<Real> cone{{{0, 0, Real(-0.5)}, {-1, -1, 2}, {1, -1, 2}, {0, 1, 2}}};
-    /// The same of its corner 0, but before the block in canonical order.
+    /// Like `cone` in corner 0, but first in canonical order.
     const Corners<Real> leaning{{{0, 0, Real(-0.5)}, {-9, -1, 2}, {1, -1, 2}, {0, 1, 2}}};
-    /// Corner 0 is 1/4 below the block's top, the others are out by its face 2.
+    /// Corner 0 is 1/4 below the block's top; the other three are outside through its face 2.
     const Corners<Real> spike{{{0, -2, Real(-0.25)},
                                {Real(-0.25), -6, Real(-0.25)},
                                {Real(0.25), -6, Real(-0.25)},
@@ -33,7 +34,7 @@ protected:
         return reference_contacts(a, b, boundary_a, boundary_b, counts, {rule, DecisionPrecision::fp32});
     }
 
-    /// That contacts have these features, all at one normal and depth.
+    /// Expects contacts with exactly these features, all with one normal and depth.
     static void expect_all(const std::vector<Contact<Real>>& found, const std::vector<unsigned>& features,
                            const Vector& normal, Real depth) {
         std::vector<unsigned> given;
@@ -74,7 +75,7 @@ TYPED_TEST(ContactsBoundary, ConsistentHasAContactForEveryEdgeThatLeaves) {
     }
 }
 
-TYPED_TEST(ContactsBoundary, VertexTakesTheNearestFaceAndConsistentTheOneTheEdgesLeaveBy) {
+TYPED_TEST(ContactsBoundary, VertexUsesTheNearestFaceAndConsistentTheFaceOfTheEdges) {
     const TypeParam root = std::sqrt(TypeParam(0.5));
     this->expect_all(this->contacts(ContactRule::vertex, this->block, this->spike), {4}, this->up,
                      TypeParam(-0.25));
@@ -84,7 +85,8 @@ TYPED_TEST(ContactsBoundary, VertexTakesTheNearestFaceAndConsistentTheOneTheEdge
 
 TYPED_TEST(ContactsBoundary, InnerFacesGiveCornersNoNormal) {
     using enum ContactRule;
-    // Of the faces below the cone's corner two are as near; that of the greater x stands first in order.
+    // Two of the faces below the cone's corner are equally near; the one with the greater x is first in
+    // order.
     const TypeParam root = 1 / std::sqrt(TypeParam(6));
     this->expect_all(this->contacts(vertex, this->block, this->cone, this->sides), {4},
                      {2 * root, root, -root}, TypeParam(-3.5) * root);
@@ -97,7 +99,7 @@ TYPED_TEST(ContactsBoundary, InnerFacesGiveCornersNoNormal) {
     EXPECT_EQ(this->counts, ContactCounts{});
 }
 
-TYPED_TEST(ContactsBoundary, ACornerOfEdgesThatAllStayInsideIsOfVertexOnly) {
+TYPED_TEST(ContactsBoundary, ACornerWhoseEdgesStayInsideHasAVertexContactOnly) {
     const auto quarter = [](TypeParam x) { return x / 4; };
     const auto inside = moved<TypeParam>(changed(this->cone, quarter), {0, 0, -1});
     EXPECT_TRUE(this->contacts(ContactRule::consistent, this->block, inside).empty());
@@ -113,8 +115,8 @@ TYPED_TEST(ContactsBoundary, ACornerThatTouchesHasNoDepth) {
     this->expect_all(this->contacts(ContactRule::growth, this->block, touching), {4}, this->up, 0);
 }
 
-TYPED_TEST(ContactsBoundary, RestrictedLeavesOutInnerFacesThatSatTakes) {
-    // Out by the block's face 2 but for a corner; 3/4 below its top.
+TYPED_TEST(ContactsBoundary, RestrictedIgnoresInnerFacesThatSatUses) {
+    // Outside through the block's face 2 except for a corner; 3/4 below its top.
     const TypeParam low = TypeParam(-0.5);
     const Corners<TypeParam> b{
         {{0, -3, low}, {TypeParam(0.25), -4, low}, {TypeParam(-0.25), -4, low}, {0, -4, TypeParam(-0.75)}}};
@@ -134,7 +136,7 @@ TYPED_TEST(ContactsBoundary, RestrictedLeavesOutInnerFacesThatSatTakes) {
     EXPECT_FALSE(this->contacts(ContactRule::restricted, this->block, b, 0, 1).empty());
 }
 
-TYPED_TEST(ContactsBoundary, RestrictedTakesProductsOfBoundaryEdgesOnly) {
+TYPED_TEST(ContactsBoundary, RestrictedUsesProductsOfBoundaryEdgesOnly) {
     // The edge along x on top of a is 1/4 above the edge along y at the bottom of b.
     const TypeParam low = TypeParam(-0.25);
     const Corners<TypeParam> a{{{-1, 0, 0}, {1, 0, 0}, {0, -1, -1}, {0, 1, -1}}};
@@ -143,7 +145,8 @@ TYPED_TEST(ContactsBoundary, RestrictedTakesProductsOfBoundaryEdgesOnly) {
         const auto found = this->contacts(ContactRule::restricted, a, b, boundary_a, boundary_b);
         return found.empty() ? TypeParam(0) : found[0].depth;
     };
-    // Faces 2 and 3 of either have its edge 01; faces 0 and 1 have 23, which is along the other's 01.
+    // In either tetrahedron, faces 2 and 3 contain edge 01; faces 0 and 1 contain edge 23, which is parallel
+    // to edge 01 of the other.
     for (const unsigned face : {4u, 8u})
         for (const unsigned other : {4u, 8u}) EXPECT_NEAR(depth(face, other), low, this->tolerance);
     for (const unsigned face : {1u, 2u}) {
@@ -171,17 +174,17 @@ TYPED_TEST(ContactsBoundary, RestrictedIsSatWhereAllFacesAreOnTheBoundary) {
     EXPECT_GT(others, 500u);
 }
 
-/// Corners 4 from the first along the axes, centre (1, 1, 1), and its mirror image whose first corner is t:
-/// their difference is the former at twice the size, so that its facets are -x, -y, -z and x + y + z, at
-/// 2 and 2 / sqrt(3) from the centres' difference.
+/// A tetrahedron with legs of 4 along the axes and centre (1, 1, 1), and its mirror image whose first corner
+/// is t. Their Minkowski difference is the former at twice the size. So its facets are -x, -y, -z and x + y +
+/// z, at 2 and 2 / sqrt(3) from the difference of the centres.
 template<class Real>
 std::pair<Corners<Real>, Corners<Real>> mirrored(const std::array<Real, 3>& t) {
     const Corners<Real> a{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}}};
     return {a, moved<Real>(changed(a, [](Real x) { return -x; }), t)};
 }
 
-TYPED_TEST(ContactsBoundary, GrowthMeetsAnotherFacetFirstThanTheLeastTranslation) {
-    // Centres differ by (-1, 3/4, 3/4): half of the way out by -x, a quarter by x + y + z.
+TYPED_TEST(ContactsBoundary, GrowthReachesAnotherFacetThanTheLeastTranslation) {
+    // The centres differ by (-1, 3/4, 3/4): half of the way out along -x, a quarter along x + y + z.
     const auto [a, b] = mirrored<TypeParam>({1, TypeParam(2.75), TypeParam(2.75)});
     const TypeParam third = 1 / std::sqrt(TypeParam(3));
     const auto sat = this->contacts(ContactRule::sat, a, b);
@@ -200,7 +203,7 @@ TYPED_TEST(ContactsBoundary, GrowthMeetsAnotherFacetFirstThanTheLeastTranslation
         EXPECT_EQ(contact.normal, growth[0].normal);
 }
 
-TYPED_TEST(ContactsBoundary, GrowthOfOneCentreGoesAlongTheLeastTranslation) {
+TYPED_TEST(ContactsBoundary, GrowthOfConcentricPairsUsesTheLeastTranslation) {
     const TypeParam third = 1 / std::sqrt(TypeParam(3));
     for (const TypeParam off : {TypeParam(0), -2 * std::numeric_limits<TypeParam>::epsilon()}) {
         const auto [a, b] = mirrored<TypeParam>({2 + off, 2, 2});
@@ -211,7 +214,7 @@ TYPED_TEST(ContactsBoundary, GrowthOfOneCentreGoesAlongTheLeastTranslation) {
             EXPECT_NEAR(contact.depth, -2 * third, this->tolerance);
         }
     }
-    // Farther than rounding the way out is that of the centres.
+    // For distances above rounding, the direction is that of the centres.
     const auto [a, b] = mirrored<TypeParam>({TypeParam(2) - TypeParam(0.001), 2, 2});
     EXPECT_EQ(this->contacts(ContactRule::growth, a, b).at(0).normal[0], -1);
 }

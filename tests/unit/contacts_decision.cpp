@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Setting decision against the exact oracle, on pairs that touch, nearly touch and keep clear.
+// Setting decision against the exact oracle, on pairs that touch, nearly touch and are clearly separate.
 #include "contacts_pairs.h"
 
 #include "algorithms/narrow_phase/reference_pair.h"
@@ -15,12 +15,12 @@ namespace {
 
 using namespace testing_support;
 
-/// How one decision did on some pairs.
+/// Results of one decision over a set of pairs.
 struct Score {
     std::uint64_t pairs = 0;
-    std::uint64_t missed = 0;      ///< told apart though they meet
-    std::uint64_t kept = 0;        ///< disjoint, but not told apart
-    std::uint64_t unexplained = 0; ///< of those, neither undecided in double nor degenerate
+    std::uint64_t missed = 0;      ///< rejected although they intersect
+    std::uint64_t kept = 0;        ///< disjoint, but not rejected
+    std::uint64_t unexplained = 0; ///< of the kept ones, those neither undecided in double nor degenerate
     std::uint64_t undecided_by_filter = 0, undecided_by_double = 0;
 };
 
@@ -76,14 +76,14 @@ std::map<std::string, std::vector<OraclePair>> families() {
     return result;
 }
 
-TEST(ContactsDecision, NoDecisionTellsApartWhatMeets) {
+TEST(ContactsDecision, NoDecisionRejectsIntersectingPairs) {
     for (const auto& [name, pairs] : families())
         for (const auto decision : {DecisionPrecision::fp32, DecisionPrecision::recheck,
                                     DecisionPrecision::fp64, DecisionPrecision::exact})
             EXPECT_EQ(score(pairs, decision).missed, 0u) << name << " " << static_cast<int>(decision);
 }
 
-TEST(ContactsDecision, EachStageIsWrongOnlyWhereItSaysSo) {
+TEST(ContactsDecision, EachStageIsWrongOnlyForUndecidedPairs) {
     std::uint64_t wrong_in_float = 0, wrong_after_recheck = 0, undecided_by_double = 0,
                   undecided_by_filter = 0;
     for (const auto& [name, pairs] : families()) {
@@ -136,7 +136,7 @@ TEST(ContactsDecision, VerdictsAreNeverWrongInEitherPrecision) {
     EXPECT_LT(certain[1][0], certain[0][0]);
 }
 
-TEST(ContactsDecision, NamesOfCornersAndOfTheTwoMakeNoDifference) {
+TEST(ContactsDecision, VerdictsDoNotDependOnTheOrderOfCornersAndTetrahedra) {
     unsigned seen[3]{};
     for (const auto& [name, pairs] : families())
         for (std::size_t i = 0; i < pairs.size(); i += 10) {
@@ -155,7 +155,7 @@ TEST(ContactsDecision, NamesOfCornersAndOfTheTwoMakeNoDifference) {
     for (const auto count : seen) EXPECT_GT(count, 100u);
 }
 
-TEST(ContactsDecision, CertificatesAreNeverWrongUnderAnyNames) {
+TEST(ContactsDecision, CertificatesAreNeverWrongInAnyOrder) {
     std::uint64_t certain[2][3]{};
     for (const auto& [name, pairs] : families())
         for (std::size_t i = 0; i < pairs.size(); ++i) {

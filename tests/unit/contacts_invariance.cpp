@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What must not change the contacts of a pair: its scale, its place, the order of its corners.
+// Changes that must not affect the contacts of a pair: scale, position, order of its corners.
 #include "contacts_pairs.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ protected:
         return reference_contacts(pair.a, pair.b, pair.boundary_a, pair.boundary_b, counts);
     }
 
-    /// 'd' degenerate, 'r' rejected, 'm' met.
+    /// 'd' degenerate, 'r' rejected, 'm' intersecting.
     static char decision(const Corners<Real>& a, const Corners<Real>& b) {
         ContactCounts one;
         reference_contacts(a, b, 15, 15, one);
@@ -86,7 +86,7 @@ TYPED_TEST(ContactsInvariance, PowersOfTwoScaleContactsExactly) {
     EXPECT_EQ(this->counts.degenerate % 5, 0u);
 }
 
-TYPED_TEST(ContactsInvariance, DenormalCoordinatesDecideAlike) {
+TYPED_TEST(ContactsInvariance, DenormalCoordinatesGiveTheSameDecision) {
     const int power =
         std::numeric_limits<TypeParam>::min_exponent - std::numeric_limits<TypeParam>::digits + 1;
     std::size_t seen = 0;
@@ -107,7 +107,7 @@ TYPED_TEST(ContactsInvariance, DenormalCoordinatesDecideAlike) {
     EXPECT_GT(seen, 100u);
 }
 
-TYPED_TEST(ContactsInvariance, PlaceChangesPointsOnly) {
+TYPED_TEST(ContactsInvariance, PositionChangesPointsOnly) {
     const TypeParam far = std::ldexp(TypeParam(1), std::numeric_limits<TypeParam>::digits - 8);
     std::size_t seen = 0;
     for (int i = 0; i < 500; ++i) {
@@ -174,7 +174,7 @@ TYPED_TEST(ContactsInvariance, ExactlyTouchingIsNeverRejectedNorMissed) {
 
 TYPED_TEST(ContactsInvariance, ContactsLieInBothTetrahedra) {
     const TypeParam allowed = 4096 * std::numeric_limits<TypeParam>::epsilon();
-    // Volume of p with each face against the whole, without normals: independent of the rule's own test.
+    // Volume of p with each face relative to the whole, without normals: independent of the rule's own test.
     const auto least_weight = [](const Corners<TypeParam>& t, const std::array<TypeParam, 3>& p) {
         const auto volume = [](const Corners<TypeParam>& c) {
             double m[3][3];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The contact kernel on every device there is against the serial reference: equal bits.
+// The contact kernel on every available device against the serial reference: equal bits.
 #include "contacts_pairs.h"
 
 #include "algorithms/answer/status.clh"
@@ -22,14 +22,14 @@ struct Row {
     std::uint32_t pair, feature;
 };
 
-/// What a device made of the pairs.
+/// Results of a device for the pairs.
 template<class Real>
 struct Outcome {
     std::vector<std::uint32_t> status;
     std::vector<Row> rows;
     std::vector<Real> values;
 
-    std::vector<std::uint32_t> sums = std::vector<std::uint32_t>(4); ///< of the contacts' digest
+    std::vector<std::uint32_t> sums = std::vector<std::uint32_t>(4); ///< digest of the contacts
 
     std::uint64_t counter(std::uint32_t word) const {
         return status[word] | std::uint64_t{status[word + 1]} << 32;
@@ -38,7 +38,7 @@ struct Outcome {
     std::uint64_t digest_b() const { return sums[2] | std::uint64_t{sums[3]} << 32; }
 };
 
-/// Pairs as the kernels see them: body 0 has all tetrahedra a, body 1 all b, both in world coordinates.
+/// Pairs in the layout of the kernels: body 0 has all tetrahedra a, body 1 all b, both in world coordinates.
 template<class Real>
 class Stage {
 public:
@@ -57,7 +57,7 @@ public:
                 }
                 boundary.push_back(static_cast<unsigned char>(second ? pair.boundary_b : pair.boundary_a));
             }
-        ids = {2, 0, 1}; // two bodies by their own numbers
+        ids = {2, 0, 1}; // permuted body numbers
         for (std::uint32_t i = 0; i < 2 * count; ++i) ids.push_back(input_id(i % count));
         for (std::uint32_t i = 0; i < count; ++i) found.insert(found.end(), {0, 1, i, i});
         const std::uint32_t in_world = 1;
@@ -139,7 +139,7 @@ private:
         launch("separate.cl", "separate_pairs", defines, separate);
     }
 
-    /// `open`: only those that certify_pairs has left.
+    /// `open`: only pairs that certify_pairs has left undecided.
     void decide(Defines defines, DecisionPrecision decision, std::uint32_t first, std::uint32_t pair_capacity,
                 const Buffer& status, bool open) {
         if (decision == DecisionPrecision::fp32) return;
@@ -181,7 +181,7 @@ private:
         undecided_by_double_, open_, meeting_;
 };
 
-/// What the reference says, per pair and in all.
+/// Results of the reference, per pair and in total.
 template<class Real>
 struct Expected {
     explicit Expected(const std::vector<TetrahedronPair<Real>>& pairs, ContactSettings settings = {}) {
@@ -230,7 +230,7 @@ std::vector<TetrahedronPair<Real>> random_pairs(std::size_t count) {
     return pairs;
 }
 
-/// Pairs of floats that touch or nearly do, where the bounds of the decision count.
+/// Pairs of floats that touch or nearly touch, for which the error bounds of the decision matter.
 template<class Real>
 void add_close_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
     using namespace testing_support;
@@ -244,7 +244,7 @@ void add_close_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
             pairs.push_back({narrowed<Real>(pair.a), narrowed<Real>(pair.b)});
 }
 
-/// Pairs of one centre, exactly: of each the mirror image in its centre.
+/// Exactly concentric pairs: a tetrahedron and its point reflection in its centre.
 template<class Real>
 void add_concentric_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
     PairMaker<Real> maker;
@@ -257,7 +257,7 @@ void add_concentric_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
     }
 }
 
-/// Pairs of which one is inside the other, what they share shared exactly.
+/// Pairs of which one contains the other; shared features are shared exactly.
 template<class Real>
 void add_nested_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
     using namespace testing_support;
@@ -268,8 +268,8 @@ void add_nested_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
     }
 }
 
-/// Pairs of every family of hard cases, and one whose faces rounding cuts into polygons of more than seven
-/// corners.
+/// Pairs of every family of hard cases, and one pair in which rounding clips faces to polygons of more than
+/// seven corners.
 template<class Real>
 void add_hard_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
     const auto add = [&pairs](const FloatCorners& a, const FloatCorners& b) {
@@ -334,13 +334,13 @@ TYPED_TEST(ContactsKernel, EqualsTheReferenceBitForBit) {
             EXPECT_EQ(outcome.counter(STATUS_DEGENERATE), expected.counts.degenerate);
             EXPECT_EQ(outcome.counter(STATUS_REJECTED), expected.counts.rejected);
             EXPECT_EQ(outcome.digest_a(),
-                      expected.digest_a); // takes in every bit of every value
+                      expected.digest_a); // covers every bit of every value
             EXPECT_EQ(outcome.digest_b(), expected.digest_b);
             EXPECT_EQ(by_pair(outcome, expected.total, pairs.size()), expected.contacts);
         }
 }
 
-// Where certificates begin and end, and where products of their distances would over- or underflow.
+// The limits of certificates, and scales at which products of their distances would overflow or underflow.
 TYPED_TEST(ContactsKernel, EqualsTheReferenceAtEveryScale) {
     auto pairs = random_pairs<TypeParam>(16200);
     for (std::size_t i = 0; i < pairs.size(); ++i)
@@ -390,7 +390,8 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReference) {
             SCOPED_TRACE(device->info().id + " rule " + std::to_string(static_cast<int>(settings.rule))
                          + " decision " + std::to_string(static_cast<int>(settings.decision)));
             Stage<TypeParam> stage(*device, pairs, this->group_sizes(*device).back());
-            // One that is decided before it is tried, the others as certificates leave them.
+            // One combination decides before it tries certificates; the others decide what certificates leave
+            // undecided.
             if (settings.decision == recheck && settings.rule == clip)
                 stage.set_launches(ContactStage::Launches::at_once);
             const auto outcome =
@@ -406,7 +407,7 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReference) {
     }
 }
 
-TYPED_TEST(ContactsKernel, PastCapacityCountingGoesOnAndNothingIsWritten) {
+TYPED_TEST(ContactsKernel, PastCapacityItCountsWithoutWriting) {
     const auto pairs = random_pairs<TypeParam>(700);
     const Expected<TypeParam> expected(pairs);
     for (auto& device : this->devices)
@@ -423,7 +424,7 @@ TYPED_TEST(ContactsKernel, PastCapacityCountingGoesOnAndNothingIsWritten) {
         }
 }
 
-TYPED_TEST(ContactsKernel, TakesOnlyThePairsThatAreThere) {
+TYPED_TEST(ContactsKernel, ProcessesExistingPairsOnly) {
     auto pairs = random_pairs<TypeParam>(700);
     const std::vector part(pairs.begin() + 100, pairs.begin() + 400);
     const Expected<TypeParam> expected(part);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One tetrahedron inside the other, corners, edges and faces shared or not: rules sat and clip have the least
-// translation, rule growth that along its own normal.
+// One tetrahedron inside the other, with or without shared corners, edges and faces. Rules sat and clip give
+// the least translation, rule growth the translation along its own normal.
 #include "contacts_pairs.h"
 
 #include "harness/verify/accuracy/answer_errors.h"
@@ -19,7 +19,7 @@ class ContactsNested : public testing::Test {
 protected:
     static constexpr double unit_roundoff = std::numeric_limits<Real>::epsilon() / 2;
 
-    /// Normal and depth of the pair's contacts, which all have the same.
+    /// Common normal and depth of the pair's contacts.
     static Contact<Real> contact_of(const OraclePair& pair, ContactRule rule) {
         ContactCounts counts;
         const auto contacts = reference_contacts(narrowed<Real>(pair.a), narrowed<Real>(pair.b), 15, 15,
@@ -55,7 +55,7 @@ void for_each_nested(Visit visit) {
     }
 }
 
-// Measured: 1.5 roundings, and 2e-5 degrees of floats.
+// Measured: 1.5 roundings, and 2e-5 degrees in float.
 TYPED_TEST(ContactsNested, SatAndClipHaveTheLeastTranslation) {
     for_each_nested([&](const OraclePair& pair) {
         const auto truth = contact_truth(pair.a, pair.b, 64 * this->unit_roundoff);
@@ -74,7 +74,7 @@ TYPED_TEST(ContactsNested, GrowthHasTheTranslationAlongItsNormal) {
         EXPECT_LT(this->roundings(pair, contact, translation_along(pair, this->normal_of(contact))), 4);
     };
     for_each_nested(expect_right);
-    // And of pairs that are not nested, whose common part may end before the translation does.
+    // Also for pairs that are not nested, whose intersection may end before the translation does.
     Random random(1);
     for (int i = 0; i < 300; ++i) {
         const auto pair = random_pair(Family::generic, random);

@@ -31,7 +31,7 @@ Corners<Real> moved(Corners<Real> corners, const std::array<Real, 3>& by) {
     return corners;
 }
 
-/// As a contact stage of the precision takes them.
+/// Corners rounded to the precision of a contact stage.
 template<class Real = float>
 Corners<Real> narrowed(const TetraCorners& corners) {
     Corners<Real> result;
@@ -40,7 +40,7 @@ Corners<Real> narrowed(const TetraCorners& corners) {
     return result;
 }
 
-/// Families of pairs that are near each other. The same seed gives the same pairs on every platform.
+/// Families of close pairs. The same seed gives the same pairs on every platform.
 template<class Real>
 class PairMaker {
 public:

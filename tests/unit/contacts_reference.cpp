@@ -10,7 +10,7 @@ namespace {
 template<class Real>
 class ContactsReference : public testing::Test {
 protected:
-    /// Its face 3 lies in z = 0, normal up, the height over it is 4.
+    /// Its face 3 lies in z = 0, normal up, and its height over that face is 4.
     const Corners<Real> block{{{-4, -4, 0}, {4, -4, 0}, {0, 4, 0}, {0, 0, -4}}};
     /// Corner 0 points down; the face opposite lies 2.5 above it.
     const Corners<Real> cone{{{0, 0, Real(-0.5)}, {-1, -1, 2}, {1, -1, 2}, {0, 1, 2}}};
@@ -67,7 +67,7 @@ TYPED_TEST(ContactsReference, TouchingCornerIsOneContactOfNoDepth) {
     EXPECT_FALSE(std::signbit(found[0].depth));
 }
 
-TYPED_TEST(ContactsReference, CrossingEdgesMeetFacesOnly) {
+TYPED_TEST(ContactsReference, CrossingEdgesIntersectFacesOnly) {
     // The upper edge of a runs along x, 0.25 above the lower edge of b, which runs along y.
     const Corners<TypeParam> a{{{-1, 0, 0}, {1, 0, 0}, {0, -1, -1}, {0, 1, -1}}};
     const Corners<TypeParam> b{{{0, -1, TypeParam(-0.25)}, {0, 1, TypeParam(-0.25)}, {-1, 0, 1}, {1, 0, 1}}};
@@ -78,7 +78,7 @@ TYPED_TEST(ContactsReference, CrossingEdgesMeetFacesOnly) {
     EXPECT_NEAR(std::abs(found[2].point[1]), 0.25, 1e-6);
 }
 
-TYPED_TEST(ContactsReference, FaceAxisTellsApartWhatTheBoundsDoNot) {
+TYPED_TEST(ContactsReference, FaceAxisSeparatesPairsThatTheBoundsDoNot) {
     // x + y + z <= 1 and >= 1.7; along all directions of k = 18 the two overlap.
     const Corners<TypeParam> a{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     const TypeParam c = TypeParam(0.9);
@@ -87,7 +87,7 @@ TYPED_TEST(ContactsReference, FaceAxisTellsApartWhatTheBoundsDoNot) {
     EXPECT_EQ(this->counts, (ContactCounts{0, 1}));
 }
 
-TYPED_TEST(ContactsReference, FaceAxisAloneTellsACornerFromAFace) {
+TYPED_TEST(ContactsReference, OnlyAFaceAxisSeparatesACornerFromAFace) {
     // All edges of `above` are so steep that a plane along one of them cuts the block.
     const TypeParam gap = TypeParam(0.01);
     const Corners<TypeParam> above{{{0, 0, gap}, {-1, -1, 1}, {1, -1, 3}, {0, 1, 6}}};
@@ -96,7 +96,7 @@ TYPED_TEST(ContactsReference, FaceAxisAloneTellsACornerFromAFace) {
     EXPECT_EQ(this->counts, (ContactCounts{0, 2}));
 }
 
-TYPED_TEST(ContactsReference, EdgeAxisTellsApart) {
+TYPED_TEST(ContactsReference, EdgeAxisSeparates) {
     const TypeParam low = TypeParam(0.125);
     const Corners<TypeParam> a{{{-1, 0, 0}, {1, 0, 0}, {0, -1, -1}, {0, 1, -1}}};
     const Corners<TypeParam> b{{{0, -1, low}, {0, 1, low}, {-1, 0, 1 + low}, {1, 0, 1 + low}}};
@@ -126,14 +126,14 @@ TYPED_TEST(ContactsReference, WithoutBoundaryFacesThereIsNoContact) {
 }
 
 TYPED_TEST(ContactsReference, TheFirstOfEquallyOpposingFacesGivesTheNormal) {
-    // Both faces of a that meet in the edge along x oppose a face of b by the same angle.
+    // Both faces of a at the edge along x oppose a face of b by the same angle.
     const Corners<TypeParam> a{{{-1, 0, 0}, {1, 0, 0}, {0, -1, -1}, {0, 1, -1}}};
     const Corners<TypeParam> b{{{-1, 0, TypeParam(-0.25)}, {1, 0, TypeParam(-0.25)}, {0, -1, 1}, {0, 1, 1}}};
     const auto both = this->contacts(a, b, 12);
     const auto second = this->contacts(a, b, 8);
     ASSERT_FALSE(both.empty());
     ASSERT_FALSE(second.empty());
-    EXPECT_GT(both[0].normal[1], 0); // face 2, away from corner 2
+    EXPECT_GT(both[0].normal[1], 0); // face 2, opposite corner 2
     EXPECT_LT(second[0].normal[1], 0);
 }
 
@@ -158,7 +158,7 @@ TYPED_TEST(ContactsReference, WithoutVolumeOrNumbersAPairIsDegenerate) {
     EXPECT_EQ(this->counts, (ContactCounts{expected, 0}));
 }
 
-TYPED_TEST(ContactsReference, DigestTellsAllItsPartsApart) {
+TYPED_TEST(ContactsReference, DigestDependsOnEveryPart) {
     const auto found = this->contacts(this->block, this->cone, this->top_only);
     ASSERT_FALSE(found.empty());
     const auto base = contact_terms(1, 2, 3, 4, found[0]);

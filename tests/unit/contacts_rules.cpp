@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The rules in canonical order do not depend on how a pair is named, and tell bodies that only touch from
-// bodies that do not.
+// Rules in canonical order do not depend on the order of corners and tetrahedra, and distinguish touching
+// bodies from separate ones.
 #include "contacts_pairs.h"
 
 #include <gtest/gtest.h>
@@ -27,16 +27,16 @@ unsigned reordered(unsigned faces, const Order& order) {
 
 constexpr unsigned edge_ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
-/// A feature of reordered tetrahedra as the original ones have it.
+/// A feature of the reordered tetrahedra in the numbering of the original ones.
 unsigned original(unsigned feature, const Order& a, const Order& b) {
-    const bool of_b = feature < 8 ? feature >= 4 : feature >= 32;
-    const auto& own = of_b ? b : a;
-    const auto& other = of_b ? a : b;
-    if (feature < 8) return (of_b ? 4 : 0) + own[feature % 4];
+    const bool is_b = feature < 8 ? feature >= 4 : feature >= 32;
+    const auto& own = is_b ? b : a;
+    const auto& other = is_b ? a : b;
+    if (feature < 8) return (is_b ? 4 : 0) + own[feature % 4];
     const unsigned edge = (feature - 8) % 24 / 4;
     const auto [low, high] = std::minmax(own[edge_ends[edge][0]], own[edge_ends[edge][1]]);
     const unsigned number = low == 0 ? high - 1 : low + high;
-    return (of_b ? 32 : 8) + 4 * number + other[feature % 4];
+    return (is_b ? 32 : 8) + 4 * number + other[feature % 4];
 }
 
 template<class Real>
@@ -66,7 +66,7 @@ constexpr ContactRule canonical_rules[] = {ContactRule::sat,        ContactRule:
                                            ContactRule::restricted, ContactRule::vertex,
                                            ContactRule::consistent, ContactRule::growth};
 
-TYPED_TEST(ContactsRules, OrderOfCornersChangesNamesOnly) {
+TYPED_TEST(ContactsRules, OrderOfCornersChangesFeatureNumbersOnly) {
     std::size_t seen = 0;
     for (int i = 0; i < 700; ++i) {
         const auto pair = this->next(i);
@@ -95,7 +95,7 @@ TYPED_TEST(ContactsRules, OrderOfCornersChangesNamesOnly) {
     EXPECT_GT(seen, 1000u);
 }
 
-TYPED_TEST(ContactsRules, SwappingTheTwoTurnsTheNormalAndNothingElse) {
+TYPED_TEST(ContactsRules, SwappingTheTwoReversesTheNormalOnly) {
     std::size_t seen = 0;
     for (int i = 0; i < 2000; ++i) {
         const auto pair = this->next(i);
@@ -185,7 +185,7 @@ TYPED_TEST(ContactsRules, DepthAndNormalOfABoxLikeOverlapAreKnown) {
     }
 }
 
-TYPED_TEST(ContactsRules, PublishedLacksEdgesOfAAndLosesWhatIsSmall) {
+TYPED_TEST(ContactsRules, PublishedIgnoresEdgesOfAAndSmallTetrahedra) {
     const Corners<TypeParam> block{{{-4, -4, 0}, {4, -4, 0}, {0, 4, 0}, {0, 0, -4}}};
     const Corners<TypeParam> cone{{{0, 0, TypeParam(-0.5)}, {-1, -1, 2}, {1, -1, 2}, {0, 1, 2}}};
     ContactCounts counts;
@@ -225,7 +225,7 @@ std::vector<std::pair<Corners<Real>, unsigned>> cube(const std::array<Real, 3>& 
     return result;
 }
 
-/// The deepest contact of two cubes that only touch, the upper one standing aside on the lower one.
+/// The deepest contact of two cubes that only touch, the upper one displaced sideways on the lower one.
 template<class Real>
 Real deepest_of_touching_cubes(ContactRule rule, std::size_t& sideways) {
     Real deepest = 0;
@@ -250,7 +250,8 @@ TYPED_TEST(ContactsRules, CubesThatTouchAreNotDeepBySatAndClip) {
     EXPECT_EQ(sideways, 0u);
 }
 
-/// Known: the rule's normal is that of the most opposing boundary faces, which need not be those that touch.
+/// Known limitation: the rule's normal is that of the most opposing boundary faces, which may not be the
+/// touching ones.
 TYPED_TEST(ContactsRules, CubesThatTouchAreDeepSidewaysByOpposing) {
     std::size_t sideways = 0;
     EXPECT_GT(deepest_of_touching_cubes<TypeParam>(ContactRule::opposing, sideways), TypeParam(0.1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The Device contract, on every device there is; PoCL has to be there.
+// The Device contract, on every available device; PoCL is required.
 #include "tests/unit/device_support.h"
 
 #include <gmock/gmock.h>
@@ -73,7 +73,7 @@ TEST(Device, TracesEveryCommandOnceUnderItsStage) {
     }
 }
 
-/// What a std::logic_error of `call` says.
+/// Message of the std::logic_error of `call`.
 template<class Call>
 std::string refusal_of(const Call& call) {
     try {
@@ -111,13 +111,13 @@ TEST(Device, RefusesCommandsOutsideAnyStage) {
                 device->upload(words, bytes);
             }
             expect_refused();
-            EXPECT_EQ(device->finish().events.size(), clocks == Clocks::on ? 2u : 0u); // and the wait
+            EXPECT_EQ(device->finish().events.size(), clocks == Clocks::on ? 2u : 0u); // with the wait
         }
         device->set_clocks(Clocks::off);
     }
 }
 
-TEST(Device, BooksTheWaitUnderTheStageOfTheLastCommand) {
+TEST(Device, TracesTheWaitUnderTheStageOfTheLastCommand) {
     for (auto* device : devices()) {
         device->set_clocks(Clocks::on);
         const auto words = device->allocate(64, "words");
@@ -137,7 +137,7 @@ TEST(Device, BooksTheWaitUnderTheStageOfTheLastCommand) {
     }
 }
 
-TEST(Device, SaysWhatDoesNotFit) {
+TEST(Device, ReportsWhatDoesNotFit) {
     for (auto* device : devices()) {
         const auto too_much = device->info().max_allocation + 1;
         EXPECT_THROW(device->allocate(too_much, "everything"), OutOfMemory);
@@ -152,7 +152,7 @@ TEST(Device, SaysWhatDoesNotFit) {
     }
 }
 
-TEST(Device, CountsWhatItHolds) {
+TEST(Device, CountsAllocatedBytes) {
     for (auto* device : devices()) {
         const auto before = device->bytes_allocated();
         {

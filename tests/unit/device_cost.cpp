@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the Device contract costs who embeds it: nothing kept from one frame to the next.
+// Costs of the Device contract for an embedding application: nothing accumulates from frame to frame.
 #include "tests/support/heap.h"
 #include "tests/unit/device_support.h"
 
@@ -65,7 +65,8 @@ TEST(DeviceCost, SwitchingClocksDropsWhatWasRecorded) {
     }
 }
 
-/// 300 MiB in flight at most would be copied 300 MiB; an upload that has to wait for room says so.
+/// Without a bound, 300 MiB in flight would need 300 MiB of copies. An upload that waits for staging memory
+/// is traced as blocked.
 TEST(DeviceCost, CopiesOfUploadsAreBounded) {
     constexpr std::size_t words = std::size_t{1} << 18;
     for (auto* device : test::devices()) {
@@ -88,7 +89,7 @@ TEST(DeviceCost, CopiesOfUploadsAreBounded) {
     }
 }
 
-TEST(DeviceCost, FactsOfKernelsAreGivenOnce) {
+TEST(DeviceCost, KernelPropertiesAreReportedOnce) {
     for (auto* device : test::devices()) {
         for (int i = 0; i < 3; ++i) test::compile(*device, "do_nothing");
         const auto facts = device->take_kernels();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The host device at every level of instructions and any number of threads: equal bits.
+// The host device at every instruction level and with any number of threads: equal bits.
 #include "algorithms/parameters/table.h"
 #include "algorithms/traversal.h"
 #include "backends/host/host_device.h"
@@ -30,7 +30,7 @@ Answer answer_of(Device& on, const std::string& algorithm_name, const SettingTex
     return {result.digest(), result.contact_digest()};
 }
 
-/// Of the device's own words, or 0.
+/// The level in the device's own description, or 0.
 int highest_level() {
     const auto text = host::make_device()->info().compiler;
     const auto at = text.find("x86-64-v");
@@ -52,7 +52,7 @@ TEST(DeviceLevels, HaveEqualBits) {
             }
 }
 
-TEST(DeviceLevels, AreSaid) {
+TEST(DeviceLevels, AreReported) {
     for (const int level : host::compiled_levels()) {
         if (level > highest_level()) continue;
         EXPECT_THAT(host::make_device(level)->info().compiler,
@@ -61,8 +61,8 @@ TEST(DeviceLevels, AreSaid) {
     EXPECT_THAT(host::make_device()->info().compiler, testing::StartsWith("g++ "));
 }
 
-/// A level that lies between two compiled ones is served by the lower.
-TEST(DeviceLevels, BelowTheLeastCompiledThereIsNoDevice) {
+/// A level between two compiled ones falls back to the lower one.
+TEST(DeviceLevels, BelowTheLowestCompiledThereIsNoDevice) {
     const auto levels = host::compiled_levels();
     if (levels.empty()) {
         EXPECT_THAT(host::make_device(0)->info().compiler, testing::Not(testing::HasSubstr("x86-64")));
@@ -88,8 +88,8 @@ TEST(DeviceLevels, AnyNumberOfThreadsGivesTheSame) {
     }
 }
 
-/// More threads than cores are had without a word.
-TEST(DeviceLevels, NothingIsSaidOfThreads) {
+/// More threads than cores are accepted without a message.
+TEST(DeviceLevels, ManyThreadsGiveNoMessage) {
     testing::internal::CaptureStderr();
     const auto device = host::make_device();
     answer_of(*device, "tiled", {{"threads", "64"}});

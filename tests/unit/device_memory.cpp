@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Errors of memory and of sizes: which, and what they say.
+// Errors of memory and of sizes, and their messages.
 #include "tests/unit/device_support.h"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@ using test::devices;
 using test::message_of;
 using testing::HasSubstr;
 
-TEST(DeviceMemory, ALimitIsKeptAndNamed) {
+TEST(DeviceMemory, ALimitIsEnforcedAndReported) {
     for (auto* device : devices()) {
         ASSERT_EQ(device->memory_limit(), Device::no_memory_limit);
         const StageScope scope(*device, Stage::write);
@@ -28,7 +28,7 @@ TEST(DeviceMemory, ALimitIsKeptAndNamed) {
                                             HasSubstr("the limit is " + std::to_string(limit))));
         EXPECT_EQ(message.find('\n'), std::string::npos);
         EXPECT_EQ(device->allocate(1000, "all of it").bytes(), 1000u);
-        device->set_memory_limit(10); // below what lives: nothing more, and what is there works
+        device->set_memory_limit(10); // below what is allocated: allocations fail, existing buffers work
         EXPECT_THROW(device->allocate(1, "anything"), OutOfMemory);
         device->clear(held, 4096);
         device->set_memory_limit(Device::no_memory_limit);
@@ -37,7 +37,7 @@ TEST(DeviceMemory, ALimitIsKeptAndNamed) {
     }
 }
 
-TEST(DeviceMemory, NoMoreIsPromisedThanThereIs) {
+TEST(DeviceMemory, AllocationsEndAtThePhysicalMemory) {
     for (auto* device : devices()) {
         const auto& info = device->info();
         if (!info.allocates_late) continue;
@@ -56,7 +56,7 @@ TEST(DeviceMemory, NoMoreIsPromisedThanThereIs) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__)
-/// 0 where the host's failing allocation is an OutOfMemory.
+/// Returns 0 if the host's failing allocation throws OutOfMemory.
 int allocate_in_a_small_process() {
     const auto device = std::move(discover().front().devices.front());
     const rlimit limit{std::size_t{1} << 30, std::size_t{1} << 30};
@@ -73,14 +73,14 @@ int allocate_in_a_small_process() {
     return 4;
 }
 
-TEST(DeviceMemoryDeathTest, TheHostsIsAnErrorOfMemoryToo) {
+TEST(DeviceMemoryDeathTest, AFailedHostAllocationThrowsOutOfMemory) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     EXPECT_EXIT(std::_Exit(allocate_in_a_small_process()), testing::ExitedWithCode(0), "");
 }
 #endif
 
-#if !defined(__SANITIZE_ADDRESS__) // which ends the program at such a write
-/// Copies 64 bytes to the begin of `to`, with a kernel that knows no capacity.
+#if !defined(__SANITIZE_ADDRESS__) // AddressSanitizer ends the program at such a write
+/// Copies 64 bytes to the beginning of `to`, with a kernel that does not check the capacity.
 void copy_eight_words(Device& device, const Buffer& to) {
     const StageScope scope(device, Stage::traverse);
     const auto from = device.allocate(64, "source");
@@ -98,10 +98,10 @@ std::string defect_of(Device& device) {
     return "none";
 }
 
-TEST(DeviceGuards, FindWhatAKernelWritesPastAnEnd) {
+TEST(DeviceGuards, DetectWritesPastTheEnd) {
     for (const auto& backend : discover())
         for (const auto& device : backend.devices) {
-            EXPECT_EQ(defect_of(*device), "none"); // nothing is guarded
+            EXPECT_EQ(defect_of(*device), "none"); // guards are off
             device->guard_buffers();
             const auto sufficient = device->allocate(64, "sufficient");
             auto shorter = device->allocate(56, "shorter");
@@ -115,13 +115,13 @@ TEST(DeviceGuards, FindWhatAKernelWritesPastAnEnd) {
             EXPECT_EQ(defect_of(*device), expected);
             EXPECT_EQ(defect_of(*device), "none"); // each write is reported once
             copy_eight_words(*device, shorter);
-            shorter = {}; // a buffer that grows is freed before the frame ends
+            shorter = {}; // growing frees a buffer before the frame ends
             EXPECT_EQ(defect_of(*device), expected);
             EXPECT_EQ(device->bytes_allocated(), 64u);
         }
 }
 
-TEST(DeviceGuards, StayOutOfTraces) {
+TEST(DeviceGuards, AreNotTraced) {
     for (const auto& backend : discover())
         for (const auto& device : backend.devices) {
             device->guard_buffers();

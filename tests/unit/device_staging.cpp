@@ -9,10 +9,10 @@ namespace {
 
 constexpr std::size_t MiB = std::size_t{1} << 20;
 
-/// Memory that says what is held of it.
+/// Memory that counts its allocated blocks.
 struct Source {
     std::map<std::byte*, std::size_t> blocks;
-    bool empty = false; ///< the system gives no more
+    bool empty = false; ///< allocations fail
 
     Staging::Source source() {
         return {[this](std::size_t bytes) -> std::byte* {
@@ -33,7 +33,7 @@ struct Source {
     }
 };
 
-TEST(DeviceStaging, IsBoundedAndUsedAgain) {
+TEST(DeviceStaging, IsBoundedAndReused) {
     Source source;
     {
         Staging staging(source.source(), 10 * MiB);
@@ -41,23 +41,23 @@ TEST(DeviceStaging, IsBoundedAndUsedAgain) {
             std::size_t taken = 0;
             std::map<std::byte*, std::size_t> parts;
             while (auto* part = staging.take(MiB / 2 + 1)) {
-                const auto [place, is_new] = parts.emplace(part, MiB / 2 + 1);
+                const auto [position, is_new] = parts.emplace(part, MiB / 2 + 1);
                 ASSERT_TRUE(is_new);
-                if (place != parts.begin()) {
-                    EXPECT_LE(std::prev(place)->first + std::prev(place)->second, part);
+                if (position != parts.begin()) {
+                    EXPECT_LE(std::prev(position)->first + std::prev(position)->second, part);
                 }
                 ++taken;
             }
             EXPECT_EQ(taken, 14u); // seven in each of two blocks of 4 MiB
             EXPECT_EQ(source.held(), 8 * MiB);
-            EXPECT_NE(staging.take(1), nullptr); // in what is left of them
+            EXPECT_NE(staging.take(1), nullptr); // fits into their rest
             staging.release();
         }
     }
     EXPECT_EQ(source.held(), 0u);
 }
 
-TEST(DeviceStaging, SmallBlocksGiveWayToALargeOne) {
+TEST(DeviceStaging, ALargeBlockReplacesSmallOnes) {
     Source source;
     Staging staging(source.source(), 10 * MiB);
     EXPECT_NE(staging.take(3 * MiB), nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What tests of the Device contract share.
+// Helpers shared by the tests of the Device contract.
 #pragma once
 
 #include "algorithms/sources.h"
@@ -9,7 +9,7 @@
 
 namespace tandem::test {
 
-/// Every device there is.
+/// All available devices.
 inline std::vector<Device*> devices() {
     static const auto backends = discover();
     std::vector<Device*> all;
@@ -18,7 +18,7 @@ inline std::vector<Device*> devices() {
     return all;
 }
 
-/// What a DeviceError of `call` says.
+/// Message of the DeviceError of `call`.
 template<class Call>
 std::string message_of(const Call& call) {
     try {
@@ -29,7 +29,7 @@ std::string message_of(const Call& call) {
     return "no error";
 }
 
-/// The kernel of that name, in whichever file it is, for groups of one work-item and the defaults otherwise.
+/// The kernel of that name from any file, for groups of one work-item and default defines.
 inline Kernel compile(Device& device, const std::string& entry, Defines defines = {}) {
     defines.merge(Defines{{"K", "8"}, {"AXES", "0"}, {"PRECISION", "32"}, {"GROUP_SIZE", "1"}});
     for (const auto& source : kernel_sources())

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Two host devices on two threads do not meet: work-group numbers, local memory and defines are the thread's.
+// Two host devices on two threads are independent: work-group numbers, local memory and defines are
+// thread-local.
 #include "algorithms/answer/status.clh"
 #include "algorithms/sources.h"
 #include "backends/host/host_device.h"
@@ -15,7 +16,8 @@ namespace {
 constexpr std::uint32_t levels = 7;
 constexpr int rounds = 400;
 
-/// Rows of counts, `pairs` and a place for the sum each, turned into starts by one work-group a row.
+/// Rows of counts, `pairs` counts and a slot for the sum each; one work-group per row converts them to
+/// starts.
 class Rows {
 public:
     explicit Rows(std::uint32_t pairs) : pairs_(pairs) {
@@ -34,7 +36,7 @@ public:
         seeds_ = device_->allocate(counts_.size() * 8, "seeds");
     }
 
-    /// How many rows are wrong.
+    /// Number of wrong rows.
     std::size_t wrong() {
         device_->upload(seeds_, bytes_of(counts_));
         const std::array<Argument, 3> arguments{seeds_, 2 * pairs_, status_};
@@ -60,8 +62,8 @@ private:
     std::vector<std::vector<std::uint64_t>> sums_;
 };
 
-/// A vertex at the origin moved by the second of some poses, whose distance is a define that the host reads
-/// at run time: what comes out is that distance.
+/// A vertex at the origin, moved by the second of several poses. The distance is a define that the host reads
+/// at run time; the result must be that distance.
 class Moved {
 public:
     explicit Moved(bool exact) : distance_(exact ? 16 : 12) {
@@ -91,7 +93,7 @@ private:
            vertices_ = device_->allocate(16, "vertices"), world_ = device_->allocate(16, "world");
 };
 
-/// Wrong answers of two threads that run at once, each with its own of `Job`.
+/// Wrong answers of two threads that run concurrently, each with its own `Job`.
 template<class Job, class First, class Second>
 std::size_t wrong_at_once(const First& first, const Second& second) {
     std::barrier start(2);
@@ -111,12 +113,12 @@ std::size_t wrong_at_once(const First& first, const Second& second) {
     return here + there;
 }
 
-TEST(DeviceThreads, HostDevicesDoNotMeet) {
+TEST(DeviceThreads, HostDevicesAreIndependent) {
     ASSERT_EQ(Rows(50).wrong(), 0u);
     EXPECT_EQ(wrong_at_once<Rows>(100u, 90u), 0u);
 }
 
-TEST(DeviceThreads, DefinesOfHostDevicesDoNotMeet) {
+TEST(DeviceThreads, DefinesOfHostDevicesAreIndependent) {
     ASSERT_EQ(Moved(false).wrong() + Moved(true).wrong(), 0u);
     EXPECT_EQ(wrong_at_once<Moved>(false, true), 0u);
 }

@@ -6,7 +6,7 @@
 namespace tandem {
 namespace {
 
-TEST(ExpectedGroups, HaveRoomForTwiceTheWork) {
+TEST(ExpectedGroups, SufficeForTwiceTheWork) {
     EXPECT_EQ(ExpectedGroups().groups_for(0, 2112), 2u);
     EXPECT_EQ(ExpectedGroups().groups_for(1, 2112), 2u);
     EXPECT_EQ(ExpectedGroups().groups_for(3, 2112), 8u);
@@ -17,7 +17,7 @@ TEST(ExpectedGroups, HaveRoomForTwiceTheWork) {
     EXPECT_EQ(ExpectedGroups().groups_for(5, 1), 1u);
 }
 
-TEST(ExpectedGroups, ChangeSeldom) {
+TEST(ExpectedGroups, ChangeRarely) {
     ExpectedGroups groups;
     EXPECT_EQ(groups.groups_for(100, 2112), 256u);
     for (const std::uint64_t wanted : {256, 130, 99, 32}) EXPECT_EQ(groups.groups_for(wanted, 2112), 256u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which part of a scene its geometry for pages has, and in which form.
+// The part of a scene that its geometry for pages contains, and the form of it.
 #include "scenes/export/geometry.h"
 #include "scenes/export/quantised.h"
 #include "base/base64.h"
@@ -46,7 +46,7 @@ TEST(ExportGeometry, TheLargestMeshBecomesBoxesFirst) {
     EXPECT_EQ(cut(sizes, {}).boxed, (std::vector{false, true}));
 }
 
-TEST(ExportGeometry, FramesAreFewerWhereContactsWantRoom) {
+TEST(ExportGeometry, ContactsReduceTheNumberOfFrames) {
     auto sizes = pile(1000, 1000);
     const auto without = cut(sizes, {});
     sizes.contacts = true;
@@ -77,7 +77,7 @@ TEST(ExportGeometry, EveryCutFitsItsBudget) {
             }
 }
 
-TEST(ExportGeometry, PointsKeepTheirPlaces) {
+TEST(ExportGeometry, PointsKeepTheirPositions) {
     const Quantised in(Eigen::AlignedBox3d(Eigen::Vector3d(-1, 0, 5), Eigen::Vector3d(1, 0, 9)));
     std::vector<std::uint16_t> numbers;
     in.add({-1, 0, 9}, numbers);
@@ -85,7 +85,7 @@ TEST(ExportGeometry, PointsKeepTheirPlaces) {
     EXPECT_EQ(numbers, (std::vector<std::uint16_t>{0, 0, 65535, 32768, 0, 16384}));
 }
 
-TEST(ExportGeometry, SaysWhatIsLeftOut) {
+TEST(ExportGeometry, NotesWhatIsOmitted) {
     const auto scene = make_scene("plates:frames=200");
     std::vector<std::size_t> frames(200);
     std::iota(frames.begin(), frames.end(), 0);

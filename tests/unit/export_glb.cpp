@@ -23,7 +23,7 @@ T number_at(const std::string& bytes, std::size_t at) {
     return value;
 }
 
-/// A .glb parsed back, its structure checked on the way.
+/// A parsed .glb file; the constructor checks its structure.
 struct Parsed {
     explicit Parsed(const std::string& file) {
         EXPECT_EQ(file.substr(0, 4), "glTF");
@@ -41,7 +41,7 @@ struct Parsed {
         EXPECT_LE(json["buffers"][0]["byteLength"].get<std::size_t>(), binary.size());
     }
 
-    /// The numbers of an accessor, which must lie in its view and the view in the buffer.
+    /// The numbers of an accessor, which must be inside its view, and the view inside the buffer.
     template<class T>
     std::vector<T> numbers(std::size_t index) const {
         const auto& accessor = json.at("accessors").at(index);
@@ -61,7 +61,7 @@ struct Parsed {
     std::string binary;
 };
 
-/// Least and most of a float accessor are those of its numbers.
+/// Checks that minimum and maximum of a float accessor are those of its numbers.
 void expect_bounds(const Parsed& glb, std::size_t index) {
     const auto& accessor = glb.json["accessors"].at(index);
     const auto values = glb.numbers<float>(index);
@@ -78,13 +78,13 @@ void expect_bounds(const Parsed& glb, std::size_t index) {
     }
 }
 
-/// Signed volume inside a primitive: positive when its triangles wind outward.
+/// Signed volume inside a primitive: positive if its triangles wind outward.
 double volume_in(const Parsed& glb, const Json& primitive) {
     const auto points = glb.numbers<float>(primitive["attributes"]["POSITION"]);
     const auto corners = glb.numbers<std::uint32_t>(primitive["indices"]);
     const auto point = [&](std::size_t i) {
         EXPECT_LT(corners[i] * 3 + 2, points.size());
-        // A shift: faces through the origin would count for nothing.
+        // A shift, because faces through the origin would contribute nothing.
         return (Eigen::Map<const Eigen::Vector3f>(points.data() + corners[i] * 3).cast<double>()
                 + Eigen::Vector3d(1, 2, 3))
             .eval();
@@ -126,7 +126,7 @@ TEST_F(ExportGlb, EveryBodyIsANodeOfASurface) {
             EXPECT_EQ(node["translation"][2].get<double>(), frame.poses[b].translation.z());
         EXPECT_NEAR(volume_in(glb, primitive), volume(own), 1e-5);
     }
-    // Bodies 3 and 6 share a mesh, and so the numbers of its surface, but not a colour.
+    // Bodies 3 and 6 share a mesh, and therefore the numbers of its surface, but not a colour.
     EXPECT_LT(glb.json["meshes"].size(), 9u);
     EXPECT_EQ(glb.json["accessors"].size(), 2u * 4);
 }
@@ -138,10 +138,10 @@ TEST_F(ExportGlb, SurfacesOfInvertedTetrahedraWindOutward) {
     for (auto& t : mesh.tetrahedra) std::swap(t[2], t[3]);
     complete_mesh(mesh, "inverted");
     const auto surface = exporting::surface_of(mesh);
-    EXPECT_EQ(mesh.inverted, 24u); // those that were not before
+    EXPECT_EQ(mesh.inverted, 24u); // those that were not inverted before
     EXPECT_EQ(expected.triangles.size(), 3u * 6 * 4 * 2);
     EXPECT_EQ(surface.vertices, expected.vertices);
-    EXPECT_EQ(surface.vertices.size(), 26u); // all but the one inside
+    EXPECT_EQ(surface.vertices.size(), 26u); // all but the inner one
     double sum = 0;
     for (std::size_t i = 0; i < surface.triangles.size(); i += 3) {
         const auto at = [&](std::size_t j) {
@@ -214,7 +214,7 @@ TEST_F(ExportGlb, TooManyFramesAreRefusedBeforeAnyIsMade) {
                 HasSubstr("bytes, but glTF allows at most 4294967295; export fewer frames"));
 }
 
-TEST_F(ExportGlb, TimesAreTheScenes) {
+TEST_F(ExportGlb, TimesAreThoseOfTheScene) {
     auto scene = make_scene("pile:bodies=2,frames=4");
     const auto times = [&] {
         const auto glb = exported(scene, 1, 3);
@@ -228,7 +228,7 @@ TEST_F(ExportGlb, TimesAreTheScenes) {
                 HasSubstr("cannot be written"));
 }
 
-TEST_F(ExportGlb, NeighbouringKeysNeverTurnTheLongWay) {
+TEST_F(ExportGlb, NeighbouringKeysRotateTheShortWay) {
     auto scene = make_scene("pile:bodies=2,frames=4");
     scene.frame = [inner = scene.frame](std::size_t i) {
         auto frame = inner(i);

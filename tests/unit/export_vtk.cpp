@@ -17,7 +17,7 @@ using namespace testing_support;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// The numbers of one array, decoded by what VTK's manual says of the format.
+/// The numbers of one array, decoded according to VTK's manual of the format.
 template<class T>
 std::vector<T> array_of(const std::string& file, const std::string& name) {
     const auto tag = file.find("Name=\"" + name + "\"");
@@ -52,7 +52,7 @@ class ExportVtk : public FolderTest {};
 
 Eigen::Vector3d through_float(const Eigen::Vector3d& v) { return v.cast<float>().cast<double>(); }
 
-TEST_F(ExportVtk, BodiesComeBack) {
+TEST_F(ExportVtk, BodiesRoundTrip) {
     const auto scene = crowd(5, 6, 3);
     const auto frame = scene.frame(1);
     const auto cells = tetrahedron_count(scene);
@@ -85,11 +85,11 @@ TEST_F(ExportVtk, BodiesComeBack) {
     EXPECT_EQ(array_of<std::uint32_t>(file, "chunk"), chunk);
 }
 
-TEST_F(ExportVtk, LongArraysGoInParts) {
+TEST_F(ExportVtk, LongArraysAreWrittenInBlocks) {
     auto scene = crowd(5, 2, 3);
     Mesh& mesh = scene.meshes[0];
     for (int i = 0; i < 60000; ++i) mesh.tetrahedra.push_back(mesh.tetrahedra[0]);
-    mesh.tetrahedra.resize(32768); // connectivity of exactly one part; with body 1 it is a little more
+    mesh.tetrahedra.resize(32768); // connectivity fills exactly one block; with body 1 it is slightly larger
     scene.bodies.resize(1);
     write_vtu(path("one.vtu"), scene, scene.frame(0));
     EXPECT_EQ(array_of<std::int64_t>(bytes_of(path("one.vtu")), "connectivity").size(), 131072u);
@@ -130,7 +130,7 @@ TEST_F(ExportVtk, Collection) {
                 HasSubstr("no/folder.pvd: cannot be written"));
 }
 
-TEST(Base64, ComesBack) {
+TEST(Base64, RoundTrips) {
     EXPECT_EQ(read::encode_base64("light work."), "bGlnaHQgd29yay4=");
     EXPECT_EQ(read::encode_base64("light work"), "bGlnaHQgd29yaw==");
     EXPECT_EQ(read::encode_base64("light wor"), "bGlnaHQgd29y");

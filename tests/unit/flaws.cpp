@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Flawed tetrahedra of frames: counted, named, refused or skipped.
+// Flawed tetrahedra of frames: counted, reported, refused or skipped.
 #include "harness/plans/frames.h"
 #include "base/error.h"
 #include "tests/support/flawed.h"
@@ -24,7 +24,7 @@ std::string refusal(const Scene& whole, const std::vector<Frame>& frames, Degene
     return "no error";
 }
 
-/// Bodies 0 and 1 rigid with one mesh, whose tetrahedra 3 and 5 are flat; body 2 deformable.
+/// Bodies 0 and 1 are rigid and share a mesh, whose tetrahedra 3 and 5 are flat; body 2 is deformable.
 Scene scene_with_flat_mesh() {
     auto scene = boxes_scene(3, 2);
     make_flat(scene.meshes[0], scene.meshes[0].vertices, 3);
@@ -39,7 +39,7 @@ std::vector<std::uint32_t> flat_ones(const Mesh& mesh, const std::vector<Eigen::
     return result;
 }
 
-TEST(Flaws, OfRigidBodiesAreThoseOfTheirMeshInEveryFrame) {
+TEST(Flaws, OfRigidBodiesComeFromTheirMeshInEveryFrame) {
     const auto whole = scene_with_flat_mesh();
     const auto flat = flat_ones(whole.meshes[0], whole.meshes[0].vertices);
     ASSERT_GE(flat.size(), 2u);
@@ -61,7 +61,7 @@ TEST(Flaws, OfRigidBodiesAreThoseOfTheirMeshInEveryFrame) {
     }
 }
 
-TEST(Flaws, OfDeformableBodiesAreThoseOfEachFrame) {
+TEST(Flaws, OfDeformableBodiesComeFromEachFrame) {
     const auto whole = boxes_scene(3, 2);
     std::vector<Frame> frames{whole.frame(0), whole.frame(1), whole.frame(2)};
     const auto& mesh = whole.meshes[1];
@@ -87,7 +87,7 @@ TEST(Flaws, OfDeformableBodiesAreThoseOfEachFrame) {
     }
 }
 
-/// More than one stretch, found on several cores: still in order.
+/// Several ranges, searched on several cores: the result is still in order.
 TEST(Flaws, OfLargeMeshesAreInOrder) {
     const auto whole = boxes_scene(12, 1); // 10368 tetrahedra
     std::vector<Frame> frames{whole.frame(0)};
@@ -101,7 +101,7 @@ TEST(Flaws, OfLargeMeshesAreInOrder) {
     EXPECT_EQ(range.flaws().bodies[0].first, std::vector<std::uint32_t>(flat.begin(), flat.begin() + 4));
 }
 
-TEST(Flaws, APoseThatIsNotFiniteLeavesOutTheBody) {
+TEST(Flaws, APoseThatIsNotFiniteSkipsTheBody) {
     const auto whole = boxes_scene(2, 1);
     std::vector<Frame> frames{whole.frame(0)};
     frames[0].poses[1].rotation.x() = std::numeric_limits<double>::quiet_NaN();
@@ -116,7 +116,7 @@ TEST(Flaws, APoseThatIsNotFiniteLeavesOutTheBody) {
     EXPECT_TRUE(frame->poses[1].rotation.coeffs().allFinite());
 }
 
-TEST(Flaws, RefusalsSayWhatAndWhere) {
+TEST(Flaws, ErrorsReportTheFlawAndItsPosition) {
     const auto scene = boxes_scene(2, 1);
     std::vector<Frame> frames{scene.frame(0)};
     EXPECT_EQ(refusal(scene, frames, Degenerate::reject), "no error");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Frames of a range: held where they fit, made again where they do not, and the same answers either way.
+// Frames of a range: stored if they fit, generated again if not, with the same answers.
 #include "harness/plans/frames.h"
 
 #include "harness/verify/accuracy/answer_errors_json.h"
@@ -22,11 +22,11 @@ namespace {
 using namespace testing_support;
 
 constexpr std::size_t frame_count = 24;
-constexpr std::size_t idle_vertices = 40000; ///< that no tetrahedron has: weight without work
+constexpr std::size_t idle_vertices = 40000; ///< vertices of no tetrahedron: memory without work
 constexpr std::size_t idle_bytes = idle_vertices * sizeof(Eigen::Vector3d);
 
-/// Three boxes, one of them deformable and a megabyte a frame, with flat tetrahedra in one mesh and in some
-/// of the frames; counts how often a frame is made, and how much memory is in use then.
+/// Three boxes, one of them deformable with a megabyte a frame; one mesh and some frames have flat
+/// tetrahedra. Counts generated frames and the memory in use at each.
 class FrameRanges : public testing::Test {
 protected:
     FrameRanges() {
@@ -56,7 +56,7 @@ protected:
     std::size_t most_ = 0;
 };
 
-TEST_F(FrameRanges, ThatFitAreMadeOnce) {
+TEST_F(FrameRanges, ThatFitAreGeneratedOnce) {
     const FrameRange range(scene_, 2, 9);
     EXPECT_EQ(range.size(), 8u);
     const auto first = range.frame(0);
@@ -66,7 +66,7 @@ TEST_F(FrameRanges, ThatFitAreMadeOnce) {
     EXPECT_EQ(digest_of(*range.frame(5)), digest_of(scene_.frame(7)));
 }
 
-TEST_F(FrameRanges, ThatDoNotFitAreMadeAgainAndLetGo) {
+TEST_F(FrameRanges, ThatDoNotFitAreRegeneratedAndReleased) {
     const auto expected = digests();
     made_ = 0;
     const FrameRange range(scene_, 0, frame_count - 1, Degenerate::flat, 3 * idle_bytes);
@@ -80,8 +80,8 @@ TEST_F(FrameRanges, ThatDoNotFitAreMadeAgainAndLetGo) {
     EXPECT_EQ(made_, 3 * frame_count) << "the frame that was asked for last is there";
 }
 
-/// Whatever is asked for in between.
-TEST_F(FrameRanges, StayAsLongAsTheyAreNeeded) {
+/// Frames in use stay valid while others are requested.
+TEST_F(FrameRanges, StayValidWhileInUse) {
     const auto expected = digests();
     const FrameRange range(scene_, 0, frame_count - 1, Degenerate::flat, 0);
     const auto fifth = range.frame(5), second = range.frame(2);
@@ -90,7 +90,7 @@ TEST_F(FrameRanges, StayAsLongAsTheyAreNeeded) {
     EXPECT_EQ(digest_of(*second), expected[2]);
 }
 
-TEST_F(FrameRanges, AreGivenToAnyNumberOfThreads) {
+TEST_F(FrameRanges, ServeAnyNumberOfThreads) {
     const auto expected = digests();
     const FrameRange range(scene_, 0, frame_count - 1, Degenerate::flat, 0);
     std::atomic<std::size_t> right = 0;
@@ -101,7 +101,7 @@ TEST_F(FrameRanges, AreGivenToAnyNumberOfThreads) {
     EXPECT_EQ(right, frame_count * 4);
 }
 
-/// The least budget that holds three frames.
+/// The smallest budget that stores three frames.
 std::uint64_t least_budget(const Scene& scene, Degenerate handling) {
     std::uint64_t least = 1, most = 1 << 20;
     while (least < most) {
@@ -114,7 +114,7 @@ std::uint64_t least_budget(const Scene& scene, Degenerate handling) {
     return least;
 }
 
-TEST(FrameBudget, IsOfAllFramesAndTheirLists) {
+TEST(FrameBudget, CoversAllFramesAndTheirLists) {
     auto scene = boxes_scene(2, 3);
     const auto vertices = 3 * scene.meshes[1].vertices.size() * sizeof(Eigen::Vector3d);
     const auto least = least_budget(scene, Degenerate::skip);
@@ -127,14 +127,14 @@ TEST(FrameBudget, IsOfAllFramesAndTheirLists) {
     EXPECT_EQ(least_budget(scene, Degenerate::skip), least + 4 * flat);
 }
 
-/// Everything that is asked of frames, one after the other.
+/// All consumers of frames, one after the other.
 struct Answers {
     std::vector<Digest> expected, sampled;
     nlohmann::json errors;
     std::map<std::string_view, std::uint64_t> work;
     std::string flaws;
     std::size_t events = 0;
-    std::uint64_t pairs = 0; ///< of trials
+    std::uint64_t pairs = 0; ///< pairs of the trials
 
     bool operator==(const Answers&) const = default;
 };
@@ -151,7 +151,7 @@ Answers answers(const Scene& scene, const FrameRange& range) {
     const auto cell = host_cell();
     all.flaws = describe(range.flaws(), scene);
     References references(scene, range);
-    for (auto i = range.size(); i-- > 0;) // from the last to the first, for a change
+    for (auto i = range.size(); i-- > 0;) // from the last to the first, to vary the order
         all.expected.push_back(references.digests(geometry_of(cell.settings), {}, i).pairs);
     Truths truths(scene, range, TruthAmount::pairs, 0);
     LocalSampler sampler(cell, scene, range, references);
@@ -185,8 +185,8 @@ TEST_F(FrameRanges, GiveTheSameAnswersInMemoryThatDoesNotGrowWithThem) {
     }
 }
 
-/// Each takes a tenth of a second to be made, and a small part of that to be searched.
-TEST(FrameTimes, DoNotHoldTheMaking) {
+/// Each frame takes a tenth of a second to generate, and a small fraction of that to search.
+TEST(FrameTimes, ExcludeTheGenerationOfFrames) {
     static constexpr std::int64_t making_ns = 100'000'000;
     auto scene = boxes_scene(2, 2);
     scene.frame = [quick = scene.frame](std::size_t i) {
@@ -196,7 +196,7 @@ TEST(FrameTimes, DoNotHoldTheMaking) {
     const FrameRange range(scene, 0, 1, Degenerate::flat, 0);
     const auto cell = host_cell();
     Replays replays(cell, scene, range);
-    replays.counted(); // what the first replay has to grow
+    replays.counted(); // grows the buffers in the first replay
     for (const auto ns : replays.timed([](std::size_t, const FrameResult&) {}).frame_ns)
         EXPECT_LT(ns, making_ns);
     for (const auto ns : replays.instrumented().frame_ns) EXPECT_LT(ns, making_ns);

@@ -11,25 +11,25 @@ namespace {
 
 constexpr std::size_t rank_count = 64;
 
-/// Shares of 64 ranks of a pile, by rank, as they have found them together.
-std::vector<Subdomain> shares_of(const Scene& scene, const Frame& frame) {
+/// Subdomains of a pile on 64 ranks, by rank, from a collective rebuild.
+std::vector<Subdomain> subdomains_of(const Scene& scene, const Frame& frame) {
     std::vector<std::uint32_t> all(scene.bodies.size());
     std::iota(all.begin(), all.end(), 0u);
-    DisplacementTracker places(scene);
-    places.set_reference(frame, all);
+    DisplacementTracker tracker(scene);
+    tracker.set_reference(frame, all);
     std::vector<Ball> balls;
-    for (const auto body : all) balls.push_back(places.ball(body));
-    Partitioner deal(scene, {.k = 18}, rank_count);
-    deal.partition(balls, std::vector<double>(rank_count, 1));
-    std::vector<Subdomain> shares(rank_count);
+    for (const auto body : all) balls.push_back(tracker.ball(body));
+    Partitioner partitioner(scene, {.k = 18}, rank_count);
+    partitioner.partition(balls, std::vector<double>(rank_count, 1));
+    std::vector<Subdomain> subdomains(rank_count);
     testing_support::ThreadJob(rank_count).run([&](Ranks& ranks) {
         const auto rank = static_cast<std::size_t>(ranks.rank());
-        GhostExchange halo(scene, {.k = 18}, ranks);
+        GhostExchange ghost_exchange(scene, {.k = 18}, ranks);
         GhostExchange::Traffic traffic;
-        halo.rebuild(deal.subdomains()[rank].own, frame, traffic);
-        shares[rank] = halo.subdomain();
+        ghost_exchange.rebuild(partitioner.subdomains()[rank].own, frame, traffic);
+        subdomains[rank] = ghost_exchange.subdomain();
     });
-    return shares;
+    return subdomains;
 }
 
 TEST(Ghosts, OfManyRanksHaveEachPairOnce) {
@@ -37,10 +37,10 @@ TEST(Ghosts, OfManyRanksHaveEachPairOnce) {
     const auto frame = scene.frame(0);
     std::vector<std::vector<Role>> roles;
     std::size_t ghosts = 0, ranks_with_ghosts = 0;
-    for (const auto& share : shares_of(scene, frame)) {
-        roles.push_back(roles_of(share, scene.bodies.size()));
-        ghosts += share.ghosts.size();
-        ranks_with_ghosts += share.ghosts.empty() ? 0 : 1;
+    for (const auto& subdomain : subdomains_of(scene, frame)) {
+        roles.push_back(roles_of(subdomain, scene.bodies.size()));
+        ghosts += subdomain.ghosts.size();
+        ranks_with_ghosts += subdomain.ghosts.empty() ? 0 : 1;
     }
     const auto pairs = BroadSweep(scene, {.k = 18}, Broad::tight).pairs(frame);
     ASSERT_GT(pairs.size(), 600u);
@@ -52,7 +52,7 @@ TEST(Ghosts, OfManyRanksHaveEachPairOnce) {
         EXPECT_EQ(times, 1u) << pair.a << " and " << pair.b;
     }
     EXPECT_GT(ranks_with_ghosts, rank_count / 2);
-    EXPECT_LT(ghosts, rank_count * scene.bodies.size() / 4); // of no rank everything
+    EXPECT_LT(ghosts, rank_count * scene.bodies.size() / 4); // no rank has every body as a ghost
 }
 
 } // namespace

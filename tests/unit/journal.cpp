@@ -21,14 +21,14 @@ using namespace testing_support;
 using testing::HasSubstr;
 using Line = nlohmann::ordered_json;
 
-/// Of different lengths, some of several pages.
+/// Records of different lengths, some of several pages.
 Line numbered(int writer, int number) {
     return {{"writer", writer},
             {"number", number},
             {"text", std::string(static_cast<std::size_t>(number % 7) * 2000, 'x')}};
 }
 
-/// A process of its own for `act`, which ends with 0 unless `act` ends it otherwise.
+/// Runs `act` in a child process, which exits with 0 unless `act` exits otherwise.
 template<class Act>
 pid_t start(Act act) {
     const auto child = fork();
@@ -50,7 +50,7 @@ protected:
     std::string file() const { return path("run.jsonl"); }
     std::string torn() const { return file() + ".torn"; }
 
-    /// What standard error says of opening a file with these bytes and appending {"new":1}.
+    /// Standard error output from opening a file with these bytes and appending {"new":1}.
     std::string after_appending(std::string_view bytes) const {
         write_bytes(file(), bytes);
         testing::internal::CaptureStderr();
@@ -67,10 +67,10 @@ protected:
 };
 
 TEST_F(JournalFile, SetsATornLineAside) {
-    const auto said = after_appending("{\"a\":1}\n{\"b\":2}\n{\"c\":\"3");
+    const auto message = after_appending("{\"a\":1}\n{\"b\":2}\n{\"c\":\"3");
     EXPECT_EQ(bytes_of(file()), "{\"a\":1}\n{\"b\":2}\n{\"new\":1}\n");
     EXPECT_EQ(bytes_of(torn()), "{\"c\":\"3\n");
-    EXPECT_EQ(said,
+    EXPECT_EQ(message,
               "tandem: " + file() + ": the last line was torn; its 7 bytes were moved to " + torn() + "\n");
     after_appending("{\"a\":1}\n" + std::string(200000, '\0'));
     EXPECT_EQ(bytes_of(file()), "{\"a\":1}\n{\"new\":1}\n");
@@ -78,7 +78,7 @@ TEST_F(JournalFile, SetsATornLineAside) {
 }
 
 TEST_F(JournalFile, SetsATornFirstLineAside) {
-    const std::string zeros(200, '\0'); // what a loss of power leaves of bytes that were not synced
+    const std::string zeros(200, '\0'); // content of unsynced bytes after a loss of power
     for (const auto& part :
          {std::string("{"), std::string("{\"a\":"), std::string("{\"a\":tru"), std::string("{\"a\":\"\xc3"),
           std::string("{\"a\":{\"b\":[1,"), zeros, "{\"a\":\"b" + zeros, "{\"a\":1}" + zeros}) {
@@ -89,7 +89,7 @@ TEST_F(JournalFile, SetsATornFirstLineAside) {
     }
 }
 
-TEST_F(JournalFile, EndsALineThatLacksNothingElse) {
+TEST_F(JournalFile, CompletesALineThatLacksOnlyItsEnd) {
     for (const std::string before : {"", "{\"a\":1}\n"}) {
         EXPECT_EQ(after_appending(before + "{\"b\":\"{\"}"), "");
         EXPECT_EQ(bytes_of(file()), before + "{\"b\":\"{\"}\n{\"new\":1}\n");
@@ -97,14 +97,14 @@ TEST_F(JournalFile, EndsALineThatLacksNothingElse) {
     EXPECT_FALSE(std::filesystem::exists(torn()));
 }
 
-TEST_F(JournalFile, AsItWasWhereNothingIsTorn) {
+TEST_F(JournalFile, KeepsAFileWithoutATornLine) {
     for (const std::string before : {"", "{\"a\":1}\n", "{\"a\":1}\nnoise\n\n"}) {
         EXPECT_EQ(after_appending(before), "");
         EXPECT_EQ(bytes_of(file()), before + "{\"new\":1}\n");
     }
 }
 
-TEST_F(JournalFile, RefusesWhatIsNoJsonLines) {
+TEST_F(JournalFile, RefusesFilesThatAreNotJsonLines) {
     for (const std::string_view bytes :
          {"text\n", "text", "[1]\n", "12\n", "\n", "{\"a\":1} {\n", "{\n  \"a\": 1\n}\n", "{\"a\":1e999}\n",
           "{\"a\":x", "frame,body_a\n{\"a\":1}\n"}) {
@@ -117,7 +117,7 @@ TEST_F(JournalFile, RefusesWhatIsNoJsonLines) {
     EXPECT_THAT(refusal(std::string("{\0\0\0\n", 5)), HasSubstr("not a JSON object"));
 }
 
-TEST_F(JournalFile, RefusesWhatCannotBeWritten) {
+TEST_F(JournalFile, RefusesFilesThatCannotBeWritten) {
     EXPECT_EQ(failure_of([&] { RecordFile{path("")}; }),
               path("") + ": cannot be written (Is a directory); choose another --out");
     EXPECT_THAT(failure_of([&] { RecordFile{path("no/file")}; }), HasSubstr("No such file"));
@@ -159,7 +159,7 @@ TEST_F(JournalFile, FullDevice) {
     EXPECT_EQ(full.appended(), 0u);
 }
 
-TEST_F(JournalFile, TakesAShortWriteBack) {
+TEST_F(JournalFile, RemovesAShortWrite) {
     const auto child = start([&] {
         std::signal(SIGXFSZ, SIG_IGN);
         RecordFile records(file());
@@ -199,8 +199,8 @@ TEST_F(JournalFile, LinesOfProcessesDoNotMix) {
     EXPECT_FALSE(std::filesystem::exists(torn()));
 }
 
-/// A line that is half there while its process holds the lock is no torn line.
-TEST_F(JournalFile, WaitsForAnotherProcessBeforeItLooks) {
+/// An incomplete line is not torn while its process has the lock.
+TEST_F(JournalFile, WaitsForTheLockOfAnotherProcess) {
     int ready[2];
     ASSERT_EQ(pipe(ready), 0);
     const auto child = start([&] {
@@ -219,7 +219,7 @@ TEST_F(JournalFile, WaitsForAnotherProcessBeforeItLooks) {
     for (const int end : ready) close(end);
 }
 
-TEST_F(JournalFile, MendsWhatAnotherLeavesWhileItIsOpen) {
+TEST_F(JournalFile, RemovesATornLineOfAnotherProcess) {
     RecordFile records(file());
     records.append({{"a", 1}});
     std::ofstream(file(), std::ios::app) << "{\"b\":";
@@ -233,25 +233,25 @@ TEST_F(JournalFile, MendsWhatAnotherLeavesWhileItIsOpen) {
 TEST_F(JournalFile, KilledAtAnyMoment) {
     int next = 0;
     for (int round = 0; round < 50; ++round) {
-        int told[2];
-        ASSERT_EQ(pipe(told), 0);
+        int reported[2];
+        ASSERT_EQ(pipe(reported), 0);
         const auto child = start([&] {
             RecordFile records(file());
             for (int i = next;; ++i) {
                 records.append(numbered(round, i));
-                if (write(told[1], &i, sizeof i) != sizeof i) _exit(1);
+                if (write(reported[1], &i, sizeof i) != sizeof i) _exit(1);
             }
         });
-        // After the first line, at a moment that differs.
+        // Kill after the first line, at a varying moment.
         int last = 0;
-        ASSERT_EQ(read(told[0], &last, sizeof last), static_cast<ssize_t>(sizeof last));
+        ASSERT_EQ(read(reported[0], &last, sizeof last), static_cast<ssize_t>(sizeof last));
         usleep(static_cast<useconds_t>(round * 37 % 500));
         kill(child, SIGKILL);
         EXPECT_TRUE(WIFSIGNALED(end_of(child)));
-        close(told[1]);
-        while (read(told[0], &last, sizeof last) == static_cast<ssize_t>(sizeof last)) {}
-        close(told[0]);
-        // Everything that append() has returned from is there, in order.
+        close(reported[1]);
+        while (read(reported[0], &last, sizeof last) == static_cast<ssize_t>(sizeof last)) {}
+        close(reported[0]);
+        // Every record for which append() returned is in the file, in order.
         int found = 0;
         RecordFile(file()).for_each([&](const Line& line) {
             EXPECT_EQ(line, numbered(line["writer"], found));
@@ -263,7 +263,7 @@ TEST_F(JournalFile, KilledAtAnyMoment) {
     }
 }
 
-TEST_F(JournalFile, PipesAndDescriptorsAreWrittenAsTheyAre) {
+TEST_F(JournalFile, PipesAndDescriptorsAreWrittenUnchanged) {
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
     RecordFile(fmt::format("/dev/fd/{}", ends[1])).append({{"a", 1}});
@@ -271,7 +271,7 @@ TEST_F(JournalFile, PipesAndDescriptorsAreWrittenAsTheyAre) {
     EXPECT_EQ(read(ends[0], text, sizeof text), 8);
     EXPECT_STREQ(text, "{\"a\":1}\n");
     for (const int end : ends) close(end);
-    // A descriptor's own place in a file is gone on with.
+    // Writing starts at the descriptor's own file offset.
     const int own = open(file().c_str(), O_WRONLY | O_CREAT, 0644);
     EXPECT_EQ(write(own, "head\n", 5), 5);
     RecordFile(fmt::format("/dev/fd/{}", own)).append({{"a", 1}});

@@ -33,13 +33,13 @@ TEST(OracleContact, Identical) {
     ASSERT_TRUE(truth);
     EXPECT_EQ(truth->vertices.size(), 4u);
     EXPECT_EQ(truth->volume, 1.0 / 6);
-    EXPECT_EQ(truth->depth_squared, 1.0 / 3); // its least width, between a corner and the face opposite
+    EXPECT_EQ(truth->depth_squared, 1.0 / 3); // its minimal width, between a corner and the opposite face
     const double third = oracle::nearest_root(mpq_class(1, 3));
     EXPECT_THAT(truth->normals, testing::UnorderedElementsAre(std::array{third, third, third},
                                                               std::array{-third, -third, -third}));
 }
 
-/// Two regular tetrahedra in one cube: a regular octahedron in common.
+/// Two regular tetrahedra in one cube: their intersection is a regular octahedron.
 TEST(OracleContact, Octahedron) {
     const TetraCorners a{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
     auto b = a;
@@ -63,7 +63,7 @@ TEST(OracleContact, TouchingHasNoVolumeAndNoDepth) {
     EXPECT_EQ(contact_truth(unit, moved(unit, 1, 0, 0))->vertices.size(), 1u);
 }
 
-TEST(OracleContact, NothingInCommon) {
+TEST(OracleContact, DisjointPairsHaveNoContact) {
     const auto truth = contact_truth(unit, moved(unit, 0.5, 0.5, 0.5));
     ASSERT_TRUE(truth);
     EXPECT_EQ(truth->relation, Relation::disjoint);
@@ -74,7 +74,7 @@ TEST(OracleContact, NothingInCommon) {
     EXPECT_FALSE(contact_truth(unit, spoiled));
 }
 
-TEST(OracleContact, ANestedOneIsTheIntersection) {
+TEST(OracleContact, TheIntersectionOfNestedPairsIsTheInnerOne) {
     TouchMaker make(1);
     for (int round = 0; round < 100; ++round) {
         const auto [a, b] = make.nested();
@@ -85,7 +85,7 @@ TEST(OracleContact, ANestedOneIsTheIntersection) {
     }
 }
 
-/// One of the pair cut in two at the middle of an edge: the parts' volumes add up, exactly.
+/// One of the pair is cut in two at the middle of an edge: the volumes of the parts add up exactly.
 TEST(OracleContact, VolumesAddUp) {
     Random random(2);
     unsigned overlapping = 0;
@@ -107,7 +107,8 @@ TEST(OracleContact, VolumesAddUp) {
     EXPECT_GT(overlapping, 50u);
 }
 
-/// A little less than the translation leaves an overlap, a little more does not, and no shorter one does.
+/// Slightly less than the translation leaves an overlap, slightly more separates, and no shorter translation
+/// does.
 TEST(OracleContact, TranslationsSeparate) {
     Random random(3);
     for (int round = 0; round < 300; ++round) {
@@ -146,7 +147,7 @@ TEST(OracleContact, PowersOfTwoScaleEverything) {
     }
 }
 
-/// One operation of the processor rounds once too, whatever becomes of the result.
+/// A single operation of the processor also rounds once, whatever its result.
 TEST(OracleRounding, AsTheProcessorRounds) {
     Random random(5);
     for (int round = 0; round < 20000; ++round) {
@@ -154,7 +155,7 @@ TEST(OracleRounding, AsTheProcessorRounds) {
             const auto exponent = static_cast<int>(random.uniform(-600, 500));
             return std::ldexp(random.uniform(-1, 1), exponent);
         };
-        const double x = number(), y = number(); // zero would be a chance of 2^-53
+        const double x = number(), y = number(); // zero has a chance of 2^-53
         const mpq_class p(x), q(y);
         ASSERT_EQ(oracle::nearest(p * q), x * y) << x << ' ' << y;
         ASSERT_EQ(oracle::nearest(p / q), x / y) << x << ' ' << y;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The exact decision on pairs whose answer is known by construction, from every tier on.
+// The exact decision on pairs whose answer is known by construction, starting at every tier.
 #include "geometry/decision.h"
 #include "tests/support/oracle_pairs.h"
 
@@ -11,13 +11,13 @@ namespace {
 
 using namespace testing_support;
 
-/// The same answer from every tier on, both ways round.
-void expect(const OraclePair& pair, Relation relation, const char* what) {
+/// Expects the same answer from every starting tier, for both orders of the pair.
+void expect(const OraclePair& pair, Relation relation, const char* name) {
     for (const auto first : {Tier::screen, Tier::filter, Tier::integers, Tier::big_integers}) {
         EXPECT_EQ(decide(pair.a, pair.b, first).relation, relation)
-            << what << ", from tier " << static_cast<int>(first);
+            << name << ", from tier " << static_cast<int>(first);
         EXPECT_EQ(decide(pair.b, pair.a, first).relation, relation)
-            << what << " swapped, from tier " << static_cast<int>(first);
+            << name << " swapped, from tier " << static_cast<int>(first);
     }
 }
 
@@ -34,7 +34,7 @@ TEST(OracleDecision, HandMade) {
     expect({unit, moved(below, 5, 0, 0)}, Relation::disjoint, "faces in one plane");
     const TetraCorners across{{{0, 0, 0}, {0, 0, -1}, {1, 0, -1}, {1, 1, 0}}};
     expect({unit, across}, Relation::touching, "a common edge's end and a crossing");
-    // Edges that cross at their middles and lie skew otherwise: no face separates these.
+    // Edges that cross at their middles in skew tetrahedra: no face separates these.
     const TetraCorners low{{{-1, 0, 0}, {1, 0, 0}, {0, -1, -9}, {0, 1, -9}}};
     const TetraCorners high{{{0, -1, 0}, {0, 1, 0}, {-1, 0, 9}, {1, 0, 9}}};
     expect({low, high}, Relation::touching, "edge on edge");
@@ -42,7 +42,7 @@ TEST(OracleDecision, HandMade) {
     expect({low, moved(high, 0, 0, -0x1p-40)}, Relation::overlapping, "edges a little through");
 }
 
-TEST(OracleDecision, CornersThatAreNoNumbers) {
+TEST(OracleDecision, NonFiniteCorners) {
     for (const double bad :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
           -std::numeric_limits<double>::infinity()})
@@ -99,7 +99,7 @@ TEST(OracleDecision, PowersOfTwoChangeNothing) {
     for (int round = 0; round < 300; ++round) {
         const auto touching = make.touching(1 + round % 3, 1 + round / 3 % 3, 1 << 17);
         const auto apart = make.one_ulp(1), through = make.one_ulp(-1);
-        // From numbers without a single spare bit above zero to the largest ones.
+        // From numbers without a spare bit above zero up to the largest ones.
         for (const int exponent : {-1074, -1050, -700, -149, -126, 100, 300, 700, 999}) {
             const auto scale = [&](double x) { return std::ldexp(x, exponent); };
             expect(changed(touching, scale), Relation::touching, "scaled");
@@ -123,7 +123,7 @@ TEST(OracleDecision, OrderOfCornersChangesNothing) {
         }
 }
 
-/// Spread over the whole range of double: a corner of one at the end of it, the other's smallest part at
+/// Spans the whole range of double: a corner of one at its end, the smallest component of the other at
 /// 2^-1074.
 TEST(OracleDecision, TheWholeRange) {
     constexpr double most = std::numeric_limits<double>::max();

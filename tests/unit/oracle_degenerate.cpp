@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tetrahedra of no volume: they touch what they meet.
+// Tetrahedra without volume: every intersection counts as touching.
 #include "geometry/lattice.h"
 #include "geometry/program.h"
 #include "tests/support/oracle_pairs.h"
@@ -15,7 +15,7 @@ TetraCorners point(double x, double y, double z) { return {{{x, y, z}, {x, y, z}
 
 TetraCorners segment(std::array<double, 3> p, std::array<double, 3> q) { return {{p, p, q, q}}; }
 
-/// A square in the plane z, from (x, y).
+/// A square in the plane of height z, with its corner at (x, y).
 TetraCorners square(double x, double y, double z) {
     return {{{x, y, z}, {x + 1, y + 1, z}, {x + 1, y, z}, {x, y + 1, z}}};
 }
@@ -57,7 +57,8 @@ TEST(OracleDegenerate, Flat) {
     expect(square(0, 0, 0), square(0, 0, 0x1p-70), Relation::disjoint, "one just above the other");
 }
 
-/// A face of a tetrahedron meets no more than the tetrahedron does; one of them holds the contact.
+/// A face of a tetrahedron intersects no more than the tetrahedron does; one of the faces contains the
+/// contact.
 TEST(OracleDegenerate, FacesOfConstructedPairs) {
     TouchMaker make(1);
     for (int round = 0; round < 100; ++round) {
@@ -76,7 +77,7 @@ TEST(OracleDegenerate, FacesOfConstructedPairs) {
     }
 }
 
-/// The linear program knows nothing of facets and needs no volume: an independent answer for all pairs.
+/// The linear program uses no facets and needs no volume: an independent answer for all pairs.
 TEST(OracleDegenerate, ProgramAgreesWithFacets) {
     Random random(2);
     TouchMaker make(2);

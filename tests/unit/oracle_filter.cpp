@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every tier gives the answer of the slowest one, and the filter certifies nothing that is not so.
+// Every tier gives the answer of the slowest one, and every certificate of the filter is correct.
 #include "geometry/filter.h"
 #include "geometry/lattice.h"
 #include "base/parallel.h"
@@ -55,10 +55,10 @@ TEST_P(OracleFilter, AgreesWithBigIntegers) {
     EXPECT_GE(counts[Tier::filter], least) << "the filter decides next to all of the easy ones";
 }
 
-/// A facet that the filter is sure of has a negative gap.
-TEST_P(OracleFilter, IsSureOfNegativeGapsOnly) {
+/// A facet that the filter certifies has a negative gap.
+TEST_P(OracleFilter, CertifiesNegativeGapsOnly) {
     Random random(GetParam());
-    unsigned sure = 0;
+    unsigned certified = 0;
     for (unsigned i = 0; i < 1000; ++i) {
         const auto [a, b] = random_pair(family(), random);
         const auto filtered = oracle::filter(a, b);
@@ -70,12 +70,12 @@ TEST_P(OracleFilter, IsSureOfNegativeGapsOnly) {
         if (filtered.disjoint || !solid_a || !solid_b) continue;
         oracle::for_each_facet(lattice.a, lattice.b, oracle::all_facets & ~filtered.unsure,
                                [&](const auto& facet) {
-                                   ++sure;
+                                   ++certified;
                                    EXPECT_LT(facet.gap, 0);
                                    return true;
                                });
     }
-    EXPECT_GT(sure, 0u);
+    EXPECT_GT(certified, 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, OracleFilter, testing::Range(0u, families), [](const auto& instance) {
@@ -84,8 +84,9 @@ INSTANTIATE_TEST_SUITE_P(Families, OracleFilter, testing::Range(0u, families), [
     return text;
 });
 
-/// A needle so thin that the products behind its base's normal have a few bits left or none, and a
-/// tetrahedron of size 1 on the tip of the base: normals point anywhere, differences are large.
+/// A needle so thin that the products in its base's normal have few significant bits or none, and a
+/// tetrahedron of size 1 at the tip of the base. Normals have arbitrary directions, and differences are
+/// large.
 TEST(OracleFilter, UnderflowIsCovered) {
     Random random(1);
     for (int exponent = -541; exponent <= -531; ++exponent)

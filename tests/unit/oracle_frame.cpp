@@ -15,7 +15,7 @@ namespace {
 
 using namespace testing_support;
 
-/// Every pair of tetrahedra of different bodies, not both fixed.
+/// Every pair of tetrahedra of different bodies that are not both fixed.
 std::vector<Pair> all_pairs(const Scene& scene) {
     std::vector<Pair> pairs;
     for (std::uint32_t a = 0; a < scene.bodies.size(); ++a)
@@ -28,7 +28,7 @@ std::vector<Pair> all_pairs(const Scene& scene) {
     return pairs;
 }
 
-/// Pairs of that relation, each decided by itself; sorted.
+/// Pairs of that relation, decided one by one; sorted.
 std::vector<Pair> brute_force(const Scene& scene, const Frame& frame, Precision precision,
                               Relation relation) {
     const auto pairs = all_pairs(scene);
@@ -40,7 +40,7 @@ std::vector<Pair> brute_force(const Scene& scene, const Frame& frame, Precision 
     return result;
 }
 
-/// Two boxes of cubes face to face: corners on a lattice, so that they touch exactly.
+/// Two boxes of cubes, face to face: corners on a lattice, so they touch exactly.
 Scene stacked(double height = 1) {
     Random random(1);
     Scene scene;
@@ -57,7 +57,7 @@ Scene stacked(double height = 1) {
     return scene;
 }
 
-TEST(OracleFrame, FindsWhatBruteForceFinds) {
+TEST(OracleFrame, EqualsBruteForce) {
     const auto scene = crowd(3, 9, 1.2);
     for (const auto precision : {Precision::fp32, Precision::fp64})
         for (std::size_t i = 0; i < scene.frame_count; ++i) {
@@ -79,8 +79,8 @@ TEST(OracleFrame, FacesOnFaces) {
     EXPECT_GT(truth.touching.size(), 20u);
 }
 
-/// A gap that float cannot hold.
-TEST(OracleFrame, TheVerticesAreTheCells) {
+/// A gap too small for float.
+TEST(OracleFrame, UsesTheVerticesOfTheCell) {
     const auto scene = stacked(1 + 0x1p-40);
     const auto frame = scene.frame(0);
     EXPECT_GT(frame_truth(scene, frame, Precision::fp32).touching.size(), 20u);
@@ -120,7 +120,7 @@ TEST(OracleFrame, ReportsProgress) {
     EXPECT_EQ(last, 1);
 }
 
-TEST(OracleFrame, CoordinatesThatAreNoNumbers) {
+TEST(OracleFrame, NonFiniteCoordinates) {
     const auto scene = crowd(6, 6, 1);
     auto frame = scene.frame(0);
     const auto before = frame_truth(scene, frame, Precision::fp32);
@@ -138,8 +138,7 @@ TEST(OracleFrame, CoordinatesThatAreNoNumbers) {
     EXPECT_EQ(errors.invalid, 1u);
 }
 
-/// g++ 12 drops roundings to float that lie side by side (see CMakeLists.txt): the oracle's input would be
-/// off.
+/// g++ 12 drops adjacent roundings to float (see CMakeLists.txt), which would falsify the oracle's input.
 TEST(OracleFrame, VerticesSurviveTheRoundTripThroughFloat) {
     const auto scene = make_scene("pile:bodies=8,frames=1");
     const auto frame = scene.frame(0);
@@ -158,7 +157,8 @@ TEST(OracleFrame, VerticesSurviveTheRoundTripThroughFloat) {
     }
 }
 
-/// As many bytes as it says are enough, one pair less is not; what is found does not depend on it.
+/// The reported number of bytes is sufficient and one pair less is not; the result does not depend on the
+/// limit.
 TEST(OracleFrame, RefusesWhatIsTooLargeForMemory) {
     const auto scene = crowd(3, 9, 1.2);
     const auto frame = scene.frame(0);

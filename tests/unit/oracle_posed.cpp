@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The truth of poses: what the filter certifies of corners that are a little off holds for all of them, and
-// with rationals for the rest every pair is decided as rationals alone decide it.
+// The truth at exact poses. A certificate for corners with a tolerance holds for all corners within it. With
+// rationals for the rest, every pair gets the decision of rationals alone.
 #include "geometry/filter.h"
 #include "harness/verify/oracle/frame_truth.h"
 #include "geometry/lattice.h"
@@ -30,7 +30,7 @@ TetraCorners shaken(TetraCorners corners, double off, Random& random) {
 
 class OracleSlack : public testing::TestWithParam<Family> {};
 
-TEST_P(OracleSlack, WhatIsCertainHoldsForAllCornersWithinIt) {
+TEST_P(OracleSlack, CertificatesHoldForAllCornersWithinTheTolerance) {
     Random random(17);
     unsigned disjoint = 0, overlapping = 0, facets = 0, left = 0;
     for (unsigned i = 0; i < 3000; ++i) {
@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(Families, OracleSlack,
                              return text;
                          });
 
-/// A body of one tetrahedron where its pose puts it, with what rounds on the way as its slack.
+/// A body of one tetrahedron at its pose, with the rounding errors of the transform as its tolerance.
 Posed posed(const TetraCorners& own, const Pose& pose) {
     Posed result{{}, 0, own, &pose};
     for (unsigned i = 0; i < 4; ++i) {
@@ -90,7 +90,7 @@ Posed posed(const TetraCorners& own, const Pose& pose) {
     return result;
 }
 
-TEST(OraclePosed, DecisionsAreThoseOfRationals) {
+TEST(OraclePosed, DecisionsEqualRationals) {
     Random random(18);
     TouchMaker maker(18);
     DecisionCounts counts;
@@ -114,8 +114,8 @@ TEST(OraclePosed, DecisionsAreThoseOfRationals) {
     EXPECT_GT(counts[Tier::program], 10u);
 }
 
-/// A body of one tetrahedron that touches another where the frame puts its vertices, and overlaps it at rest.
-TEST(OraclePosed, DeformableBodiesAreWhereTheFramePutsThem) {
+/// A body of one tetrahedron that touches another with the frame's vertices, and overlaps it at rest.
+TEST(OraclePosed, DeformableBodiesUseTheVerticesOfTheFrame) {
     Scene scene;
     scene.meshes.resize(1);
     for (const auto& c : unit) scene.meshes[0].vertices.emplace_back(c[0], c[1], c[2]);
@@ -130,7 +130,7 @@ TEST(OraclePosed, DeformableBodiesAreWhereTheFramePutsThem) {
     EXPECT_TRUE(truth.overlapping.empty());
 }
 
-TEST(OraclePosed, BoxesAreWiderByWhatCornersAreOff) {
+TEST(OraclePosed, BoxesAreWidenedByTheTolerance) {
     const std::vector<TetraCorners> a{unit}, b{moved(unit, 1 + 0x1p-10, 0, 0)};
     const std::span<const std::uint32_t> none;
     const auto near = [&](double off) {
@@ -148,7 +148,7 @@ TEST(OraclePosed, BoxesAreWiderByWhatCornersAreOff) {
     EXPECT_GT(box.whole[3], 2 + 0x1p-10);
 }
 
-TEST(OraclePosed, WhatIsNoNumberIsInvalid) {
+TEST(OraclePosed, NonFiniteCornersAreInvalid) {
     const Pose pose;
     auto a = posed(unit, pose);
     const auto b = a;
@@ -157,7 +157,7 @@ TEST(OraclePosed, WhatIsNoNumberIsInvalid) {
     EXPECT_EQ(decide(b, a).relation, Relation::invalid);
 }
 
-/// Where poses and, of body 1, the frame put the scene's own vertices.
+/// The scene's vertices transformed by the exact pose; for body 1, those of the frame.
 oracle::Points<mpq_class> exact_corners(const Scene& scene, const Frame& frame, std::uint32_t body,
                                         std::uint32_t tetrahedron) {
     const auto& mesh = scene.meshes[scene.bodies[body].mesh];
@@ -172,13 +172,13 @@ oracle::Points<mpq_class> exact_corners(const Scene& scene, const Frame& frame, 
     return result;
 }
 
-TEST(OraclePosed, FramesAreThoseOfRationals) {
+TEST(OraclePosed, FramesEqualRationals) {
     const auto scene = crowd(3, 5, 0.7);
     const auto frame = scene.frame(1);
     const auto truth = frame_truth(scene, frame, {Precision::fp32, Placement::exact});
     EXPECT_TRUE(truth.touching.empty());
     std::uint64_t pairs = 0;
-    for (std::uint32_t a = 1; a < 3; ++a) { // 48 deformed tetrahedra and a lone one against all others
+    for (std::uint32_t a = 1; a < 3; ++a) { // 48 deformed tetrahedra and a single one against all others
         std::vector<std::pair<Pair, Relation>> found;
         for (std::uint32_t b = a + 1; b < scene.bodies.size(); ++b)
             for (std::uint32_t i = 0; i < scene.meshes[scene.bodies[a].mesh].tetrahedra.size(); ++i)

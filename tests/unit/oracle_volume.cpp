@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether a tetrahedron has a volume, and the volume of a hull of points.
+// Whether a tetrahedron has volume, and the volume of a hull of points.
 #include "geometry/contact_truth.h"
 #include "geometry/filter.h"
 #include "geometry/lattice.h"
@@ -36,7 +36,7 @@ TEST(OracleVolume, DifferencesMayOverflow) {
     EXPECT_FALSE(has_volume({{{-big, -big, 1}, {big, -big, 1}, {-big, big, 1}, {big, big, 1}}}));
 }
 
-/// x + y + z = 1 + h: a slanted plane on the lattice of 2^-20, in which doubles are not certain of the sign.
+/// x + y + z = 1 + h: a slanted plane on the lattice of 2^-20, for which doubles are not certain of the sign.
 TEST(OracleVolume, SlantedPlanesAreDecidedByIntegers) {
     Random random(3);
     const auto on_plane = [&](double lift) -> Point {
@@ -50,7 +50,7 @@ TEST(OracleVolume, SlantedPlanesAreDecidedByIntegers) {
         const TetraCorners corners{on_plane(0), on_plane(0), on_plane(0), on_plane(lift)};
         unsure += oracle::certain_orientation(corners) == 0 ? 1 : 0;
         const bool in_plane = oracle::orientation(oracle::big_lattice(corners, corners).a) == 0;
-        EXPECT_EQ(in_plane, lift == 0) << i; // three random points are on no common line
+        EXPECT_EQ(in_plane, lift == 0) << i; // three random points are not collinear
         EXPECT_EQ(has_volume(corners), !in_plane) << i;
     }
     EXPECT_GE(unsure, 1000);
@@ -68,11 +68,11 @@ void shuffle(std::vector<Point>& points, Random& random) {
     for (auto i = points.size(); i > 1; --i) std::swap(points[i - 1], points[random.next() % i]);
 }
 
-TEST(HullVolume, OfSolidsWithPointsAllOver) {
+TEST(HullVolume, OfSolidsWithPointsInAllPositions) {
     EXPECT_EQ(hull_volume(unit), 1.0 / 6);
     EXPECT_EQ(hull_volume(cube()), 1);
     auto points = cube();
-    for (const double x : {0.0, 0.25, 0.5, 1.0}) // on corners, edges, faces, and inside
+    for (const double x : {0.0, 0.25, 0.5, 1.0}) // on corners, edges and faces, and inside
         for (const double y : {0.0, 0.5, 1.0})
             for (const double z : {0.0, 0.75, 1.0}) points.push_back({x, y, z});
     Random random(4);
@@ -87,7 +87,7 @@ TEST(HullVolume, OfSolidsWithPointsAllOver) {
     }
 }
 
-TEST(HullVolume, IsZeroWithoutRoomAndExactAtAnySize) {
+TEST(HullVolume, IsZeroForFlatHullsAndExactAtAnySize) {
     EXPECT_EQ(hull_volume({}), 0);
     const std::vector<Point> one(7, {1, 2, 3});
     EXPECT_EQ(hull_volume(one), 0);
@@ -106,8 +106,9 @@ TEST(HullVolume, IsZeroWithoutRoomAndExactAtAnySize) {
     }
 }
 
-/// Two independent ways to one number: facets of the two tetrahedra, and a hull of what vertices there are.
-TEST(HullVolume, OfAnIntersectionsVerticesIsItsVolume) {
+/// Two independent computations of one volume: from the facets of the two tetrahedra, and from a hull of the
+/// intersection's vertices.
+TEST(HullVolume, OfTheVerticesOfAnIntersectionIsItsVolume) {
     Random random(11);
     int compared = 0;
     for (int i = 0; i < 400; ++i) {
@@ -115,7 +116,7 @@ TEST(HullVolume, OfAnIntersectionsVerticesIsItsVolume) {
         const auto truth = contact_truth(pair.a, pair.b);
         if (!truth || truth->relation != Relation::overlapping) continue;
         const double size = std::cbrt(truth->volume);
-        if (size < 1e-2) continue; // vertices are rounded to doubles, which tells on slivers
+        if (size < 1e-2) continue; // vertices are rounded to doubles, which matters for slivers
         EXPECT_NEAR(hull_volume(truth->vertices) / truth->volume, 1, 1e-8) << i;
         ++compared;
     }

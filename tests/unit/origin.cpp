@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where coordinates count from with origin=auto, and what a scene far away then gives: what it gives near by.
+// The coordinate origin with origin=auto: a distant scene gives the same results as the same scene near the
+// world's origin.
 #include "algorithms/bodies/origin.h"
 #include "harness/plans/frames.h"
 #include "tests/support/cells.h"
@@ -13,33 +14,33 @@ namespace {
 using namespace testing_support;
 using Vector = Eigen::Vector3d;
 
-/// Multiples of 2^-20, which stay what they are when an integer is added.
+/// Multiples of 2^-20, which an added integer does not round.
 Vector on_grid(const Vector& v) { return (v * 0x1p20).array().round() * 0x1p-20; }
 
 /// A crowd moved by an integer vector.
-Scene crowd_at(const Vector& place) {
+Scene crowd_at(const Vector& offset) {
     auto scene = crowd(4, 9, 1);
-    scene.frame = [near = scene.frame, place](std::size_t i) {
+    scene.frame = [near = scene.frame, offset](std::size_t i) {
         auto frame = near(i);
         for (std::size_t body = 0; body < frame.poses.size(); ++body) {
             if (frame.deformed[body].empty())
-                frame.poses[body].translation = on_grid(frame.poses[body].translation) + place;
-            for (auto& v : frame.deformed[body]) v = on_grid(v) + place;
+                frame.poses[body].translation = on_grid(frame.poses[body].translation) + offset;
+            for (auto& v : frame.deformed[body]) v = on_grid(v) + offset;
         }
         return frame;
     };
     return scene;
 }
 
-const Vector far_place(4096, -(1 << 20), 1 << 13);
+const Vector far_offset(4096, -(1 << 20), 1 << 13);
 
-TEST(Origin, OfASceneAboutTheWorldsIsTheWorlds) {
+TEST(Origin, OfACentredSceneIsTheWorldOrigin) {
     EXPECT_EQ(origin_of(crowd_at(Vector::Zero()), Origin::automatic), Vector::Zero());
-    EXPECT_EQ(origin_of(crowd_at(far_place), Origin::world), Vector::Zero());
+    EXPECT_EQ(origin_of(crowd_at(far_offset), Origin::world), Vector::Zero());
 }
 
-TEST(Origin, OfAFarSceneIsInIt) {
-    EXPECT_EQ(origin_of(crowd_at(far_place), Origin::automatic), far_place);
+TEST(Origin, OfAFarSceneIsInsideIt) {
+    EXPECT_EQ(origin_of(crowd_at(far_offset), Origin::automatic), far_offset);
     const Vector between(1000.3, -77.7, 1e5);
     const auto scene = crowd_at(between);
     const auto origin = origin_of(scene, Origin::automatic);
@@ -47,8 +48,8 @@ TEST(Origin, OfAFarSceneIsInIt) {
     for (const double x : origin) EXPECT_EQ(x, std::round(x)) << "a multiple of a power of two";
 }
 
-TEST(Origin, OfWhatIsNotFiniteIsTheWorlds) {
-    auto scene = crowd_at(far_place);
+TEST(Origin, OfANonFiniteSceneIsTheWorldOrigin) {
+    auto scene = crowd_at(far_offset);
     scene.frame = [known = scene.frame](std::size_t i) {
         auto frame = known(i);
         frame.poses[3].translation.x() = std::numeric_limits<double>::infinity();
@@ -57,8 +58,8 @@ TEST(Origin, OfWhatIsNotFiniteIsTheWorlds) {
     EXPECT_EQ(origin_of(scene, Origin::automatic), Vector::Zero());
 }
 
-TEST(Origin, FramesCountFromIt) {
-    const auto near = crowd_at(Vector::Zero()), away = crowd_at(far_place);
+TEST(Origin, FramesAreRelativeToIt) {
+    const auto near = crowd_at(Vector::Zero()), away = crowd_at(far_offset);
     const FrameRange range(away, 0, 1);
     const auto frame = range.frame(1, Origin::automatic);
     const auto expected = near.frame(1);
@@ -80,14 +81,14 @@ protected:
     }
 };
 
-TEST_P(OriginSessions, AFarSceneGivesWhatItGivesNearBy) {
-    const auto near = crowd_at(Vector::Zero()), away = crowd_at(far_place);
+TEST_P(OriginSessions, AFarSceneGivesTheSameResultsAsANearOne) {
+    const auto near = crowd_at(Vector::Zero()), away = crowd_at(far_offset);
     for (const SettingTexts& settings : {SettingTexts{}, SettingTexts{{"residency", "published"}},
                                          SettingTexts{{"placement", "exact"}, {"broad", "tight"}}}) {
         auto counted = settings;
         counted.insert_or_assign("origin", "auto");
         const auto here = prepare(near, settings), there = prepare(away, counted);
-        EXPECT_EQ(there->origin(), far_place);
+        EXPECT_EQ(there->origin(), far_offset);
         for (std::size_t i = 0; i < 2; ++i) {
             const auto expected = here->run(near.frame(i)), found = there->run(away.frame(i));
             EXPECT_GT(expected.contacts, 100u);
@@ -97,7 +98,7 @@ TEST_P(OriginSessions, AFarSceneGivesWhatItGivesNearBy) {
             ASSERT_EQ(moved.size(), points.size());
             for (std::size_t c = 0; c < points.size(); ++c)
                 for (unsigned axis = 0; axis < 3; ++axis)
-                    ASSERT_EQ(moved[c].point[axis], points[c].point[axis] + far_place[axis]);
+                    ASSERT_EQ(moved[c].point[axis], points[c].point[axis] + far_offset[axis]);
         }
     }
 }

@@ -15,13 +15,13 @@
 namespace tandem {
 namespace {
 
-TEST(Parallel, EveryIndexIsWorkedOnOnce) {
+TEST(Parallel, EveryIndexIsProcessedOnce) {
     std::vector<int> times(10007);
     parallel_for(times.size(), [&](std::size_t i) { ++times[i]; });
     EXPECT_EQ(std::count(times.begin(), times.end(), 1), std::ssize(times));
 }
 
-TEST(Parallel, ThrowsWhatACallThrew) {
+TEST(Parallel, RethrowsAnException) {
     std::atomic<int> begun = 0;
     EXPECT_THROW(parallel_for(1 << 20,
                               [&](std::size_t i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What kernels declare that they have to move and to compute: every kernel does, and numbers made by hand.
+// Costs that kernels declare, in bytes and operations: every kernel has them, and some are computed by hand.
 #include "algorithms/cost.h"
 #include "algorithms/sources.h"
 #include "harness/sampling/replays.h"
@@ -14,13 +14,13 @@ namespace {
 
 using namespace testing_support;
 
-/// What reaches every kernel there is, beside presets: decisions, and a balance by one group.
-const std::vector<SettingTexts> ways{{},
-                                     {{"decision", "recheck"}},
-                                     {{"decision", "fp64"}},
-                                     {{"decision", "exact"}},
-                                     {{"balance", "serial"}},
-                                     {{"schedule", "item"}}};
+/// Settings that, besides presets, reach every kernel: decisions, and a balance by one group.
+const std::vector<SettingTexts> variants{{},
+                                         {{"decision", "recheck"}},
+                                         {{"decision", "fp64"}},
+                                         {{"decision", "exact"}},
+                                         {{"balance", "serial"}},
+                                         {{"schedule", "item"}}};
 
 /// A crowd whose second frame skips a tetrahedron.
 Scene skipping_crowd() {
@@ -35,14 +35,14 @@ Scene skipping_crowd() {
     return scene;
 }
 
-/// Of every algorithm, preset and way on the host: what `visit` is given the costs and launched kernels of.
+/// Calls `visit` with the costs and the launched kernels of every algorithm, preset and variant on the host.
 template<class Visit>
 void for_cells(const Visit& visit) {
     const auto scene = skipping_crowd();
     const FrameRange range(scene, 0, 1);
     for (const auto* traversal : algorithms())
         for (const auto& preset : traversal->presets())
-            for (auto given : ways) {
+            for (auto given : variants) {
                 if (std::ranges::any_of(given, [&](auto& s) { return !declares(*traversal, s.first); }))
                     continue;
                 given.insert({{"pair_capacity", "4096"}, {"contact_capacity", "4096"}});
@@ -55,7 +55,7 @@ void for_cells(const Visit& visit) {
             }
 }
 
-TEST(ProfileCosts, EveryKernelOfAFrameHasAFloorOrSaysWhyNot) {
+TEST(ProfileCosts, EveryKernelOfAFrameHasAFloorOrAReason) {
     std::set<std::string> launched;
     for_cells([&](const std::string& cell, const std::vector<KernelCost>& costs, const auto& kernels) {
         for (const auto& [entry, sample] : kernels) {
@@ -65,14 +65,14 @@ TEST(ProfileCosts, EveryKernelOfAFrameHasAFloorOrSaysWhyNot) {
         }
         for (const auto& cost : costs) EXPECT_FALSE(cost.how.empty()) << cost.entry;
     });
-    // What the test would miss if it reached little.
+    // The loops above must reach these kernels, or the test checks too little.
     for (const auto* entry : {"refit_strips", "refit_tops", "empty_nodes", "find_body_pairs", "traverse",
                               "traverse_in_groups", "traverse_queues", "move_balance_serially",
                               "walk_leaf_tiles", "certify_pairs", "recheck_pairs", "transform_vertices"})
         EXPECT_TRUE(launched.contains(entry)) << entry;
 }
 
-TEST(ProfileCosts, EveryDeclaredKernelIsThere) {
+TEST(ProfileCosts, EveryDeclaredKernelExists) {
     std::string texts;
     for (const auto& source : kernel_sources()) texts += source.text;
     const auto scene = crowd(7, 5, 1.0);
@@ -82,12 +82,12 @@ TEST(ProfileCosts, EveryDeclaredKernelIsThere) {
             EXPECT_NE(texts.find("KERNEL void " + std::string(cost.entry) + "("), texts.npos) << cost.entry;
 }
 
-/// Two bodies with one mesh of 40 tetrahedra of their own vertices, of which one is fixed or none.
+/// Two bodies that share a mesh of 40 separate tetrahedra; the second is fixed if `fixed`.
 Scene two_bodies(bool fixed) {
-    std::vector<Eigen::Vector3d> places;
-    for (int i = 0; i < 40; ++i) places.emplace_back(2.0 * i, 0, 0);
+    std::vector<Eigen::Vector3d> positions;
+    for (int i = 0; i < 40; ++i) positions.emplace_back(2.0 * i, 0, 0);
     Scene scene;
-    scene.meshes = {tetrahedra_at(places)};
+    scene.meshes = {tetrahedra_at(positions)};
     scene.bodies = {{.mesh = 0}, {.mesh = 0, .fixed = fixed}};
     return scene;
 }
@@ -104,7 +104,8 @@ KernelCost cost_of(std::string_view name, std::string_view entry, const Scene& s
 }
 
 TEST(ProfileCosts, RefitOfChunks) {
-    // Chunks of 16: 16 + 16 + 8 tetrahedra have 31 + 31 + 15 nodes. k = 8 reals of 4 bytes a node.
+    // Chunks of 16: 16 + 16 + 8 tetrahedra have 31 + 31 + 15 nodes. With k = 8, a node has 8 reals of 4
+    // bytes.
     const SettingTexts given{{"k", "8"}, {"leaves", "16"}};
     const auto inputs = 40 * 16 + 160 * 16; // shared by both bodies
     const auto both = cost_of("chunked", "refit_strips", two_bodies(false), given);
@@ -141,14 +142,14 @@ TEST(ProfileCosts, Walks) {
     EXPECT_EQ(cost_of("tiled", "walk_upper_tiles", two_bodies(false), three).operations(facts), 18 * 200);
 }
 
-TEST(ProfileCosts, WhatCandidatePairsTouch) {
+TEST(ProfileCosts, TetrahedraOfCandidatePairs) {
     const auto scene = two_bodies(false);
     const auto settings = settings_of(algorithm("chunked"), {});
     const std::vector<Pair> pairs{{0, 1, 1, 1}, {0, 1, 1, 2}, {0, 3, 1, 1}};
     FrameFacts facts;
     add_touched(facts, scene, settings, pairs);
-    EXPECT_EQ(facts.touched, 4);      // of body 0 tetrahedra 1 and 3, of body 1 tetrahedra 1 and 2
-    EXPECT_EQ(facts.touched_rows, 3); // of the mesh
+    EXPECT_EQ(facts.touched, 4);      // tetrahedra 1 and 3 of body 0, and 1 and 2 of body 1
+    EXPECT_EQ(facts.touched_rows, 3); // rows of the mesh
     EXPECT_EQ(facts.touched_vertices, 12);
     FrameFacts apart;
     add_touched(apart, scene,
@@ -157,8 +158,8 @@ TEST(ProfileCosts, WhatCandidatePairsTouch) {
     EXPECT_EQ(apart.touched_vertices, 16);
 }
 
-/// Boxes tested above tetrahedra are some of all, and tiles of tetrahedra take 32 tests at least.
-TEST(ProfileCosts, TiledCountsItsTilesApart) {
+/// Boxes tested above tetrahedra are a subset of all, and tiles of tetrahedra need at least 32 tests.
+TEST(ProfileCosts, TiledCountsItsTilesSeparately) {
     const auto scene = make_scene("plates");
     const FrameRange range(scene, 60, 60);
     const auto& tiled = algorithm("tiled");

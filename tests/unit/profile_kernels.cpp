@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A kernel's time against what it had to do: ceilings, floors, and which of them bounds it.
+// Kernel times against required work: ceilings, floors, and which of them bounds the time.
 #include "harness/profile/output.h"
 #include "base/error.h"
 #include "tests/support/folder.h"
@@ -46,7 +46,7 @@ TEST(ProfileLimits, AreTheBestOfCeilings) {
     EXPECT_EQ(limits_of(old, 8).launch_s, 2e-6);
 }
 
-/// A replay of two frames, a round each, in which kernel `k` takes that many nanoseconds a launch.
+/// A replay of two frames, one round each; kernel `k` takes the given nanoseconds per launch.
 Measurement replays_of(std::initializer_list<std::int64_t> sums, std::uint64_t launches = 2) {
     Measurement m;
     for (const auto sum : sums) {
@@ -73,7 +73,7 @@ KernelProfile profiled(const KernelCost& cost, std::int64_t ns, std::uint64_t la
     return *std::ranges::find(kernels, "k", &KernelProfile::entry);
 }
 
-TEST(ProfileKernels, AreOfAFrame) {
+TEST(ProfileKernels, AreAveragesPerFrame) {
     const auto kernels = profile_kernels(replays_of({2000, 6000, 4000}), {}, {}, limits_of(ceilings(), 18));
     ASSERT_EQ(kernels.size(), 2u);
     EXPECT_EQ(kernels[0].ns.median, 2000);
@@ -86,7 +86,7 @@ TEST(ProfileKernels, AreOfAFrame) {
 }
 
 TEST(ProfileKernels, AreBoundByTheLargestTermOfTheirFloor) {
-    // 40 MB at 4 TB/s are 10 us, beyond the cache; 8 MB at 8 TB/s are 1 us; 180 M at 18 T/s are 10 us.
+    // 40 MB at 4 TB/s take 10 us, beyond the cache; 8 MB at 8 TB/s take 1 us; 180 M at 18 T/s take 10 us.
     auto kernel = profiled(cost(40e6, 18e6), 20'000);
     EXPECT_THAT(kernel.floor.bytes, Optional(10'000));
     EXPECT_THAT(kernel.floor.operations, Optional(1'000));
@@ -113,7 +113,7 @@ TEST(ProfileKernels, AreBoundByLatencyWhereEverythingIsDeclared) {
     EXPECT_THAT(profiled(cost({}, {}), 2'000).bound(), Optional(std::string_view("launches")));
 }
 
-TEST(ProfileKernels, WhatWasNotCountedIsNotNothing) {
+TEST(ProfileKernels, UncountedWorkIsUnknown) {
     const auto declared = cost(1e6, 1e6);
     const auto kernels = profile_kernels(replays_of({1000}), {}, std::span(&declared, 1), {});
     EXPECT_FALSE(kernels.front().operations);
@@ -124,18 +124,19 @@ TEST(ProfileKernels, WhatWasNotCountedIsNotNothing) {
 
 class ProfileCeilings : public testing_support::FolderTest {};
 
-TEST_F(ProfileCeilings, AreOfThatVeryDevice) {
+TEST_F(ProfileCeilings, MatchTheDevice) {
     const auto path = this->path("ceilings.jsonl");
     auto last = ceilings();
     last["read_bytes_per_s"] = measured(5e12);
-    // The digest of what the device says of itself.
+    // The hardware digest in the device's description.
     DeviceInfo info;
     info.id = "cuda:1";
     info.name = "GPU";
     std::ofstream(path) << ceilings("opencl:0").dump() << "\n"
                         << ceilings().dump() << "\n"
                         << last.dump() << "\n";
-    EXPECT_EQ(limits_of(read_ceilings(path, info), 18).bytes_per_s, 5e12); // by name: it tells no hardware
+    // matched by name: the file has no hardware digest
+    EXPECT_EQ(limits_of(read_ceilings(path, info), 18).bytes_per_s, 5e12);
     info.hardware = "another";
     EXPECT_THROW(read_ceilings(path, info), InputError);
     std::ofstream(path) << "{\"key\": 1}\nno JSON\n";
@@ -143,7 +144,7 @@ TEST_F(ProfileCeilings, AreOfThatVeryDevice) {
     EXPECT_THROW(read_ceilings(path + ".none", info), InputError);
 }
 
-TEST(ProfileTable, SumsWhatIsShort) {
+TEST(ProfileTable, SumsShortKernels) {
     Profile profile;
     profile.ceilings_from = "measured";
     Measurement m = replays_of({1'000'000});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bodies as the paper's code hands them to the device in every frame: the same arrays on one thread and on
+// Bodies in the layout that the paper's code uploads in every frame: the same arrays on one thread and on
 // several.
 #include "algorithms/bodies/pack.h"
 #include "algorithms/published/conversion.h"
@@ -15,7 +15,7 @@ namespace {
 
 using namespace testing_support;
 
-/// Enough bodies for several threads, every other one deformable.
+/// Enough bodies for several threads; every other one is deformable.
 Scene mixed_scene() {
     auto scene = crowd(11, 40, 1.0);
     const auto at_rest = scene.frame;
@@ -32,7 +32,7 @@ Scene mixed_scene() {
     return scene;
 }
 
-/// What the arrays have to be: each body's, one after the other.
+/// Expected arrays: those of each body, one after the other.
 template<class Real>
 void expect_bodies(const Bodies& bodies, const Frame& frame, const Converted& converted,
                    std::size_t node_bytes) {
@@ -79,7 +79,7 @@ TEST(PublishedConversion, OneThreadAndSeveralMakeTheSameArrays) {
         Geometry geometry;
         geometry.precision = precision;
         const Bodies bodies(host, scene, geometry, Bodies::Sharing::none);
-        // Several blocks, the last one not full.
+        // Several blocks, the last one partly filled.
         const std::size_t node_bytes = std::size_t{5 * 1000 * 1000 / 288} * 288;
         for (const auto& [conversion, threads] :
              {std::pair{Conversion::serial, 0u}, {Conversion::parallel, 0u}, {Conversion::parallel, 3u}}) {

@@ -17,7 +17,7 @@ using testing::StartsWith;
 
 constexpr std::size_t frame_size = 124, frame_count = 3;
 
-/// A whole recording of three frames, and what opening and reading all of a changed one says.
+/// A complete recording of three frames, and the errors of reading modified copies.
 class RecordingDamage : public FolderTest {
 protected:
     void SetUp() override {
@@ -37,15 +37,15 @@ protected:
     std::size_t header_size_ = 0;
 };
 
-TEST_F(RecordingDamage, CutAnywhereItIsReadUpToTheLastWholeFrame) {
+TEST_F(RecordingDamage, ATruncatedFileIsReadUpToTheLastWholeFrame) {
     for (std::size_t size = 0; size < whole_.size(); ++size) {
         SCOPED_TRACE(size);
-        const auto said = failure(whole_.substr(0, size));
+        const auto message = failure(whole_.substr(0, size));
         if (size < header_size_) {
-            EXPECT_EQ(said, file_ + ": is cut off in its header; record it again");
+            EXPECT_EQ(message, file_ + ": is cut off in its header; record it again");
             continue;
         }
-        EXPECT_EQ(said, "no error");
+        EXPECT_EQ(message, "no error");
         const Recording recording(file_);
         const auto frames = (size - header_size_) / frame_size;
         EXPECT_EQ(recording.frames(), frames);
@@ -56,7 +56,7 @@ TEST_F(RecordingDamage, CutAnywhereItIsReadUpToTheLastWholeFrame) {
     }
 }
 
-TEST_F(RecordingDamage, FramesBeyondTheWholeOnesAreNamed) {
+TEST_F(RecordingDamage, ErrorsNameIncompleteAndMissingFrames) {
     write_bytes(file_, whole_.substr(0, whole_.size() - 1));
     const Recording recording(file_);
     EXPECT_EQ(failure_of([&] { recording.read(2, {}); }),
@@ -69,24 +69,24 @@ TEST_F(RecordingDamage, FramesBeyondTheWholeOnesAreNamed) {
     EXPECT_EQ(Recording(file_).end(), file_ + ": frame 0 is cut off; no frame is whole");
 }
 
-TEST_F(RecordingDamage, EveryChangedBitIsFound) {
+TEST_F(RecordingDamage, EveryChangedBitIsDetected) {
     for (std::size_t at = 0; at < whole_.size(); ++at)
         for (int bit = 0; bit < 8; ++bit) {
             SCOPED_TRACE(at);
             auto bytes = whole_;
             bytes[at] = static_cast<char>(bytes[at] ^ (1 << bit));
-            const auto said = failure(bytes);
+            const auto message = failure(bytes);
             if (at >= header_size_)
-                EXPECT_EQ(said, file_ + ": frame " + std::to_string((at - header_size_) / frame_size)
-                                    + " does not match its checksum; copy or record it again");
+                EXPECT_EQ(message, file_ + ": frame " + std::to_string((at - header_size_) / frame_size)
+                                       + " does not match its checksum; copy or record it again");
             else
-                EXPECT_THAT(said,
+                EXPECT_THAT(message,
                             AnyOf(HasSubstr("is not a recording"), HasSubstr("of the format"),
                                   HasSubstr("cut off in its header"), HasSubstr("checksum in the header")));
         }
 }
 
-TEST_F(RecordingDamage, FramesInEachOthersPlaceAreFound) {
+TEST_F(RecordingDamage, SwappedFramesAreDetected) {
     auto bytes = whole_;
     const auto second = bytes.substr(header_size_ + frame_size, frame_size);
     bytes.replace(header_size_, frame_size, second);
@@ -105,13 +105,13 @@ TEST_F(RecordingDamage, OtherFilesAndVersions) {
     EXPECT_THAT(failure_of([&] { Recording(path("")); }), HasSubstr("is no file"));
 }
 
-/// With its checksum made right again, as an attacker would.
+/// Replaces bytes of the header and recomputes its checksum, as an attacker would.
 std::string with_header(std::string bytes, std::size_t header_size, std::size_t at, std::string_view change) {
     bytes.replace(at, change.size(), change);
     return recording::sealed(bytes.substr(0, header_size - 4)) + bytes.substr(header_size);
 }
 
-TEST_F(RecordingDamage, NonsenseWithARightChecksumIsRefused) {
+TEST_F(RecordingDamage, InvalidValuesWithAValidChecksumAreRefused) {
     const auto changed = [&](std::size_t at, std::string_view change) {
         return failure(with_header(whole_, header_size_, at, change));
     };
@@ -140,7 +140,7 @@ TEST_F(RecordingDamage, AThousandRandomChangesNeverCrash) {
         for (auto changes = 1 + random.next() % 8; changes > 0; --changes)
             bytes[random.next() % bytes.size()] = static_cast<char>(random.next());
         if (random.next() % 2 == 0) bytes.resize(random.next() % bytes.size());
-        // Half of them with a right header, so that what lies behind its checksum is reached.
+        // Half of the copies get a valid header, so that the checks behind its checksum run.
         if (random.next() % 2 == 0 && bytes.size() > header_size_)
             bytes = with_header(bytes, header_size_, 0, whole_.substr(0, 16));
         if (failure(bytes) != "no error") {

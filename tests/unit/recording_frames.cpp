@@ -35,7 +35,7 @@ void expect_frame(const RecordedFrame& read, const Frame& written, const Scene& 
             unit({through_float(q.w()), through_float(q.x()), through_float(q.y()), through_float(q.z())});
         EXPECT_EQ(read.frame.poses[b].rotation.coeffs(), expected.coeffs());
     }
-    EXPECT_EQ(read.frame.poses[0].translation, written.poses[0].translation); // fixed: never through float
+    EXPECT_EQ(read.frame.poses[0].translation, written.poses[0].translation); // fixed: not rounded to float
     EXPECT_EQ(read.frame.poses[1].translation, Eigen::Vector3d::Zero());
     ASSERT_EQ(read.frame.deformed.size(), 4u);
     ASSERT_EQ(read.frame.deformed[1].size(), 4u);
@@ -43,7 +43,7 @@ void expect_frame(const RecordedFrame& read, const Frame& written, const Scene& 
     for (std::size_t v = 0; v < 4; ++v) expect_bits(read.frame.deformed[1][v], written.deformed[1][v]);
 }
 
-TEST_F(RecordingFrames, EveryNumberComesBack) {
+TEST_F(RecordingFrames, EveryNumberRoundTrips) {
     small_.write(file_, 5);
     const Recording recording(file_);
     EXPECT_EQ(recording.header(), small_.header);
@@ -72,7 +72,7 @@ TEST_F(RecordingFrames, BytesAreAsDocumented) {
     EXPECT_EQ(recording::checksum("123456789"), 0xcbf43926u); // the check value of CRC-32
 }
 
-TEST_F(RecordingFrames, ThreadsReadAtOnce) {
+TEST_F(RecordingFrames, ThreadsReadConcurrently) {
     small_.write(file_, 40);
     const Recording recording(file_);
     std::vector<std::thread> threads;
@@ -86,7 +86,7 @@ TEST_F(RecordingFrames, ThreadsReadAtOnce) {
     for (auto& thread : threads) thread.join();
 }
 
-TEST_F(RecordingFrames, WhatIsNoFrameIsRefused) {
+TEST_F(RecordingFrames, InvalidFramesAreRefused) {
     auto writer = RecordingWriter::create(file_, small_.header);
     const auto fails = [&](auto change) {
         auto frame = small_.frame(0);

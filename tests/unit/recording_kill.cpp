@@ -24,7 +24,7 @@ RecordingWriter open_writer(const std::string& file, const RecordingHeader& head
                                          : RecordingWriter::create(file, header);
 }
 
-/// What a simulation does, with frames that its scene knows.
+/// Writes frames and checkpoints as a simulation does, with frames known in advance.
 void record(const std::string& file, const SmallRecording& small) {
     auto writer = open_writer(file, small.header);
     if (!writer.restore()) writer.checkpoint(0, state_of(0));
@@ -36,7 +36,7 @@ void record(const std::string& file, const SmallRecording& small) {
 
 class RecordingKill : public FolderTest {};
 
-TEST_F(RecordingKill, AtAnyMomentLeavesWhatCanGoOn) {
+TEST_F(RecordingKill, AtAnyMomentLeavesAResumableFile) {
     const SmallRecording small;
     const auto file = path("killed.frames");
     Random random(17);

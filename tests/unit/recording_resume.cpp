@@ -19,7 +19,7 @@ std::vector<std::byte> state_of(std::size_t steps) {
     return state;
 }
 
-/// Six frames with a checkpoint after the fourth, of which a run is killed; and the same without a kill.
+/// Six frames with a checkpoint after the fourth, from a killed run; and the same without a kill.
 class RecordingResume : public FolderTest {
 protected:
     void SetUp() override {
@@ -39,7 +39,7 @@ protected:
     std::string file_ = path("small.frames");
 };
 
-TEST_F(RecordingResume, GoesOnFromTheCheckpointWithTheSameBytes) {
+TEST_F(RecordingResume, ContinuesFromTheCheckpointWithTheSameBytes) {
     const auto whole = bytes_of(path("whole.frames"));
     EXPECT_EQ(bytes_of(file_), whole);
     const auto fourth = Recording(file_).offset(4);
@@ -63,7 +63,7 @@ TEST_F(RecordingResume, GoesOnFromTheCheckpointWithTheSameBytes) {
     EXPECT_EQ(bytes_of(file_), whole.substr(0, fourth - 1)) << "a refusal must not cost frames";
 }
 
-TEST_F(RecordingResume, ADamagedFrameBeforeTheCheckpointIsFound) {
+TEST_F(RecordingResume, ADamagedFrameBeforeTheCheckpointIsDetected) {
     const auto whole = bytes_of(file_);
     for (const std::size_t frame : {0, 2, 3}) {
         auto damaged = whole;
@@ -78,7 +78,7 @@ TEST_F(RecordingResume, ADamagedFrameBeforeTheCheckpointIsFound) {
     }
 }
 
-TEST_F(RecordingResume, AnIncompleteTailGoesWithTheNextFrame) {
+TEST_F(RecordingResume, TheNextFrameReplacesAnIncompleteTail) {
     const auto whole = bytes_of(path("whole.frames"));
     const auto second = Recording(file_).offset(2);
     for (const std::size_t left : {0, 1, 123}) {
@@ -88,7 +88,7 @@ TEST_F(RecordingResume, AnIncompleteTailGoesWithTheNextFrame) {
         small_.append(writer, 2, 3);
         EXPECT_EQ(bytes_of(file_), whole.substr(0, Recording(path("whole.frames")).offset(3)));
     }
-    // A crash of the machine: the length is there, the bytes are not.
+    // A crash of the machine: the length was written, the bytes were not.
     auto holes = whole.substr(0, second);
     holes.resize(Recording(path("whole.frames")).offset(4));
     write_bytes(file_, holes);
@@ -98,7 +98,7 @@ TEST_F(RecordingResume, AnIncompleteTailGoesWithTheNextFrame) {
     EXPECT_EQ(bytes_of(file_), whole.substr(0, Recording(path("whole.frames")).offset(3)));
 }
 
-TEST_F(RecordingResume, AKillInTheHeaderStartsAnew) {
+TEST_F(RecordingResume, AKillInTheHeaderRestarts) {
     const auto whole = bytes_of(path("whole.frames"));
     const auto header = whole.substr(0, Recording(file_).offset(0));
     for (std::size_t size = 0; size < header.size(); ++size) {
@@ -110,7 +110,7 @@ TEST_F(RecordingResume, AKillInTheHeaderStartsAnew) {
             EXPECT_EQ(writer.frames(), 0u);
             EXPECT_EQ(bytes_of(file_), header);
         }
-        // A loss of power: the length is there, the bytes are not.
+        // A loss of power: the length was written, the bytes were not.
         write_bytes(file_, whole.substr(0, size) + std::string(header.size() - size, '\0'));
         EXPECT_EQ(RecordingWriter::resume(file_, small_.header).frames(), 0u);
         EXPECT_EQ(bytes_of(file_), header);
@@ -132,7 +132,7 @@ TEST_F(RecordingResume, NothingIsOverwritten) {
                 HasSubstr("none.frames: cannot be written"));
 }
 
-TEST_F(RecordingResume, OnlyWhatWasBegunGoesOn) {
+TEST_F(RecordingResume, OnlyAStartedRecordingResumes) {
     const auto failure = [&](auto change) {
         auto header = small_.header;
         change(header);
@@ -148,7 +148,7 @@ TEST_F(RecordingResume, OnlyWhatWasBegunGoesOn) {
     EXPECT_EQ(failure([](auto&) {}), "no error");
 }
 
-TEST_F(RecordingResume, AKillWhileACheckpointIsWrittenLeavesTheOld) {
+TEST_F(RecordingResume, AKillDuringACheckpointKeepsTheOldOne) {
     const auto old = bytes_of(checkpoint_path(file_));
     for (std::size_t size = 0; size < old.size(); size += 100) {
         write_bytes(checkpoint_path(file_) + ".partial", old.substr(0, size));

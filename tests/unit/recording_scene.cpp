@@ -15,7 +15,7 @@ using testing::MatchesRegex;
 
 class RecordingScene : public FolderTest {
 protected:
-    /// Frames of a pile, each from the pile's frame `first` and on.
+    /// Records frames of a pile, starting at the pile's frame `first`.
     static void record(const std::string& file, const std::string& specification, std::size_t first,
                        std::size_t frames) {
         const auto scene = make_scene(specification);
@@ -56,13 +56,13 @@ TEST_F(RecordingScene, HasTheRecordedFrames) {
               "frames 3:5 are impossible; " + file_ + ": there is no frame 5; frames 0:4 are whole");
 }
 
-TEST_F(RecordingScene, ItsDigestIsOfEveryFrame) {
+TEST_F(RecordingScene, ItsDigestCoversEveryFrame) {
     record(file_, "pile:bodies=3,frames=9", 0, 5);
     const auto digest = make_scene(file_).digest;
     EXPECT_NE(digest, make_scene("pile:bodies=3,frames=9").digest);
     record(path("same.frames"), "pile:bodies=3,frames=9", 0, 5);
     EXPECT_EQ(make_scene(path("same.frames")).digest, digest);
-    // The first and the last frame are those of the first recording; one between is another.
+    // The first and the last frame are those of the first recording; one in between differs.
     const auto scene = make_scene("pile:bodies=3,frames=9");
     auto writer = RecordingWriter::create(path("other.frames"), recording_of(scene.key, scene, 0.25));
     for (const std::size_t i : {0, 1, 3, 3, 4})
@@ -73,7 +73,7 @@ TEST_F(RecordingScene, ItsDigestIsOfEveryFrame) {
 TEST_F(RecordingScene, OfADescription) {
     record(file_, description("[0, 0, 0.1]"), 0, 3);
     const auto scene = make_scene(file_);
-    EXPECT_EQ(scene.frame(2).poses[0].translation.z(), 0.1); // fixed: not through float
+    EXPECT_EQ(scene.frame(2).poses[0].translation.z(), 0.1); // fixed: not rounded to float
     EXPECT_THAT(scene.key,
                 MatchesRegex("recording:drift,frames=3,digest=[0-9a-f]+,of=two:frames=4,bodies=[0-9a-f]+"));
     description("[0, 0, 0.2]");
@@ -86,7 +86,7 @@ TEST_F(RecordingScene, OfADescription) {
                 MatchesRegex(".*drift.frames: its scene cannot be made again: .*two.json: cannot be read.*"));
 }
 
-TEST_F(RecordingScene, NotOfARecording) {
+TEST_F(RecordingScene, InvalidSourcesAreRefused) {
     record(file_, "pile:bodies=3,frames=9", 0, 1);
     auto header = Recording(file_).header();
     header.specification = path("itself.frames");
@@ -103,7 +103,7 @@ TEST_F(RecordingScene, NotOfARecording) {
               path("none.frames") + ": there is no frame 0; no frame is whole");
 }
 
-TEST_F(RecordingScene, ASceneThatIsSimulatedSaysSo) {
+TEST_F(RecordingScene, SimulatedScenesAreRefusedWithAHint) {
     auto scene = make_scene("pile:bodies=3,frames=1");
     scene.dynamics = std::make_shared<const Dynamics>();
     EXPECT_EQ(failure_of([&] { FrameRange(scene, 0, 4); }),

@@ -26,8 +26,7 @@ test::World falling() {
     return world;
 }
 
-/// The loop that writer.h tells of, up to `steps` steps with a checkpoint after every tenth; it ends without
-/// one.
+/// The loop of writer.h, up to `steps` steps with a checkpoint after every tenth; no checkpoint at the end.
 std::vector<std::byte> simulate(const std::string& file, const Scene& scene, bool resume, std::size_t steps) {
     const auto header = recording_of("falling.json", scene, scene.dynamics->stepping.step);
     const auto detect = test::detector(scene);
@@ -47,7 +46,7 @@ std::vector<std::byte> simulate(const std::string& file, const Scene& scene, boo
 
 class RecordingSimulation : public FolderTest {};
 
-TEST_F(RecordingSimulation, ResumedItHasTheBytesOfAnUnbrokenRun) {
+TEST_F(RecordingSimulation, AResumedRunHasTheBytesOfAnUninterruptedRun) {
     auto world = falling();
     const auto& scene = world.finish();
     const auto end = simulate(path("whole.frames"), scene, false, 40);
@@ -60,7 +59,7 @@ TEST_F(RecordingSimulation, ResumedItHasTheBytesOfAnUnbrokenRun) {
     const auto first = recording.read(0, scene.frame(0).poses),
                last = recording.read(39, scene.frame(0).poses);
     EXPECT_EQ(last.step, 39u);
-    EXPECT_NEAR(first.time, 0.002, 1e-12); // of steps of 4 ms the middle
+    EXPECT_NEAR(first.time, 0.002, 1e-12); // the middle of a step of 4 ms
     EXPECT_NEAR(last.time, 39 * 0.004 + 0.002, 1e-12);
     EXPECT_NE(last.frame.poses[1].translation, first.frame.poses[1].translation);
     EXPECT_NE(last.frame.deformed[2], first.frame.deformed[2]);

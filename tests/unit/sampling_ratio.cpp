@@ -9,13 +9,13 @@
 namespace tandem {
 namespace {
 
-/// From the normal distribution with this deviation, the same on every machine (Box and Muller 1958).
+/// Samples of the normal distribution with this deviation, the same on every machine (Box and Muller 1958).
 std::vector<double> noise(std::mt19937_64& random, std::size_t count, double deviation) {
-    const auto share = [&] { return (static_cast<double>(random() >> 11) + 0.5) / 9007199254740992.0; };
+    const auto fraction = [&] { return (static_cast<double>(random() >> 11) + 0.5) / 9007199254740992.0; };
     std::vector<double> values(count);
     for (auto& value : values) {
-        const double radius = std::sqrt(-2 * std::log(share()));
-        value = deviation * radius * std::cos(6.283185307179586 * share());
+        const double radius = std::sqrt(-2 * std::log(fraction()));
+        value = deviation * radius * std::cos(6.283185307179586 * fraction());
     }
     return values;
 }
@@ -31,8 +31,8 @@ TEST(SamplingRatio, EqualValuesHaveNoInterval) {
     EXPECT_DOUBLE_EQ(ratio.high, ratio.value);
 }
 
-/// tests/rank_tests.py has the same numbers of tandem.resampling.
-TEST(SamplingRatio, IsThatOfThePythonPackage) {
+/// tests/rank_tests.py has the same numbers for tandem.resampling.
+TEST(SamplingRatio, EqualsThePythonPackage) {
     std::vector<double> logs;
     for (int i = 0; i < 12; ++i) logs.push_back(0.01 * (i * 7 % 11) - 0.03);
     const auto ratio = paired_ratio(logs);
@@ -41,8 +41,8 @@ TEST(SamplingRatio, IsThatOfThePythonPackage) {
     EXPECT_NEAR(ratio.high, 1.0512710963760241, 1e-14);
 }
 
-// 3 standard errors of 1,000 draws are 2 %.
-TEST(SamplingRatio, IntervalsHoldTheTruth) {
+// Three standard errors of 1,000 draws are 2 %.
+TEST(SamplingRatio, IntervalsContainTheTruth) {
     std::mt19937_64 random(4);
     for (const std::size_t rounds : {10, 25}) {
         int held = 0;

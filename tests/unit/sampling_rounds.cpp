@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rounds of a group of cells: how many samples, in what order, when they suffice, and what a failure costs.
+// Rounds of a group of cells: number and order of samples, the stopping criterion, and the effect of a
+// failure.
 #include "harness/sampling/rounds.h"
 
 #include "backends/host/host_device.h"
@@ -18,13 +19,13 @@ namespace {
 using namespace testing_support;
 using testing::ElementsAre;
 
-/// Cells of a small scene on the host, and what became of them.
+/// Cells of a small scene on the host, and their outcomes.
 class SamplingRounds : public testing::Test {
 protected:
     SamplingRounds() {
         for (const SettingTexts& given : {SettingTexts{{"k", "8"}},
                                           {{"k", "8"}, {"precision", "double"}},
-                                          {{"k", "18"}}}) { // what sanitized builds have, too
+                                          {{"k", "18"}}}) { // available in sanitized builds
             auto all = given;
             all["pair_capacity"] = all["contact_capacity"] = "4096";
             add(all);
@@ -37,7 +38,7 @@ protected:
         cells_.push_back(make_cell(tiled, tiled.presets().front(), given, {&on}));
     }
 
-    bool sample(const StoppingCriterion& enough, std::uint64_t seed = 1) {
+    bool sample(const StoppingCriterion& criterion, std::uint64_t seed = 1) {
         std::vector<CellSampler*> group;
         for (const auto& cell : cells_)
             group.push_back(&samplers_.emplace_back(cell, scene_, range_, references_));
@@ -50,7 +51,7 @@ protected:
             sampling_ = sampling;
         };
         listener.stop = [&] { return turns_.size() >= most_turns_; };
-        return sample_group(group, check_, enough, seed, listener);
+        return sample_group(group, check_, criterion, seed, listener);
     }
 
     std::unique_ptr<Device> other_ = host::make_device();
@@ -82,7 +83,7 @@ TEST_F(SamplingRounds, RepeatFixesTheNumberOfSamples) {
     EXPECT_EQ(turns_.size(), 12u);
 }
 
-TEST_F(SamplingRounds, NoSamplesAreAnswersAndOneBreakdown) {
+TEST_F(SamplingRounds, WithoutSamplesThereAreAnswersAndOneBreakdown) {
     sample({.repeat = 0});
     for (const auto& outcome : outcomes_) {
         EXPECT_TRUE(outcome.sampler->measurement().samples.empty());
@@ -102,8 +103,8 @@ TEST_F(SamplingRounds, WarmUpForFiveMilliseconds) {
     EXPECT_GE(sampler.state().spent_ns, 5'000'000);
 }
 
-/// Every round has every cell once, and the order is not the same in all of them; equal seeds, equal orders.
-TEST_F(SamplingRounds, TakeTurnsInADrawnOrder) {
+/// Every round contains every cell once, in an order that varies; equal seeds give equal orders.
+TEST_F(SamplingRounds, AlternateInARandomOrder) {
     sample({.repeat = 6}, 7);
     const auto first = turns_;
     ASSERT_EQ(first.size(), 18u);
@@ -122,7 +123,7 @@ TEST_F(SamplingRounds, TakeTurnsInADrawnOrder) {
     EXPECT_EQ(turns_, first);
 }
 
-TEST_F(SamplingRounds, AreTenAtLeastAndAsManyAsTheIntervalNeeds) {
+TEST_F(SamplingRounds, AreAtLeastTenAndAsManyAsTheIntervalNeeds) {
     sample({.noise = 1.0, .seconds = 1e6});
     for (const auto& outcome : outcomes_) {
         EXPECT_GE(outcome.sampler->measurement().round_count(), StoppingCriterion::least);
@@ -137,7 +138,7 @@ TEST_F(SamplingRounds, AreTenAtLeastAndAsManyAsTheIntervalNeeds) {
     }
 }
 
-TEST_F(SamplingRounds, AFailureCostsItsOwnCell) {
+TEST_F(SamplingRounds, AFailureAffectsItsOwnCellOnly) {
     other_->set_memory_limit(1024);
     add({{"k", "8"}}, *other_);
     sample({.repeat = 2});
@@ -152,7 +153,7 @@ TEST_F(SamplingRounds, AFailureCostsItsOwnCell) {
     EXPECT_EQ(failed, 1u);
 }
 
-TEST_F(SamplingRounds, StopKeepsWhatThereIs) {
+TEST_F(SamplingRounds, StopKeepsFinishedSamples) {
     most_turns_ = 8; // in the third round
     EXPECT_TRUE(sample({.repeat = 50}));
     ASSERT_EQ(outcomes_.size(), 3u);
@@ -162,7 +163,7 @@ TEST_F(SamplingRounds, StopKeepsWhatThereIs) {
     EXPECT_TRUE(sampling_.interrupted);
 }
 
-TEST_F(SamplingRounds, StopBeforeACellLeavesItOut) {
+TEST_F(SamplingRounds, StopBeforeACellOmitsIt) {
     most_turns_ = 2;
     EXPECT_TRUE(sample({.repeat = 50}));
     EXPECT_EQ(outcomes_.size(), 2u);

@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A folder per test, with scene.json and whatever else the test writes.
+/// A folder per test, with scene.json and other files of the test.
 class ScenesDescription : public testing::Test {
 protected:
     void SetUp() override { std::filesystem::create_directories(folder_); }
@@ -34,7 +34,7 @@ protected:
         }
         return "no error";
     }
-    /// The failure of a scene of one jack with these further names of its body.
+    /// The error for a scene of one jack whose body has these further fields.
     std::string body_failure(const std::string& names) const {
         return failure(R"({"frames": 2, "meshes": {"j": {"builtin": "jack"}}, "bodies": [{"mesh": "j", )"
                        + names + "}]}");
@@ -110,7 +110,7 @@ TEST_F(ScenesDescription, ErrorsNameThePath) {
                 HasSubstr("/bodies/0/spin: is replaced by poses"));
 }
 
-TEST_F(ScenesDescription, DigestSeesEveryFrame) {
+TEST_F(ScenesDescription, DigestCoversEveryFrame) {
     const auto digest = [&](const std::string& middle) {
         return load(R"({"frames": 3, "meshes": {"j": {"builtin": "jack"}}, "bodies": [{"mesh": "j", "poses": [
                     [0, 0, 0, 1, 0, 0, 0], )"
@@ -120,7 +120,7 @@ TEST_F(ScenesDescription, DigestSeesEveryFrame) {
     EXPECT_NE(digest("[0, 0, 0, 1, 0, 0, 0]"), digest("[9, 0, 0, 1, 0, 0, 0]"));
 }
 
-/// A stone over a ground, with these further names of the dynamics, the bodies and the stone.
+/// A stone above a ground, with these further fields of the dynamics, the bodies and the stone.
 std::string dynamic_scene(const std::string& dynamics, const std::string& bodies = "",
                           const std::string& stone = "") {
     return R"({"meshes": {"g": {"box": [10, 1, 10]}, "s": {"builtin": "jack", "scale": 2}},
@@ -248,7 +248,7 @@ std::string repeated(const std::string& text, std::size_t times) {
     return all;
 }
 
-/// What a program could not bear, or readers of JSON take differently, is refused while it is read.
+/// Input that would exhaust memory, and JSON that readers interpret differently, is refused while parsing.
 TEST_F(ScenesDescription, JsonHasABudget) {
     const std::string jack = R"("meshes": {"j": {"builtin": "jack"}}, "bodies": [{"mesh": "j"}])";
     EXPECT_EQ(failure("{" + jack + "}"), "no error");
@@ -275,8 +275,8 @@ TEST_F(ScenesDescription, JsonHasABudget) {
                 HasSubstr("is longer than the 64 MiB that a scene description may have"));
 }
 
-/// A table of every two of them would take 6 GB.
-TEST_F(ScenesDescription, ThousandsOfMaterialsOfWhichFewMeet) {
+/// A table of all pairs of materials would take 6 GB.
+TEST_F(ScenesDescription, ThousandsOfMaterialsWithFewPairs) {
     std::string materials = R"("s": 1)";
     for (int i = 0; i < 14000; ++i) materials += fmt::format(R"(, "m{}": 1)", i);
     const auto scene = load(

@@ -18,7 +18,7 @@ namespace {
 using testing::HasSubstr;
 using testing_support::failure;
 
-/// Coordinates that are not single-precision numbers.
+/// Number of coordinates that are not exact in single precision.
 std::size_t not_single(const Mesh& mesh) {
     std::size_t count = 0;
     for (const auto& v : mesh.vertices)
@@ -72,19 +72,19 @@ TEST(ScenesBuiltin, CountsAndSizes) {
     }
 }
 
-TEST(ScenesBuiltin, AllAreSound) {
+TEST(ScenesBuiltin, AllAreValid) {
     EXPECT_EQ(built_in_names().size(), 11u);
     for (const auto& name : built_in_names()) {
         const auto mesh = built_in_mesh(name);
         EXPECT_EQ(mesh.inverted + mesh.degenerate + not_single(mesh), 0u) << name;
         if (!name.starts_with("grain")) continue;
-        // As the grains of the paper's chalk.
+        // Sizes of the grains of the paper's chalk.
         EXPECT_TRUE(mesh.vertices.size() >= 33 && mesh.vertices.size() <= 56) << name;
         EXPECT_TRUE(mesh.tetrahedra.size() >= 109 && mesh.tetrahedra.size() <= 257) << name;
     }
 }
 
-/// Corners of a mesh on the outer side of one of its boundary faces.
+/// Number of corners of the mesh outside one of its boundary faces.
 std::size_t beyond_faces(const Mesh& mesh) {
     std::size_t count = 0;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
@@ -181,7 +181,7 @@ TEST(ScenesPile, MovesSlowlyAsARigidBody) {
         }
 }
 
-TEST(ScenesPile, FarMovesEveryBodyAlike) {
+TEST(ScenesPile, FarMovesEveryBodyByTheSameOffset) {
     const auto near = make_scene("pile:bodies=5").frame(3);
     const auto far = make_scene("pile:bodies=5,far=1024").frame(3);
     for (std::size_t body = 0; body < 5; ++body) {
@@ -200,7 +200,7 @@ TEST(ScenesPile, SeedDecides) {
     EXPECT_NE(once.frame(0).poses[0].translation, other.frame(0).poses[0].translation);
 }
 
-TEST(ScenesKinds, EveryKindSaysWhatItModels) {
+TEST(ScenesKinds, EveryKindHasADescription) {
     for (const auto& kind : scene_kinds()) {
         const auto scene = make_scene(kind.name);
         EXPECT_EQ(scene.name, kind.name);
@@ -227,7 +227,7 @@ TEST(ScenesKinds, BadSpecifications) {
     }
 }
 
-/// One tetrahedron that stands still.
+/// One tetrahedron at rest.
 Scene still() {
     Scene scene;
     scene.key = "still";
@@ -246,7 +246,7 @@ TEST(ScenesDigest, SameOnEveryMachine) {
     EXPECT_EQ(make_scene("pile").digest, 0xec599913b0cb4e91u);
 }
 
-TEST(ScenesDigest, SeesEveryPart) {
+TEST(ScenesDigest, CoversEveryPart) {
     std::set<std::uint64_t> digests{digest_of(still())};
     auto scene = still();
     scene.meshes[0].vertices[2].x() = 0x1p-1074;

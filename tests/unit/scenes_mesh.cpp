@@ -59,7 +59,7 @@ TEST(ScenesMesh, VolumeIgnoresOrientation) {
     EXPECT_DOUBLE_EQ(volume(mesh), 1.0 / 6 + 1.0 / 3);
 }
 
-TEST(ScenesMesh, RefusesWhatIsNoMesh) {
+TEST(ScenesMesh, RefusesInvalidMeshes) {
     auto mesh = pair();
     mesh.tetrahedra[1][3] = 5;
     EXPECT_THAT(failure(mesh), testing::StartsWith("it.msh: tetrahedron 1 names vertex 5 of 5;"));

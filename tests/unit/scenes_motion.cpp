@@ -15,7 +15,7 @@ double error_at(double angle) {
 }
 
 TEST(ScenesRandom, PublishedSequence) {
-    // The first numbers of SplitMix64 from 1234567, as its published C program prints them.
+    // The first outputs of SplitMix64 from seed 1234567, as its published C program prints them.
     Random random(1234567);
     for (const std::uint64_t expected : {6457827717110365317u, 3203168211198807973u, 9817491932198370423u,
                                          4593380528125082431u, 16408922859458223821u})
@@ -66,7 +66,7 @@ TEST(ScenesMotion, SineAndCosineAgreeWithTheLibrary) {
             const double angle = random.uniform(-range, range);
             ASSERT_LT(error_at(angle), 2e-16) << angle;
         }
-    // Near multiples of pi/2 one of the two is all rounding of the reduction.
+    // Near multiples of pi/2, one of the two results is dominated by the rounding of the argument reduction.
     for (int quarter = -6000; quarter <= 6000; ++quarter)
         ASSERT_LT(error_at(quarter * 1.5707963267948966), 2e-16) << quarter;
 }
@@ -76,7 +76,7 @@ TEST(ScenesMotion, SineAndCosineOfZeroAreExact) {
     EXPECT_EQ(sine_cosine(0).cosine, 1);
 }
 
-TEST(ScenesMotion, QuaternionsTurnAsMatricesDo) {
+TEST(ScenesMotion, QuaternionsRotateAsMatricesDo) {
     Random random(6);
     for (int i = 0; i < 1000; ++i) {
         const auto a = random.rotation();

@@ -28,7 +28,7 @@ Mesh lone(const Eigen::Vector3d& tip = {0, 0, 1}) {
     return mesh;
 }
 
-/// Squared lengths of a tetrahedron's edges over the cube root of its squared volume, sorted: its shape.
+/// Shape of a tetrahedron: squared lengths of its edges over the cube root of its squared volume, sorted.
 std::vector<long> shape_of(const Mesh& mesh, const Tetrahedron& t) {
     std::vector<double> squares;
     for (std::size_t i = 0; i < 4; ++i)
@@ -59,7 +59,7 @@ TEST(ScenesRefine, OneTetrahedronBecomesEight) {
     }
 }
 
-TEST(ScenesRefine, MeshesStayWhole) {
+TEST(ScenesRefine, MeshesStayConforming) {
     for (const auto* name : {"jack", "plate"}) {
         SCOPED_TRACE(name);
         const auto coarse = built_in_mesh(name);
@@ -73,10 +73,10 @@ TEST(ScenesRefine, MeshesStayWhole) {
             EXPECT_EQ(fine.inverted + fine.degenerate, 0u);
             EXPECT_NEAR(volume(fine) / volume(coarse), 1, 1e-12) << "rounding of the sum";
         }
-        // Boundary flags are handed down; those found anew would show a face that no neighbour shares.
-        auto anew = fine;
-        complete_mesh(anew, name);
-        EXPECT_EQ(anew.boundary, fine.boundary);
+        // Refinement inherits boundary flags; recomputed flags would reveal a face without a neighbour.
+        auto recomputed = fine;
+        complete_mesh(recomputed, name);
+        EXPECT_EQ(recomputed.boundary, fine.boundary);
         std::set<std::array<double, 3>> different;
         for (const auto& v : fine.vertices) different.insert({v.x(), v.y(), v.z()});
         EXPECT_EQ(different.size(), fine.vertices.size()) << "middles of edges are shared";
@@ -101,7 +101,7 @@ TEST(ScenesRefine, InvertedTetrahedraStayCounted) {
     EXPECT_EQ(refined(mesh, 1).degenerate, 8u);
 }
 
-TEST(ScenesRefine, RefusesWhatNumbersCannotTell) {
+TEST(ScenesRefine, RefusesMoreThanIndicesCanNumber) {
     auto mesh = lone();
     EXPECT_THROW(refined(mesh, 5), InputError);
     mesh.tetrahedra.resize((std::size_t{1} << 20) + 1);

@@ -42,7 +42,7 @@ TEST(ScenesShapes, HexahedraInARowConform) {
     const auto one = hexahedron(corners);
     expect_counts(one, 8, 6, 12);
     EXPECT_DOUBLE_EQ(volume(one), 1);
-    // Two in a row along any axis, with the vertices between them made one: 2 x 12 faces less 2 x 2.
+    // Two in a row along any axis, with merged common vertices: 2 x 12 faces minus 2 x 2.
     for (unsigned axis = 0; axis < 3; ++axis) {
         auto row = one;
         for (const auto& v : one.vertices) row.vertices.push_back(v + Eigen::Vector3d::Unit(axis));
@@ -96,7 +96,7 @@ TEST(ScenesOverlap, Tetrahedra) {
     EXPECT_FALSE(overlap(unit_corner, moved(unit_corner, {0.9, 0, 0}), 0.2)) << "less than the slack";
     EXPECT_FALSE(overlap(unit_corner, moved(unit_corner, {1, 0, 0}), 1e-9)) << "touching";
     EXPECT_FALSE(overlap(unit_corner, moved(unit_corner, {0.4, 0.4, 0.4}), 1e-9)) << "boxes overlap";
-    // Edges that pass each other: only the cross product of one of each separates them.
+    // Edges that pass each other: only the cross product of an edge of each separates them.
     const Corners3 low = {{{-1, 0, 0}, {1, 0, 0}, {0, 0.2, -1}, {0, -0.2, -1.3}}};
     const Corners3 high = {{{0, -1, 0.05}, {0, 1, 0.05}, {0.2, 0, 1}, {-0.2, 0, 1.3}}};
     EXPECT_FALSE(overlap(low, high, 1e-9));

@@ -23,7 +23,7 @@ struct Row {
     double vertices, tetrahedra;
 };
 
-TEST(ScenesStarts, CountsOfTheirTableWithinTwoPercent) {
+TEST(ScenesStarts, CountsOfThePapersTableWithinTwoPercent) {
     const Row rows[] = {{"glasses", 2002, 1102.6e3, 3365.7e3}, {"funnel", 2002, 1596.7e3, 4676.1e3},
                         {"colosseum", 1729, 14793, 16140},     {"plates", 3, 1.65e3, 5.2e3},
                         {"tower", 24, 10.22e3, 37.8e3},        {"jacks", 2002, 1596.7e3, 4676.1e3}};
@@ -53,7 +53,7 @@ TEST(ScenesStarts, ExactCounts) {
     EXPECT_EQ(make_scene("block:bodies=3").bodies.size(), 4u);
 }
 
-/// Small variants of every scene that begins without overlap.
+/// Small variants of every scene that starts without overlap.
 const std::vector<std::string> small_scenes = {"glasses:bodies=60,size=3",
                                                "glasses:bodies=200",
                                                "funnel:bodies=60,size=4",
@@ -88,7 +88,7 @@ TEST(ScenesStarts, DefaultsOfThePaperDoNotOverlap) {
     }
 }
 
-TEST(ScenesStarts, EveryPartOfDynamicsIsThere) {
+TEST(ScenesStarts, EveryPartOfDynamicsIsSet) {
     for (const auto& kind : scene_kinds()) {
         SCOPED_TRACE(kind.name);
         const auto scene = make_scene(kind.name);
@@ -173,7 +173,7 @@ TEST(ScenesStarts, StonesOfAnArchShareVerticesInSinglePrecision) {
         }
 }
 
-TEST(ScenesStarts, WhatIsStackedTouchesExactly) {
+TEST(ScenesStarts, StackedBodiesTouchExactly) {
     for (const auto* name :
          {"arch:keystone=0", "colosseum:slices=5,layers=3", "temple", "block:bodies=3,stack=1"}) {
         SCOPED_TRACE(name);
@@ -191,7 +191,7 @@ TEST(ScenesStarts, WhatIsStackedTouchesExactly) {
             tops.insert(high);
             if (i > 0) bottoms.push_back(low);
         }
-        // Stones of an arch but the outermost rest on inclined joints.
+        // All stones of an arch except the outermost rest on inclined joints.
         std::size_t hanging = 0;
         for (const auto low : bottoms) hanging += tops.count(low) == 0 ? 1 : 0;
         const std::map<std::string, std::size_t> inclined{{"arch:keystone=0", 4},

@@ -43,7 +43,7 @@ TEST(Settings, IntegersMayBeWrittenWithAnExponent) {
     EXPECT_THAT(message_of([] { with({{"seed_threshold", "1.5"}}); }), HasSubstr("impossible"));
 }
 
-TEST(Settings, UnknownNamesOfferTheNearest) {
+TEST(Settings, UnknownNamesSuggestTheNearest) {
     EXPECT_THAT(message_of([] { with({{"rouding", "safe"}}); }), HasSubstr("the nearest is 'rounding'"));
     EXPECT_THAT(message_of([] {
                     with({{"k", "10"}});
@@ -93,7 +93,7 @@ TEST(Settings, DecisionsWithCertaintyNeedDouble) {
                   "none"));
 }
 
-/// What tiled leaves to the device and the scene: one of a GPU with more than six directions asks both.
+/// Values that tiled derives from device and scene; on a GPU, more than six directions depend on both.
 TEST(Settings, TiledFitsDeviceAndScene) {
     const auto& tiled = algorithm("tiled");
     DeviceInfo gpu;
@@ -132,7 +132,7 @@ TEST(Settings, TiledFitsDeviceAndScene) {
     EXPECT_EQ(fitted(gpu, &small, {{"most_seeds", "7"}}).text("most_seeds"), "7");
 }
 
-/// 48 KiB, as a CUDA device gives a kernel: what its compiler would refuse is said beforehand.
+/// 48 KiB, the limit of a CUDA kernel: the error comes before the compiler's.
 TEST(Settings, StacksMustFitLocalMemory) {
     DeviceInfo info;
     info.id = "cuda:9";
@@ -171,7 +171,7 @@ TEST(Geometry, DirectionsAreHalfOfK) {
         for (const auto& d : all) lines.insert(std::max(d, {-d[0], -d[1], -d[2]}));
         EXPECT_EQ(lines.size(), all.size()) << k;
     }
-    // What FCL's sets of 16 and 24 planes leave out of the symmetric ones of 18 and 26.
+    // Directions in the symmetric sets of 18 and 26 planes that FCL's sets of 16 and 24 lack.
     const auto has = [](int k, const std::array<int, 3>& d) {
         const auto all = directions({.k = k});
         return std::find(all.begin(), all.end(), d) != all.end();

@@ -12,7 +12,7 @@ using namespace test;
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Solved nearly exactly, so that tests measure the model and not the tolerance.
+/// Solved almost exactly, so tests measure the model and not the tolerance.
 World exact_world(Surface surface) {
     World world(surface);
     world.dynamics.solver.iterations = 2000;
@@ -27,7 +27,7 @@ void add_ground(World& world, double size = 20) { world.add(box({size, 1, size})
 
 class Resting : public testing::TestWithParam<SolverSettings::Method> {};
 
-TEST_P(Resting, BoxStaysWhereItIs) {
+TEST_P(Resting, BoxStaysInPlace) {
     auto world = exact_world({0.5, 0.3});
     world.dynamics.solver.method = GetParam();
     add_ground(world);
@@ -41,7 +41,7 @@ TEST_P(Resting, BoxStaysWhereItIs) {
     EXPECT_LT(pose.rotation.vec().norm(), 1e-3);
 }
 
-TEST_P(Resting, BlockSlidesAsFarAsCoulombSays) {
+TEST_P(Resting, BlockSlidesTheCoulombDistance) {
     auto world = exact_world({0.3, 0});
     world.dynamics.solver.method = GetParam();
     world.dynamics.stepping.step = 0.002;
@@ -64,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(SimulateContacts, Resting,
                          testing::Values(SolverSettings::Method::gauss_seidel,
                                          SolverSettings::Method::jacobi));
 
-/// Height reached again after a drop, over the height dropped from.
+/// Ratio of rebound height to drop height.
 double rebound(Mesh mesh, double lowest, double restitution) {
     auto world = exact_world({0, restitution});
     world.dynamics.stepping.step = 0.0005;
@@ -104,7 +104,7 @@ TEST(SimulateContacts, BounceCanBeSwitchedOff) {
     EXPECT_NEAR(simulation.step(detector(scene)).kinetic, 0, 1e-6);
 }
 
-/// Penetration and kinetic energy of a box put 0.05 of its size into the ground, step by step.
+/// Penetration and kinetic energy per step of a box placed 0.05 of its size deep in the ground.
 std::vector<StepReport> sunk(bool pre, bool post) {
     auto world = exact_world({0.5, 0});
     world.dynamics.stepping.pre_stabilize = pre;
@@ -119,13 +119,13 @@ std::vector<StepReport> sunk(bool pre, bool post) {
     return reports;
 }
 
-TEST(SimulateContacts, StabilisationTakesPenetrationAway) {
+TEST(SimulateContacts, StabilisationRemovesPenetration) {
     const auto none = sunk(false, false);
     EXPECT_NEAR(none.back().deepest, 0.05, 1e-4);
     for (const bool pre : {false, true}) {
         const auto reports = sunk(pre, !pre);
         EXPECT_LT(reports.back().deepest, 0.002);
-        EXPECT_GT(reports[1].deepest, 0.039);   // a hundredth of the size at most in one step
+        EXPECT_GT(reports[1].deepest, 0.039);   // at most a hundredth of the size per step
         EXPECT_EQ(reports[1].kinetic > 1, pre); // positions are corrected without velocity
         EXPECT_LT(reports.back().kinetic, 1);
     }
@@ -165,7 +165,7 @@ World arch(bool keystone) {
     return world;
 }
 
-/// The farthest that any stone's middle has moved after 150 steps.
+/// Largest displacement of a stone's centre after 150 steps.
 double fallen(World world) {
     const auto& scene = world.finish();
     Simulation simulation(scene);
@@ -181,7 +181,7 @@ double fallen(World world) {
     return most;
 }
 
-TEST(SimulateContacts, ArchStandsByItsKeystone) {
+TEST(SimulateContacts, ArchNeedsItsKeystone) {
     EXPECT_LT(fallen(arch(true)), 0.02);
     EXPECT_GT(fallen(arch(false)), 0.5);
 }

@@ -11,12 +11,12 @@ namespace {
 
 using namespace test;
 
-// Motions with known ends, with the settings that a scene has which names none: within 2 % of each. Half a
-// step's motion is all that a bounce or a stop can be early or late, so that these tell settings from steps.
+// Motions with known results under default settings: within 2 % of each. A bounce or stop can be early or
+// late by half a step's motion, so the tests are sensitive to settings rather than to steps.
 
 constexpr double earth = 9.82, radians = 3.14159265358979323846 / 180, within = 0.02;
 
-/// A box of `side` and `density` on the ground, number 1.
+/// A box of `side` and `density` on the ground, body 1.
 World on_ground(Surface surface, double side = 1, double density = 2000) {
     World world(surface);
     world.dynamics.materials.densities = {density};
@@ -24,13 +24,13 @@ World on_ground(Surface surface, double side = 1, double density = 2000) {
     return world;
 }
 
-/// Gravity of a ground that goes down along x.
+/// Tilts gravity as for a ground that slopes down along x.
 void tilt(World& world, double degrees) {
     world.dynamics.gravity = {earth * std::sin(radians * degrees), -earth * std::cos(radians * degrees), 0};
 }
 
 struct Ended {
-    Eigen::Vector3d place; ///< of body 1
+    Eigen::Vector3d position; ///< of body 1
     Eigen::Quaterniond rotation;
     std::size_t iterations = 0, not_converged = 0;
     double deepest = 0; ///< in the last step
@@ -48,28 +48,28 @@ Ended ended(World& world, int steps, const ContactSettings& contacts = least_tra
         result.deepest = report.deepest;
     }
     const auto pose = simulation.frame().poses[1];
-    result.place = pose.translation;
+    result.position = pose.translation;
     result.rotation = pose.rotation;
     return result;
 }
 
-/// Gravity and friction cancel to a hundredth: 1/2 g (sin - mu cos) t^2, whatever the block weighs.
-TEST(SimulateDefaults, BlockSlidesDownASlopeThatHardlyTilts) {
+/// Gravity and friction cancel to a hundredth: 1/2 g (sin - mu cos) t^2, independent of the block's mass.
+TEST(SimulateDefaults, BlockSlidesDownASlightSlope) {
     for (const auto& [side, density] : {std::pair(1.0, 2000.0), {0.02, 1.0}, {30.0, 8000.0}}) {
         auto world = on_ground({0.5, 0}, side, density);
         tilt(world, 27);
         world.add(box({side, side, side}), at(0, (0.5 - 1e-4) * side, 0));
         const auto end = ended(world, 200);
         const double expected = 0.5 * earth * (std::sin(27 * radians) - 0.5 * std::cos(27 * radians)) * 2 * 2;
-        EXPECT_NEAR(end.place.x(), expected, within * expected) << side;
+        EXPECT_NEAR(end.position.x(), expected, within * expected) << side;
         EXPECT_EQ(end.not_converged, 0u) << side;
         EXPECT_LT(end.iterations, 200u * 30) << side;
     }
 }
 
-/// By how much of what it must a block slides too far down a slope that hardly tilts; at the start it is
-/// `sunk` of its size deep in a ground 100 times as wide.
-double too_far(double side, bool ground_first, double sunk = 0, const StepSettings& stepping = {}) {
+/// Relative excess of the distance that a block slides down a slight slope. It starts `sunk` of its size deep
+/// in a ground 100 times as wide.
+double excess_distance(double side, bool ground_first, double sunk = 0, const StepSettings& stepping = {}) {
     World world({0.5, 0});
     world.dynamics.stepping = stepping;
     tilt(world, 27);
@@ -88,22 +88,22 @@ double too_far(double side, bool ground_first, double sunk = 0, const StepSettin
 TEST(SimulateDefaults, BlockOfAnySizeSlidesWhicheverBodyIsFirst) {
     for (const double side : {0.05, 0.125, 0.3, 0.5, 1.0, 20.0})
         for (const bool ground_first : {true, false})
-            EXPECT_NEAR(too_far(side, ground_first), 0, within) << side << " " << ground_first;
+            EXPECT_NEAR(excess_distance(side, ground_first), 0, within) << side << " " << ground_first;
 }
 
-/// What each of the two is for.
-TEST(SimulateDefaults, WithoutSurfaceNormalsOrALayerItSticksOrGoesTooFar) {
+/// The purpose of each of the two settings.
+TEST(SimulateDefaults, WithoutSurfaceNormalsOrALayerItSticksOrSlidesTooFar) {
     for (const double sunk : {1e-4, 1e-3}) {
-        EXPECT_LT(too_far(1, true, sunk, {.surface_normals = false}), -0.9);
-        EXPECT_NEAR(too_far(1, true, sunk), 0, within);
+        EXPECT_LT(excess_distance(1, true, sunk, {.surface_normals = false}), -0.9);
+        EXPECT_NEAR(excess_distance(1, true, sunk), 0, within);
     }
     double farthest = 0;
     for (const double side : {0.05, 0.125, 0.3, 0.5, 1.0, 20.0})
-        farthest = std::max(farthest, std::fabs(too_far(side, true, 0, {.contact_layer = 0})));
+        farthest = std::max(farthest, std::fabs(excess_distance(side, true, 0, {.contact_layer = 0})));
     EXPECT_GT(farthest, 0.05);
 }
 
-/// It sinks by the layer, and all its corners keep touching.
+/// The block sinks by the layer, and all its corners stay in contact.
 TEST(SimulateDefaults, BlockSettlesInTheLayerAndKeepsItsCorners) {
     for (const double side : {0.01, 0.1, 1.0, 10.0}) {
         World world({0.5, 0});
@@ -128,12 +128,12 @@ TEST(SimulateDefaults, BlockStaysOnASlopeThatIsNotSteepEnough) {
     auto world = on_ground({0.5, 0});
     tilt(world, 26);
     world.add(box({1, 1, 1}), at(0, 0.5, 0));
-    EXPECT_LT(std::fabs(ended(world, 300).place.x()), 1e-3);
+    EXPECT_LT(std::fabs(ended(world, 300).position.x()), 1e-3);
 }
 
-/// v^2 / (2 mu g), less what the step in which it stops takes from it: of the speed r left then, r h / 2 is
-/// gone in place of r^2 / (2 mu g).
-TEST(SimulateDefaults, BlockThatSlidesStopsWhereCoulombSays) {
+/// v^2 / (2 mu g), corrected for the step in which it stops: at the remaining speed r, it moves r h / 2
+/// instead of r^2 / (2 mu g).
+TEST(SimulateDefaults, BlockStopsAfterTheCoulombDistance) {
     for (const double friction : {0.2, 0.5}) {
         auto world = on_ground({friction, 0});
         BodyDynamics moves;
@@ -143,7 +143,7 @@ TEST(SimulateDefaults, BlockThatSlidesStopsWhereCoulombSays) {
         const double rest = std::fmod(2, slowed);
         const double expected = (4 - rest * rest) / (2 * friction * earth) + 0.5 * 0.01 * rest;
         EXPECT_NEAR(expected, 4 / (2 * friction * earth), 1e-3);
-        EXPECT_NEAR(ended(world, 200).place.x(), expected, 0.002 * expected) << friction;
+        EXPECT_NEAR(ended(world, 200).position.x(), expected, 0.002 * expected) << friction;
     }
 }
 
@@ -155,19 +155,19 @@ TEST(SimulateDefaults, FreeMotionIsNotDamped) {
     moves.spin = {0, 3, 0};
     world.add(box({1, 1, 1}), at(5, 0, 0), false, moves);
     const auto end = ended(world, 1000);
-    EXPECT_NEAR(end.place.x(), 5 + 70, 1e-9);
-    EXPECT_NEAR(end.place.y(), -0.5 * earth * 100, 1e-8);
+    EXPECT_NEAR(end.position.x(), 5 + 70, 1e-9);
+    EXPECT_NEAR(end.position.y(), -0.5 * earth * 100, 1e-8);
     EXPECT_NEAR(std::fabs(end.rotation.dot(turn({0, 1, 0}, 30))), 1, 1e-4);
 }
 
-/// What it had sunk in by is taken back to what settings tolerate.
-TEST(SimulateDefaults, WhatFallsWithoutBouncingLiesOnTheGround) {
+/// The initial penetration is reduced to the tolerance of the settings.
+TEST(SimulateDefaults, BodiesThatDoNotBounceEndOnTheGround) {
     for (const double side : {0.1, 1.0}) {
         auto world = on_ground({0.5, 0}, side);
         world.add(box({side, side, side}), at(0, 1.5 * side, 0));
         const auto end = ended(world, 200);
         EXPECT_LT(end.deepest, 1.01 * simulate::tolerated_gap * side);
-        EXPECT_NEAR(end.place.y(), 0.5 * side, 1.01 * simulate::tolerated_gap * side);
+        EXPECT_NEAR(end.position.y(), 0.5 * side, 1.01 * simulate::tolerated_gap * side);
     }
 }
 
@@ -189,7 +189,7 @@ TEST(SimulateDefaults, BounceKeepsTheSquareOfRestitution) {
     FAIL() << "it does not come down";
 }
 
-/// Without gravity tolerances are measured by the speed at the start.
+/// Without gravity, tolerances are relative to the initial speed.
 TEST(SimulateDefaults, EqualBallsSwapTheirVelocities) {
     World world({0, 1});
     world.dynamics.gravity.setZero();
@@ -198,8 +198,8 @@ TEST(SimulateDefaults, EqualBallsSwapTheirVelocities) {
     world.add(ball(0.5, 1), at(-1.2, 0, 0), false, moves);
     world.add(ball(0.5, 1), at(0.2, 0, 0));
     const auto end = ended(world, 100, {});
-    const double met = (1.4 - 1) / 3; // s
-    EXPECT_NEAR(end.place.x(), 0.2 + 3 * (1 - met), within * 3);
+    const double collision_time = (1.4 - 1) / 3; // s
+    EXPECT_NEAR(end.position.x(), 0.2 + 3 * (1 - collision_time), within * 3);
     EXPECT_EQ(end.not_converged, 0u);
 }
 
@@ -213,7 +213,7 @@ TEST(SimulateDefaults, PillarStandsOnASlopeUnlessItIsTooSteep) {
         const double tipped = 2 * std::acos(std::min(1.0, std::fabs(end.rotation.w())));
         EXPECT_EQ(tipped > 0.5, degrees > 26.6) << degrees << " " << tipped;
         if (degrees < 26) {
-            EXPECT_LT(end.place.x(), 0.01);
+            EXPECT_LT(end.position.x(), 0.01);
         }
     }
 }

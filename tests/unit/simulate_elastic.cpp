@@ -45,7 +45,7 @@ class SimulateElastic : public testing::TestWithParam<Law> {};
 TEST_P(SimulateElastic, ForceIsMinusTheGradientOfEnergy) {
     const auto mesh = beam({1, 1, 2}, {1, 1, 2});
     const auto elastic = material(mesh, GetParam());
-    for (const double amplitude : {0.1, 0.9}) { // the second turns elements inside out
+    for (const double amplitude : {0.1, 0.9}) { // the second inverts elements
         auto positions = shaken(mesh, amplitude);
         EXPECT_EQ(strain(elastic, positions).inverted > 0, amplitude > 0.5);
         const auto forces = forces_at(elastic, positions);
@@ -88,7 +88,7 @@ TEST_P(SimulateElastic, SmallStrainObeysHooke) {
     EXPECT_LT((stress - expected).norm(), 1e-5 * expected.norm());
 }
 
-TEST_P(SimulateElastic, ForcesAddUpToNothing) {
+TEST_P(SimulateElastic, ForcesSumToZero) {
     const auto mesh = beam({1, 1, 2}, {2, 2, 2});
     const auto positions = shaken(mesh, 0.5);
     const auto forces = forces_at(material(mesh, GetParam()), positions);
@@ -114,7 +114,7 @@ TEST(SimulatePolar, IsTheBestOfAllRotations) {
         const auto r = closest_rotation(f);
         ASSERT_NEAR(r.determinant(), 1, 1e-9);
         ASSERT_LT((r * r.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-9);
-        // tr(R'F) is greatest when S = R'F is symmetric and tr(S) - S has no negative eigenvalue.
+        // tr(R'F) is largest when S = R'F is symmetric and tr(S) - S has no negative eigenvalue.
         const Eigen::Matrix3d s = r.transpose() * f;
         ASSERT_LT((s - s.transpose()).norm(), 1e-9);
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(s.trace() * Eigen::Matrix3d::Identity()
@@ -139,7 +139,8 @@ TEST(SimulateElasticMesh, InvertedElementsAreCounted) {
     const auto elastic = material(mesh, Law::corotational);
     auto positions = mesh.vertices;
     EXPECT_EQ(strain(elastic, positions).inverted, 0u);
-    positions.back().x() = 0.75; // the middle, pushed out through one face: two elements stand on it
+    // the middle vertex, pushed out through one face: two elements contain that face
+    positions.back().x() = 0.75;
     EXPECT_EQ(strain(elastic, positions).inverted, 2u);
     for (auto& p : positions) p.x() = -p.x();
     EXPECT_EQ(strain(elastic, positions).inverted, 10u);
@@ -158,7 +159,7 @@ TEST(SimulateElasticMesh, MassIsLumpedAndPinnedVerticesHaveNone) {
     EXPECT_GT(elastic.inverse_masses[3], 0);
 }
 
-TEST(SimulateElasticMesh, DampingOfAUniformVelocityIsThatOfTheVolume) {
+TEST(SimulateElasticMesh, DampingOfAUniformVelocityIsProportionalToVolume) {
     const auto mesh = beam({1, 2, 3}, {1, 2, 1});
     const auto elastic = material(mesh, Law::corotational);
     const Positions velocities(mesh.vertices.size(), Eigen::Vector3d(1, 0, -2));

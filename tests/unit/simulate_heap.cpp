@@ -12,24 +12,24 @@ namespace {
 
 using namespace test;
 
-/// Boxes that fall onto each other, 27 of them, turned at random.
+/// 27 randomly rotated boxes that fall onto each other.
 World heap(Surface surface) {
     World world(surface);
     Random random(3);
     world.add(box({30, 1, 30}), at(0, -0.5, 0), true);
     for (int i = 0; i < 27; ++i) {
-        const Eigen::Vector3d place(0.9 * (i % 3) - 0.9, 0.8 + 1.1 * (i / 9), 0.9 * (i / 3 % 3) - 0.9);
-        world.add(box({0.8, 0.5, 0.6}), {random.rotation(), place});
+        const Eigen::Vector3d position(0.9 * (i % 3) - 0.9, 0.8 + 1.1 * (i / 9), 0.9 * (i / 3 % 3) - 0.9);
+        world.add(box({0.8, 0.5, 0.6}), {random.rotation(), position});
     }
     return world;
 }
 
 struct Energetic {
-    double start = 0;   ///< J, that the heap can lose by falling
-    double rise = 0;    ///< the most in one step, less what corrections lifted
+    double start = 0;   ///< J, potential energy that the heap can lose by falling
+    double rise = 0;    ///< largest gain in one step, minus the work of corrections
     double kinetic = 0; ///< at the end
-    double fastest = 0; ///< the greatest kinetic energy
-    double lifted = 0;  ///< in all
+    double fastest = 0; ///< largest kinetic energy
+    double lifted = 0;  ///< total work of corrections
 };
 
 Energetic energies(World world, int steps) {
@@ -48,7 +48,7 @@ Energetic energies(World world, int steps) {
     return result;
 }
 
-TEST(SimulateHeap, EnergyOnlyFallsButForWhatCorrectionsLift) {
+TEST(SimulateHeap, EnergyDecreasesExceptForTheWorkOfCorrections) {
     const auto heaped = energies(heap({0.5, 0}), 450);
     EXPECT_LT(heaped.rise, 1e-4 * heaped.start);
     EXPECT_LT(heaped.kinetic, 0.02 * heaped.fastest);
@@ -56,7 +56,7 @@ TEST(SimulateHeap, EnergyOnlyFallsButForWhatCorrectionsLift) {
     EXPECT_LT(heaped.lifted, 0.1 * heaped.start);
 }
 
-/// J, of the second node, whose tensor of inertia is diagonal.
+/// Kinetic energy in J of the second node, whose inertia tensor is diagonal.
 double kinetic(const simulate::Problem& problem) {
     const auto& node = problem.nodes[1];
     double sum = 0.5 * node.velocity.squaredNorm() / node.inverse_mass;
@@ -64,8 +64,8 @@ double kinetic(const simulate::Problem& problem) {
     return sum;
 }
 
-/// A long body that comes down on its end and slides there: friction turns it, and Newton's law gives the
-/// end its speed back whatever that takes.
+/// A long body lands on its end and slides: friction rotates it, and Newton's law restores the end's speed at
+/// any cost in energy.
 simulate::Problem falling_rod(Random& random) {
     simulate::Problem problem;
     problem.nodes.resize(2);
@@ -86,7 +86,7 @@ TEST(SimulateHeap, BouncesAddNoEnergy) {
     int gains = 0, kept = 0;
     for (int i = 0; i < 500; ++i) {
         auto newton = falling_rod(random);
-        if (newton.rows[0].bounce >= 0) continue; // it parts already
+        if (newton.rows[0].bounce >= 0) continue; // already separating
         auto bounded = newton;
         const double before = kinetic(newton);
         simulate::solve(newton, settings, 1);
@@ -96,7 +96,8 @@ TEST(SimulateHeap, BouncesAddNoEnergy) {
         EXPECT_LT(kinetic(bounded), 1.002 * before + 1e-9) << i;
         if (kinetic(newton) > before) continue;
         ++kept;
-        EXPECT_EQ(bounded.rows[0].impulse, newton.rows[0].impulse) << i; // Newton's, where that loses
+        // Newton's impulse, where it loses energy
+        EXPECT_EQ(bounded.rows[0].impulse, newton.rows[0].impulse) << i;
     }
     EXPECT_GT(gains, 10);
     EXPECT_GT(kept, 10);

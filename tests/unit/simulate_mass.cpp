@@ -22,7 +22,7 @@ TEST(SimulateMass, BoxAwayFromItsOrigin) {
 }
 
 TEST(SimulateMass, OneTetrahedronByHand) {
-    // The corner of the unit cube: integrals of x^2 and x y over it are 1/60 and 1/120.
+    // The corner of the unit cube: the integrals of x^2 and x y over it are 1/60 and 1/120.
     Mesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     mesh.tetrahedra = {{0, 1, 2, 3}};
@@ -51,7 +51,7 @@ TEST(SimulateMass, InvertedTetrahedraCount) {
     EXPECT_LT((m.inertia - expected.inertia).norm(), 1e-14);
 }
 
-TEST(SimulateMass, NothingToWeighIsRefused) {
+TEST(SimulateMass, ZeroVolumeIsRefused) {
     Mesh flat;
     flat.name = "flat";
     flat.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};

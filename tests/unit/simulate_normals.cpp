@@ -18,7 +18,7 @@ using namespace test;
 
 Eigen::Vector3d any_direction(Random& random) { return random.direction(); }
 
-TEST(SimulateCone, NoSumOfRaysIsNearerThanTheNearest) {
+TEST(SimulateCone, NoCombinationOfRaysIsNearerThanTheNearest) {
     Random random(5);
     int inside = 0, outside_of = 0;
     for (int trial = 0; trial < 400; ++trial) {
@@ -28,7 +28,8 @@ TEST(SimulateCone, NoSumOfRaysIsNearerThanTheNearest) {
         const auto nearest = nearest_in_cone(rays, x);
         const Eigen::Vector3d rest = x - nearest;
         (length(rest) < 1e-7 ? inside : outside_of) += 1;
-        // Of all points of a convex cone the nearest alone sees x across its own direction and no ray ahead.
+        // The nearest point of a convex cone is characterised by two conditions: the rest is perpendicular to
+        // it, and no ray points along the rest.
         EXPECT_NEAR(dot(rest, nearest), 0, 1e-7);
         for (const auto& ray : rays) EXPECT_LT(dot(ray, rest), 1e-7);
     }
@@ -36,16 +37,16 @@ TEST(SimulateCone, NoSumOfRaysIsNearerThanTheNearest) {
     EXPECT_GT(outside_of, 100);
 }
 
-/// A distance of 1 less the square of what is far below rounding is 1: which point is nearer is seen from the
-/// points.
-TEST(SimulateCone, WhatIsNearlyAcrossARayIsOutside) {
+/// 1 minus the square of a value far below rounding is 1, so the distance cannot decide which point is
+/// nearer; the points can.
+TEST(SimulateCone, NearlyPerpendicularDirectionsAreOutside) {
     const std::vector<Eigen::Vector3d> up{Eigen::Vector3d::UnitY()};
     for (const double tilt : {0.0, 3e-9, -3e-9, 1e-7})
         EXPECT_NEAR(outside(up, {}, Eigen::Vector3d(1, tilt, 0).normalized()), 1, 1e-6) << tilt;
-    EXPECT_EQ(outside({}, {}, Eigen::Vector3d::UnitX()), 0); // a cone without rays holds everything
+    EXPECT_EQ(outside({}, {}, Eigen::Vector3d::UnitX()), 0); // a cone without rays contains everything
 }
 
-TEST(SimulateCone, EdgesThatCrossHaveOneDirectionInCommon) {
+TEST(SimulateCone, CrossingEdgesHaveOneCommonDirection) {
     const double r = std::sqrt(0.5);
     const std::vector<Eigen::Vector3d> one{{r, r, 0}, {-r, r, 0}}, other{{0, r, r}, {0, r, -r}};
     Random random(2);
@@ -57,7 +58,7 @@ TEST(SimulateCone, EdgesThatCrossHaveOneDirectionInCommon) {
     EXPECT_GT(outside(one, other, Eigen::Vector3d(r, r, 0)), 0.5);
 }
 
-TEST(SimulateBoundary, FacesNearAPointAreThoseAsFarAsTheNearest) {
+TEST(SimulateBoundary, FacesNearAPointAreTheEquallyNearOnes) {
     const auto mesh = box({1, 1, 1});
     const Boundary boundary(mesh);
     std::vector<NearFace> faces;
@@ -97,14 +98,14 @@ TEST(SimulateBoundary, DistanceFromATriangleIsThatOfItsNearestPoint) {
     }
 }
 
-struct Mended {
+struct SurfaceContacts {
     std::vector<ContactPoint> given, set;
 };
 
-/// Of a world's start, by the rule that takes the least translation.
-Mended mended(World& world) {
+/// Contacts at a world's start by the least-translation rule, before and after set_surface_normals().
+SurfaceContacts surface_contacts(World& world) {
     const auto& scene = world.finish();
-    Mended result;
+    SurfaceContacts result;
     detector(scene, least_translation)(world.start, result.given);
     result.set = result.given;
     set_surface_normals(make_model(scene), world.start, result.set);
@@ -116,20 +117,20 @@ bool equal(const ContactPoint& a, const ContactPoint& b) {
            && a.depth == b.depth;
 }
 
-/// How many of the contacts have normals more than `angle` (radians) from up and down.
+/// Number of contacts whose normals deviate by more than `angle` (radians) from vertical.
 std::size_t slanted(std::span<const ContactPoint> contacts, double angle = 1e-6) {
     return static_cast<std::size_t>(std::count_if(contacts.begin(), contacts.end(), [&](const auto& c) {
         return std::hypot(c.normal[0], c.normal[2]) > std::sin(angle);
     }));
 }
 
-/// Two cubes that stand on edges, the upper one across the lower one: their normal is no face's.
-TEST(SimulateNormals, EdgesThatCrossKeepTheNormalAcrossBoth) {
+/// Two cubes on edges, the upper one crossing the lower one: their normal is that of no face.
+TEST(SimulateNormals, CrossingEdgesKeepTheirCommonNormal) {
     World world;
     const double quarter = std::numbers::pi / 4, sunk = 0.01;
     world.add(box({1, 1, 1}), {turn({0, 0, 1}, quarter), {0, 0, 0}});
     world.add(box({1, 1, 1}), {turn({1, 0, 0}, quarter), {0.1, std::sqrt(2.0) - sunk, 0.2}});
-    const auto result = mended(world);
+    const auto result = surface_contacts(world);
     ASSERT_GT(result.given.size(), 0u);
     EXPECT_EQ(slanted(result.set), 0u);
     std::size_t kept = 0;
@@ -142,7 +143,7 @@ TEST(SimulateNormals, EdgesThatCrossKeepTheNormalAcrossBoth) {
     EXPECT_GT(kept, 0u);
 }
 
-TEST(SimulateNormals, CubeOnItsEdgeOrCornerIsHeldUpwards) {
+TEST(SimulateNormals, CubeOnItsEdgeOrCornerIsPushedUp) {
     const double quarter = std::numbers::pi / 4;
     const auto on_corner = product(turn({1, 0, 0}, std::atan(std::sqrt(0.5))), turn({0, 0, 1}, quarter));
     for (const bool ground_first : {true, false})
@@ -152,28 +153,28 @@ TEST(SimulateNormals, CubeOnItsEdgeOrCornerIsHeldUpwards) {
             if (ground_first) world.add(box({20, 1, 20}), at(0, -0.5, 0), true);
             world.add(box({1, 1, 1}), {rotation, {0.3, height - 1e-4, 0.2}});
             if (!ground_first) world.add(box({20, 1, 20}), at(0, -0.5, 0), true);
-            const auto result = mended(world);
+            const auto result = surface_contacts(world);
             ASSERT_GT(result.set.size(), 0u);
             EXPECT_EQ(slanted(result.set), 0u);
             for (const auto& contact : result.set) EXPECT_EQ(contact.normal[1] > 0, ground_first);
         }
 }
 
-/// Sides that are flush oppose nothing: on each other, cubes push up and down alone, however deep.
+/// Flush sides exert nothing: stacked cubes push only up and down, however deep.
 TEST(SimulateNormals, CubesOnEachOtherPushUpAndDown) {
     std::size_t given = 0;
     for (const double sunk : {0.0, 1e-9, 1e-4, 0.004})
         for (const double shift : {0.0, 1e-10, 0.1}) {
             World world;
             for (int i = 0; i < 3; ++i) world.add(box({0.3, 0.3, 0.3}), at(shift * i, (0.3 - sunk) * i, 0));
-            const auto result = mended(world);
+            const auto result = surface_contacts(world);
             given += slanted(result.given);
             EXPECT_EQ(slanted(result.set), 0u) << sunk << " " << shift;
         }
     EXPECT_GT(given, 0u);
 }
 
-/// A corner of a cube 1e-4 below a ground, with the normal of edges that overlap by rounding alone.
+/// A corner of a cube 1e-4 below a ground, with the normal of edges that overlap by rounding only.
 World corner_in_ground() {
     World world;
     world.add(box({20, 1, 20}), at(0, -0.5, 0), true);
@@ -183,7 +184,7 @@ World corner_in_ground() {
 
 ContactPoint sideways(const Scene& scene) {
     const auto& mesh = scene.meshes[1];
-    // The first tetrahedron at the corner, whichever that is.
+    // The first tetrahedron at the corner.
     std::uint32_t at_corner = 0;
     while (std::none_of(mesh.tetrahedra[at_corner].begin(), mesh.tetrahedra[at_corner].end(),
                         [&](auto v) { return mesh.vertices[v] == Eigen::Vector3d(0.5, -0.5, 0.5); }))
@@ -195,7 +196,7 @@ ContactPoint sideways(const Scene& scene) {
             .depth = -1e-9};
 }
 
-TEST(SimulateNormals, SidewaysBecomesUpAndAsDeepAsThePointIs) {
+TEST(SimulateNormals, SidewaysNormalsBecomeVerticalWithTheDepthOfThePoint) {
     auto world = corner_in_ground();
     const auto& scene = world.finish();
     std::vector<ContactPoint> contacts{sideways(scene)};
@@ -205,7 +206,7 @@ TEST(SimulateNormals, SidewaysBecomesUpAndAsDeepAsThePointIs) {
     EXPECT_EQ(contacts[0].point, sideways(scene).point);
 }
 
-TEST(SimulateNormals, OtherBodiesContactsStayAsTheyAre) {
+TEST(SimulateNormals, ContactsOfDeformableBodiesAreUnchanged) {
     auto world = corner_in_ground();
     Elastic elastic;
     elastic.young = 1e5;

@@ -39,25 +39,25 @@ std::vector<ContactPoint> square(std::size_t count, std::uint32_t body_b) {
     return contacts;
 }
 
-TEST(SimulateReduce, NearbyContactsOfTheSameBodiesAreOne) {
+TEST(SimulateReduce, NearbyContactsOfTheSameBodiesAreMerged) {
     const std::vector<ContactPoint> contacts{
         contact({0, 0, 1, 0}, 3, {0, 0, 0}, -1), contact({0, 1, 1, 0}, 0, {5e-7, 0, 0}, -2),
         contact({0, 2, 1, 0}, 0, {5e-7, 0, 0}, -3, {1, 0, 0}), contact({0, 3, 1, 0}, 0, {2e-6, 0, 0}, -4),
         contact({0, 4, 2, 0}, 0, {0, 0, 0}, -5)};
     const auto kept = reduce_contacts(contacts, sizes, {});
     ASSERT_EQ(kept.size(), 4u);
-    EXPECT_EQ(kept[0].feature, 3u);     // the first stands for both,
-    EXPECT_EQ(kept[0].depth, -2);       // as deep as the deeper
-    EXPECT_EQ(kept[1].normal[0], 1);    // another direction
-    EXPECT_EQ(kept[2].point[0], 2e-6);  // too far
-    EXPECT_EQ(kept[3].pair.body_b, 2u); // other bodies
+    EXPECT_EQ(kept[0].feature, 3u);     // the first represents both,
+    EXPECT_EQ(kept[0].depth, -2);       // with the larger depth
+    EXPECT_EQ(kept[1].normal[0], 1);    // a different direction
+    EXPECT_EQ(kept[2].point[0], 2e-6);  // too far away
+    EXPECT_EQ(kept[3].pair.body_b, 2u); // a different body
 }
 
-TEST(SimulateReduce, NeighboursAreFoundAcrossCellWalls) {
+TEST(SimulateReduce, NeighboursAreFoundAcrossCells) {
     const auto contacts = square(3000, 1);
     const auto kept = reduce_contacts(contacts, sizes, {});
     EXPECT_EQ(kept.size(), 1000u);
-    // Against all pairs: nothing kept lies near, nothing left out lies far.
+    // Against all pairs: no two kept contacts are near each other, and every omitted one is near a kept one.
     for (std::size_t i = 0; i < kept.size(); ++i)
         for (std::size_t j = 0; j < i; ++j) ASSERT_GE(distance(kept[i], kept[j]), 1e-6);
 }
@@ -119,7 +119,7 @@ TEST(SimulateReduce, AMillionContactsInASecond) {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     EXPECT_EQ(kept.size(), 16000u);
     RecordProperty("milliseconds", static_cast<int>(seconds.count() * 1000));
-    EXPECT_LT(seconds.count(), 10); // far above what it takes: only a wrong order of growth fails
+    EXPECT_LT(seconds.count(), 10); // far above the expected time: only a wrong complexity fails
 }
 
 } // namespace

@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-/// Of all bodies, the angular one about the origin.
+/// Momenta of all bodies; the angular one about the origin.
 struct Momenta {
     Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
 };
@@ -32,7 +32,7 @@ World tumbling() {
     World world({0.4, 0.6});
     Random random(5);
     world.dynamics.gravity.setZero();
-    world.dynamics.stepping.post_stabilize = false; // which moves centres without an impulse
+    world.dynamics.stepping.post_stabilize = false; // it moves centres without an impulse
     for (int i = 0; i < 6; ++i) {
         const Eigen::Vector3d place(i % 3 * 1.5, i / 3 * 1.5, 0.2 * i);
         BodyDynamics moves;
@@ -59,7 +59,7 @@ TEST(SimulateRigid, FreeFallIsExact) {
     EXPECT_NEAR(report.kinetic + report.potential, 1000 * 14 + 2000 * 9.82 * 10, 1e-5);
 }
 
-TEST(SimulateRigid, DampingIsThatOfTheFormula) {
+TEST(SimulateRigid, DampingFollowsItsFormula) {
     World world;
     BodyDynamics moves;
     moves.velocity = {1, 0, 0};
@@ -72,7 +72,7 @@ TEST(SimulateRigid, DampingIsThatOfTheFormula) {
     EXPECT_NEAR(report.kinetic, 1000 * std::exp(-1.0), 1000 * 0.005);
 }
 
-TEST(SimulateRigid, MomentaAreKeptThroughCollisions) {
+TEST(SimulateRigid, MomentaAreConservedInCollisions) {
     auto world = tumbling();
     const auto& scene = world.finish();
     const auto model = simulate::make_model(scene);
@@ -92,7 +92,7 @@ TEST(SimulateRigid, MomentaAreKeptThroughCollisions) {
     EXPECT_GT((motion.rigid[0].angular - simulate::starting_motion(model).rigid[0].angular).norm(), 1);
 }
 
-TEST(SimulateRigid, MomentumIsThatOfTheMotionSeen) {
+TEST(SimulateRigid, MomentumEqualsThatOfTheObservedMotion) {
     auto world = tumbling();
     Simulation simulation(world.finish());
     simulation.step(no_contacts);
@@ -101,16 +101,16 @@ TEST(SimulateRigid, MomentumIsThatOfTheMotionSeen) {
     const auto& moves = world.dynamics.bodies[2];
     const Eigen::AngleAxisd turn(end.rotation * start.rotation.conjugate());
     EXPECT_LT((turn.axis() * turn.angle() / 0.01 - moves.spin).norm(), 0.05);
-    const Eigen::Vector3d centre(0.3, 0, 0); // of mass, away from the mesh's origin
+    const Eigen::Vector3d centre(0.3, 0, 0); // centre of mass, away from the mesh's origin
     const Eigen::Vector3d path =
         end.rotation * centre + end.translation - start.rotation * centre - start.translation;
     EXPECT_LT((path / 0.01 - moves.velocity).norm(), 1e-9);
 }
 
-TEST(SimulateRigid, FreeSpinKeepsItsEnergyNearly) {
+TEST(SimulateRigid, FreeSpinAlmostConservesEnergy) {
     World world;
     BodyDynamics moves;
-    moves.spin = {0.01, 5, 0}; // about the middle axis, which turns over again and again
+    moves.spin = {0.01, 5, 0}; // about the intermediate axis, which flips repeatedly
     world.add(box({1, 0.6, 0.3}), at(0, 0, 0), false, moves);
     world.dynamics.gravity.setZero();
     world.dynamics.stepping.angular_damping = 0;

@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-TEST(SimulateRows, FactorsAreWhatUnitImpulsesDo) {
+TEST(SimulateRows, FactorsAreResponsesToUnitImpulses) {
     Problem problem;
     problem.nodes.resize(2);
     for (auto& node : problem.nodes) {
@@ -30,7 +30,7 @@ TEST(SimulateRows, FactorsAreWhatUnitImpulsesDo) {
     EXPECT_GT(std::fabs(row.mixed_binormal), 0.01);
 }
 
-TEST(SimulateRows, AttachmentsHoldThePointOfContact) {
+TEST(SimulateRows, AttachmentsInterpolateThePointOfContact) {
     World world;
     world.add(box({1, 1, 1}), at(0, 0, 0));
     Elastic elastic;
@@ -62,7 +62,7 @@ TEST(SimulateConvergence, UndoesAndReducesOnGrowthAndRecovers) {
     EXPECT_EQ(convergence.judge(1), go_on);
     EXPECT_EQ(convergence.judge(2), diverged);
     EXPECT_DOUBLE_EQ(convergence.scale(), 0.9);
-    EXPECT_DOUBLE_EQ(convergence.residual(), 1); // that of the pass which stands
+    EXPECT_DOUBLE_EQ(convergence.residual(), 1); // of the pass that was kept
     EXPECT_EQ(convergence.judge(0.9), go_on);
     EXPECT_DOUBLE_EQ(convergence.residual(), 1); // at full r-factors
     EXPECT_DOUBLE_EQ(convergence.scale(), 1);

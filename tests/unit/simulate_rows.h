@@ -5,7 +5,7 @@
 
 namespace tandem::test {
 
-/// Row by hand between node 0 and node 1, at arms.
+/// A contact row between node 0 and node 1, at the given arms.
 inline simulate::ContactRow row_between(const Eigen::Vector3d& arm_a, const Eigen::Vector3d& arm_b,
                                         double friction) {
     simulate::ContactRow row;

@@ -30,7 +30,7 @@ Eigen::Vector3d mean(const std::vector<Eigen::Vector3d>& points) {
     return sum / static_cast<double>(points.size());
 }
 
-/// A beam along x, held at x = 0, that swings under its weight.
+/// A beam along x, clamped at x = 0, that swings under its weight.
 World cantilever(Law law) {
     World world;
     world.dynamics.materials.densities[0] = 1000;
@@ -67,7 +67,7 @@ TEST_P(SimulateSoft, CantileverKeepsItsEnergy) {
 
 INSTANTIATE_TEST_SUITE_P(Laws, SimulateSoft, testing::Values(Law::corotational, Law::saint_venant_kirchhoff));
 
-TEST(SimulateSoftContacts, PushOnlyWhenCoupled) {
+TEST(SimulateSoftContacts, ActOnlyWhenCoupled) {
     for (const bool couple : {true, false}) {
         World world({0.5, 0});
         world.dynamics.stepping.step = 1e-3;
@@ -127,7 +127,8 @@ TEST(SimulateSoftContacts, CollisionsKeepMomentum) {
     std::size_t kept = 0;
     for (int i = 0; i < 300; ++i) kept += simulation.step(detect).kept;
     EXPECT_GT(kept, 10u);
-    // All elements of a beam have one volume; velocities of the second half of the last step from two frames.
+    // All elements of a beam have one volume; velocities of the second half of the last step come from two
+    // frames.
     constexpr double corner = 2000 * 0.25 / 12 / 4;
     const auto end = simulation.frame();
     Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
@@ -160,12 +161,12 @@ TEST(SimulateSoftSteps, AdaptiveStepIsHalvedAndDoubled) {
     for (int i = 1; i < 11; ++i) lengths.push_back(simulation.step(count).length);
     EXPECT_EQ(detections, 11 + 10 * 3u);
     lengths.push_back(simulation.step(count).length);
-    EXPECT_EQ(detections, 11 + 10 * 3 + 5u); // ten passes: twice the step was tried, and refused
+    EXPECT_EQ(detections, 11 + 10 * 3 + 5u); // ten passes: a doubled step was tried and rejected
     for (int i = 12; i < 300; ++i) lengths.push_back(simulation.step(count).length);
-    EXPECT_EQ(lengths.front(), 0.002); // halved four times,
+    EXPECT_EQ(lengths.front(), 0.002); // halved four times
     const auto longer = std::find(lengths.begin(), lengths.end(), 0.004);
     ASSERT_NE(longer, lengths.end());
-    for (std::size_t i = 1; i < lengths.size(); ++i) // doubled after ten passes at the least
+    for (std::size_t i = 1; i < lengths.size(); ++i) // doubled after at least ten passes
         if (lengths[i] > lengths[i - 1]) {
             ASSERT_GE(i, 10u);
             for (std::size_t j = i - 10; j + 1 < i; ++j) EXPECT_EQ(lengths[j], lengths[i - 1]);
@@ -191,7 +192,7 @@ TEST(SimulateSoftSteps, RestoredRunDoublesAtTheSameStep) {
     EXPECT_EQ(continued.state(), whole.state());
 }
 
-TEST(SimulateSoftSteps, LeastStepIsTheLeast) {
+TEST(SimulateSoftSteps, NoStepIsShorterThanTheLeast) {
     auto world = cantilever(Law::corotational);
     world.dynamics.stepping.step = 1e-3;
     world.dynamics.stepping.adaptive_tolerance = 1e-300;

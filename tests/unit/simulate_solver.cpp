@@ -16,7 +16,7 @@ SolverSettings exact(SolverSettings::Method method) {
     return {.method = method, .iterations = 5000, .absolute_tolerance = 1e-10, .relative_tolerance = 0};
 }
 
-/// Stacks of boxes, each with a contact at touching faces; more rows than one thread takes.
+/// Stacks of boxes in face contact, with more rows than one thread processes.
 World stacks(int count, int height) {
     World world({0.5, 0.2});
     world.add(box({100, 1, 100}), at(0, -0.5, 0), true);
@@ -73,7 +73,7 @@ TEST_P(SimulateSolver, SolutionObeysTheContactLaws) {
     EXPECT_GT(largest, 1);
 }
 
-TEST_P(SimulateSolver, SaysWhetherItEndedByATolerance) {
+TEST_P(SimulateSolver, ReportsWhetherAToleranceEndedIt) {
     const auto scene = stacks(1, 4).finish();
     const auto model = make_model(scene);
     const auto motion = starting_motion(model);
@@ -93,7 +93,7 @@ TEST_P(SimulateSolver, SaysWhetherItEndedByATolerance) {
     const auto whole = ended({.iterations = 100000, .absolute_tolerance = 1e-4, .relative_tolerance = 0});
     EXPECT_TRUE(whole.converged);
     EXPECT_LE(whole.residual, 1e-4);
-    // Exactly as many as it takes is no cap.
+    // A limit of exactly the needed iterations does not stop the solver.
     EXPECT_TRUE(ended({.iterations = whole.iterations, .absolute_tolerance = 1e-4, .relative_tolerance = 0})
                     .converged);
     EXPECT_FALSE(
@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, SimulateSolver,
                          testing::Values(SolverSettings::Method::gauss_seidel,
                                          SolverSettings::Method::jacobi));
 
-/// A body of four contacts that falls on one that does not move; r-factors are `times` too large.
+/// A body with four contacts falls on an immovable one; r-factors are too large by the factor `times`.
 Problem four_legs(SolverSettings::Method method, double times) {
     Problem problem;
     problem.nodes.resize(2);
@@ -145,11 +145,11 @@ TEST_P(SimulateSolver, RecoversFromFactorsThatAreTooLarge) {
     EXPECT_LT(length(free + 0.5 * pushed - problem.nodes[1].velocity), 1e-9);
 }
 
-TEST_P(SimulateSolver, PassThatDivergesLeavesNoTrace) {
+TEST_P(SimulateSolver, ADivergingPassIsUndone) {
     auto start = four_legs(GetParam(), 12);
     auto solved = four_legs(GetParam(), 1);
     run(solved, exact(GetParam()));
-    // Beside the solution nothing is held at zero, and the error grows from the first pass on.
+    // Near the solution no impulse is clamped to zero, and the error grows from the first pass on.
     for (std::size_t i = 0; i < start.rows.size(); ++i)
         start.rows[i].impulse = 1.001 * solved.rows[i].impulse;
     int undone = 0;
@@ -190,7 +190,7 @@ TEST(SimulateSolverConvergence, AfterDivergenceVelocitiesStillMatchImpulses) {
     }
 }
 
-TEST(SimulateSolverThreads, JacobiHasTheSameBitsOnAnyNumber) {
+TEST(SimulateSolverThreads, JacobiHasTheSameBitsOnAnyNumberOfThreads) {
     auto world = stacks(16, 5);
     const auto& scene = world.finish();
     const auto model = make_model(scene);

@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-/// Rigid, fixed and deformable bodies that meet.
+/// Rigid, fixed and deformable bodies in contact.
 World mixed() {
     World world({0.4, 0.3});
     world.dynamics.stepping.step = 0.002;
@@ -66,7 +66,7 @@ TEST(SimulateState, RestoredRunContinuesWithTheSameBits) {
         const auto detect = detector(scene);
         Simulation whole(scene), continued(scene);
         auto middle = after(whole, detect, 300);
-        while (whole.step(detect).kept == 0) {} // where there are impulses to start from
+        while (whole.step(detect).kept == 0) {} // until there are impulses to start from
         middle = whole.state();
         const auto done = whole.steps_done();
         const auto end = after(whole, detect, 50);
@@ -78,7 +78,7 @@ TEST(SimulateState, RestoredRunContinuesWithTheSameBits) {
     }
 }
 
-TEST(SimulateState, EnergyChangesAddUpAlsoAfterRestore) {
+TEST(SimulateState, EnergyChangesSumUpAlsoAfterRestore) {
     auto world = mixed();
     const auto& scene = world.finish();
     const auto detect = detector(scene);
@@ -86,7 +86,8 @@ TEST(SimulateState, EnergyChangesAddUpAlsoAfterRestore) {
     double sum = 0;
     const auto first = whole.step(detect);
     const double start = first.kinetic + first.potential + first.elastic - first.energy_change;
-    const double heights = 0.8 + 1.9; // of the two boxes of 2000 kg; the beam of 500 kg is where it is built
+    // of the two boxes of 2000 kg; the beam of 500 kg is at its build position
+    const double heights = 0.8 + 1.9;
     EXPECT_NEAR(start, 9.82 * (2000 * heights + 500 * 2.75), 1e-6);
     for (int i = 0; i < 200; ++i) whole.step(detect);
     continued.restore(whole.state());
@@ -116,7 +117,7 @@ TEST(SimulateState, WarmStartSavesIterations) {
     EXPECT_LT(2 * iterations[1], iterations[0]);
 }
 
-TEST(SimulateState, BytesThatDoNotFitAreRefused) {
+TEST(SimulateState, InvalidStatesAreRefused) {
     auto world = mixed();
     const auto& scene = world.finish();
     Simulation simulation(scene);
@@ -136,7 +137,7 @@ TEST(SimulateState, BytesThatDoNotFitAreRefused) {
     EXPECT_THROW(stranger.restore(whole), InputError);
 }
 
-TEST(SimulateState, StartIsTheScenesOwn) {
+TEST(SimulateState, StartIsThatOfTheScene) {
     auto world = mixed();
     const auto& scene = world.finish();
     const Simulation simulation(scene);
@@ -149,7 +150,7 @@ TEST(SimulateState, StartIsTheScenesOwn) {
     EXPECT_EQ(simulation.midway().deformed[3], world.start.deformed[3]);
 }
 
-TEST(SimulateState, MidwayIsWhatDetectionSaw) {
+TEST(SimulateState, MidwayIsTheFrameOfDetection) {
     auto world = mixed();
     Simulation simulation(world.finish());
     Frame seen;
@@ -222,7 +223,8 @@ TEST(SimulateState, ContactsOutOfOrderOrImpossibleAreRefused) {
     refused({other});
 }
 
-/// What stops a block of Young's modulus `young`, held at two vertices, beside a box of `velocity`.
+/// The error that stops a block of Young's modulus `young`, clamped at two vertices, beside a box of
+/// `velocity`.
 std::string end_of(double young, double velocity) {
     World world;
     Elastic stiff;

@@ -103,7 +103,7 @@ Mesh beam(const Eigen::Vector3d& size, std::array<int, 3> cells) {
             for (int x = 0; x <= cells[0]; ++x)
                 mesh.vertices.emplace_back(size.x() * x / cells[0], size.y() * y / cells[1],
                                            size.z() * z / cells[2]);
-    // Kuhn's split: one tetrahedron for each order in which the three axes can be walked.
+    // Kuhn's split: one tetrahedron for each order of the three axes.
     std::array<int, 3> order{0, 1, 2};
     do {
         for (int z = 0; z < cells[2]; ++z)

@@ -8,21 +8,21 @@ namespace tandem::test {
 
 /// Six faces and a centre: 9 vertices, 12 tetrahedra. `corners` in the order of binary x + 2 y + 4 z.
 Mesh hexahedron(const std::array<Eigen::Vector3d, 8>& corners);
-/// Axis-aligned, about `centre`.
+/// Axis-aligned, around `centre`.
 Mesh box(const Eigen::Vector3d& size, const Eigen::Vector3d& centre = Eigen::Vector3d::Zero());
 /// A regular grid of cells, each split into six tetrahedra; from the origin to `size`.
 Mesh beam(const Eigen::Vector3d& size, std::array<int, 3> cells);
-/// An icosahedron split `times` and projected, with a centre.
+/// An icosahedron subdivided `times` and projected to the sphere, with a centre.
 Mesh ball(double radius, int times);
 
-/// A scene of bodies under one material.
+/// A scene of bodies with one material.
 struct World {
     Scene scene;
     Dynamics dynamics;
     Frame start;
 
     explicit World(Surface surface = {0.5, 0});
-    /// Index of the new body.
+    /// Returns the index of the new body.
     std::size_t add(Mesh mesh, const Pose& pose, bool fixed = false, const BodyDynamics& moves = {});
     std::size_t add_soft(Mesh mesh, Elastic elastic, const BodyDynamics& moves = {});
     const Scene& finish();
@@ -30,10 +30,10 @@ struct World {
 
 Pose at(double x, double y, double z);
 
-/// What `tandem simulate` asks for unless told otherwise.
+/// Default settings of `tandem simulate`.
 constexpr ContactSettings least_translation{ContactRule::sat, DecisionPrecision::recheck};
 
-/// Contacts by the reference over all pairs of tetrahedra whose boxes overlap.
+/// Contacts by the reference, over all pairs of tetrahedra whose boxes overlap.
 Detect detector(const Scene& scene, const ContactSettings& settings = {});
 void no_contacts(const Frame&, std::vector<ContactPoint>& contacts);
 

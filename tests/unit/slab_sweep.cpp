@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Boxes that overlap, against all pairs one by one: few and many, strewn over cells or along a line, and with
-// some that are larger than all others together.
+// Overlapping boxes against all pairs one by one: few and many, scattered over cells or along a line, some
+// larger than all others together.
 #include "algorithms/broad_phase/slab_sweep.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t axis_count = 4;
 
-/// `size`: of the room; `large`: of so many one goes through all of it.
+/// `size`: of the domain; `large`: one of that many boxes spans all of it.
 std::vector<double> boxes_in(std::size_t count, std::array<double, axis_count> size, std::size_t large) {
     std::mt19937 random(7);
     std::vector<double> slabs;
@@ -52,9 +52,9 @@ TEST(SlabSweep, Few) { expect_right(boxes_in(500, {20, 20, 20, 20}, 1000)); }
 TEST(SlabSweep, ManyInCells) { expect_right(boxes_in(5000, {60, 60, 60, 60}, 10000)); }
 TEST(SlabSweep, ManyInOneLayer) { expect_right(boxes_in(4000, {80, 0.5, 80, 60}, 10000)); }
 TEST(SlabSweep, ManyAlongALine) { expect_right(boxes_in(4000, {0.5, 500, 0.5, 60}, 10000)); }
-TEST(SlabSweep, SomeGoThroughAll) { expect_right(boxes_in(4000, {60, 60, 60, 60}, 40)); }
+TEST(SlabSweep, SomeSpanTheDomain) { expect_right(boxes_in(4000, {60, 60, 60, 60}, 40)); }
 
-/// On a lattice of whole numbers: bounds of boxes and of cells touch.
+/// On an integer lattice: bounds of boxes and of cells touch.
 TEST(SlabSweep, TouchingOverlaps) {
     std::vector<double> slabs;
     for (int i = 0; i < 4096; ++i)
@@ -66,7 +66,7 @@ TEST(SlabSweep, TouchingOverlaps) {
 }
 
 /// Bodies without vertices have slabs from plus to minus infinity, which overlap nothing.
-TEST(SlabSweep, OfNothing) {
+TEST(SlabSweep, EmptySlabs) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     auto slabs = boxes_in(4000, {60, 60, 60, 60}, 10000);
     for (std::size_t i = 0; i < slabs.size(); i += 2 * axis_count * 7)

@@ -10,7 +10,7 @@
 namespace tandem {
 namespace {
 
-TEST(Statistics, MediansAreThoseOfTheMiddle) {
+TEST(Statistics, MediansAreMiddleValues) {
     EXPECT_EQ(median({5}), 5);
     EXPECT_EQ(median({9, 1, 4}), 4);
     EXPECT_EQ(median(std::vector<std::int64_t>{9, 1, 4, 5}), 4.5);
@@ -24,7 +24,7 @@ TEST(Statistics, QuartilesInterpolate) {
     EXPECT_DOUBLE_EQ(s.q3, 32.5);
 }
 
-TEST(Statistics, IntervalHoldsTheMedianAndRepeats) {
+TEST(Statistics, IntervalContainsTheMedianAndIsReproducible) {
     std::vector<std::int64_t> samples;
     for (int i = 0; i < 50; ++i) samples.push_back((i * 37) % 101);
     const auto s = summarise(samples);
@@ -34,8 +34,8 @@ TEST(Statistics, IntervalHoldsTheMedianAndRepeats) {
     EXPECT_EQ(summarise(samples).low, s.low);
 }
 
-// As SciPy has them: norm.cdf(-sqrt(n / (n - 1)) * t.ppf(0.975, n - 1)).
-TEST(Statistics, IntervalsOfFewValuesLeaveOutLess) {
+// Values of SciPy: norm.cdf(-sqrt(n / (n - 1)) * t.ppf(0.975, n - 1)).
+TEST(Statistics, IntervalsOfFewValuesExcludeLess) {
     EXPECT_EQ(interval_tail(1), 0);
     EXPECT_NEAR(interval_tail(2), 0, 1e-30);
     EXPECT_NEAR(interval_tail(3), 6.834137304562962e-08, 1e-14);
@@ -53,7 +53,7 @@ TEST(Statistics, OneSample) {
     EXPECT_EQ(s.high, 7);
 }
 
-TEST(Statistics, SpreadTakesTheLeastValueThatNinetyNinePercentDoNotExceed) {
+TEST(Statistics, SpreadUsesTheNinetyNinthPercentile) {
     std::vector<double> samples;
     for (int i = 200; i > 0; --i) samples.push_back(i);
     const auto s = spread(samples);
@@ -64,8 +64,8 @@ TEST(Statistics, SpreadTakesTheLeastValueThatNinetyNinePercentDoNotExceed) {
     EXPECT_FALSE(spread({}));
 }
 
-TEST(Statistics, RoundsAreWhatIsIndependent) {
-    // Three rounds, each with samples that hardly differ: as few values as rounds.
+TEST(Statistics, RoundsAreTheIndependentValues) {
+    // Three rounds of almost equal samples: as many independent values as rounds.
     const std::vector<std::int64_t> samples{100, 101, 102, 200, 201, 202, 300, 301, 302};
     const std::vector<std::uint32_t> rounds{0, 0, 0, 1, 1, 1, 2, 2, 2};
     EXPECT_EQ(round_medians(samples, rounds), (std::vector<double>{101, 201, 301}));
@@ -73,23 +73,23 @@ TEST(Statistics, RoundsAreWhatIsIndependent) {
     EXPECT_EQ(by_round.median, 201);
     EXPECT_EQ(by_round.low, 101);
     EXPECT_EQ(by_round.high, 301);
-    // A sample a round is the same as samples.
+    // One sample a round is the same as samples without rounds.
     const std::vector<std::uint32_t> apart{0, 1, 2, 3, 4, 5, 6, 7, 8};
     EXPECT_EQ(summarise(samples, apart).low, summarise(samples).low);
     EXPECT_EQ(summarise(samples, apart).median, summarise(samples).median);
 }
 
-TEST(Statistics, OutliersAreFarFromTheMedianByWhatTheOthersScatter) {
+TEST(Statistics, OutliersAreFarFromTheMedianRelativeToTheScatter) {
     EXPECT_EQ(count_outliers({}), 0u);
     EXPECT_EQ(count_outliers(std::vector<double>{1, 2, 3, 4, 5, 6, 700}), 0u);  // seven are too few
-    EXPECT_EQ(count_outliers(std::vector<double>{5, 5, 5, 5, 5, 5, 5, 9}), 0u); // no scatter to go by
+    EXPECT_EQ(count_outliers(std::vector<double>{5, 5, 5, 5, 5, 5, 5, 9}), 0u); // no scatter to compare with
     // Deviations have median 2: 1.4826 * 2 * 5 = 14.8.
     EXPECT_EQ(count_outliers(std::vector<double>{96, 97, 98, 99, 100, 101, 102, 103, 104}), 0u);
     EXPECT_EQ(count_outliers(std::vector<double>{97, 98, 98, 99, 100, 101, 102, 103, 114}), 0u);
     EXPECT_EQ(count_outliers(std::vector<double>{97, 98, 98, 99, 100, 101, 102, 60, 140}), 2u);
 }
 
-TEST(Statistics, DriftIsOneDirection) {
+TEST(Statistics, DriftIsMonotonic) {
     std::vector<double> rising, swinging;
     for (int i = 0; i < 20; ++i) {
         rising.push_back(100 + i);
@@ -103,8 +103,9 @@ TEST(Statistics, DriftIsOneDirection) {
     EXPECT_DOUBLE_EQ(drift(rising).value_or(0), -19 / 109.5);
 }
 
-/// Of what does not drift at most 1 % is said to: 2,000 series, three deviations of the binomial.
-TEST(Statistics, DriftIsSeldomSeenWhereThereIsNone) {
+/// Drift is reported for at most 1 % of series without drift: 2,000 series, three standard deviations of the
+/// binomial.
+TEST(Statistics, DriftIsRarelyReportedWithoutDrift) {
     std::mt19937_64 random(3);
     int seen = 0;
     for (int i = 0; i < 2000; ++i) {

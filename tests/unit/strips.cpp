@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// refit.cl and the host agree on how many strips a work-group takes, and every team takes one at least.
+// refit.cl and the host agree on the number of strips of a work-group, and every team gets at least one.
 #include "algorithms/hierarchy/strips.h"
 
 #include <bit>
@@ -8,7 +8,7 @@
 namespace tandem {
 namespace {
 
-TEST(Strips, AGroupTakesWhatItsTeamsTake) {
+TEST(Strips, AGroupProcessesTheStripsOfItsTeams) {
     for (const int k : {6, 8, 12, 14, 16, 18, 20, 24, 26})
         for (const auto precision : {Precision::fp32, Precision::fp64})
             for (std::uint32_t given = 1; given <= 1024; ++given) {
@@ -17,7 +17,7 @@ TEST(Strips, AGroupTakesWhatItsTeamsTake) {
                 ASSERT_LE(shape.group_size, given);
                 ASSERT_GE(2 * shape.group_size, std::min(given, 64u) + 1)
                     << "more than half of a small group";
-                // As portable.h and refit.cl have it.
+                // As in portable.h and refit.cl.
                 const auto team = shape.group_size % 32 == 0 ? 32 : shape.group_size;
                 const auto teams = shape.group_size / team;
                 const auto team_nodes = shape.tile_nodes / teams;

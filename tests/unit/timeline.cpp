@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Timelines of frames that were made up: clocks, lanes, and files that are whole or not there.
+// Timelines of synthetic frames: clocks, lanes, and files that are complete or absent.
 #include "harness/profile/timeline/timeline.h"
 #include "base/error.h"
 #include "tests/support/folder.h"
@@ -30,7 +30,7 @@ Event event(Command command, Stage stage, std::string label, std::int64_t host, 
     return e;
 }
 
-/// The device's clock is 5,000 behind where the upload begins at once, and commands wait for each other.
+/// The device's clock is 5,000 behind if the upload begins at once; commands wait for each other.
 DeviceTimeline frame() {
     DeviceTimeline timeline;
     timeline.info.id = "cuda:0";
@@ -50,7 +50,7 @@ std::vector<Json> on_lane(const Json& timeline, int lane) {
     return events;
 }
 
-TEST(Timeline, PutsCommandsBehindTheirCalls) {
+TEST(Timeline, PlacesCommandsAfterTheirCalls) {
     const std::vector<DeviceTimeline> devices{frame()};
     const auto json = timeline_json(devices, "a cell", 7);
     EXPECT_EQ(json["otherData"]["frame"], 7);
@@ -61,7 +61,7 @@ TEST(Timeline, PutsCommandsBehindTheirCalls) {
     EXPECT_EQ(kernels[0]["name"], "refit_strips");
     EXPECT_DOUBLE_EQ(kernels[0]["ts"], 1.5); // microseconds from the first call
     EXPECT_DOUBLE_EQ(kernels[0]["dur"], 4);
-    EXPECT_DOUBLE_EQ(kernels[1]["ts"], 5.5); // moved by a rounding
+    EXPECT_DOUBLE_EQ(kernels[1]["ts"], 5.5); // shifted to compensate for rounding
     EXPECT_DOUBLE_EQ(kernels[1]["dur"], 1.999);
     EXPECT_EQ(kernels[0]["args"]["stage"], "refit");
     ASSERT_EQ(on_lane(json, 6).size(), 2u);
@@ -76,13 +76,13 @@ TEST(Timeline, PutsCommandsBehindTheirCalls) {
     EXPECT_DOUBLE_EQ(stages[1]["dur"], 5.999);
 }
 
-TEST(Timeline, SaysWhereClocksContradictEachOther) {
+TEST(Timeline, ReportsContradictingClocks) {
     std::vector<DeviceTimeline> devices{frame()};
     devices[0].trace.events[3].host_ns = 500; // ends before its command could
     EXPECT_EQ(timeline_json(devices, "", 0)["otherData"]["devices"]["cuda:0"]["contradiction"], true);
 }
 
-TEST(Timeline, DoesWithoutDeviceTimes) {
+TEST(Timeline, WorksWithoutDeviceTimes) {
     std::vector<DeviceTimeline> devices{frame(), frame()};
     devices[1].info.id = "opencl:0";
     for (auto& e : devices[0].trace.events) e.begin_ns = e.device_ns = -1;
@@ -94,7 +94,7 @@ TEST(Timeline, DoesWithoutDeviceTimes) {
 
 class TimelineFiles : public testing_support::FolderTest {};
 
-TEST_F(TimelineFiles, AreThereWholeOrNotAtAll) {
+TEST_F(TimelineFiles, AreCompleteOrAbsent) {
     const auto path = this->path("trace.json");
     { const TimelineFile never_written(path); }
     EXPECT_TRUE(std::filesystem::is_empty(std::filesystem::path(path).parent_path()));

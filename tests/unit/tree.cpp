@@ -26,16 +26,16 @@ TEST(Morton, InterleavesXFirst) {
 }
 
 TEST(Morton, OrdersAlongTheCurve) {
-    // Cells of a 2 x 2 x 2 grid come in the order of their codes: z fastest, then y, then x.
-    std::vector<Eigen::Vector3d> places;
+    // Cells of a 2 x 2 x 2 grid are in the order of their codes: z fastest, then y, then x.
+    std::vector<Eigen::Vector3d> positions;
     for (int i : {6, 1, 7, 0, 3, 5, 2, 4})
-        places.emplace_back(10.0 * (i >> 2), 10.0 * (i >> 1 & 1), 10.0 * (i & 1));
-    const auto order = morton_order(tetrahedra_at(places));
+        positions.emplace_back(10.0 * (i >> 2), 10.0 * (i >> 1 & 1), 10.0 * (i & 1));
+    const auto order = morton_order(tetrahedra_at(positions));
     const std::vector<std::uint32_t> expected{3, 1, 6, 4, 7, 5, 0, 2};
     EXPECT_EQ(order, expected);
 }
 
-TEST(Morton, SurvivesHardMeshes) {
+TEST(Morton, HandlesExtremeMeshes) {
     const auto check = [](const Mesh& mesh) {
         auto order = morton_order(mesh);
         std::sort(order.begin(), order.end());
@@ -46,7 +46,7 @@ TEST(Morton, SurvivesHardMeshes) {
     check(tetrahedra_at({{0, 0, 0}}));
     check(tetrahedra_at({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}));            // duplicate centroids
     check(tetrahedra_at({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}})); // planar
-    check(tetrahedra_at({{-1e9, -1e9, -1e9}, {-1e9 + 1, -1e9, -1e9}})); // far and negative
+    check(tetrahedra_at({{-1e9, -1e9, -1e9}, {-1e9 + 1, -1e9, -1e9}})); // far away and negative
     check(tetrahedra_at({{0, 0, 0}, {1e-310, 0, 0}}, 1e-310));          // denormal extent
     check(tetrahedra_at({{0, 0, 0}, {1e300, 0, 0}}));                   // huge extent
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The orders of a mesh's tetrahedra that builders other than sah make.
+// Orders of a mesh's tetrahedra by builders other than sah.
 #include "algorithms/hierarchy/axis_orders.h"
 #include "algorithms/hierarchy/breadth_order.h"
 #include "algorithms/hierarchy/median_order.h"
@@ -18,7 +18,7 @@ using testing_support::shaken_box;
 using testing_support::tetrahedra_at;
 
 using Order = std::vector<std::uint32_t>;
-using DisplacementTracker = std::vector<Eigen::Vector3d>;
+using Positions = std::vector<Eigen::Vector3d>;
 
 constexpr Builder builders[] = {Builder::morton, Builder::sah, Builder::breadth, Builder::hilbert,
                                 Builder::median};
@@ -30,14 +30,14 @@ Order counted(std::size_t count) {
 }
 
 /// The cells of a cube, x fastest.
-DisplacementTracker grid(int side) {
-    DisplacementTracker places;
+Positions grid(int side) {
+    Positions positions;
     for (int i = 0; i < side * side * side; ++i)
-        places.emplace_back(10.0 * (i % side), 10.0 * (i / side % side), 10.0 * (i / side / side));
-    return places;
+        positions.emplace_back(10.0 * (i % side), 10.0 * (i / side % side), 10.0 * (i / side / side));
+    return positions;
 }
 
-/// The same tetrahedra with other numbers: as a generator of numbers has it.
+/// The same tetrahedra in random order, as a mesh generator may number them.
 Mesh shuffled(Mesh mesh, std::uint64_t seed) {
     Random random(seed);
     for (auto i = mesh.tetrahedra.size(); i > 1; --i)
@@ -48,7 +48,7 @@ Mesh shuffled(Mesh mesh, std::uint64_t seed) {
     return mesh;
 }
 
-/// Several meshes as one, without a vertex in common.
+/// Several meshes as one, without common vertices.
 Mesh together(const std::vector<Mesh>& parts) {
     Mesh mesh;
     for (const auto& part : parts) {
@@ -65,14 +65,14 @@ Mesh together(const std::vector<Mesh>& parts) {
 
 std::vector<Mesh> hard_meshes() {
     Random random(3);
-    Mesh fan; // one face of all
+    Mesh fan; // one face shared by all
     fan.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     for (std::uint32_t i = 0; i < 500; ++i) {
         fan.vertices.emplace_back(0, 0, 1.0 + i % 7);
         fan.tetrahedra.push_back({0, 1, 2, 3 + i});
     }
     complete_mesh(fan, "fan");
-    Mesh point; // of one vertex
+    Mesh point; // one shared vertex
     point.vertices = {{0, 0, 0}};
     point.tetrahedra.assign(40, {0, 0, 0, 0});
     complete_mesh(point, "point");
@@ -82,13 +82,13 @@ std::vector<Mesh> hard_meshes() {
             fan,
             point,
             tetrahedra_at({{0, 0, 0}}),
-            tetrahedra_at(DisplacementTracker(100, {1, 1, 1})), // all in one place
+            tetrahedra_at(Positions(100, {1, 1, 1})), // all at one position
             tetrahedra_at({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, 0),
             tetrahedra_at({{0, 0, 0}, {1e-310, 0, 0}}, 1e-310),
             tetrahedra_at({{0, 0, 0}, {1e300, 0, 0}, {0, -1e300, 0}})};
 }
 
-/// Centroids overflow, and some are no numbers: infinity less infinity.
+/// Centroids overflow, and some are not numbers: infinity minus infinity.
 Mesh beyond_all_numbers() {
     Mesh mesh;
     for (std::uint32_t i = 0; i < 80; ++i) {
@@ -109,7 +109,7 @@ TEST(Orders, ArePermutationsOfAnyMesh) {
     for (const auto builder : builders)
         for (const auto& mesh : meshes) {
             auto order = ordered(mesh, builder).ids;
-            EXPECT_EQ(order, ordered(mesh, builder).ids); // and of one mesh one
+            EXPECT_EQ(order, ordered(mesh, builder).ids); // and the same order every time
             std::ranges::sort(order);
             EXPECT_EQ(order, counted(mesh.tetrahedra.size())) << static_cast<int>(builder) << mesh.name;
         }
@@ -124,31 +124,31 @@ TEST(Orders, DifferFromEachOther) {
 }
 
 TEST(Orders, TiesKeepInputOrder) {
-    const auto mesh = tetrahedra_at(DisplacementTracker(3000, {5, 5, 5}));
+    const auto mesh = tetrahedra_at(Positions(3000, {5, 5, 5}));
     for (const auto builder : builders)
         EXPECT_EQ(ordered(mesh, builder).ids, counted(3000)) << static_cast<int>(builder);
 }
 
-TEST(Orders, HaveAPlaceForWhatIsNoNumber) {
+TEST(Orders, IncludeTetrahedraThatAreNotNumbers) {
     const double none = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(morton_order(DisplacementTracker{{5, 0, 0}, {none, 0, 0}, {0, 0, 0}}), (Order{1, 2, 0}));
-    const AxisOrders axes({{none, 1, 0}, {1, none, 0}, {-1, 2, 0}}); // here for zero
+    EXPECT_EQ(morton_order(Positions{{5, 0, 0}, {none, 0, 0}, {0, 0, 0}}), (Order{1, 2, 0}));
+    const AxisOrders axes({{none, 1, 0}, {1, none, 0}, {-1, 2, 0}}); // the origin replaces it
     EXPECT_EQ(axes.along(0), (Order{2, 0, 1}));
     EXPECT_EQ(axes.along(1), (Order{1, 0, 2}));
     EXPECT_EQ(axes.along(2), (Order{0, 1, 2}));
 }
 
-TEST(Hilbert, GoesFromFaceToFace) {
+TEST(Hilbert, StepsFromFaceToFace) {
     for (const int side : {2, 4, 8}) {
         const auto mesh = shuffled(tetrahedra_at(grid(side)), 7);
-        const auto places = centroids(mesh);
+        const auto positions = centroids(mesh);
         const auto order = hilbert_order(mesh);
         for (std::size_t i = 1; i < order.size(); ++i)
-            EXPECT_EQ((places[order[i]] - places[order[i - 1]]).norm(), 10) << side << " " << i;
-        // The curve enters every octant once, and so has each in one run.
+            EXPECT_EQ((positions[order[i]] - positions[order[i - 1]]).norm(), 10) << side << " " << i;
+        // The curve enters every octant once, so each octant is one contiguous run.
         for (std::size_t i = 0; i < order.size(); ++i) {
-            const Eigen::Vector3d way = places[order[i]] - places[order[i / 8 * 8]];
-            EXPECT_LE(way.cwiseAbs().maxCoeff(), 10) << side << " " << i;
+            const Eigen::Vector3d offset = positions[order[i]] - positions[order[i / 8 * 8]];
+            EXPECT_LE(offset.cwiseAbs().maxCoeff(), 10) << side << " " << i;
         }
     }
 }
@@ -156,7 +156,7 @@ TEST(Hilbert, GoesFromFaceToFace) {
 TEST(Hilbert, IsOneCurveOfAllCells) {
     const auto most = (1u << 21) - 1;
     EXPECT_EQ(hilbert_code(0, 0, 0), 0u);
-    EXPECT_EQ(hilbert_code(most, 0, 0), (std::uint64_t{1} << 63) - 1); // ends beside its begin
+    EXPECT_EQ(hilbert_code(most, 0, 0), (std::uint64_t{1} << 63) - 1); // the end is next to the start
     std::vector<Eigen::Vector3i> cells(4096);
     for (int i = 0; i < 4096; ++i) {
         const Eigen::Vector3i cell(i % 16, i / 16 % 16, i / 256);
@@ -167,10 +167,10 @@ TEST(Hilbert, IsOneCurveOfAllCells) {
         cells[code] = cell;
     }
     for (std::size_t i = 1; i < cells.size(); ++i)
-        ASSERT_EQ((cells[i] - cells[i - 1]).cwiseAbs().sum(), 1) << i; // and so none of them is hit twice
+        ASSERT_EQ((cells[i] - cells[i - 1]).cwiseAbs().sum(), 1) << i; // therefore no cell is visited twice
 }
 
-/// How many faces each tetrahedron is from `start`, by comparing all with all.
+/// Distance of each tetrahedron from `start` in faces, by comparing all with all.
 std::vector<int> distances(const Mesh& mesh, std::uint32_t start) {
     const auto touch = [&](std::uint32_t a, std::uint32_t b) {
         return std::ranges::count_if(mesh.tetrahedra[a],
@@ -194,7 +194,7 @@ std::vector<int> distances(const Mesh& mesh, std::uint32_t start) {
     return far;
 }
 
-TEST(Breadth, NeverGoesBack) {
+TEST(Breadth, IsInOrderOfDistance) {
     Random random(8);
     const auto mesh = shuffled(shaken_box(4, random), 9);
     const auto order = breadth_order(mesh);
@@ -205,7 +205,7 @@ TEST(Breadth, NeverGoesBack) {
 }
 
 TEST(Breadth, NeighboursFollowByNumber) {
-    // The first has neighbours across all faces, by whose corners they would come the other way round.
+    // The first has neighbours across all faces; the order of its corners would reverse their order.
     Mesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1},   {9, 9, 9},
                      {9, 9, 1}, {9, 1, 9}, {1, 9, 9}, {12, 12, 12}};
@@ -214,7 +214,7 @@ TEST(Breadth, NeighboursFollowByNumber) {
     EXPECT_EQ(breadth_order(mesh), (Order{3, 1, 2, 4, 5, 0}));
 }
 
-TEST(Breadth, PartsFollowOneAnother) {
+TEST(Breadth, ComponentsFollowOneAnother) {
     Random random(10);
     auto far = shaken_box(2, random);
     for (auto& v : far.vertices) v += Eigen::Vector3d(50, 0, 0);
@@ -222,17 +222,17 @@ TEST(Breadth, PartsFollowOneAnother) {
     const auto mesh = shuffled(together({far, near}), 11);
     const auto order = breadth_order(mesh);
     ASSERT_EQ(order.size(), 96u);
-    const auto places = centroids(mesh);
-    for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(places[order[i]].x() > 25, i >= 48) << i;
-    // Without a face in common every tetrahedron is a part, and the curve is left.
+    const auto positions = centroids(mesh);
+    for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(positions[order[i]].x() > 25, i >= 48) << i;
+    // Without common faces every tetrahedron is a component, and the order is that of the curve.
     const auto apart = shuffled(tetrahedra_at(grid(3)), 12);
     EXPECT_EQ(breadth_order(apart), morton_order(apart));
 }
 
 TEST(Median, HalvesAlongTheLongestAxis) {
-    DisplacementTracker places; // 64 along y, twice as close along x
-    for (int i = 0; i < 64; ++i) places.emplace_back(10.0 * (i % 4), 20.0 * (i / 4), 0);
-    const auto mesh = shuffled(tetrahedra_at(places), 13);
+    Positions positions; // 64 along y, twice as close along x
+    for (int i = 0; i < 64; ++i) positions.emplace_back(10.0 * (i % 4), 20.0 * (i / 4), 0);
+    const auto mesh = shuffled(tetrahedra_at(positions), 13);
     const auto at = centroids(mesh);
     const auto order = median_order(mesh);
     const auto separates = [&](std::size_t first, std::size_t middle, std::size_t end, int axis) {
@@ -248,17 +248,19 @@ TEST(Median, HalvesAlongTheLongestAxis) {
                 << run << " " << first;
 }
 
-TEST(Median, LeavesRunsWhole) {
+TEST(Median, KeepsRunsWhole) {
     const auto axis_of = [](std::size_t count) {
-        DisplacementTracker places;
-        for (std::size_t i = 0; i < count; ++i) places.emplace_back(2.0 * static_cast<double>(i), 0, 0);
-        return tetrahedra_at(places);
+        Positions positions;
+        for (std::size_t i = 0; i < count; ++i) positions.emplace_back(2.0 * static_cast<double>(i), 0, 0);
+        return tetrahedra_at(positions);
     };
     for (const std::size_t count : {2u, 3u, 31u, 32u, 33u, 96u, 1000u, 1025u, 40000u}) {
-        EXPECT_EQ(median_order(axis_of(count)), counted(count)) << count; // any cut of a line leaves the line
+        // any cut of a line keeps the order of the line
+        EXPECT_EQ(median_order(axis_of(count)), counted(count)) << count;
     }
-    // Three rows of 32, mixed: no cut parts one. At 48 a cut would, and the next one lie across two of them.
-    DisplacementTracker rows;
+    // Three mixed rows of 32: no cut splits a row. A cut at 48 would, and the next one would cut across two
+    // of them.
+    Positions rows;
     for (int i = 0; i < 96; ++i) rows.emplace_back(i % 3 == 0 ? 0 : 1500 + 100 * (i % 3), 50 * (i / 3), 0);
     const auto order = median_order(tetrahedra_at(rows));
     for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i] % 3, i / 32) << i;
@@ -272,10 +274,11 @@ TEST(Median, CutsAtMultiplesOfRuns) {
     EXPECT_EQ(run_of(1024), 32u);
     EXPECT_EQ(run_of(1025), 1024u);
     EXPECT_EQ(run_of(32769), 32768u);
-    // Two heaps, the left of 40 of 100: the cut nearest to the middle is at 64, and takes 24 of the right.
-    DisplacementTracker heaps;
-    for (int i = 0; i < 100; ++i) heaps.emplace_back(i < 40 ? 0 : 1000, i % 10, i / 10);
-    const auto order = median_order(tetrahedra_at(heaps));
+    // Two clusters, the left with 40 of 100: the cut nearest to the middle is at 64 and includes 24 of the
+    // right.
+    Positions clusters;
+    for (int i = 0; i < 100; ++i) clusters.emplace_back(i < 40 ? 0 : 1000, i % 10, i / 10);
+    const auto order = median_order(tetrahedra_at(clusters));
     EXPECT_TRUE(std::all_of(order.begin(), order.begin() + 32, [](auto t) { return t < 40; }));
     EXPECT_EQ(std::count_if(order.begin(), order.begin() + 64, [](auto t) { return t < 40; }), 40);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The order that the surface area heuristic gives, and the tables that tiles have of it.
+// The order from the surface area heuristic, and the tables that tiles derive from it.
 #include "algorithms/hierarchy/order.h"
 #include "algorithms/hierarchy/sah_order.h"
 #include "scenes/scene.h"
@@ -13,7 +13,7 @@ namespace {
 
 using testing_support::tetrahedra_at;
 
-/// Areas of the boxes of all runs, as they stand.
+/// Sum of the areas of the boxes of all runs.
 double area_of_runs(const Mesh& mesh, const std::vector<std::uint32_t>& order, std::size_t run) {
     double sum = 0;
     for (std::size_t first = 0; first < order.size(); first += run) {
@@ -29,7 +29,7 @@ double area_of_runs(const Mesh& mesh, const std::vector<std::uint32_t>& order, s
 TEST(SahOrder, IsAPermutationOfAnyMesh) {
     const auto check = [](const Mesh& mesh) {
         auto order = sah_order(mesh);
-        EXPECT_EQ(order, sah_order(mesh)); // and of one mesh one
+        EXPECT_EQ(order, sah_order(mesh)); // and the same order every time
         std::sort(order.begin(), order.end());
         std::vector<std::uint32_t> all(mesh.tetrahedra.size());
         std::iota(all.begin(), all.end(), 0u);
@@ -38,22 +38,22 @@ TEST(SahOrder, IsAPermutationOfAnyMesh) {
     Random random(3);
     for (const std::uint32_t cells : {1u, 2u, 3u, 7u}) check(testing_support::shaken_box(cells, random));
     check(tetrahedra_at({{0, 0, 0}}));
-    check(tetrahedra_at(std::vector<Eigen::Vector3d>(100, {1, 1, 1}))); // all in one place
+    check(tetrahedra_at(std::vector<Eigen::Vector3d>(100, {1, 1, 1}))); // all at one position
     check(tetrahedra_at({{0, 0, 0}, {1e-310, 0, 0}}, 1e-310));
     check(tetrahedra_at({{0, 0, 0}, {1e300, 0, 0}, {0, 1e300, 0}})); // areas overflow
     std::vector<Eigen::Vector3d> line;
     for (int i = 0; i < 2000; ++i)
-        line.emplace_back(std::pow(1.4, i % 500), 0, 0); // cuts off one run each time
+        line.emplace_back(std::pow(1.4, i % 500), 0, 0); // each cut removes one run
     check(tetrahedra_at(line));
 }
 
 TEST(SahOrder, CutsAtRuns) {
-    std::vector<Eigen::Vector3d> places; // three heaps of 32, mixed
-    for (int i = 0; i < 96; ++i) places.emplace_back(1000 * (i % 3), i / 3 % 8, i / 24);
-    const auto order = sah_order(tetrahedra_at(places));
+    std::vector<Eigen::Vector3d> positions; // three mixed clusters of 32
+    for (int i = 0; i < 96; ++i) positions.emplace_back(1000 * (i % 3), i / 3 % 8, i / 24);
+    const auto order = sah_order(tetrahedra_at(positions));
     for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i] % 3, order[i / 32 * 32] % 3) << i;
-    places.resize(70); // 24, 23 and 23: of these runs of 32 one has to have two
-    EXPECT_EQ(sah_order(tetrahedra_at(places)).size(), 70u);
+    positions.resize(70); // 24, 23 and 23 remain: one of these runs of 32 must contain two clusters
+    EXPECT_EQ(sah_order(tetrahedra_at(positions)).size(), 70u);
 }
 
 TEST(SahOrder, MakesSmallerRunsThanTheCurve) {

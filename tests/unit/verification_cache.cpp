@@ -8,34 +8,34 @@
 namespace tandem {
 namespace {
 
-class Kept : public testing::Test {
+class StoredValues : public testing::Test {
 protected:
-    ~Kept() override { std::filesystem::remove_all(folder_); }
+    ~StoredValues() override { std::filesystem::remove_all(folder_); }
 
-    /// What another object, as in another process, finds; -1 for nothing.
+    /// The value that another object finds, as another process would; -1 for none.
     int found(const std::string& subject, const std::string& question) const {
         int value = -1;
         const VerificationCache values(folder_, subject);
-        const bool taken =
+        const bool found_value =
             values.take(question, [&](const nlohmann::json& json) { value = json.get<int>(); });
-        return taken ? value : -1;
+        return found_value ? value : -1;
     }
 
     std::filesystem::path folder_ = testing::TempDir() + "kept-" + std::to_string(getpid());
 };
 
-TEST_F(Kept, ValuesAreFoundByQuestionAndSubject) {
+TEST_F(StoredValues, ValuesAreFoundByQuestionAndSubject) {
     VerificationCache values(folder_, "a");
     values.keep("one", 1);
     values.keep("two", 2);
-    values.keep("one", 3); // the last
+    values.keep("one", 3); // the last value counts
     EXPECT_EQ(found("a", "one"), 3);
     EXPECT_EQ(found("a", "two"), 2);
     EXPECT_EQ(found("b", "one"), -1);
     EXPECT_EQ(found("a", "three"), -1);
 }
 
-TEST_F(Kept, WhatIsNoValueIsNotThere) {
+TEST_F(StoredValues, InvalidValuesAreMissing) {
     VerificationCache(folder_, "a").keep("one", "text");
     EXPECT_EQ(found("a", "one"), -1);
     std::filesystem::path file;
@@ -46,7 +46,7 @@ TEST_F(Kept, WhatIsNoValueIsNotThere) {
     EXPECT_EQ(found("a", "two"), 2);
 }
 
-TEST_F(Kept, NothingFailsWhereNothingCanBeKept) {
+TEST_F(StoredValues, AnUnusableFolderCausesNoFailure) {
     VerificationCache nowhere;
     nowhere.keep("one", 1);
     VerificationCache("/dev/null/kept", "a").keep("one", 1);
