@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# oclgrind.sh PROGRAM: runs tiny scenes on Oclgrind with its checks for data races, uninitialised memory and wrong API
-# use, and fails on any line of its log, on a wrong answer, or when Oclgrind is not there.
+# oclgrind.sh PROGRAM: runs tiny scenes on Oclgrind with checks for data races, uninitialised memory and wrong API use.
+# Fails on any line of its log, on a wrong answer, and without Oclgrind.
 set -euo pipefail
 program=$(readlink -f "$1")
 driver=$(find /usr/lib -name 'liboclgrind-rt-icd.so*' 2>/dev/null | sort | head -n 1)
@@ -31,11 +31,11 @@ print("$EndElements")
 EOF
 
 export OCL_ICD_VENDORS=$driver OCLGRIND_DATA_RACES=1 OCLGRIND_UNINITIALIZED=1 OCLGRIND_CHECK_API=1
-# Unoptimised: Oclgrind 21.10 does not know an intrinsic that inlining leaves behind.
+# Unoptimised: Oclgrind 21.10 lacks an intrinsic that remains after inlining.
 export OCLGRIND_BUILD_OPTIONS=-cl-opt-disable
 cells=0
-# Small for Oclgrind's sake, which goes over all memory in every launch: bars that meet at their ends only, whose 30 pairs
-# are enough for spills, refills and balancing, and buffers that just hold the answer.
+# Small because Oclgrind scans all memory in every launch: bars that touch only at their ends, whose 30 pairs suffice
+# for spills, refills and balancing, and buffers of exactly the answer's size.
 small=(--set group_size=8 --set work_items=16 --set body_pair_capacity=64 --set pair_capacity=64 --set contact_capacity=256)
 check() { # ARGUMENTS...
   export OCLGRIND_LOG=$work/log
@@ -44,7 +44,7 @@ check() { # ARGUMENTS...
     --pose "-0.6 -0.3 0.5 0.5 0.5 0 0.7" --device opencl:0 "${small[@]}" "$@" \
     >"$work/out" || { cat "$work/out"; exit 1; }
   if [ -s "$OCLGRIND_LOG" ]; then
-    echo "oclgrind complains of: $*" >&2
+    echo "oclgrind reports errors for: $*" >&2
     head -n 40 "$OCLGRIND_LOG" >&2
     exit 1
   fi
@@ -52,9 +52,8 @@ check() { # ARGUMENTS...
   cells=$((cells + right))
 }
 
-# One cell and one session a process (rounds of `run` have each its own): Oclgrind 21.10 keeps marks of freed buffers for the next one
-# at their address. The cells of the long
-# form are those without which every kernel is run.
+# One cell and one session per process: Oclgrind 21.10 keeps marks of freed buffers for the next buffer at their
+# address. The cells of the long form repeat kernels that other cells run.
 long() { [ -z "${TANDEM_LONG_FORM:-}" ] || check "$@"; }
 chunked=(--algorithm chunked --set leaves=4)
 check "${chunked[@]}" --preset grouped --set seed_threshold=1
@@ -73,4 +72,4 @@ check "${queues[@]}" --set k=26 --set broad=tight --set residency=published --se
 least=5
 if [ -n "${TANDEM_LONG_FORM:-}" ]; then least=8; fi
 [ "$cells" -ge $least ] || { echo "only $cells cells ran" >&2; exit 1; }
-echo "oclgrind: $cells cells without a complaint"
+echo "oclgrind: $cells cells without an error"

@@ -30,7 +30,7 @@ bool solid(const OraclePair& pair) {
 bool agree(const OraclePair& pair) {
     const bool intersect = CGAL::do_intersect(tetrahedron(pair.a), tetrahedron(pair.b));
     return intersect == (relation(pair.a, pair.b) != Relation::disjoint)
-           && meet == (decide(pair.a, pair.b, Tier::integers).relation != Relation::disjoint);
+           && intersect == (decide(pair.a, pair.b, Tier::integers).relation != Relation::disjoint);
 }
 
 TEST(OracleCgal, RandomFamilies) {

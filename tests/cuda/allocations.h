@@ -3,5 +3,5 @@
 
 #include <cstddef>
 
-/// How often the calling thread has asked the heap for memory: allocations.cpp stands before operator new.
+/// Number of heap allocations of the calling thread; allocations.cpp replaces operator new.
 std::size_t allocations();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether a declaration of the adaptor's own can be called for one of NVIDIA's headers.
+// Whether a call can use the adaptor's own declaration instead of the one in NVIDIA's headers.
 #pragma once
 
 #include <type_traits>
@@ -7,7 +7,7 @@
 template<class T>
 inline constexpr bool is_call = std::is_pointer_v<T>&& std::is_function_v<std::remove_pointer_t<T>>;
 
-/// A class that only pointers name is the same or none.
+/// A class that is used only through pointers matches itself or an incomplete class.
 template<class Ours, class Theirs>
 constexpr bool same_class() {
     if constexpr (std::is_same_v<Ours, Theirs>)
@@ -19,9 +19,9 @@ constexpr bool same_class() {
 template<class... Ours, class OurReturn, class... Theirs, class Return>
 constexpr bool callable_as(OurReturn (*)(Ours...), Return (*)(Theirs...));
 
-/// Whether one type can stand for the other in a call: our int for their enumerations, our pointer to bytes
-/// for theirs to a structure; an enumeration for another, a structure for another of its size; everything
-/// else has to be the same.
+/// Whether one type can replace the other in a call: our int for their enumerations, our byte pointer for
+/// theirs to a structure, an enumeration for another, and a structure for another of its size. All other
+/// types must be equal.
 template<class Ours, class Theirs>
 constexpr bool stands_for() {
     if constexpr (std::is_enum_v<Theirs>)

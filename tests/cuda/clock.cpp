@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What takes the times of CUDA's commands, on stubs of the driver and of CUPTI. A failure of CUPTI is one for
-// the process: the tests named after one run each in a process of their own.
+// Timing of CUDA commands, on stubs of the driver and of CUPTI. A failure of CUPTI affects the whole process,
+// so the tests of failures run in separate processes.
 #include "tests/cuda/stub_cupti.h"
 #include "tests/cuda/stubbed.h"
 #include "tests/unit/device_support.h"
@@ -12,7 +12,7 @@ namespace tandem {
 namespace {
 
 using testing::ElementsAre;
-using Times = std::vector<std::pair<std::int64_t, std::int64_t>>; ///< begin and length
+using Times = std::vector<std::pair<std::int64_t, std::int64_t>>; ///< begin and duration
 
 template<class Function>
 Function* entry_of_cupti(const char* name) {
@@ -25,7 +25,7 @@ unsigned long cupti_enabled() { return entry_of_cupti<unsigned long()>("stub_cup
 bool cupti_attached() { return entry_of_cupti<bool()>("stub_cupti_attached")(); }
 unsigned long event_records() { return entry_of_stub<unsigned long()>("stub_event_records")(); }
 
-/// A variable of the stubs', for a scope.
+/// Sets an environment variable of the stubs for a scope.
 class Set {
 public:
     Set(const char* name, const std::string& value) : name_(name) { setenv(name, value.c_str(), 1); }
@@ -37,7 +37,7 @@ private:
     const char* name_;
 };
 
-/// What a device is told.
+/// Commands for a device, and their times.
 struct Work {
     explicit Work(Device& on)
         : device(on),
@@ -49,14 +49,14 @@ struct Work {
     void clear() { device.clear(words, 32); }
     void upload() { device.upload(words, bytes_of(values)); }
     void download() { device.download(words, std::as_writable_bytes(std::span(values))); }
-    /// Of the commands since the last time.
+    /// Times of the commands since the last call.
     Times times() {
         Times found;
         for (const auto& event : device.finish().events)
             if (event.ticket != 0) found.emplace_back(event.begin_ns, event.device_ns);
         return found;
     }
-    /// One of each kind, two of launches.
+    /// One command of each kind, two launches.
     Times all() {
         launch();
         clear();
@@ -73,7 +73,7 @@ struct Work {
     std::vector<std::uint32_t> values = std::vector<std::uint32_t>(16, 1);
 };
 
-/// Of commands that came one after another, of which the stub's first was number `first`.
+/// Expected times of `count` consecutive commands, the first of which has number `first` in the stub.
 Times expected(std::size_t count, std::int64_t first) {
     Times times;
     for (std::int64_t i = 0; i < static_cast<std::int64_t>(count); ++i)
@@ -91,7 +91,7 @@ protected:
     }
 };
 
-TEST_F(CuptiClock, TimesAreThoseOfTheRecords) {
+TEST_F(CuptiClock, TimesComeFromTheRecords) {
     const auto before = event_records();
     device->set_clocks(Clocks::on);
     const auto first = next();
@@ -129,7 +129,7 @@ TEST_F(CuptiClock, ALostRecordIsUnknown) {
     EXPECT_EQ(device->clock(), "CUPTI 13.0 activity records");
 }
 
-TEST_F(CuptiClock, IsThereWhileClocksAreOnOnly) {
+TEST_F(CuptiClock, IsAttachedOnlyWhileClocksAreOn) {
     const auto before = cupti_calls();
     EXPECT_EQ(device->clock(), "CUPTI activity records or CUDA events");
     Work work(*device);
@@ -177,7 +177,7 @@ TEST_F(CuptiClock, EveryDeviceHasItsOwn) {
     EXPECT_FALSE(cupti_attached()) << "the device ended with clocks on";
 }
 
-TEST_F(CuptiClock, ACommandThatIsRefusedHasNoTime) {
+TEST_F(CuptiClock, AFailedCommandHasNoTime) {
     device->set_clocks(Clocks::on);
     const auto first = next();
     Work work(*device);
@@ -193,7 +193,7 @@ TEST_F(CuptiClock, ACommandThatIsRefusedHasNoTime) {
     device->set_clocks(Clocks::off);
 }
 
-/// Run with what CUPTI is to lack, and with what the device is to say.
+/// The environment sets what CUPTI lacks and the expected description of the clock.
 class NoCupti : public CudaDevice {};
 
 TEST_F(NoCupti, ByEvents) {
@@ -210,7 +210,7 @@ TEST_F(NoCupti, ByEvents) {
 
 class CuptiFails : public CudaDevice {};
 
-/// CUPTI says yes to everything, and tells nothing.
+/// CUPTI accepts every call but makes no records.
 TEST_F(CuptiFails, MakesNoRecords) {
     const Set loses("STUB_CUPTI_LOSES", "all");
     device->set_clocks(Clocks::on);
@@ -239,7 +239,7 @@ TEST_F(CuptiFails, WhileCommandsRun) {
     EXPECT_EQ(work.all(), Times(5, {1000, 1000}));
 }
 
-/// Another profiler may be attached; it stays so.
+/// Another profiler may be attached, and stays attached.
 TEST_F(CuptiFails, AnotherToolHasIt) {
     char* subscriber = nullptr;
     entry_of_cupti<int(char**, void (*)(), void*)>("cuptiSubscribe")(&subscriber, nullptr, nullptr);

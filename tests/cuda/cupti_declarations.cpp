@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The adaptor's own declarations of CUPTI against its headers; built where there are any.
+// The adaptor's own declarations of CUPTI against its headers; built if the headers exist.
 #include "backends/cuda/cupti.h"
 #include "tests/cuda/callable_as.h"
 
@@ -31,7 +31,7 @@ TEST(CuptiDeclarations, Values) {
     EXPECT_EQ(0, CUPTI_TIMESTAMP_UNKNOWN);
 }
 
-/// The place and the size of each of the fields, in a record of ours and in one of theirs.
+/// Checks offset and size of a field in our record and in CUPTI's.
 #define TANDEM_SAME(ours, theirs, field, its)                                                                \
     EXPECT_EQ(offsetof(ours, field), offsetof(theirs, its)) << #theirs "::" #its;                            \
     EXPECT_EQ(sizeof(ours::field), sizeof(theirs::its)) << #theirs "::" #its
@@ -55,7 +55,7 @@ void compare_transfer() {
     TANDEM_SAME(CuptiTransfer, Theirs, correlation, correlationId);
 }
 
-/// Those of CUDA 11.2 to 13.0; which one a library writes is its own affair.
+/// Records of CUDA 11.2 to 13.0; the library's version decides which of them it writes.
 TEST(CuptiDeclarations, Records) {
     using namespace tandem::cuda;
     compare_kernel<CUpti_ActivityKernel5>();

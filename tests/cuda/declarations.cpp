@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The adaptor's own declarations of NVIDIA's libraries against the toolkit's headers; built where there is a
-// toolkit.
+// The adaptor's own declarations of NVIDIA's libraries against the toolkit's headers; built if the toolkit
+// exists.
 #include "backends/cuda/driver.h"
 #include "backends/cuda/nvrtc.h"
 #include "tests/cuda/callable_as.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The CUDA adaptor on the stub of the driver: whose context is current, what a launch costs, which errors.
+// The CUDA adaptor on the stub of the driver: the current context, the cost of a launch, and errors.
 #include "tests/cuda/allocations.h"
 #include "tests/cuda/stubbed.h"
 #include "tests/unit/device_support.h"
@@ -10,7 +10,7 @@
 namespace tandem {
 namespace {
 
-/// Every operation; `after` is called behind each.
+/// Runs every operation, and calls `after` after each.
 template<class After>
 void every_operation(Device& device, const After& after) {
     const auto done = [&](const char* what, auto operation) {
@@ -68,12 +68,12 @@ TEST_F(CudaDevice, AdoptedRunsOnTheGivenStreamOfTheGivenContext) {
     EXPECT_EQ(all() - there(stream, other), elsewhere);
 }
 
-TEST_F(CudaDevice, AContextThatIsNoneCannotBeAdopted) {
+TEST_F(CudaDevice, AnInvalidContextCannotBeAdopted) {
     EXPECT_THAT(test::message_of([] { cuda::adopt(nullptr, nullptr); }),
                 testing::HasSubstr("the context cannot be adopted: CUDA_ERROR_INVALID_CONTEXT"));
 }
 
-TEST_F(CudaDevice, FramesTakeNothingFromTheHeap) {
+TEST_F(CudaDevice, FramesDoNotAllocate) {
     const StageScope scope(*device, Stage::traverse);
     const auto words = device->allocate(4096, "a buffer with a label that is long");
     const auto kernel = test::compile(*device, "do_nothing");
@@ -93,8 +93,7 @@ TEST_F(CudaDevice, FramesTakeNothingFromTheHeap) {
     EXPECT_EQ(allocations(), before);
 }
 
-/// Memory that a command in flight reads may be freed by whoever catches the error.
-TEST_F(CudaDevice, TellsAProfilerWhereToBegin) {
+TEST_F(CudaDevice, StartsAndStopsAProfiler) {
     const auto starts = entry_of_stub<unsigned long()>("stub_profiler_starts");
     const auto stops = entry_of_stub<unsigned long()>("stub_profiler_stops");
     const auto before = std::pair{starts(), stops()};
@@ -105,31 +104,32 @@ TEST_F(CudaDevice, TellsAProfilerWhereToBegin) {
     EXPECT_EQ(current(), nullptr);
 }
 
-/// Of the stub's figures: 2 multiprocessors of capability 9.0, each of 128 lanes for float (CUDA C++
-/// Programming Guide, table of arithmetic throughput); data on both edges of 3,201 MHz, 768 bytes wide.
-TEST_F(CudaDevice, TellsWhatItCouldDoAtMost) {
+/// Computed from the stub's attributes: 2 multiprocessors of capability 9.0 with 128 float lanes each (CUDA
+/// C++ Programming Guide, table of arithmetic throughput); data on both edges of 3,201 MHz, 768 bytes wide.
+TEST_F(CudaDevice, ReportsItsPeaks) {
     EXPECT_EQ(device->info().cores, 256u);
     EXPECT_EQ(device->info().clock_mhz, 1980u);
     EXPECT_EQ(device->info().peak_bytes_per_s, 4'916'736'000'000u);
 }
 
-TEST_F(CudaDevice, WhatADriverDoesNotTellIsUnknown) {
-    setenv("STUB_UNTOLD", "13", 1); // CU_DEVICE_ATTRIBUTE_CLOCK_RATE
+TEST_F(CudaDevice, UnknownAttributesGiveUnknownValues) {
+    setenv("STUB_UNKNOWN", "13", 1); // CU_DEVICE_ATTRIBUTE_CLOCK_RATE
     const auto without_clock = cuda::discover().devices.at(0)->info();
-    setenv("STUB_UNTOLD", "37", 1); // CU_DEVICE_ATTRIBUTE_GLOBAL_MEMORY_BUS_WIDTH
+    setenv("STUB_UNKNOWN", "37", 1); // CU_DEVICE_ATTRIBUTE_GLOBAL_MEMORY_BUS_WIDTH
     const auto without_width = cuda::discover().devices.at(0)->info();
-    unsetenv("STUB_UNTOLD");
+    unsetenv("STUB_UNKNOWN");
     EXPECT_EQ(without_clock.clock_mhz, 0u);
     EXPECT_EQ(without_clock.peak_bytes_per_s, device->info().peak_bytes_per_s);
     EXPECT_EQ(without_width.peak_bytes_per_s, 0u);
 }
 
-/// The stub holds 1,024 work-items of the 2,048 that there is room for.
-TEST_F(CudaDevice, TellsTheOccupancyOfAKernel) {
+/// The stub reports 1,024 resident work-items of at most 2,048.
+TEST_F(CudaDevice, ReportsTheOccupancyOfAKernel) {
     EXPECT_EQ(test::compile(*device, "do_nothing", {{"GROUP_SIZE", "64"}}).facts().occupancy, 0.5);
 }
 
-TEST_F(CudaDevice, AnErrorWaitsForWhatIsInFlight) {
+/// A handler of the error may free memory that a command in flight reads.
+TEST_F(CudaDevice, AnErrorWaitsForCommandsInFlight) {
     const auto waits = entry_of_stub<unsigned long()>("stub_waits");
     const StageScope scope(*device, Stage::traverse);
     const auto words = device->allocate(64, "words");
@@ -156,7 +156,7 @@ TEST_F(CudaDevice, ArgumentsHaveALimit) {
     device->launch(kernel, {1, 1}, std::span(arguments).first(32));
 }
 
-TEST_F(CudaDevice, ErrorsOfMemoryAreTold) {
+TEST_F(CudaDevice, OutOfMemoryIsDistinguished) {
     const StageScope scope(*device, Stage::traverse);
     const auto words = device->allocate(64, "words");
     const auto kernel = test::compile(*device, "do_nothing");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Frames in an application's memory of a GPU, on the stub of the driver: kernels are given the application's
-// own addresses, nothing is copied, such frames go to the driver as one, and the device follows other streams
-// or works on one.
+// Frames in an application's GPU memory, on the stub of the driver: kernels receive the application's
+// addresses, nothing is copied, and such frames are submitted as graphs. The device follows other streams or
+// works on one.
 #include "tests/cuda/stubbed.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
@@ -23,11 +23,11 @@ protected:
         const auto& tiled = algorithm("tiled");
         return tiled.prepare(devices, scene, resolve(tiled.parameters(), {}, {}, "tiled"));
     }
-    /// What of the application's memory a session may be given.
-    DeviceFrame frame(Device& on, Numbers& of_poses, Numbers& of_vertices) {
-        DeviceFrame frame{{on.adopt(of_poses.data(), of_poses.size() * 8, "poses"), Precision::fp64},
+    /// A frame in the application's memory.
+    DeviceFrame frame(Device& on, Numbers& pose_rows, Numbers& vertex_rows) {
+        DeviceFrame frame{{on.adopt(pose_rows.data(), pose_rows.size() * 8, "poses"), Precision::fp64},
                           std::vector<DeviceRows>(scene.bodies.size())};
-        frame.deformed[1] = {on.adopt(of_vertices.data(), of_vertices.size() * 8, "vertices"),
+        frame.deformed[1] = {on.adopt(vertex_rows.data(), vertex_rows.size() * 8, "vertices"),
                              Precision::fp64};
         return frame;
     }
@@ -57,7 +57,7 @@ protected:
     Numbers poses = Numbers(6 * 7, 0.5), vertices = Numbers(3 * scene.meshes[1].vertices.size(), 0.5);
 };
 
-/// Counted from where other tests have left the count of an address.
+/// Counters per address continue from earlier tests, so differences are compared.
 TEST_F(CudaFrames, KernelsReadTheApplicationsOwnMemory) {
     const auto session = prepare(*device);
     const auto given = frame(*device, poses, vertices);
@@ -72,7 +72,7 @@ TEST_F(CudaFrames, KernelsReadTheApplicationsOwnMemory) {
     EXPECT_EQ(copies_of(poses.data()) + copies_of(vertices.data()), copies);
 }
 
-TEST_F(CudaFrames, GoToTheDriverAsOneFromTheThirdTimeOn) {
+TEST_F(CudaFrames, AreGraphsFromTheThirdTimeOn) {
     const auto session = prepare(*device);
     const auto given = frame(*device, poses, vertices);
     const auto submissions = [&](const DeviceFrame& of) {
@@ -103,7 +103,7 @@ TEST_F(CudaFrames, WorkOnTheApplicationsStream) {
         session->run(frame(*on, poses, vertices));
     }
     EXPECT_GT(calls(stream, primary()), before + 7);
-    on.reset(); // the stream stays the application's
+    on.reset(); // the stream still belongs to the application
     make_current(primary());
     EXPECT_EQ(entry<CUstream_st*>("cuStreamSynchronize")(stream), 0);
     entry<CUstream_st*>("cuStreamDestroy_v2")(stream);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Commands that go to the driver as one, on the stub of the driver: which do, that they do what they would
-// one by one, and how sessions hand over their frames.
+// Commands submitted as graphs, on the stub of the driver: which commands, equal effects, and the submissions
+// of sessions.
 #include "tests/cuda/allocations.h"
 #include "tests/cuda/stubbed.h"
 #include "tests/support/cells.h"
@@ -15,11 +15,11 @@ namespace {
 
 using namespace testing_support;
 
-/// What goes to the driver as one: the same commands from the second time on, on words that a frame uploads
-/// and reads back.
+/// Frames with the same commands, submitted as a graph from the second time on. A frame uploads words and
+/// reads them back.
 class CudaGraphs : public CudaDevice {
 protected:
-    /// A frame of five commands and one wait; what it read back.
+    /// A frame of five commands and one wait; returns the words that it read back.
     std::vector<std::uint32_t> frame(std::uint32_t value, std::uint32_t argument = 7) {
         std::vector<std::uint32_t> values(16, value), back(16);
         const auto work = [&] {
@@ -58,7 +58,7 @@ protected:
     Kernel kernel;
 };
 
-TEST_F(CudaGraphs, TheSameCommandsGoAsOneFromTheSecondTimeOn) {
+TEST_F(CudaGraphs, TheSameCommandsAreAGraphFromTheSecondTimeOn) {
     const StageScope stage(*device, Stage::traverse);
     const auto launched = launches(), in_graphs = commands();
     auto submitted = device->submissions();
@@ -73,7 +73,7 @@ TEST_F(CudaGraphs, TheSameCommandsGoAsOneFromTheSecondTimeOn) {
     EXPECT_EQ(device->submissions(), submitted + 8);
     const auto before = allocations();
     for (std::uint32_t value = 0; value < 100; ++value) {
-        const auto back = frame(value); // two vectors a frame are the test's
+        const auto back = frame(value); // the test itself allocates two vectors a frame
     }
     EXPECT_EQ(allocations(), before + 200);
 }
@@ -98,8 +98,8 @@ TEST_F(CudaGraphs, OtherArgumentsBuffersAndGridsAreOtherCommands) {
     EXPECT_LE(graphs(), 16u);
 }
 
-/// A graph with a large upload would let the device wait for the host.
-TEST_F(CudaGraphs, ALargeUploadAndWhatFollowsGoAtOnce) {
+/// A graph with a large upload would make the device wait for the host.
+TEST_F(CudaGraphs, ALargeUploadAndLaterCommandsAreSubmittedAtOnce) {
     const StageScope stage(*device, Stage::traverse);
     const auto large = device->allocate(100000, "large");
     for (std::size_t bytes : {100000u, 65537u, 65536u})
@@ -118,7 +118,7 @@ TEST_F(CudaGraphs, ALargeUploadAndWhatFollowsGoAtOnce) {
         }
 }
 
-/// Its commands look the same when other memory gets its address.
+/// The same commands with other memory at the buffer's address would look equal.
 TEST_F(CudaGraphs, NoGraphOutlivesABufferOfItsCommands) {
     const StageScope stage(*device, Stage::traverse);
     for (int i = 0; i < 3; ++i) frame(1);
@@ -134,7 +134,7 @@ TEST_F(CudaGraphs, NoGraphOutlivesABufferOfItsCommands) {
     EXPECT_EQ(launches(), launched + 2);
 }
 
-TEST_F(CudaGraphs, ClocksAndTheDefaultStreamTakeCommandsOneByOne) {
+TEST_F(CudaGraphs, ClocksAndTheDefaultStreamSubmitCommandsOneByOne) {
     const StageScope stage(*device, Stage::traverse);
     device->set_clocks(Clocks::on);
     for (int i = 0; i < 3; ++i) frame(1);
@@ -156,7 +156,7 @@ TEST_F(CudaGraphs, ClocksAndTheDefaultStreamTakeCommandsOneByOne) {
     make_current(nullptr);
 }
 
-TEST_F(CudaGraphs, WhatIsEnqueuedBeforeAnExceptionRuns) {
+TEST_F(CudaGraphs, CommandsEnqueuedBeforeAnExceptionRun) {
     const StageScope stage(*device, Stage::traverse);
     std::vector<std::uint32_t> back(16);
     EXPECT_THROW(device->as_one([&] {
@@ -168,7 +168,7 @@ TEST_F(CudaGraphs, WhatIsEnqueuedBeforeAnExceptionRuns) {
     EXPECT_EQ(back, std::vector<std::uint32_t>(16, 5));
 }
 
-/// A buffer may go, and another come, before the commands on it are submitted.
+/// A buffer may be freed, and another allocated, before the commands on it are submitted.
 TEST_F(CudaGraphs, ABufferLivesUntilItsCommandsAreSubmitted) {
     const StageScope stage(*device, Stage::traverse);
     for (int i = 0; i < 3; ++i)
@@ -182,7 +182,7 @@ TEST_F(CudaGraphs, ABufferLivesUntilItsCommandsAreSubmitted) {
     EXPECT_EQ(device->bytes_allocated(), 64u);
 }
 
-TEST_F(CudaGraphs, ErrorsAreToldWithWhatWasBeingDone) {
+TEST_F(CudaGraphs, ErrorsNameTheirOperation) {
     const StageScope stage(*device, Stage::traverse);
     frame(1);
     setenv("STUB_INSTANTIATE", "700", 1);
@@ -209,10 +209,10 @@ TEST_F(CudaGraphs, ErrorsAreToldWithWhatWasBeingDone) {
     EXPECT_EQ(frame(7, 9), answer(7));
 }
 
-/// Kernels of the stub find nothing; what counts is how a session hands over its frames.
+/// Kernels of the stub find no pairs; the test counts submissions of a session.
 class CudaSessions : public CudaGraphs {
 protected:
-    /// Calls that hand work over, of each of five frames.
+    /// Number of submissions in each of five frames.
     std::vector<std::uint64_t> calls(Session& session) {
         std::vector<std::uint64_t> counts;
         for (std::size_t i = 0; i < 5; ++i) {
@@ -232,7 +232,7 @@ protected:
     static unsigned long waits() { return entry_of_stub<unsigned long()>("stub_waits")(); }
 
     Scene scene = crowd(81, 6, 0.9);
-    unsigned long waits_of_last = 0; ///< in the last frame of calls()
+    unsigned long waits_of_last = 0; ///< waits in the last frame of calls()
 };
 
 TEST_F(CudaSessions, AFrameIsOneSubmissionForEachWait) {
@@ -241,7 +241,7 @@ TEST_F(CudaSessions, AFrameIsOneSubmissionForEachWait) {
         const auto each = calls(*prepare(*traversal, {{"broad", "device"}, {"submission", "each"}}));
         EXPECT_GT(each[1], 7u);
         EXPECT_EQ(each[1], each[4]);
-        // The first also sorts bodies and refits those that are fixed, the second is not known yet.
+        // The first frame also sorts bodies and refits fixed ones; the second is not yet known.
         const auto one = calls(*prepare(*traversal, {{"broad", "device"}}));
         const auto waited = waits_of_last;
         EXPECT_EQ(waited, traversal->name() == "gproximity" ? 2u : 1u);
@@ -252,9 +252,8 @@ TEST_F(CudaSessions, AFrameIsOneSubmissionForEachWait) {
     }
 }
 
-/// What a frame that failed has done is not known: the next one begins with everything, poses that do not
-/// change included.
-TEST_F(CudaSessions, AFrameAfterAnErrorUploadsWhatDoesNotMove) {
+/// The effects of a failed frame are unknown: the next one uploads everything, including constant poses.
+TEST_F(CudaSessions, AFrameAfterAnErrorUploadsFixedBodies) {
     for (auto& body : scene.bodies) body.fixed = !body.deformable;
     const auto session = prepare(algorithm("tiled"), {{"broad", "device"}, {"submission", "each"}});
     calls(*session);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Conditions of a GPU by NVML, on its stub: what is there, what is refused, what is missing.
+// Conditions of a GPU from NVML, on its stub: available, refused and missing values.
 #include "backends/cuda/nvml.h"
 
 #include "backends/hardware.h"
@@ -21,7 +21,7 @@ using testing::Optional;
 constexpr auto uuid = "GPU-5a5a5a5a-5a5a-5a5a-5a5a-5a5a5a5a5a5a";
 constexpr GpuCondition unknown{};
 
-/// A variable of the stub's, for a scope.
+/// Sets an environment variable of the stub for a scope.
 class Variable {
 public:
     Variable(const char* name, const std::string& value) : name_(name) { setenv(name, value.c_str(), 1); }
@@ -47,7 +47,7 @@ DeviceInfo gpu_of(const std::string& hardware) {
     return info;
 }
 
-TEST(Nvml, TellsAllOfAGpu) {
+TEST(Nvml, ReadsAllOfAGpu) {
     const auto nvml = library("TANDEM_NVML");
     EXPECT_THAT(nvml.driver(), Optional(std::string("550.54.15")));
     const GpuCondition expected{.sm_mhz = 1980,
@@ -67,7 +67,7 @@ TEST(Nvml, TellsAllOfAGpu) {
     EXPECT_EQ(nvml.find(""), nullptr);
 }
 
-TEST(Nvml, FollowsWhatChanges) {
+TEST(Nvml, FollowsChanges) {
     const auto nvml = library("TANDEM_NVML");
     const Variable clock("STUB_SM", "345"), memory("STUB_MEMORY_CLOCK", "1593"),
         heat("STUB_TEMPERATURE", "87"), power("STUB_POWER", "699900"), limit("STUB_POWER_LIMIT", "500000"),
@@ -91,7 +91,7 @@ TEST(Nvml, CountsMoreProcessesThanItLists) {
     EXPECT_THAT(condition(nvml).processes, Optional(0)) << "of a container that shows none";
 }
 
-TEST(Nvml, WhatIsRefusedIsUnknown) {
+TEST(Nvml, RefusedValuesAreUnknown) {
     const auto nvml = library("TANDEM_NVML");
     const auto without = [&](const std::string& call) {
         const Variable refuses("STUB_REFUSES", call);
@@ -112,7 +112,7 @@ TEST(Nvml, WhatIsRefusedIsUnknown) {
     EXPECT_EQ(nvml.driver(), std::nullopt);
 }
 
-TEST(Nvml, WhatIsMissingIsUnknown) {
+TEST(Nvml, MissingValuesAreUnknown) {
     const auto nvml = library("STUB_OLD_NVML");
     auto expected = condition(library("TANDEM_NVML"));
     expected.throttle = std::nullopt;
@@ -160,7 +160,7 @@ TEST_F(CudaDevice, IsReadBesideTheProcessor) {
     EXPECT_EQ(json["gpus"][0]["power_w"], 76.4);
 }
 
-/// What tandem itself adds to the driver's time.
+/// Time that tandem adds to the driver's.
 TEST(Nvml, ReadingCostsLittle) {
     const GpuGauge gauge(gpu_of(uuid));
     constexpr int readings = 1000;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The adaptor's own declarations of NVML against its header; built where there is one.
+// The adaptor's own declarations of NVML against its header; built if the header exists.
 #include "backends/cuda/nvml.h"
 #include "tests/cuda/callable_as.h"
 
-#define NVML_NO_UNVERSIONED_FUNC_DEFS // older versions of calls are declared, too
+#define NVML_NO_UNVERSIONED_FUNC_DEFS // also declares older versions of calls
 #include <cstddef>
 #include <gtest/gtest.h>
 #include <nvml.h>

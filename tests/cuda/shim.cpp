@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Loaded before a program, stands between it and the CUDA driver and NVRTC that it loads, stubs or real ones:
-// every entry point that it asks for by name is this file's, which counts the call and makes one fail.
-//   SHIM_CALL    which call fails, from 1; 0: none
-//   SHIM_CODE    what it returns; 2 otherwise, which is CUDA_ERROR_OUT_OF_MEMORY
-//   SHIM_STAYS   anything: all calls after it fail, too, as on a device that is gone
+// Loaded before a program, between it and the CUDA driver and NVRTC (stubs or real ones). Every entry point
+// that the program looks up by name is one of this file, which counts calls and makes one fail.
+//   SHIM_CALL    number of the failing call, from 1; 0: none
+//   SHIM_CODE    its error code; 2 by default: CUDA_ERROR_OUT_OF_MEMORY
+//   SHIM_STAYS   if set, all later calls fail too, as on a lost device
 //   SHIM_COUNT   a file for the number of calls
-//   SHIM_FAILED  a file for the name of the first call that fails
+//   SHIM_FAILED  a file for the name of the first failing call
 #include "backends/cuda/driver.h"
 #include "backends/cuda/nvrtc.h"
 
@@ -36,7 +36,7 @@ void print_message(const char* file, const char* text) {
     std::fclose(out);
 }
 
-/// Whether this call is one that fails.
+/// Whether this call fails.
 bool fails(const char* name) {
     static const long at = number("SHIM_CALL", 0);
     static const bool stays = std::getenv("SHIM_STAYS") != nullptr;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A libcupti.so that makes records of the commands that stub_driver.cpp is told: the n-th since the start of
-// the process begins at 1,000,000 + 1,000 n ns and lasts 100 + n. As CUPTI does, it correlates ids of the
-// caller's only while calls of the driver are recorded. Among the records are some of other tools. What goes
-// wrong is chosen by variables: STUB_CUPTI_FAILS (name of a call that fails with 35, which is not permitted),
-// STUB_CUPTI_LOSES (number of a command whose record is lost, or "all"), STUB_CUPTI_BACKWARDS (the last
-// record comes first), STUB_CUPTI_VERSION.
+// A libcupti.so that makes records of the commands of stub_driver.cpp: the n-th since the start of the
+// process begins at 1,000,000 + 1,000 n ns and lasts 100 + n. As in CUPTI, it correlates external ids only
+// while driver calls are recorded. Some of the records belong to other tools. Variables select faults:
+// STUB_CUPTI_FAILS (name of a call that fails with 35, not permitted), STUB_CUPTI_LOSES (number of a command
+// whose record is lost, or "all"), STUB_CUPTI_BACKWARDS (the last record comes first), STUB_CUPTI_VERSION.
 #include "backends/cuda/cupti.h"
 #include "tests/cuda/stub_cupti.h"
 #include "tests/cuda/stub_driver.h"
@@ -22,15 +21,15 @@ using namespace tandem::cuda;
 
 namespace {
 
-constexpr std::size_t place = 128; ///< bytes between records, which no reader may know
+constexpr std::size_t record_stride = 128; ///< bytes between records, unknown to readers
 constexpr std::size_t records_of_buffer = 3;
 
 unsigned long calls = 0;
 unsigned long commands = 0;
 bool attached = false;
 std::set<CuptiKind> enabled;
-std::vector<std::uint64_t> ids; ///< pushed, the last one last
-std::vector<std::array<unsigned char, place>> records;
+std::vector<std::uint64_t> ids; ///< pushed ids, the last one at the end
+std::vector<std::array<unsigned char, record_stride>> records;
 CuptiRequested requested = nullptr;
 CuptiCompleted completed = nullptr;
 
@@ -39,7 +38,7 @@ std::string_view text(const char* name) {
     return value != nullptr ? value : "";
 }
 
-/// Of a call: 35 where it is to fail.
+/// Return code of a call: 35 if it is to fail.
 CuptiResult called(std::string_view name) {
     ++calls;
     return text("STUB_CUPTI_FAILS") == name ? 35 : 0;
@@ -47,7 +46,7 @@ CuptiResult called(std::string_view name) {
 
 template<class Record>
 void add(const Record& record) {
-    static_assert(sizeof(Record) <= place);
+    static_assert(sizeof(Record) <= record_stride);
     std::memcpy(records.emplace_back().data(), &record, sizeof(Record));
 }
 
@@ -59,7 +58,7 @@ void add_run(Record record, std::uint32_t correlation) {
     add(record);
 }
 
-/// Of one command: the application's own record, another tool's correlation, ours, and when it ran.
+/// Records of one command: another tool's kernel and correlation, our correlation, and its times.
 void command(int kind) {
     ++commands;
     const auto correlation = static_cast<std::uint32_t>(2 * commands);
@@ -87,16 +86,16 @@ void watch(void (*watcher)(int)) {
     reinterpret_cast<decltype(&stub_watch)>(dlsym(driver, "stub_watch"))(watcher);
 }
 
-/// One buffer of the client's, filled with the first of what is left.
+/// Fills one buffer of the client with the first remaining records.
 void deliver() {
     unsigned char* buffer = nullptr;
     std::size_t bytes = 0;
     std::size_t most = 0;
     requested(&buffer, &bytes, &most);
     const auto count = std::min(records.size(), records_of_buffer);
-    std::memcpy(buffer, records.data(), count * place);
+    std::memcpy(buffer, records.data(), count * record_stride);
     records.erase(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(count));
-    completed(nullptr, 0, buffer, bytes, count * place);
+    completed(nullptr, 0, buffer, bytes, count * record_stride);
 }
 
 } // namespace
@@ -142,7 +141,8 @@ CuptiResult cuptiActivityFlushAll(std::uint32_t) {
     return called(__func__);
 }
 CuptiResult cuptiActivityGetNextRecord(unsigned char* buffer, std::size_t valid, CuptiRecord** record) {
-    auto* const next = *record == nullptr ? buffer : reinterpret_cast<unsigned char*>(*record) + place;
+    auto* const next =
+        *record == nullptr ? buffer : reinterpret_cast<unsigned char*>(*record) + record_stride;
     if (next >= buffer + valid) return 12; // CUPTI_ERROR_MAX_LIMIT_REACHED
     *record = reinterpret_cast<CuptiRecord*>(next);
     return called(__func__);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What the stub of CUPTI tells a test; looked up by name, since only a stub has it.
+// Queries of the CUPTI stub; tests look them up by name because only the stub exports them.
 #pragma once
 
 extern "C" {
-/// Calls so far, of any entry point.
+/// Number of calls of all entry points.
 unsigned long stub_cupti_calls();
-/// Kinds of records that are enabled.
+/// Number of enabled record kinds.
 unsigned long stub_cupti_enabled();
-/// Whether it has a subscriber or has not been finalized since it had one.
+/// Whether it has a subscriber, or has not been finalized since.
 bool stub_cupti_attached();
-/// Ids of a caller's own that were pushed and not popped.
+/// Number of external ids that were pushed and not popped.
 unsigned long stub_cupti_pushed();
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A libcuda.so.1 without a GPU: memory is the host's, kernels do nothing. As with a driver, the current
-// context is the thread's, what needs one fails without, and a stream goes with its own only. What goes wrong
-// is chosen by variables: STUB_INIT (code of cuInit), STUB_VERSION, STUB_MEMORY (bytes there are), STUB_FAULT
-// (launches fault), STUB_LAUNCH, STUB_INSTANTIATE and STUB_GRAPH (codes of cuLaunchKernel, of making a
-// graph and of launching one), STUB_UNTOLD (an attribute of the device that is not told). STUB_DEVICES is how
-// many there are, of which CUDA_VISIBLE_DEVICES shows some; else there is one.
+// A libcuda.so.1 without a GPU: memory is the host's, and kernels do nothing. As in a driver, the current
+// context is thread-local, calls without a context fail, and a stream works only with its own context.
+// Variables select faults and attributes: STUB_INIT (code of cuInit), STUB_VERSION, STUB_MEMORY (bytes
+// available), STUB_FAULT (launches fault), STUB_LAUNCH, STUB_INSTANTIATE and STUB_GRAPH (codes of
+// cuLaunchKernel, of instantiating a graph and of launching one), STUB_UNKNOWN (an attribute that the device
+// does not report). STUB_DEVICES is the number of devices (default 1); CUDA_VISIBLE_DEVICES selects some of
+// them.
 #include "backends/cuda/driver.h"
 #include "tests/cuda/stub_driver.h"
 
@@ -34,23 +35,23 @@ std::map<DevicePointer, std::size_t> sizes;
 constexpr Result invalid_context = 201;
 constexpr Result invalid_handle = 400;
 
-char primary;                            ///< stands for the device's primary context
+char primary;                            ///< the device's primary context
 thread_local std::vector<Context> stack; ///< a thread's contexts, the current one last
 
 Context current() { return stack.empty() ? nullptr : stack.back(); }
-std::map<Stream, Context> streams; ///< of each that was made, its context
+std::map<Stream, Context> streams; ///< context of each created stream
 std::map<std::pair<Stream, Context>, unsigned long> calls;
 unsigned long waits = 0;
 
 using Work = std::vector<std::function<void()>>;
 bool capturing = false;
-Work captured;            ///< since a capture began
-unsigned long graphs = 0; ///< that live
+Work captured;            ///< since the capture began
+unsigned long graphs = 0; ///< live graphs
 unsigned long graph_launches = 0, commands_in_graphs = 0;
 unsigned long profiler_starts = 0, profiler_stops = 0;
 unsigned long event_records = 0;
 std::map<EventHandle, Stream> recorded_in;
-std::map<std::pair<Stream, Stream>, unsigned long> orderings; ///< by who waits and for whom
+std::map<std::pair<Stream, Stream>, unsigned long> orderings; ///< by waiting and awaited stream
 void (*watcher)(int) = nullptr;
 std::map<std::uint64_t, unsigned long> launches_with, copies_of; ///< by address
 
@@ -58,7 +59,7 @@ void watched(int kind) {
     if (watcher != nullptr && !capturing) watcher(kind);
 }
 
-/// At once, or whenever the graph is launched that is being captured.
+/// Runs a command at once or, during a capture, at each launch of the graph.
 template<class Command>
 void run(const Command& command) {
     if (capturing)
@@ -67,10 +68,10 @@ void run(const Command& command) {
         command();
 }
 
-/// Of a call that needs a context.
+/// Return code of a call that needs a context.
 Result in_context() { return current() != nullptr ? 0 : invalid_context; }
 
-/// Of a call on a stream.
+/// Return code of a call on a stream.
 Result on(Stream stream) {
     ++calls[{stream, current()}];
     if (current() == nullptr) return invalid_context;
@@ -78,7 +79,7 @@ Result on(Stream stream) {
     return stream == nullptr || (found != streams.end() && found->second == current()) ? 0 : invalid_handle;
 }
 
-/// Of a command on device memory: whether all of it is allocated.
+/// Return code of a command on device memory: an error unless the whole range is allocated.
 Result in_memory(DevicePointer first, std::size_t bytes) {
     auto next = sizes.upper_bound(first);
     if (next == sizes.begin()) return 1;
@@ -86,7 +87,7 @@ Result in_memory(DevicePointer first, std::size_t bytes) {
     return first + bytes <= next->first + next->second ? 0 : 1;
 }
 
-/// The devices that there are, by their numbers in the machine.
+/// Visible devices, by their numbers in the machine.
 std::vector<long> visible() {
     std::vector<long> devices;
     const auto count = number("STUB_DEVICES", 1);
@@ -151,9 +152,9 @@ Result cuDeviceGetAttribute(int* value, int what, DeviceHandle) {
         {clock_rate_khz, 1980000},     {memory_clock_rate_khz, 3201000},
         {memory_bus_bits, 6144},       {capability_major, 9},
         {capability_minor, 0}};
-    const auto found = what == number("STUB_UNTOLD", -1) ? values.end() : values.find(what);
+    const auto found = what == number("STUB_UNKNOWN", -1) ? values.end() : values.find(what);
     if (found == values.end())
-        return 1; // CUDA_ERROR_INVALID_VALUE, as of an attribute that a driver does not know
+        return 1; // CUDA_ERROR_INVALID_VALUE, as for an attribute that the driver does not know
     *value = found->second;
     return 0;
 }
@@ -181,7 +182,7 @@ Result cuCtxGetCurrent(Context* context) {
     return 0;
 }
 Result cuCtxSetCurrent(Context context) {
-    // As the driver has it: the top of the stack is replaced, and with none popped.
+    // As in the driver: the top of the stack is replaced; a null context pops it.
     if (!stack.empty()) stack.pop_back();
     if (context != nullptr) stack.push_back(context);
     return 0;

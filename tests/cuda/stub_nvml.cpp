@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A libnvidia-ml.so.1 without a GPU, or with the one of stub_driver.cpp. What it answers is chosen by
-// variables: STUB_NVML_INIT (code of nvmlInit), STUB_SM, STUB_MEMORY_CLOCK (MHz), STUB_TEMPERATURE (C),
-// STUB_POWER and STUB_POWER_LIMIT (mW), STUB_THROTTLE (bits), STUB_BUSY (percent), STUB_PROCESSES (that
-// compute, this one included) and STUB_REFUSES (names of calls that are not supported). With STUB_OLD it
-// lacks what older ones lack.
+// A libnvidia-ml.so.1 without a GPU, or with the one of stub_driver.cpp. Variables select its answers:
+// STUB_NVML_INIT (code of nvmlInit), STUB_SM, STUB_MEMORY_CLOCK (MHz), STUB_TEMPERATURE (C), STUB_POWER and
+// STUB_POWER_LIMIT (mW), STUB_THROTTLE (bits), STUB_BUSY (percent), STUB_PROCESSES (compute processes,
+// including this one) and STUB_REFUSES (names of unsupported calls). Compiled with STUB_OLD, it lacks the
+// calls that old versions lack.
 #include "backends/cuda/nvml.h"
 
 #include <cstdlib>
@@ -27,10 +27,10 @@ bool refuses(std::string_view call) {
     return names != nullptr && std::string_view(names).find(call) != std::string_view::npos;
 }
 
-char gpu; ///< stands for the GPU there is
+char gpu; ///< the only GPU
 NvmlHandle handle() { return reinterpret_cast<NvmlHandle>(&gpu); }
 
-/// Answers `value`, unless another GPU is asked for or the call is one of those refused.
+/// Answers `value`, except for another GPU or a refused call.
 template<class Value>
 NvmlResult answer(std::string_view call, NvmlHandle asked, Value* to, Value value) {
     if (asked != handle()) return not_found;
@@ -46,14 +46,14 @@ NvmlResult find(std::string_view call, std::string_view name, std::string_view k
 }
 
 NvmlResult processes(std::string_view call, NvmlHandle asked, unsigned* count, NvmlProcess* list) {
-    const auto there = number("STUB_PROCESSES", 1);
-    if (const auto room = *count; room < there) {
-        *count = there;
+    const auto existing = number("STUB_PROCESSES", 1);
+    if (const auto capacity = *count; capacity < existing) {
+        *count = existing;
         return nvml_insufficient_size;
     }
-    // Each is listed twice, as one is that has contexts in two instances of the GPU.
-    const auto rows = 2 * there <= *count ? 2 * there : there;
-    for (unsigned i = 0; i < rows; ++i) list[i] = {.id = 1000 + i % there};
+    // Each process is listed twice, as if it had contexts in two instances of the GPU.
+    const auto rows = 2 * existing <= *count ? 2 * existing : existing;
+    for (unsigned i = 0; i < rows; ++i) list[i] = {.id = 1000 + i % existing};
     return answer(call, asked, count, rows);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An NVRTC that compiles everything to a few bytes. STUB_NVRTC is its major version; STUB_BROKEN makes it
-// refuse.
+// An NVRTC that compiles everything to a few bytes. STUB_NVRTC is its major version; with STUB_BROKEN it
+// fails.
 #include "backends/cuda/nvrtc.h"
 
 #include <cstdlib>

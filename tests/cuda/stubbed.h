@@ -18,7 +18,7 @@ Function* entry_of_stub(const char* name) {
     return reinterpret_cast<Function*>(dlsym(library, name));
 }
 
-/// An entry point of the driver, as an application has it.
+/// An entry point of the driver, as an application looks it up.
 template<class... Arguments>
 auto entry(const char* name) {
     return entry_of_stub<int(Arguments...)>(name);

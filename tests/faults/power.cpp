@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Loaded before a program, writes down what it and its children do to the files of a folder, for power.py to
-// take back what a loss of power may.
+// Loaded before a program. It logs the file operations of the program and its children in a folder, so that
+// power.py can undo those that a loss of power may undo.
 //   POWER_FOLDER  the folder
-//   POWER_LOG     a file outside of it; a line for every call that succeeded, its fields parted by tabs,
-//   bytes
-//                 in hexadecimal:
-//                 make PATH | write PATH OFFSET BYTES | size PATH BYTES | sync PATH CONTENT | sync-folder
-//                 PATH | rename FROM TO | remove PATH | make-folder PATH
-// What stdio writes by itself is seen when it is synced: a line "sync" has all that the file holds. A file
-// system that is synced is a line for everything in the folder.
+//   POWER_LOG     a file outside of it, with a line per successful call; fields are separated by tabs,
+//                 bytes are hexadecimal:
+//                 make PATH | write PATH OFFSET BYTES | size PATH BYTES | sync PATH CONTENT |
+//                 sync-folder PATH | rename FROM TO | remove PATH | make-folder PATH
+// Internal writes of stdio are logged at the next sync: a line "sync" has the whole content of the file. A
+// sync of the file system logs a line for every file of the folder.
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
@@ -48,7 +47,7 @@ int log_file() {
     return file;
 }
 
-/// Where in the folder a path leads that need not be there any more; empty: elsewhere.
+/// Path relative to the folder; the file itself may no longer exist. Empty: outside the folder.
 std::string inside(const std::string& path) {
     const auto slash = path.rfind('/');
     const auto parent = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
@@ -86,49 +85,49 @@ std::string content(const std::string& path) {
     return hexadecimal(text.data(), text.size());
 }
 
-void print_message(const std::string& what, const std::string& path, const std::string& more = "") {
+void log_operation(const std::string& what, const std::string& path, const std::string& more = "") {
     if (path.empty() || log_file() < 0) return;
     const auto line = what + "\t" + path + (more.empty() ? "" : "\t" + more) + "\n";
     syscall(SYS_write, log_file(), line.data(), line.size());
 }
 
-/// Where a descriptor's next write goes.
-off_t slot_owner(int file) {
+/// File offset of the descriptor's next write.
+off_t write_offset(int file) {
     const int flags = fcntl(file, F_GETFL);
     return lseek(file, 0, flags >= 0 && (flags & O_APPEND) != 0 ? SEEK_END : SEEK_CUR);
 }
 
-void tell_write(int file, off_t at, const char* data, ssize_t bytes) {
+void log_write(int file, off_t at, const char* data, ssize_t bytes) {
     if (bytes > 0)
-        print_message("write", path_of(file),
+        log_operation("write", path_of(file),
                       std::to_string(at) + "\t" + hexadecimal(data, static_cast<std::size_t>(bytes)));
 }
 
-void tell_opened(int file, bool made, bool masked) {
+void log_open(int file, bool made, bool masked) {
     if (file < 0) return;
-    if (made) print_message("make", path_of(file));
-    if (masked && !made) print_message("size", path_of(file), "0");
+    if (made) log_operation("make", path_of(file));
+    if (masked && !made) log_operation("size", path_of(file), "0");
 }
 
-void tell_synced(int file) {
+void log_sync(int file) {
     struct stat facts {};
     if (fstat(file, &facts) != 0) return;
-    if (S_ISDIR(facts.st_mode)) print_message("sync-folder", path_of(file));
-    // A descriptor may be for writing only.
+    if (S_ISDIR(facts.st_mode)) log_operation("sync-folder", path_of(file));
+    // The descriptor may be write-only.
     if (S_ISREG(facts.st_mode))
-        print_message("sync", path_of(file), content("/proc/self/fd/" + std::to_string(file)));
+        log_operation("sync", path_of(file), content("/proc/self/fd/" + std::to_string(file)));
 }
 
-void tell_all() {
-    print_message("sync-folder", ".");
+void log_all() {
+    log_operation("sync-folder", ".");
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder())) {
         const auto path = entry.path().string();
-        if (entry.is_directory()) print_message("sync-folder", inside(path));
-        if (entry.is_regular_file()) print_message("sync", inside(path), content(path));
+        if (entry.is_directory()) log_operation("sync-folder", inside(path));
+        if (entry.is_regular_file()) log_operation("sync", inside(path), content(path));
     }
 }
 
-bool is_there(const char* path) { return access(path, F_OK) == 0; }
+bool exists(const char* path) { return access(path, F_OK) == 0; }
 
 } // namespace
 
@@ -142,9 +141,9 @@ extern "C" {
         va_end(more);                                                                                        \
         static auto* const real = next<int(const char*, int, ...)>(#name);                                   \
         const std::lock_guard lock(one_at_a_time);                                                           \
-        const bool there = is_there(path);                                                                   \
+        const bool existed = exists(path);                                                                   \
         const int file = real(path, flags, mode);                                                            \
-        tell_opened(file, !there && (flags & O_CREAT) != 0, (flags & O_TRUNC) != 0);                         \
+        log_open(file, !existed && (flags & O_CREAT) != 0, (flags & O_TRUNC) != 0);                          \
         return file;                                                                                         \
     }
 TANDEM_OPEN(open)
@@ -155,9 +154,9 @@ TANDEM_OPEN(open64)
     FILE* name(const char* path, const char* mode) {                                                         \
         static auto* const real = next<FILE*(const char*, const char*)>(#name);                              \
         const std::lock_guard lock(one_at_a_time);                                                           \
-        const bool there = is_there(path);                                                                   \
+        const bool existed = exists(path);                                                                   \
         FILE* const file = real(path, mode);                                                                 \
-        if (file != nullptr && mode[0] != 'r') tell_opened(fileno(file), !there, mode[0] == 'w');            \
+        if (file != nullptr && mode[0] != 'r') log_open(fileno(file), !existed, mode[0] == 'w');             \
         return file;                                                                                         \
     }
 TANDEM_FOPEN(fopen)
@@ -167,9 +166,9 @@ TANDEM_FOPEN(fopen64)
 ssize_t write(int file, const void* data, std::size_t bytes) {
     static auto* const real = next<ssize_t(int, const void*, std::size_t)>("write");
     const std::lock_guard lock(one_at_a_time);
-    const auto at = slot_owner(file);
+    const auto at = write_offset(file);
     const auto done = real(file, data, bytes);
-    tell_write(file, at, static_cast<const char*>(data), done);
+    log_write(file, at, static_cast<const char*>(data), done);
     return done;
 }
 
@@ -178,7 +177,7 @@ ssize_t write(int file, const void* data, std::size_t bytes) {
         static auto* const real = next<ssize_t(int, const void*, std::size_t, off_t)>(#name);                \
         const std::lock_guard lock(one_at_a_time);                                                           \
         const auto done = real(file, data, bytes, at);                                                       \
-        tell_write(file, at, static_cast<const char*>(data), done);                                          \
+        log_write(file, at, static_cast<const char*>(data), done);                                           \
         return done;                                                                                         \
     }
 TANDEM_PWRITE(pwrite)
@@ -188,11 +187,11 @@ TANDEM_PWRITE(pwrite64)
 ssize_t writev(int file, const struct iovec* parts, int count) {
     static auto* const real = next<ssize_t(int, const struct iovec*, int)>("writev");
     const std::lock_guard lock(one_at_a_time);
-    const auto at = slot_owner(file);
+    const auto at = write_offset(file);
     const auto done = real(file, parts, count);
     std::string all;
     for (int i = 0; i < count; ++i) all.append(static_cast<const char*>(parts[i].iov_base), parts[i].iov_len);
-    tell_write(file, at, all.data(), done);
+    log_write(file, at, all.data(), done);
     return done;
 }
 
@@ -201,7 +200,7 @@ ssize_t writev(int file, const struct iovec* parts, int count) {
         static auto* const real = next<int(int, off_t)>(#name);                                              \
         const std::lock_guard lock(one_at_a_time);                                                           \
         const int done = real(file, bytes);                                                                  \
-        if (done == 0) print_message("size", path_of(file), std::to_string(bytes));                          \
+        if (done == 0) log_operation("size", path_of(file), std::to_string(bytes));                          \
         return done;                                                                                         \
     }
 TANDEM_TRUNCATE(ftruncate)
@@ -213,7 +212,7 @@ TANDEM_TRUNCATE(ftruncate64)
         static auto* const real = next<int(int)>(#name);                                                     \
         const std::lock_guard lock(one_at_a_time);                                                           \
         const int done = real(file);                                                                         \
-        if (done == 0) tell_synced(file);                                                                    \
+        if (done == 0) log_sync(file);                                                                       \
         return done;                                                                                         \
     }
 TANDEM_SYNC(fsync)
@@ -224,7 +223,7 @@ int syncfs(int file) {
     static auto* const real = next<int(int)>("syncfs");
     const std::lock_guard lock(one_at_a_time);
     const int done = real(file);
-    if (done == 0) tell_all();
+    if (done == 0) log_all();
     return done;
 }
 
@@ -233,7 +232,7 @@ int rename(const char* from, const char* to) noexcept {
     const std::lock_guard lock(one_at_a_time);
     const auto before = inside(from);
     const int done = real(from, to);
-    if (done == 0) print_message("rename", before, inside(to));
+    if (done == 0) log_operation("rename", before, inside(to));
     return done;
 }
 
@@ -242,7 +241,7 @@ int rename(const char* from, const char* to) noexcept {
         static auto* const real = next<int(const char*)>(#name);                                             \
         const std::lock_guard lock(one_at_a_time);                                                           \
         const int done = real(path);                                                                         \
-        if (done == 0) print_message("remove", inside(path));                                                \
+        if (done == 0) log_operation("remove", inside(path));                                                \
         return done;                                                                                         \
     }
 TANDEM_REMOVE(remove)
@@ -253,7 +252,7 @@ int mkdir(const char* path, mode_t mode) noexcept {
     static auto* const real = next<int(const char*, mode_t)>("mkdir");
     const std::lock_guard lock(one_at_a_time);
     const int done = real(path, mode);
-    if (done == 0) print_message("make-folder", inside(path));
+    if (done == 0) log_operation("make-folder", inside(path));
     return done;
 }
 

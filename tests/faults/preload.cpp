@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Loaded before a program, makes one call fail that it makes to the C library once main() has begun.
-//   FAULTS_CALL  a family of calls: malloc, large (malloc of 64 KiB or more; all that follow fail, too),
-//   open,
-//                write, fsync, rename, truncate or thread
-//   FAULTS_AT    which call of it fails, from 1; 0: none, the calls are counted and listed
-//   FAULTS_LOG   a file; lines "FAMILY NUMBER OWNER SITE" of the call that failed, or of the first call of
-//   every
-//                site, in the end "FAMILY total NUMBER",
-// and behind the call that failed where it comes from, a line a frame.
-// OWNER is the library that made the call, the C and C++ libraries aside; SITE tells places in the program
-// apart. Children of the program are left alone.
+// Loaded before a program. It makes one call to the C library fail after main() has started.
+//   FAULTS_CALL  a family of calls: malloc, large (malloc of 64 KiB or more; all later ones fail too),
+//                open, write, fsync, rename, truncate or thread
+//   FAULTS_AT    number of the failing call, from 1; 0: no failure, calls are counted and listed
+//   FAULTS_LOG   a file for lines "FAMILY NUMBER OWNER SITE" of the failing call, or of the first call of
+//                every site, and at the end "FAMILY total NUMBER"; the failing call is followed by its
+//                stack, a line per frame
+// OWNER is the library that made the call, ignoring the C and C++ runtime libraries. SITE identifies the
+// position in the program. Children of the program are not affected.
 #include <atomic>
 #include <cerrno>
 #include <cstdarg>
@@ -28,7 +26,7 @@
 #include <unistd.h>
 
 extern "C" {
-// What glibc itself calls; dlsym() would allocate.
+// glibc's internal allocator; dlsym() would allocate.
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
 void* __libc_realloc(void*, std::size_t);
@@ -43,7 +41,7 @@ constexpr std::size_t most_sites = 1 << 16;
 
 char family[16];
 long at = 0;
-bool goes_on = false; ///< calls behind that one fail as well
+bool keeps_failing = false; ///< later calls fail as well
 int log_file = -1;
 std::atomic<bool> armed{false};
 std::atomic<long> calls{0};
@@ -60,23 +58,23 @@ const char* last_part(const char* path) {
     return slash == nullptr ? path : slash + 1;
 }
 
-bool of_the_language(const char* library) {
+bool is_runtime_library(const char* library) {
     for (const char* name :
          {"libc.so", "libstdc++.so", "libgcc_s.so", "ld-linux", "libtandem_faults.so", "libm.so"})
         if (std::strncmp(library, name, std::strlen(name)) == 0) return true;
     return false;
 }
 
-struct Place {
+struct CallSite {
     char owner[64] = "?";
     std::uint64_t site = 0;
 };
 
-/// Who calls, and a number for the first three return addresses that lie in its code.
-Place place() {
+/// The calling library, and a hash of the first three return addresses in its code.
+CallSite call_site() {
     void* frames[most_frames];
     const int count = backtrace(frames, most_frames);
-    Place found;
+    CallSite found;
     const void* base = nullptr;
     int taken = 0;
     for (int i = 0; i < count && taken < 3; ++i) {
@@ -84,7 +82,7 @@ Place place() {
         if (dladdr(frames[i], &info) == 0 || info.dli_fname == nullptr) continue;
         const char* library = last_part(info.dli_fname);
         if (base == nullptr) {
-            if (of_the_language(library)) continue;
+            if (is_runtime_library(library)) continue;
             base = info.dli_fbase;
             std::snprintf(found.owner, sizeof found.owner, "%s", library);
         }
@@ -101,37 +99,37 @@ void log_line(const char* text, int length) {
     if (log_file >= 0) syscall(SYS_write, log_file, text, length);
 }
 
-void log_call(long number, const Place& of) {
+void log_call(long number, const CallSite& caller) {
     char line[160];
-    log_line(line, std::snprintf(line, sizeof line, "%s %ld %s %llx\n", family, number, of.owner,
-                                 static_cast<unsigned long long>(of.site)));
+    log_line(line, std::snprintf(line, sizeof line, "%s %ld %s %llx\n", family, number, caller.owner,
+                                 static_cast<unsigned long long>(caller.site)));
 }
 
-/// Where the call that fails comes from, for who looks for the reason.
+/// Stack of the failing call, for debugging.
 void log_stack() {
     void* frames[most_frames];
     if (log_file >= 0) backtrace_symbols_fd(frames, backtrace(frames, most_frames), log_file);
 }
 
 bool first_of_site(std::uint64_t site) {
-    const auto key = site | 1; // 0 is a free place
+    const auto key = site | 1; // 0 marks a free slot
     for (std::size_t i = key % most_sites, tried = 0; tried < most_sites; ++tried, i = (i + 1) % most_sites) {
-        std::uint64_t free_place = 0;
-        if (sites[i].compare_exchange_strong(free_place, key)) return true;
-        if (free_place == key) return false;
+        std::uint64_t expected = 0;
+        if (sites[i].compare_exchange_strong(expected, key)) return true;
+        if (expected == key) return false;
     }
     return false;
 }
 
-/// Whether this call is the one that fails.
-bool fails(const char* of) {
-    if (!armed.load(std::memory_order_relaxed) || inside || std::strcmp(of, family) != 0) return false;
+/// Whether this call is the failing one.
+bool fails(const char* name) {
+    if (!armed.load(std::memory_order_relaxed) || inside || std::strcmp(name, family) != 0) return false;
     const long number = ++calls;
-    if (at != 0 && number > at && goes_on) return true;
+    if (at != 0 && number > at && keeps_failing) return true;
     if (at != 0 && number != at) return false;
     inside = true;
-    const auto who = place();
-    if (at != 0 || first_of_site(who.site)) log_call(number, who);
+    const auto caller = call_site();
+    if (at != 0 || first_of_site(caller.site)) log_call(number, caller);
     if (at != 0) log_stack();
     inside = false;
     return at != 0;
@@ -149,7 +147,7 @@ int counted_main(int argc, char** argv, char** environment) {
     return status;
 }
 
-void tell_total() {
+void log_total() {
     char line[64];
     log_line(line, std::snprintf(line, sizeof line, "%s total %ld\n", family, calls.load()));
 }
@@ -162,15 +160,15 @@ int __libc_start_main(Main main, int argc, char** argv, void (*init)(), void (*f
                       void* stack_end) {
     program = main;
     if (const char* name = std::getenv("FAULTS_CALL")) std::snprintf(family, sizeof family, "%s", name);
-    goes_on = std::strcmp(family, "large") == 0;
+    keeps_failing = std::strcmp(family, "large") == 0;
     if (const char* number = std::getenv("FAULTS_AT")) at = std::atol(number);
     if (const char* path = std::getenv("FAULTS_LOG"))
         log_file = static_cast<int>(
             syscall(SYS_openat, AT_FDCWD, path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
     for (const char* name : {"LD_PRELOAD", "FAULTS_CALL", "FAULTS_AT", "FAULTS_LOG"}) unsetenv(name);
     void* frames[4];
-    backtrace(frames, 4); // loads what it needs
-    std::atexit(tell_total);
+    backtrace(frames, 4); // loads the unwinder
+    std::atexit(log_total);
     using Start = int(Main, int, char**, void (*)(), void (*)(), void (*)(), void*);
     return next<Start>("__libc_start_main")(counted_main, argc, argv, init, fini, rtld_fini, stack_end);
 }

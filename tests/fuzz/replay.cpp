@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// fuzz TARGET FOLDER: every file of a folder through a target; fails where there is none.
+// fuzz TARGET FOLDER: passes every file of a folder to a target; fails if there is none.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     for (const auto& entry : std::filesystem::directory_iterator(argv[2])) {
         std::ifstream file(entry.path(), std::ios::binary);
         const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-        std::printf("%s\n", entry.path().c_str()); // the last one is what failed
+        std::printf("%s\n", entry.path().c_str()); // the last printed path is the failing one
         std::fflush(stdout);
         LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
         ++files;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What reads bytes that came from elsewhere, as libFuzzer calls it: TANDEM_FUZZ names the reader. An
-// InputError is an answer, everything else that leaves a reader is a defect.
+// Readers of untrusted bytes as a libFuzzer target; TANDEM_FUZZ names the reader. An InputError is a valid
+// result, any other exception or crash is a defect.
 #include "harness/commands/options/command_line.h"
 #include "harness/record/finished_cells.h"
 #include "harness/plans/plan_file.h"
@@ -26,8 +26,7 @@ namespace {
 
 using namespace tandem;
 
-/// A folder of the process, which goes with it; programs are started in it, so that a recording finds what is
-/// there.
+/// Temporary directory of the process. The program runs in it, so that a recording finds files there.
 class Folder {
 public:
     Folder() : path_(std::filesystem::temp_directory_path() / fmt::format("tandem-fuzz-{}", getpid())) {
@@ -40,7 +39,7 @@ public:
     Folder(const Folder&) = delete;
     Folder& operator=(const Folder&) = delete;
 
-    /// The path of a file with these bytes.
+    /// Writes a file with these bytes and returns its path.
     std::string file(const char* name, std::string_view bytes) const {
         const auto path = path_ / name;
         std::ofstream(path, std::ios::binary | std::ios::trunc)
@@ -57,7 +56,7 @@ std::string file_of(const char* name, std::string_view bytes) {
     return folder.file(name, bytes);
 }
 
-/// The first byte says which suffix the file has; TetGen's two files are told apart by a line "---".
+/// The first byte selects the file suffix; a line "---" separates TetGen's two files.
 void read_any_mesh(std::string_view bytes) {
     constexpr std::array suffixes{".msh", ".mesh", ".vtk", ".vtu", ".veg", ".node"};
     if (bytes.empty()) return;
@@ -72,14 +71,14 @@ void read_any_mesh(std::string_view bytes) {
     complete_mesh(mesh, "fuzz" + suffix);
 }
 
-/// Its first frame and its last as well.
-void look_at(const Scene& scene) {
+/// Reads the first and the last frame.
+void read_frames(const Scene& scene) {
     scene.frame(0);
     scene.frame(scene.frame_count - 1);
     if (scene.time) scene.time(scene.frame_count - 1);
 }
 
-void read_scene(std::string_view bytes) { look_at(make_scene(file_of("scene.json", bytes))); }
+void read_scene(std::string_view bytes) { read_frames(make_scene(file_of("scene.json", bytes))); }
 
 void read_some_plan(std::string_view bytes) {
     const auto path = file_of("plan.json", bytes);
@@ -92,9 +91,9 @@ void overwrite(std::string& bytes, std::size_t at, std::uint32_t value) {
     bytes.replace(at, text.size(), text);
 }
 
-/// The same with checksums that fit: what is behind them is what is looked for. Sizes of frames are those
-/// that the header makes.
-std::string mended(std::string bytes) {
+/// The same bytes with valid checksums, so that the code behind the checks runs. Frame sizes follow from the
+/// header.
+std::string with_valid_checksums(std::string bytes) {
     constexpr std::size_t size_at = 12, least = 44;
     if (bytes.size() < least) return bytes;
     std::uint32_t size = 0;
@@ -114,11 +113,11 @@ std::string mended(std::string bytes) {
 }
 
 void read_recording(std::string_view bytes) {
-    const auto path = file_of("fuzz.frames", mended(std::string(bytes)));
+    const auto path = file_of("fuzz.frames", with_valid_checksums(std::string(bytes)));
     const Recording recorded(path);
     const std::vector<Pose> poses(recorded.header().bodies.size());
     for (std::size_t i = 0; i < std::min<std::size_t>(recorded.frames(), 100); ++i) recorded.read(i, poses);
-    look_at(load_recording(path));
+    read_frames(load_recording(path));
 }
 
 const Scene& scene_of_checkpoints() {
@@ -126,7 +125,7 @@ const Scene& scene_of_checkpoints() {
     return scene;
 }
 
-/// Behind the checksum, the scene's digest and the size, all made to fit.
+/// Checksum, scene digest and size are made valid, so that the code behind the checks runs.
 void read_checkpoint_of_block(std::string_view given) {
     constexpr std::size_t digest_at = 12, size_at = 36, before_state = 44;
     std::string bytes(given);
@@ -149,13 +148,13 @@ void read_checkpoint_of_block(std::string_view given) {
     simulation.step([](const Frame&, std::vector<ContactPoint>& contacts) { contacts.clear(); });
 }
 
-/// What --resume reads of a file of records.
+/// The reader of records that --resume uses.
 void read_records(std::string_view bytes) {
     const auto path = file_of("fuzz.jsonl", bytes);
     const FinishedCells finished(RecordFile(path), path);
 }
 
-/// A word a line; nothing that they ask for is done.
+/// One word per line; only parsing is tested, no command runs.
 void read_words(std::string_view bytes) {
     std::vector<std::string> words{"tandem"};
     for (std::size_t at = 0; at <= bytes.size();) {
@@ -191,8 +190,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
         target({reinterpret_cast<const char*>(data), size});
     } catch (const InputError& error) {
-        const std::string_view said(error.what());
-        if (said.empty()) std::abort(); // no answer either
+        const std::string_view message(error.what());
+        if (message.empty()) std::abort(); // an empty message is a defect too
     }
     return 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lists of pairs, bounded and tested by the kernels of the walks, against the exact truth.
+// Lists of pairs, bounded and tested by the kernels of the traversals, against the exact truth.
 #include "harness/verify/adversarial.h"
 #include "base/error.h"
 #include "tests/hard/support.h"
@@ -14,7 +14,7 @@ namespace {
 
 using namespace testing_support;
 
-#ifdef TANDEM_SANITIZED // host kernels of two geometries only
+#ifdef TANDEM_SANITIZED // sanitized host kernels exist for two geometries only
 constexpr std::array tested{8, 18};
 #else
 constexpr std::array tested{8, 18, 26};
@@ -45,9 +45,8 @@ TEST_P(Adversarial, SafeRoundingMissesNothing) {
     EXPECT_GT(met, 10000u);
 }
 
-/// The same pairs with slabs rounded to nearest: what is missed is seen, on every diagonal set, and nowhere
-/// else.
-TEST_P(Adversarial, RoundingToNearestIsFoundOut) {
+/// The same pairs with slabs rounded to nearest: misses are detected, for sets with diagonals only.
+TEST_P(Adversarial, RoundingToNearestMissesPairs) {
     const auto tally =
         run_adversarial(hard_family("corner-cancellation"), cells(Rounding::nearest), {.pairs = 5000});
     EXPECT_EQ(tally.contradictions, 0u);
@@ -68,7 +67,7 @@ TEST_P(Adversarial, RoundingToNearestIsFoundOut) {
 INSTANTIATE_TEST_SUITE_P(Devices, Adversarial, testing::ValuesIn(device_names()),
                          [](const auto& name) { return device_label(name.param); });
 
-TEST(AdversarialFamilies, TalliesAddUp) {
+TEST(AdversarialFamilies, TalliesAreMerged) {
     AdversarialTally one, other, sum;
     one.pairs = 1, one.touching = 2, one.overlapping = 3, one.decided = 4, one.clipped = 5;
     other.pairs = 10, other.touching = 20, other.overlapping = 30, other.decided = 40, other.clipped = 50;
@@ -92,7 +91,7 @@ TEST(AdversarialFamilies, TalliesAddUp) {
     EXPECT_FALSE(one.ok());
 }
 
-TEST(AdversarialFamilies, RefuseWhatHasNoPairs) {
+TEST(AdversarialFamilies, RefuseFamiliesWithoutPairs) {
     EXPECT_THROW(run_adversarial(hard_family("all-overlap"), {}, {}), InputError);
     EXPECT_THROW(run_adversarial(hard_family("not-finite"), {}, {}), InputError);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every algorithm on every device: nothing that meets is missed, in any family, with rounding=safe.
+// Every algorithm on every device misses no intersecting pair of any family with rounding=safe.
 #include "harness/plans/frames.h"
 #include "harness/verify/oracle/frame_truth.h"
 #include "base/error.h"
@@ -23,7 +23,7 @@ std::string specification(const HardFamily& family) {
     return fmt::format("hard:{}:pairs=36,together=18", family.name);
 }
 
-#ifdef TANDEM_SANITIZED // host kernels of two geometries only
+#ifdef TANDEM_SANITIZED // sanitized host kernels exist for two geometries only
 constexpr std::array tested{"8", "18"};
 #else
 constexpr std::array tested{"8", "18", "26"};
@@ -60,8 +60,8 @@ TEST_P(HardAlgorithms, MissNothing) {
         const auto scene = make_scene(specification(family));
         for (const auto* traversal : algorithms())
             for (const std::string k : tested) {
-                if (k == "26" && GetParam() != "host") continue; // compiling takes longest there
-                // In short form one k a family there, the other one with the next family.
+                if (k == "26" && GetParam() != "host") continue; // compilation takes longest for it
+                // In short form, devices that compile use one k per family, alternating between families.
                 if (!long_form() && GetParam() != "host" && (k == "8") == (number % 2 == 0)) continue;
                 SCOPED_TRACE(fmt::format("{} {} k={}", family.name, traversal->name(), k));
                 expect_none_missed(
@@ -72,9 +72,9 @@ TEST_P(HardAlgorithms, MissNothing) {
     EXPECT_GT(met_, 10000u);
 }
 
-/// Families with flat tetrahedra and with coordinates that are not finite, under --degenerate skip: what is
-/// skipped is in no pair, what meets of the rest in all.
-TEST_P(HardAlgorithms, MissNothingOfWhatIsNotSkipped) {
+/// Families with flat tetrahedra and non-finite coordinates under --degenerate skip: no pair contains a
+/// skipped tetrahedron, and the intersecting pairs of the rest are complete.
+TEST_P(HardAlgorithms, MissNoPairOfUnskippedTetrahedra) {
     std::uint64_t skipped = 0, flat = 0;
     const auto run = [&](const Scene& scene) {
         const FrameRange range(scene, 0, scene.frame_count - 1, Degenerate::skip);
@@ -97,7 +97,8 @@ TEST_P(HardAlgorithms, MissNothingOfWhatIsNotSkipped) {
     EXPECT_EQ(skipped, 72u);
 }
 
-/// One too few, just right, one too many: counted in full, and run again where it did not fit.
+/// Capacities one too small, exact and one too large: counts are complete, and a frame that does not fit runs
+/// again.
 TEST_P(HardAlgorithms, ExactCapacityLosesNothing) {
     const auto scene = make_scene("hard:exact-capacity:difficulty=1000");
     const auto frame = scene.frame(0);
@@ -114,8 +115,8 @@ TEST_P(HardAlgorithms, ExactCapacityLosesNothing) {
         }
 }
 
-/// Counted alike, whatever is done with the pairs. `adversarial --counter 32` goes past 2^32.
-TEST_P(HardAlgorithms, CountsAreThoseConstructed) {
+/// Equal counts for every output mode. `adversarial --counter 32` goes past 2^32.
+TEST_P(HardAlgorithms, CountsEqualTheConstruction) {
     const auto& family = hard_family("counter-wrap");
     const auto scene = make_scene("hard:counter-wrap:difficulty=15");
     for (const auto* traversal : algorithms())
@@ -129,8 +130,8 @@ TEST_P(HardAlgorithms, CountsAreThoseConstructed) {
         }
 }
 
-/// What a body is after many frames is what it would be at once.
-TEST_P(HardAlgorithms, RefitsLeaveNoTrace) {
+/// After many refits, a body has the bounds of a direct refit.
+TEST_P(HardAlgorithms, RefitsDoNotDependOnEarlierFrames) {
     const auto scene = make_scene("hard:refit-order:difficulty=20");
     for (const auto* traversal : algorithms()) {
         const std::array devices{&device(GetParam())};
@@ -152,7 +153,7 @@ bool is_finite(const ContactPoint& contact) {
     return std::isfinite(sum);
 }
 
-/// Divisions by almost nothing give numbers all the same, and there are contacts at all.
+/// Divisions by tiny values still give finite numbers, and contacts exist.
 TEST_P(HardAlgorithms, ContactsAreFinite) {
     const auto& traversal = algorithm("chunked");
     std::size_t found = 0;

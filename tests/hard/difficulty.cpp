@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The knob of every family moves something, and the methods that are known to fail do fail.
+// The difficulty of every family affects its metric, and the methods known to fail do fail.
 #include "tests/hard/support.h"
 
 #include "algorithms/bounds/geometry.h"
@@ -24,10 +24,10 @@ constexpr std::uint64_t few = 104;
 constexpr std::uint64_t many = 2080;
 #endif
 
-/// Share of the family's pairs that have a property.
+/// A property of pairs; its fraction in a family is measured.
 using Property = std::function<bool(const HardPair&)>;
 
-double share(const HardFamily& family, double e, std::uint64_t count, const Property& has) {
+double fraction(const HardFamily& family, double e, std::uint64_t count, const Property& has) {
     std::uint64_t found = 0;
     for (std::uint64_t i = 0; i < count; ++i) found += has(hard_pair(family, 3, i, e)) ? 1 : 0;
     return static_cast<double>(found) / static_cast<double>(count);
@@ -41,41 +41,42 @@ double mean(const HardFamily& family, double e, const std::function<double(const
 
 using Metric = std::function<double(const HardFamily&, double)>;
 
-/// Pairs that meet and that slabs with the paper's tolerance miss.
+/// Fraction of intersecting pairs that slabs with the paper's tolerance miss.
 Metric missed_by_slabs(int k, bool unit) {
     return [k, unit](const HardFamily& family, double e) {
         const auto along = directions({.k = k});
-        return share(family, e, many, [&](const HardPair& pair) {
+        return fraction(family, e, many, [&](const HardPair& pair) {
             return !slabs_overlap(pair, along, unit, 10 * 0x1p-23F) && meets(relation_of(pair));
         });
     };
 }
 
-/// Candidates per pair that meets, with integer directions and a tolerance.
-Metric candidates_a_meeting(int k, float tolerance = 0) {
+/// Candidates per intersecting pair, with integer directions and a tolerance.
+Metric candidates_per_intersection(int k, float tolerance = 0) {
     return [k, tolerance](const HardFamily& family, double e) {
         const auto along = directions({.k = k});
-        const auto candidates = share(
+        const auto candidates = fraction(
             family, e, many, [&](const HardPair& p) { return slabs_overlap(p, along, false, tolerance); });
-        const auto met = share(family, e, many, [](const HardPair& p) { return meets(relation_of(p)); });
-        return candidates / std::max(met, 1e-9);
+        const auto intersecting =
+            fraction(family, e, many, [](const HardPair& p) { return meets(relation_of(p)); });
+        return candidates / std::max(intersecting, 1e-9);
     };
 }
 
-/// Pairs that the plain test in single precision gets wrong.
+/// Fraction of pairs that the plain test decides wrongly in single precision.
 double wrong_in_float(const HardFamily& family, double e) {
-    return share(family, e, many,
-                 [](const HardPair& p) { return plain_meets<float>(p) != meets(relation_of(p)); });
+    return fraction(family, e, many,
+                    [](const HardPair& p) { return plain_meets<float>(p) != meets(relation_of(p)); });
 }
 
 double wrong_in_double(const HardFamily& family, double e) {
-    return share(family, e, many,
-                 [](const HardPair& p) { return plain_meets<double>(p) != meets(relation_of(p)); });
+    return fraction(family, e, many,
+                    [](const HardPair& p) { return plain_meets<double>(p) != meets(relation_of(p)); });
 }
 
 Metric having(Relation relation) {
     return [relation](const HardFamily& family, double e) {
-        return share(family, e, few, [=](const HardPair& p) { return relation_of(p) == relation; });
+        return fraction(family, e, few, [=](const HardPair& p) { return relation_of(p) == relation; });
     };
 }
 
@@ -109,20 +110,20 @@ double volume_of_a(const HardFamily& family, double e) {
 double flatness_of_a(const HardFamily& family, double e) { return -volume_of_a(family, e); }
 
 double slowest_tier(const HardFamily& family, double e) {
-    return share(family, e, few, [](const HardPair& p) {
+    return fraction(family, e, few, [](const HardPair& p) {
         return decide(widened(p.a), widened(p.b)).tier >= Tier::big_integers;
     });
 }
 
 double subnormals(const HardFamily& family, double e) {
-    return share(family, e, few, [](const HardPair& p) {
+    return fraction(family, e, few, [](const HardPair& p) {
         return std::any_of(p.a.begin(), p.a.end(),
                            [](const auto& c) { return std::fpclassify(c[0]) == FP_SUBNORMAL; });
     });
 }
 
 double invalid_b(const HardFamily& family, double e) {
-    return share(family, e, few, [](const HardPair& p) {
+    return fraction(family, e, few, [](const HardPair& p) {
         return std::any_of(p.b.begin(), p.b.end(),
                            [](const auto& c) { return !std::isfinite(c[0] + c[1] + c[2]); });
     });
@@ -147,7 +148,7 @@ Scene scene_of(const HardFamily& family, double e) {
     return hard_pair_scene(family, 3, e, {64, 16});
 }
 
-/// Pairs of the first frame that meet.
+/// Intersecting pairs of the first frame.
 double meeting(const HardFamily& family, double e) {
     const auto scene = scene_of(family, e);
     const auto truth = frame_truth(scene, scene.frame(0), Precision::fp32);
@@ -159,7 +160,7 @@ double overlapping(const HardFamily& family, double e) {
     return static_cast<double>(frame_truth(scene, scene.frame(0), Precision::fp32).overlapping.size());
 }
 
-/// Largest difference of a vertex transformed in single and in double precision.
+/// Largest difference between a vertex transformed in single and in double precision.
 double drift(const HardFamily& family, double e) {
     const auto scene = scene_of(family, e);
     const auto once = world_vertices<float>(scene, scene.frame(0), 0);
@@ -171,13 +172,13 @@ double drift(const HardFamily& family, double e) {
     return most;
 }
 
-/// How far the squared norm of the pose's quaternion is from 1.
+/// Deviation of the squared norm of the pose's quaternion from 1.
 double stretch(const HardFamily& family, double e) {
     return std::abs(scene_of(family, e).frame(0).poses[0].rotation.squaredNorm() - 1);
 }
 
-/// Pairs whose mirror image is a candidate while they are none, or the other way round, with k = 8 of x, y, z
-/// and one diagonal.
+/// Pairs for which only one of the pair and its mirror image is a candidate, with k = 8 from x, y, z and one
+/// diagonal.
 double asymmetric(const HardFamily& family, double e) {
     const auto along = directions({.k = 8, .coordinate_axes = true});
     double found = 0;
@@ -194,12 +195,12 @@ double frames(const HardFamily& family, double e) {
 }
 
 double with_tolerance(const HardFamily& family, double e) {
-    return share(family, e, few, [](const HardPair& p) {
+    return fraction(family, e, few, [](const HardPair& p) {
         return slabs_overlap(p, {{1, 0, 0}}, false, 10 * 0x1p-23F);
     });
 }
 
-/// A family, what is measured, a difficulty where it is low and one where it is high.
+/// A family, a metric, and difficulties at which it is low and high.
 struct Case {
     const char* family;
     Metric metric;
@@ -207,49 +208,50 @@ struct Case {
 };
 
 const std::vector<Case>& cases() {
-    static const std::vector<Case> all{{"slab-touch", missed_by_slabs(18, true), 1, 1000},
-                                       {"corner-cancellation", missed_by_slabs(8, false), 1, 1000},
-                                       {"far-origin", having(Relation::touching), 1, 1e7},
-                                       {"rigid-transform", drift, 1, 1e5},
-                                       {"accumulated-motion", stretch, 1, 10000},
-                                       {"long-quaternion", stretch, 1e-6, 0.5},
-                                       {"mirror", asymmetric, 2, 0.5},
-                                       {"thin-plates", candidates_a_meeting(18), 1, 1e-3},
-                                       {"subnormal", subnormals, 0, 140},
-                                       {"not-finite", invalid_b, 0, 4},
-                                       {"tolerance-scale", candidates_a_meeting(18, 10 * 0x1p-23F), 1, 1e-6},
-                                       {"tolerance-gap", with_tolerance, 1, 0},
-                                       {"refit-order", frames, 2, 9},
-                                       {"touch", wrong_in_float, 1, 9},
-                                       {"touch-24bit", wrong_in_double, 10, 19},
-                                       {"units-apart", having(Relation::disjoint), -1, 1},
-                                       {"rounded-onto-face", wrong_in_float, 1e6, 0},
-                                       {"coplanar", size_of_b, 1, 19},
-                                       {"shared", size_of_b, 1, 19},
-                                       {"nested", of_contact(shallowness), 0, 0.9},
-                                       {"sliver", flatness_of_a, 0.1, 1e-6},
-                                       {"parallel-edges", wrong_in_float, 0.1, 1e-6},
-                                       {"scale-ratio", wrong_in_float, 1, 1e-6},
-                                       {"mixed-exponents", slowest_tier, 0, 120},
-                                       {"scale", wrong_in_float, 0, -60},
-                                       {"zero-volume", having(Relation::touching), 1000, 2},
-                                       {"inverted", size_of_b, 1, 19},
-                                       {"opposing-faces", of_contact(normals), 0.1, 1e-8},
-                                       {"edge-crossing", of_contact(depth), 1e-3, 0.1},
-                                       {"deep", of_contact(depth), 0.01, 0.4},
-                                       {"ties", of_contact(normals), 0.1, 0},
-                                       {"configurations", overlapping, 0, 0.125},
-                                       {"vanishing-depth", of_contact(shallowness), 8, 16},
-                                       {"interior-faces", meeting, 0.001, 0.5},
-                                       {"plane-division", of_contact(depth), 1e-5, 0.1},
-                                       {"inverting", volume_of_a, 0, 1},
-                                       {"self-intersecting", meeting, 0, 3},
-                                       {"collapsing", flatness_of_a, 0, 1},
-                                       {"all-overlap", meeting, 2, 8},
-                                       {"one-huge", meeting, 3, 30},
-                                       {"equal-codes", meeting, 2, 20},
-                                       {"exact-capacity", meeting, 7, 8},
-                                       {"counter-wrap", meeting, 4, 5}};
+    static const std::vector<Case> all{
+        {"slab-touch", missed_by_slabs(18, true), 1, 1000},
+        {"corner-cancellation", missed_by_slabs(8, false), 1, 1000},
+        {"far-origin", having(Relation::touching), 1, 1e7},
+        {"rigid-transform", drift, 1, 1e5},
+        {"accumulated-motion", stretch, 1, 10000},
+        {"long-quaternion", stretch, 1e-6, 0.5},
+        {"mirror", asymmetric, 2, 0.5},
+        {"thin-plates", candidates_per_intersection(18), 1, 1e-3},
+        {"subnormal", subnormals, 0, 140},
+        {"not-finite", invalid_b, 0, 4},
+        {"tolerance-scale", candidates_per_intersection(18, 10 * 0x1p-23F), 1, 1e-6},
+        {"tolerance-gap", with_tolerance, 1, 0},
+        {"refit-order", frames, 2, 9},
+        {"touch", wrong_in_float, 1, 9},
+        {"touch-24bit", wrong_in_double, 10, 19},
+        {"units-apart", having(Relation::disjoint), -1, 1},
+        {"rounded-onto-face", wrong_in_float, 1e6, 0},
+        {"coplanar", size_of_b, 1, 19},
+        {"shared", size_of_b, 1, 19},
+        {"nested", of_contact(shallowness), 0, 0.9},
+        {"sliver", flatness_of_a, 0.1, 1e-6},
+        {"parallel-edges", wrong_in_float, 0.1, 1e-6},
+        {"scale-ratio", wrong_in_float, 1, 1e-6},
+        {"mixed-exponents", slowest_tier, 0, 120},
+        {"scale", wrong_in_float, 0, -60},
+        {"zero-volume", having(Relation::touching), 1000, 2},
+        {"inverted", size_of_b, 1, 19},
+        {"opposing-faces", of_contact(normals), 0.1, 1e-8},
+        {"edge-crossing", of_contact(depth), 1e-3, 0.1},
+        {"deep", of_contact(depth), 0.01, 0.4},
+        {"ties", of_contact(normals), 0.1, 0},
+        {"configurations", overlapping, 0, 0.125},
+        {"vanishing-depth", of_contact(shallowness), 8, 16},
+        {"interior-faces", meeting, 0.001, 0.5},
+        {"plane-division", of_contact(depth), 1e-5, 0.1},
+        {"inverting", volume_of_a, 0, 1},
+        {"self-intersecting", meeting, 0, 3},
+        {"collapsing", flatness_of_a, 0, 1},
+        {"all-overlap", meeting, 2, 8},
+        {"one-huge", meeting, 3, 30},
+        {"equal-codes", meeting, 2, 20},
+        {"exact-capacity", meeting, 7, 8},
+        {"counter-wrap", meeting, 4, 5}};
     return all;
 }
 
@@ -263,8 +265,8 @@ TEST(HardDifficulty, MovesItsMetric) {
     }
 }
 
-/// What accuracy is lost to where it is said to be: methods that fail, and one that does not.
-TEST(HardDifficulty, KnownFailuresAreThere) {
+/// Known causes of errors: methods that fail, and one that does not.
+TEST(HardDifficulty, KnownFailuresOccur) {
     const auto& aligned = hard_family("slab-touch");
     EXPECT_GT(missed_by_slabs(18, true)(aligned, 1000), 0.01);
     EXPECT_EQ(missed_by_slabs(18, false)(aligned, 1000), 0);
@@ -273,8 +275,8 @@ TEST(HardDifficulty, KnownFailuresAreThere) {
     EXPECT_GT(wrong_in_double(bits, 19), 0.005);
 }
 
-/// Standard sets of directions are symmetric: mirror images are candidates alike.
-TEST(HardDifficulty, MirrorImagesAreCandidatesAlike) {
+/// Standard direction sets are symmetric: a pair and its mirror image are both candidates or both not.
+TEST(HardDifficulty, MirrorImagesAreEquallyCandidates) {
     const auto& family = hard_family("mirror");
     for (const int k : {6, 8, 14, 18, 26}) {
         const auto along = directions({.k = k});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The catalogue: that generators make what they say, always the same, and refuse what they cannot make.
+// The catalogue: generators are correct and reproducible, and refuse impossible parameters.
 #include "tests/hard/support.h"
 
 #include "algorithms/bodies/range.h"
@@ -51,7 +51,7 @@ TEST(HardFamilies, AreTheWholeCatalogue) {
                                [](const auto& p, const auto& q) { return p.group < q.group; }));
 }
 
-TEST(HardFamilies, MakeWhatTheySay) {
+TEST(HardFamilies, MakePairsWithTheirKnownRelation) {
     for (const auto* family : pair_families(false)) {
         for (const double e : difficulties(*family)) {
             SCOPED_TRACE(testing::Message() << family->name << " " << e);
@@ -68,20 +68,20 @@ TEST(HardFamilies, MakeWhatTheySay) {
     }
 }
 
-/// A family whose answer is always the same would show little.
-TEST(HardFamilies, OpenOnesMeetAndMiss) {
+/// Families of unknown truth must contain both answers, or they test little.
+TEST(HardFamilies, FamiliesOfUnknownTruthContainBothAnswers) {
     for (const auto* family : pair_families(false)) {
         if (family->truth == HardTruth::construction || family->truth == HardTruth::geometry) continue;
         if (family->name == "collapsing") continue; // always touches
-        std::uint64_t met = 0;
+        std::uint64_t intersecting = 0;
         for (std::uint64_t i = 0; i < 2 * tried; ++i)
-            met += meets(relation_of(hard_pair(*family, 7, i, family->knob.initial))) ? 1 : 0;
-        EXPECT_GT(met, 0u) << family->name;
-        EXPECT_LT(met, 2 * tried) << family->name;
+            intersecting += meets(relation_of(hard_pair(*family, 7, i, family->knob.initial))) ? 1 : 0;
+        EXPECT_GT(intersecting, 0u) << family->name;
+        EXPECT_LT(intersecting, 2 * tried) << family->name;
     }
 }
 
-TEST(HardFamilies, AreTheSameAgainAndDifferBySeed) {
+TEST(HardFamilies, AreReproducibleAndDifferBySeed) {
     for (const auto& family : hard_families()) {
         if (family.pair == nullptr) continue;
         std::uint64_t equal = 0;
@@ -106,7 +106,7 @@ bool all_floats(const std::vector<Eigen::Vector3d>& points) {
                        [](const auto& p) { return is_float(p.x()) && is_float(p.y()) && is_float(p.z()); });
 }
 
-TEST(HardScenes, HoldSinglePrecisionNumbersAndKeepTheirDigest) {
+TEST(HardScenes, HaveSinglePrecisionNumbersAndAStableDigest) {
     for (const auto& family : hard_families()) {
         SCOPED_TRACE(family.name);
         const auto scene = make_scene(name_of(family));
@@ -121,7 +121,7 @@ TEST(HardScenes, HoldSinglePrecisionNumbersAndKeepTheirDigest) {
     }
 }
 
-TEST(HardScenes, HoldTheirPairs) {
+TEST(HardScenes, ContainTheirPairs) {
     const auto scene = make_scene("hard:touch:pairs=12,together=3,seed=9,difficulty=5");
     EXPECT_EQ(scene.key, "hard:touch:difficulty=5,seed=9,pairs=12,together=3");
     ASSERT_EQ(scene.frame_count, 4u);
@@ -134,36 +134,36 @@ TEST(HardScenes, HoldTheirPairs) {
         }
 }
 
-TEST(HardScenes, MeetAsOftenAsConstructed) {
+TEST(HardScenes, HaveTheConstructedNumberOfIntersections) {
     for (const auto& family : hard_families()) {
         if (family.scene == nullptr) continue;
         SCOPED_TRACE(family.name);
         const auto scene = make_scene(name_of(family));
         const auto truth = frame_truth(scene, scene.frame(0), Precision::fp32);
-        const auto met = truth.touching.size() + truth.overlapping.size();
-        EXPECT_GT(met, 0u);
+        const auto intersecting = truth.touching.size() + truth.overlapping.size();
+        EXPECT_GT(intersecting, 0u);
         if (family.meeting != nullptr) {
-            EXPECT_EQ(met, family.meeting(family.knob.initial));
+            EXPECT_EQ(intersecting, family.meeting(family.knob.initial));
         }
     }
 }
 
-TEST(HardScenes, OfRigidBodiesMeetAndMiss) {
+TEST(HardScenes, OfRigidBodiesContainBothAnswers) {
     for (const auto* family : pair_families(true)) {
         const auto scene = make_scene(name_of(*family) + ":pairs=256,together=64");
-        std::uint64_t met = 0;
+        std::uint64_t intersecting = 0;
         for (std::size_t f = 0; f < scene.frame_count; ++f) {
             std::vector<Pair> intended;
             for (std::uint32_t t = 0; t < 64; ++t) intended.push_back({0, t, 1, t});
             for (const auto& decision : decide_pairs(scene, scene.frame(f), Precision::fp32, intended))
-                met += meets(decision.relation) ? 1 : 0;
+                intersecting += meets(decision.relation) ? 1 : 0;
         }
-        EXPECT_GT(met, 0u) << family->name;
-        EXPECT_LT(met, 256u) << family->name;
+        EXPECT_GT(intersecting, 0u) << family->name;
+        EXPECT_LT(intersecting, 256u) << family->name;
     }
 }
 
-TEST(HardScenes, RefuseWhatTheyCannotMake) {
+TEST(HardScenes, RefuseImpossibleParameters) {
     EXPECT_THAT(failure("hard:tuch"),
                 HasSubstr("unknown family of hard cases 'tuch'; the nearest is 'touch'"));
     EXPECT_THAT(failure("hard"), HasSubstr("hard:FAMILY"));
@@ -187,8 +187,8 @@ std::string refusal(const Scene& scene, std::size_t frame) {
     return "no error";
 }
 
-/// Whichever corner it is, and whether it is no number or infinite.
-TEST(HardScenes, OfWhatIsNotFiniteAreRefused) {
+/// For every corner, infinite or not a number.
+TEST(HardScenes, WithNonFiniteCoordinatesAreRefused) {
     for (unsigned corner = 0; corner < 8; ++corner) {
         const auto scene =
             make_scene("hard:not-finite:pairs=9,together=1,difficulty=" + std::to_string(corner));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the tests measure of families of hard cases: the truth, and methods that are known to fail.
+// Measurements on families of hard cases: the truth, and methods that are known to fail.
 #pragma once
 
 #include "geometry/decision.h"
@@ -24,7 +24,7 @@ inline bool meets(Relation relation) {
     return relation == Relation::touching || relation == Relation::overlapping;
 }
 
-/// Whether the oracle's relation is the one known by construction.
+/// Whether the oracle's relation agrees with the one known by construction.
 inline bool agrees(Known known, Relation relation) {
     switch (known) {
     case Known::disjoint:
@@ -48,7 +48,7 @@ RealVector<Real> difference_of(const std::array<float, 3>& p, const std::array<f
     return {Real(p[0]) - Real(q[0]), Real(p[1]) - Real(q[1]), Real(p[2]) - Real(q[2])};
 }
 
-/// Whether the axis separates the tetrahedra strictly, without any care for rounding.
+/// Whether the axis separates the tetrahedra strictly, ignoring rounding.
 template<class Real>
 bool axis_separates(const HardPair& pair, const RealVector<Real>& axis) {
     Real low[2], high[2];
@@ -67,7 +67,7 @@ RealVector<Real> product_of(const RealVector<Real>& p, const RealVector<Real>& q
     return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
 }
 
-/// Plain test of the 44 separating axes in the given precision: what everybody writes first.
+/// Textbook test of the 44 separating axes in the given precision.
 template<class Real>
 bool plain_meets(const HardPair& pair) {
     constexpr unsigned ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
@@ -87,9 +87,8 @@ bool plain_meets(const HardPair& pair) {
     return true;
 }
 
-/// Overlap of slabs along {-1, 0, 1} directions in single precision: the sums rounded to nearest, the
-/// directions divided by their length where `unit`, and everything that is at most `tolerance` apart taken as
-/// overlapping.
+/// Whether slabs along {-1, 0, 1} directions overlap in single precision. Sums are rounded to nearest,
+/// directions are normalised if `unit`, and slabs at most `tolerance` apart count as overlapping.
 inline bool slabs_overlap(const HardPair& pair, const std::vector<std::array<int, 3>>& directions, bool unit,
                           float tolerance) {
     for (const auto& d : directions) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Finds candidate pairs on the host with the installed library and prints how many there are.
+// Finds candidate pairs on the host with the installed library and prints their number.
 #include "find_pairs.h"
 
 #include <tandem/backends/host/host_device.h>

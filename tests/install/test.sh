@@ -1,16 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# test.sh BUILD_FOLDER: installs into an empty folder, builds a stranger's programs against it and runs them: on the
-# host, inside an application's OpenCL queue, and inside an application's CUDA stream, on the stub of the driver and
-# on the driver where there is one. All have to find the same pairs. Completion lies where shells look for it, and scripts
-# that read records beside the program.
+# test.sh BUILD_FOLDER: installs into an empty folder, then builds and runs users' programs against it: on the host, in
+# an application's OpenCL queue, and in an application's CUDA stream (on the stub of the driver, and on the driver if
+# there is one). All must find the same pairs. Also checks the installed shell completion and scripts.
 set -euo pipefail
 build=$(cd "$1" && pwd)
-here=$(cd "$(dirname "$0")" && pwd)
+folder=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cmake --install "$build" --prefix "$work/prefix" >/dev/null
-# Libraries are where the build found them, which may be nowhere that a stranger would look.
+# Libraries are those of the build, which may be outside the default search paths.
 given=()
 found() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
 for name in CMAKE_BUILD_RPATH CMAKE_INCLUDE_PATH CMAKE_LIBRARY_PATH OpenCL_INCLUDE_DIR OpenCL_LIBRARY ZLIB_INCLUDE_DIR \
@@ -18,14 +17,14 @@ for name in CMAKE_BUILD_RPATH CMAKE_INCLUDE_PATH CMAKE_LIBRARY_PATH OpenCL_INCLU
   value=$(found "$name")
   if [ -n "$value" ]; then given+=("-D$name=$value"); fi
 done
-cmake -S "$here" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix;$(found CMAKE_PREFIX_PATH)" "${given[@]}" \
+cmake -S "$folder" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix;$(found CMAKE_PREFIX_PATH)" "${given[@]}" \
   >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }
 cmake --build "$work/consumer" >"$work/log" || { cat "$work/log" >&2; exit 1; }
 "$work/prefix/bin/tandem" scenes >/dev/null
 "$work/prefix/bin/tandem" completion bash | cmp - "$work/prefix/share/bash-completion/completions/tandem"
 "$work/prefix/bin/tandem" completion zsh | cmp - "$work/prefix/share/zsh/site-functions/_tandem"
 
-# A subcommand in Python, from the installed tree alone; where it is missing one line says so.
+# A Python subcommand, from the installed tree alone; without its files, one line explains the absence.
 (
   cd "$work"
   "$work/prefix/bin/tandem" paper --device host -o paper --dry-run | grep ' cells-plates ' >/dev/null
@@ -34,15 +33,15 @@ cmake --build "$work/consumer" >"$work/log" || { cat "$work/log" >&2; exit 1; }
     grep -q 'id="data-scene"' page.html
   fi
   mv prefix/libexec libexec
-  status=0 && prefix/bin/tandem paper --device host -o paper --dry-run 2>said || status=$?
-  [ "$status" = 2 ] && [ "$(wc -l <said)" = 1 ] && grep -q 'tandem paper is not part of this installation' said
+  status=0 && prefix/bin/tandem paper --device host -o paper --dry-run 2>errors || status=$?
+  [ "$status" = 2 ] && [ "$(wc -l <errors)" = 1 ] && grep -q 'tandem paper is not part of this installation' errors
   mv libexec prefix/libexec
 )
 
-# Scripts beside the program, which need nothing else of the tree: what records and exports they are given, they read.
+# The installed scripts work without the source tree on the given records and exports.
 (
   cd "$work"
-  records=$here/../../results/cpu/walks.jsonl
+  records=$folder/../../results/cpu/walks.jsonl
   prefix/bin/tandem-tables "$records" | grep '^### pile:bodies=64' >/dev/null
   cp "$records" walks.jsonl
   prefix/bin/tandem-convert-records walks.jsonl >/dev/null
@@ -51,8 +50,8 @@ cmake --build "$work/consumer" >"$work/log" || { cat "$work/log" >&2; exit 1; }
   prefix/bin/tandem-figures truth.jsonl drawn >/dev/null
   [ -s drawn/bars.svg ]
   sed 's/"schema":4/"schema":3/' walks.jsonl >old.jsonl
-  status=0 && prefix/bin/tandem-tables old.jsonl 2>said || status=$?
-  [ "$status" = 2 ] && grep -q 'tandem-convert-records' said
+  status=0 && prefix/bin/tandem-tables old.jsonl 2>errors || status=$?
+  [ "$status" = 2 ] && grep -q 'tandem-convert-records' errors
   if /usr/bin/python3 -c 'import numpy, PIL' 2>/dev/null; then
     prefix/bin/tandem export plates --frames 0 --glb plates.glb >/dev/null
     prefix/bin/tandem-render plates.glb plates --at 0 >/dev/null
@@ -62,11 +61,11 @@ cmake --build "$work/consumer" >"$work/log" || { cat "$work/log" >&2; exit 1; }
 
 expected=$("$work/consumer/consumer")
 echo "host: $expected"
-same() { # same NAME PROGRAM: runs it, and each of its lines has to be the host's
+same() { # same NAME PROGRAM: runs it; each of its lines must equal the host's
   local out
   out=$("$2") || { echo "$1: failed" >&2; exit 1; }
   echo "$1: $(sort -u <<<"$out")"
-  [ "$(sort -u <<<"$out")" = "$expected" ] || { echo "$1: the host says $expected" >&2; exit 1; }
+  [ "$(sort -u <<<"$out")" = "$expected" ] || { echo "$1: expected $expected, as on the host" >&2; exit 1; }
 }
 same opencl "$work/consumer/opencl_queue"
 
@@ -75,19 +74,19 @@ LD_LIBRARY_PATH=$stubs/driver TANDEM_CUPTI= TANDEM_NVRTC=$stubs/nvrtc/libnvrtc.s
 if "$work/prefix/bin/tandem" devices | grep '^cuda:0' >/dev/null; then
   same cuda "$work/consumer/cuda_stream"
 else
-  echo "cuda: no driver here, so only its stub was asked"
+  echo "cuda: no driver, only its stub was tested"
 fi
 
-# Ranks of MPI, where the build found one: as many pairs on any number.
+# MPI ranks, if the build has MPI: any number of ranks finds as many pairs.
 if [ -x "$work/consumer/ranks" ]; then
   launch=$(found MPIEXEC_EXECUTABLE)
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
-  alone=$("$launch" -n 1 "$work/consumer/ranks" 2>"$work/said") || { cat "$work/said" >&2; exit 1; }
+  alone=$("$launch" -n 1 "$work/consumer/ranks" 2>"$work/errors") || { cat "$work/errors" >&2; exit 1; }
   grep -q '^frame 2: [1-9]' <<<"$alone" || { echo "ranks: no pairs" >&2; exit 1; }
   for ranks in 2 4; do
-    shared=$("$launch" -n $ranks "$work/consumer/ranks" 2>"$work/said") || { cat "$work/said" >&2; exit 1; }
-    [ "$shared" = "$alone" ] || { echo "ranks: $ranks of them say $shared, one says $alone" >&2; exit 1; }
-    grep -q "^frame 2, rank $((ranks - 1)): [1-9][0-9]* bodies, [1-9]" "$work/said" || { cat "$work/said" >&2; exit 1; }
+    together=$("$launch" -n $ranks "$work/consumer/ranks" 2>"$work/errors") || { cat "$work/errors" >&2; exit 1; }
+    [ "$together" = "$alone" ] || { echo "ranks: $ranks ranks find $together, one rank finds $alone" >&2; exit 1; }
+    grep -q "^frame 2, rank $((ranks - 1)): [1-9][0-9]* bodies, [1-9]" "$work/errors" || { cat "$work/errors" >&2; exit 1; }
   done
   echo "ranks: $(tail -1 <<<"$alone") on 1, 2 and 4"
 fi

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# wheel.sh: what `pip install .` makes of the checkout, compiled for this processor only, by itself: its Collider finds the pairs of two
-# tetrahedra, and says that it has no device of another world.
+# wheel.sh: builds the wheel of the checkout with pip, for this processor only, and tests it alone: its Collider finds
+# the pairs of two tetrahedra, and reports an unknown device.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 work=$(mktemp -d)

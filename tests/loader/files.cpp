@@ -13,7 +13,7 @@ namespace tandem::loader {
 
 namespace {
 
-/// A folder of this process, gone when it ends.
+/// Temporary directory of this process; removed at exit.
 struct Folder {
     std::filesystem::path path =
         std::filesystem::path(testing::TempDir()) / ("tandem-" + std::to_string(getpid()));
@@ -35,7 +35,7 @@ std::string folder() {
 
 std::string write_file(const std::string& name, std::string_view bytes) {
     auto path = folder() + "/" + name;
-    std::filesystem::remove(path); // ext4 flushes a file that is truncated and written again
+    std::filesystem::remove(path); // ext4 flushes a file that is truncated and rewritten
     std::ofstream(path, std::ios::binary) << bytes;
     return path;
 }
@@ -46,7 +46,7 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-/// The mesh that every format's example holds: two tetrahedra that share a face, and a vertex of no use.
+/// The mesh in the example of every format: two tetrahedra that share a face, and an unused vertex.
 void expect_example(const Mesh& mesh, bool single) {
     const std::vector<Eigen::Vector3d> vertices = {{0, 0, 0},   {1, 0, 0},         {0, 1, 0},
                                                    {0, 0, 1.5}, {-0.25, 2, 0.125}, {0.1, 0.2, -3e-7}};
@@ -57,17 +57,17 @@ void expect_example(const Mesh& mesh, bool single) {
     EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {4, 3, 2, 1}}));
 }
 
-/// Reading these bytes throws one line: path, `place`, ... `reason` ...; what to do.
-void expect_failure(const std::string& name, std::string_view bytes, const std::string& place,
+/// Expects one line as the error for these bytes: path, `location`, ... `reason` ...; what to do.
+void expect_failure(const std::string& name, std::string_view bytes, const std::string& location,
                     std::string_view reason) {
     const auto path = write_file(name, bytes);
-    SCOPED_TRACE(name + place + std::string(reason));
+    SCOPED_TRACE(name + location + std::string(reason));
     try {
         read_mesh(path);
         ADD_FAILURE() << "no error";
     } catch (const InputError& error) {
         const std::string what = error.what();
-        EXPECT_TRUE(what.starts_with(path + place)) << what;
+        EXPECT_TRUE(what.starts_with(path + location)) << what;
         EXPECT_NE(what.find(reason), std::string::npos) << what;
         EXPECT_NE(what.find("; "), std::string::npos) << what;
         EXPECT_EQ(what.find('\n'), std::string::npos) << what;

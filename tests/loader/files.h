@@ -8,20 +8,21 @@
 
 namespace tandem::loader {
 
-/// A folder for the files of this run, made once.
+/// Folder for the files of this run; created on the first call.
 std::string folder();
 
-/// Writes `bytes` into the folder; the path.
+/// Writes `bytes` to a file in the folder and returns its path.
 std::string write_file(const std::string& name, std::string_view bytes);
 
-/// `text` with the first `from` replaced, which must be there.
+/// `text` with the first occurrence of `from` replaced; `from` must occur.
 std::string replaced(std::string text, std::string_view from, std::string_view to);
 
-/// The mesh every format's example holds; `single`: with coordinates of single precision.
+/// Expects the example mesh of every format; `single`: with single-precision coordinates.
 void expect_example(const Mesh& mesh, bool single = false);
 
-/// Reading `bytes` as a file of that name fails at `place`, for a reason that holds `reason`.
-void expect_failure(const std::string& name, std::string_view bytes, const std::string& place,
+/// Expects that reading `bytes` as a file of that name fails at `location` with a message that contains
+/// `reason`.
+void expect_failure(const std::string& name, std::string_view bytes, const std::string& location,
                     std::string_view reason);
 
 } // namespace tandem::loader

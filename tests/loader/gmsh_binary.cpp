@@ -90,7 +90,7 @@ TEST(GmshBinary, BadStructure) {
                    "expected '$EndNodes'");
 }
 
-/// A file cut anywhere before its last section's end is an error that names a byte, never a crash.
+/// A file truncated before the end of its last section gives an error that names a byte, never a crash.
 TEST(GmshBinary, Truncated) {
     for (const auto& whole : {version2(), version4()})
         for (auto size = head2.size(); size + 1 < whole.size(); ++size)

@@ -38,7 +38,7 @@ TEST(Medit, Ascii) {
     EXPECT_EQ(mesh.name, "two");
 }
 
-TEST(Medit, ToldByContent) { expect_example(read_mesh(write_file("two.txt", example)), false); }
+TEST(Medit, RecognisedByContent) { expect_example(read_mesh(write_file("two.txt", example)), false); }
 
 TEST(Medit, WindowsLines) {
     std::string text;

@@ -144,7 +144,7 @@ TEST(Vtk, BadStructure) {
     expect_failure("other.vtk", "solid\n", ":1", "expected '# vtk DataFile Version'");
 }
 
-/// A file cut anywhere before its cell types end is an error, never a crash.
+/// A file truncated before the end of its cell types gives an error, never a crash.
 TEST(Vtk, Truncated) {
     for (const auto& whole : {binary_rows(), binary_offsets()})
         for (std::size_t size = 0; size < whole.find("CELL_TYPES") + 25; ++size)

@@ -24,13 +24,13 @@ std::string base64(std::string_view bytes) {
     return text;
 }
 
-/// How a file stores its arrays.
+/// Storage of the arrays in a file.
 struct Encoding {
     enum { ascii, inlined, appended, raw } format = inlined;
     bool compressed = false;
-    bool wide = false;     ///< headers of 64 bits, Float64 and Int64; else 32, Float32 and Int32
-    bool big = false;      ///< big endian
-    std::size_t part = 24; ///< bytes of a compressed part
+    bool wide = false;     ///< 64-bit headers, Float64 and Int64; otherwise 32 bits, Float32 and Int32
+    bool big = false;      ///< big-endian
+    std::size_t part = 24; ///< bytes per compressed block
 };
 
 template<class T>
@@ -63,10 +63,10 @@ std::string block(const std::string& data, const Encoding& how) {
     }
     const auto head =
         header(count, how) + header(how.part, how) + header(data.size() % how.part, how) + sizes;
-    return text ? base64(head) + base64(parts) : head + parts; // the header is encoded on its own
+    return text ? base64(head) + base64(parts) : head + parts; // the header is encoded separately
 }
 
-/// The example with a triangle before its tetrahedra; values may be changed by the caller.
+/// The example with a triangle before its tetrahedra; callers may change the values.
 struct Example {
     std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1.5, -0.25, 2, 0.125, 0.1, 0.2, -3e-7};
     std::vector<std::int64_t> connectivity = {0, 1, 2, 0, 1, 2, 3, 4, 3, 2, 1};
@@ -117,7 +117,7 @@ struct Example {
     }
 };
 
-/// Text with all digits: std::to_string keeps six.
+/// Text with all digits: std::to_string keeps only six.
 std::string ascii() {
     auto text = Example().file({.format = Encoding::ascii, .wide = true});
     return replaced(text, "-0.000000", "-3e-7");
@@ -221,7 +221,7 @@ TEST(Vtu, BadStructure) {
     expect_failure("other.vtu", "<?xml version=\"1.0\"?>\n<html></html>", ":1", "expected the tag VTKFile");
 }
 
-/// A file cut anywhere before its data end is an error, never a crash.
+/// A file truncated before the end of its data gives an error, never a crash.
 TEST(Vtu, Truncated) {
     for (const auto format : {Encoding::ascii, Encoding::inlined, Encoding::appended, Encoding::raw}) {
         const auto whole = Example().file({format, true, true});

@@ -7,8 +7,8 @@
 
 namespace tandem {
 
-/// A device that only compiles: preparing a session on it asks for exactly the kernels of that cell. Its
-/// memory is nowhere and its commands do nothing.
+/// A device that only compiles: a session prepared on it requests exactly the kernels of its cell. It has no
+/// memory, and its commands do nothing.
 class CompilingDevice : public Device {
 public:
     CompilingDevice() {
@@ -21,8 +21,10 @@ public:
         info_.has_directed_rounding = true;
     }
 
-    /// Every (file, defines) asked for, and the entries of each.
-    const std::map<std::pair<std::string, Defines>, std::set<std::string>>& asked() const { return asked_; }
+    /// Every requested (file, defines), with its kernel entries.
+    const std::map<std::pair<std::string, Defines>, std::set<std::string>>& requested() const {
+        return requested_;
+    }
     const DeviceInfo& info() const override { return info_; }
     std::string clock() const override { return "none"; }
     void* queue() const override { return nullptr; }
@@ -45,7 +47,7 @@ private:
     std::uint64_t do_clear(Buffer::Impl&, std::size_t, std::size_t) override { return 0; }
     std::shared_ptr<Kernel::Impl> do_compile(const KernelSource& source, std::string_view entry,
                                              const Defines& defines) override {
-        asked_[{std::string(source.name), defines}].insert(std::string(entry));
+        requested_[{std::string(source.name), defines}].insert(std::string(entry));
         return std::make_shared<NoKernel>();
     }
     std::uint64_t do_launch(Kernel::Impl&, Grid, std::span<const Argument>) override { return 0; }
@@ -55,7 +57,7 @@ private:
     std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t) override { return {-1, -1}; }
 
     DeviceInfo info_;
-    std::map<std::pair<std::string, Defines>, std::set<std::string>> asked_;
+    std::map<std::pair<std::string, Defines>, std::set<std::string>> requested_;
 };
 
 } // namespace tandem

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// nvrtc [--require nvrtc]: compiles every kernel of the plan with NVRTC, which needs no GPU: all define sets
-// for sm_90, the defaults for the other architectures. Without NVRTC it says how many kernels it did not
-// compile.
+// nvrtc [--require nvrtc]: compiles every kernel of the plan with NVRTC, without a GPU: all define sets for
+// sm_90, the defaults for the other architectures. Without NVRTC it prints the number of kernels not
+// compiled.
 #include "algorithms/bodies/pack_stage.h"
 #include "algorithms/hierarchy/pair_list.h"
 #include "tests/support/prepared_trees.h"
@@ -28,7 +28,7 @@ bool required = false;
 
 using Programs = std::map<std::pair<std::string, Defines>, std::set<std::string>>;
 
-/// Opens NVRTC once; empty, with a word on what is not tested, where there is none.
+/// Opens NVRTC once. Without NVRTC the result is empty, and a message names the untested part.
 const std::optional<cuda::Nvrtc>& nvrtc() {
     static const auto compiler = []() -> std::optional<cuda::Nvrtc> {
         try {
@@ -41,7 +41,7 @@ const std::optional<cuda::Nvrtc>& nvrtc() {
     return compiler;
 }
 
-/// What NVRTC makes of a program for sm_90, once for all tests: compiling is nearly all that they do.
+/// The image of a program for sm_90, cached for all tests because compilation takes almost all of their time.
 const cuda::Image& for_hopper(const KernelSource& source, const Defines& defines) {
     static std::map<std::pair<std::string, Defines>, cuda::Image> images;
     static std::mutex mutex;
@@ -55,7 +55,7 @@ const cuda::Image& for_hopper(const KernelSource& source, const Defines& defines
     return images.try_emplace(key, std::move(image)).first->second;
 }
 
-/// Compiles what the sessions of the given settings ask for.
+/// Compiles the kernels that sessions with the given settings request.
 void prepare(Device& device, const Traversal& traversal, std::span<const Assignment> from,
              const SettingTexts& given) {
     auto scene = make_scene("pile:bodies=2,frames=1");
@@ -65,15 +65,15 @@ void prepare(Device& device, const Traversal& traversal, std::span<const Assignm
     session->count_work(true);
 }
 
-/// Compiles the test of an explicit list of pairs, and the packing of frames in the device's memory.
-void prepare_apart(Device& device, Precision precision) {
+/// Compiles the test of an explicit pair list, and the packing of frames in device memory.
+void prepare_pair_list(Device& device, Precision precision) {
     const auto scene = make_scene("hard:touch:pairs=2,together=2");
     const testing_support::PreparedTrees on_device(device, scene, {.precision = precision}, 32, 128);
     const PairList list(on_device.trees, std::vector<Pair>{{0, 0, 1, 0}, {0, 1, 1, 1}});
     const PackStage pack(on_device.bodies, {128, 1});
 }
 
-/// Every contact rule without verdicts and, in long form, with them; every decision.
+/// Every contact rule without verdicts (with verdicts too in long form), and every decision.
 void prepare_contacts(Device& device) {
     const auto& traversal = algorithm("chunked");
     for (const std::string precision : {"float", "double"})
@@ -86,8 +86,8 @@ void prepare_contacts(Device& device) {
                             {{"precision", precision}, {"contact_rule", rule}, {"decision", decision}});
 }
 
-/// The plan: every geometry and contact rule with the first preset of every algorithm, every rounding and
-/// truth with all directions in float, and every preset and output with its own.
+/// The plan: every geometry and contact rule with the first preset of every algorithm; every rounding and
+/// placement with all directions in float; every preset and output with its own settings.
 Programs plan() {
     CompilingDevice device;
     prepare_contacts(device);
@@ -109,8 +109,8 @@ Programs plan() {
             for (const std::string output : {"pairs", "count", "digest"})
                 prepare(device, *traversal, preset.values, {{"output", output}});
     }
-    for (const auto precision : {Precision::fp32, Precision::fp64}) prepare_apart(device, precision);
-    return device.asked();
+    for (const auto precision : {Precision::fp32, Precision::fp64}) prepare_pair_list(device, precision);
+    return device.requested();
 }
 
 Programs defaults() {
@@ -118,13 +118,13 @@ Programs defaults() {
     for (const auto* traversal : algorithms())
         for (const std::string precision : {"float", "double"})
             prepare(device, *traversal, traversal->presets().front().values, {{"precision", precision}});
-    for (const std::string most_seeds : {"1", "16384"}) // from tops, and from below them
+    for (const std::string most_seeds : {"1", "16384"}) // start at tops, and below them
         prepare(device, algorithm("tiled"), {}, {{"most_seeds", most_seeds}});
-    for (const auto precision : {Precision::fp32, Precision::fp64}) prepare_apart(device, precision);
-    return device.asked();
+    for (const auto precision : {Precision::fp32, Precision::fp64}) prepare_pair_list(device, precision);
+    return device.requested();
 }
 
-/// Runs `work` over all programs on all cores.
+/// Runs `work` for all programs on all cores.
 template<class Work>
 void for_each(const Programs& programs, const Work& work) {
     std::vector<const Programs::value_type*> list;
@@ -149,10 +149,10 @@ std::string text_of(const Defines& defines) {
     return text;
 }
 
-/// False, with a word on it, when there is nothing to compile with.
+/// False, with a message, without NVRTC.
 bool can_compile(const Programs& programs) {
     if (nvrtc()) return true;
-    fmt::print("NOT compiled for want of NVRTC: {} kernel programs\n", programs.size());
+    fmt::print("NOT compiled, no NVRTC: {} kernel programs\n", programs.size());
     EXPECT_FALSE(required) << "--require nvrtc";
     return false;
 }
@@ -178,10 +178,10 @@ TEST(Nvrtc, EveryProgramOfThePlanForHopper) {
                nvrtc()->version());
 }
 
-/// Registers and spills of the float defaults, where speed is decided. The budget leaves a multiprocessor of
-/// sm_90 half of its 2048 work-items (64 registers each); a third for the walk that holds nodes in registers,
-/// and 28 warps for the one that holds boxes there, whose rows in local memory leave room for no more, or
-/// few; a quarter for contacts. Builds that count work are never timed, and have no budget.
+/// Registers and spills of the float defaults, which decide the speed. The budget leaves half of the 2048
+/// work-items of an sm_90 multiprocessor (64 registers each). It is a third for the traversal with nodes in
+/// registers; 28 warps for the one with boxes in registers, whose rows in local memory limit it to that
+/// number; a quarter for contacts. Builds that count work are never timed and have no budget.
 TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
     const auto programs = defaults();
     if (!can_compile(programs)) return;
@@ -210,24 +210,24 @@ TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
     }
 }
 
-/// A quarter of a multiprocessor's work-items for contacts by any rule, three eighths for certificates,
-/// nearly half for the filter after them, three sixteenths for the decision in double.
+/// The budget is a quarter of a multiprocessor's work-items for contacts by any rule, three eighths for
+/// certificates, nearly half for the filter after them, and three sixteenths for the decision in double.
 TEST(Nvrtc, ContactRulesAndDecisionsKeepTheirBudget) {
     CompilingDevice device;
     prepare_contacts(device);
-    if (!can_compile(device.asked())) return;
+    if (!can_compile(device.requested())) return;
     const std::map<std::string, int> budgets{{"certify_pairs", 80},
                                              {"separate_pairs", 96},
                                              {"generate_contacts", 128},
                                              {"filter_pairs", 72},
                                              {"recheck_pairs", 168}};
     std::set<std::string> seen;
-    for_each(device.asked(),
+    for_each(device.requested(),
              [&](const KernelSource& source, const Defines& defines, const std::set<std::string>& names) {
                  if (defines.contains("PRECISION") && defines.at("PRECISION") == "64") return;
                  const auto& image = for_hopper(source, defines);
                  for (const auto& name : names) {
-                     // Without a list it begins with certificates of its own.
+                     // Without a list it starts with its own certificates.
                      const bool certifies = name == "filter_pairs" && !defines.contains("OVER_OPEN");
                      const auto budget = budgets.find(certifies ? "certify_pairs" : name);
                      if (budget == budgets.end()) continue;
@@ -236,7 +236,7 @@ TEST(Nvrtc, ContactRulesAndDecisionsKeepTheirBudget) {
                      EXPECT_EQ(use.spill_bytes, 0) << name << text_of(defines);
                  }
              });
-    for (const auto& [program, names] : device.asked()) seen.insert(names.begin(), names.end());
+    for (const auto& [program, names] : device.requested()) seen.insert(names.begin(), names.end());
     for (const auto& [name, budget] : budgets) EXPECT_TRUE(seen.contains(name)) << name;
 }
 
@@ -250,14 +250,14 @@ TEST(Nvrtc, NoFusedMultiplyAdd) {
     });
 }
 
-TEST(Nvrtc, DirectedSlabsAreAddedDownAndUp) {
+TEST(Nvrtc, DirectedSlabsRoundDownAndUp) {
     CompilingDevice device;
     const auto& chunked = algorithm("chunked");
     for (const std::string precision : {"float", "double"})
         prepare(device, chunked, {}, {{"k", "26"}, {"rounding", "directed"}, {"precision", precision}});
-    if (!can_compile(device.asked())) return;
+    if (!can_compile(device.requested())) return;
     int checked = 0;
-    for (const auto& [program, names] : device.asked()) {
+    for (const auto& [program, names] : device.requested()) {
         if (!names.contains("refit_strips")) continue;
         const auto ptx = nvrtc()->compile(kernel_source(program.first), program.second, 90, true).bytes;
         const std::string type = program.second.at("PRECISION") == "64" ? "f64" : "f32";
@@ -295,8 +295,8 @@ TEST(Nvrtc, AnUnknownNewerArchitectureGetsPtx) {
 
 using NvrtcCache = testing_support::FolderTest;
 
-/// Equal to what is compiled anew, and told apart by source, defines and architecture.
-TEST_F(NvrtcCache, KeptImagesAreThoseOfTheirProgram) {
+/// Cached images equal newly compiled ones; source, defines and architecture distinguish them.
+TEST_F(NvrtcCache, CachedImagesBelongToTheirProgram) {
     if (!can_compile(defaults())) return;
     const KernelSource one{"one.cl", "extern \"C\" __global__ void f(int* a) { *a = K; }\n"};
     const KernelSource other{"one.cl", "extern \"C\" __global__ void f(int* a) { *a = K + 10; }\n"};
@@ -314,7 +314,7 @@ TEST_F(NvrtcCache, KeptImagesAreThoseOfTheirProgram) {
     EXPECT_TRUE(made == kept);
     for (std::size_t i = 0; i < kept.size(); ++i) {
         EXPECT_EQ(kept[i].bytes, expected[i].bytes);
-        EXPECT_EQ(kept[i].target, expected[i].target); // logs tell times
+        EXPECT_EQ(kept[i].target, expected[i].target); // logs contain times
     }
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("images")), {}), 5);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// OpenCL calls that fail, with work in flight: which error it is, and that the device works on.
+// OpenCL calls that fail with work in flight: the resulting error, and that the device stays usable.
 #include "backends/opencl/opencl_device.h"
 #include "tests/opencl/shim.h"
 #include "tests/unit/device_support.h"
@@ -30,7 +30,7 @@ Outcome outcome(int code, const Call& call) {
     return result;
 }
 
-TEST(OpenclFaults, WhichCodesAreOfMemory) {
+TEST(OpenclFaults, CodesOfOutOfMemory) {
     const auto device = open_device();
     const StageScope scope(*device, Stage::write);
     for (const int code : {-4, -5, -6, -61})
@@ -38,28 +38,28 @@ TEST(OpenclFaults, WhichCodesAreOfMemory) {
     EXPECT_EQ(outcome(-34, [&] { device->allocate(64, "words"); }), Outcome::fails);
     EXPECT_EQ(device->bytes_allocated(), 0u);
     const auto words = device->allocate(64, "words");
-    // Memory that is taken at first use may be found missing by any command.
+    // Memory allocated at first use can make any command fail.
     EXPECT_EQ(outcome(-4, [&] { device->clear(words, 64); }), Outcome::has_no_memory);
     EXPECT_EQ(outcome(-5, [&] { device->clear(words, 64); }), Outcome::fails);
     device->clear(words, 64);
     EXPECT_EQ(test::downloaded<std::uint32_t>(*device, words, 16), std::vector<std::uint32_t>(16, 0));
 }
 
-// One vendor advises 256 for kernels that it has compiled for groups of 992 and runs in them.
-TEST(OpenclFaults, AGroupSizeThatWasCompiledForIsTakenAgainstAdvice) {
+// One vendor reports 256 for kernels that it compiled for groups of 992 and can run in them.
+TEST(OpenclFaults, ACompiledGroupSizeOverridesTheReportedMaximum) {
     const auto device = open_device();
     const StageScope scope(*device, Stage::write);
     const auto words = device->allocate(64, "words");
     const std::array<Argument, 1> arguments{words};
-    opencl_shim_advise(16);
+    opencl_shim_report_group_size(16);
     const auto kernel = test::compile(*device, "do_nothing", {{"GROUP_SIZE", "64"}});
-    opencl_shim_advise(0);
+    opencl_shim_report_group_size(0);
     device->launch(kernel, {4, 64}, arguments);
     EXPECT_THROW(device->launch(kernel, {4, 65}, arguments), DeviceError);
     device->finish();
 }
 
-/// Every kind of command, uploads that are waited for and others; the words that are left.
+/// Every kind of command, with blocking and other uploads; returns the final words.
 std::vector<std::uint32_t> every_command(Device& device) {
     constexpr std::size_t count = std::size_t{1} << 18;
     const StageScope scope(device, Stage::write);
@@ -99,7 +99,7 @@ TEST_P(EveryCall, FailsCleanly) {
     }
 }
 
-TEST_P(EveryCall, LeavesADeviceThatCanBeDropped) {
+TEST_P(EveryCall, LeavesADeviceThatCanBeDestroyed) {
     const auto run = [](Device& device) {
         every_command(device);
         const StageScope scope(device, Stage::write);

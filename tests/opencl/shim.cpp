@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Stands before the OpenCL loader, preloaded or linked: makes one call fail, and keeps what is enqueued in
-// flight until the host waits, as a slow device would. What a write in flight reads has to be what it was
-// when the write was enqueued: looked at when the host waits and when the process ends, where a difference
-// aborts it. SHIM_CALL, SHIM_CODE: as opencl_shim_fail(); SHIM_COUNT: a file for the number of calls.
+// Preloaded or linked before the OpenCL loader. It makes one call fail and keeps enqueued commands in flight
+// until the host waits, as a slow device would. The source of a write in flight must not change: the shim
+// compares it when the host waits and when the process ends, and aborts on a difference. SHIM_CALL,
+// SHIM_CODE: as in opencl_shim_fail(); SHIM_COUNT: a file for the number of calls.
 #define CL_TARGET_OPENCL_VERSION 120
 #include "tests/opencl/shim.h"
 
@@ -21,7 +21,7 @@ struct Write {
     unsigned long sum;
 };
 
-/// What one queue has in flight behind a command that waits for `gate`.
+/// Commands of one queue in flight, behind a barrier that waits for `gate`.
 struct Queue {
     cl_event gate = nullptr;
     std::vector<Write> writes;
@@ -32,16 +32,16 @@ unsigned long number(const char* name) {
     return text != nullptr ? std::strtoul(text, nullptr, 10) : 0;
 }
 
-/// Never destroyed: looked at when the process ends.
+/// Never destroyed: it is checked when the process ends.
 struct State {
     unsigned long fails = number("SHIM_CALL");
     int code =
         std::getenv("SHIM_CODE") != nullptr ? std::atoi(std::getenv("SHIM_CODE")) : CL_OUT_OF_RESOURCES;
     unsigned long calls = 0;
-    std::size_t advice = 0; ///< what is said to be the largest work-group of every kernel, when not 0
-    bool begun = false;     ///< something has been enqueued
+    std::size_t reported_group_size = 0; ///< reported maximum work-group size of every kernel, if not 0
+    bool has_started = false;            ///< a command has been enqueued
     std::map<cl_command_queue, Queue> queues;
-    Queue released; ///< what was in flight on queues that are gone
+    Queue released; ///< in flight on released queues
 };
 
 State& state() {
@@ -55,8 +55,8 @@ Function* real(const char* name) {
 }
 #define REAL(name) real<decltype(name)>(#name)
 
-/// Whether this call is the one that fails.
-bool fails() { return state().begun && ++state().calls == state().fails; }
+/// Whether this call is the failing one.
+bool fails() { return state().has_started && ++state().calls == state().fails; }
 
 unsigned long sum_of(const unsigned char* from, std::size_t bytes) {
     unsigned long sum = 0;
@@ -64,17 +64,17 @@ unsigned long sum_of(const unsigned char* from, std::size_t bytes) {
     return sum;
 }
 
-void look_at(const Queue& queue) {
+void check_writes(const Queue& queue) {
     for (const auto& write : queue.writes) {
         if (sum_of(write.from, write.bytes) == write.sum) continue;
-        std::fprintf(stderr, "shim: what a write in flight reads has changed\n");
+        std::fprintf(stderr, "shim: the source of a write in flight has changed\n");
         std::abort();
     }
 }
 
-/// Before anything is enqueued: it waits for the gate.
+/// The first command of a queue is a barrier that waits for the gate.
 void begin(cl_command_queue queue) {
-    state().begun = true;
+    state().has_started = true;
     auto& own = state().queues[queue];
     if (own.gate != nullptr) return;
     cl_context context = nullptr;
@@ -83,10 +83,10 @@ void begin(cl_command_queue queue) {
     clEnqueueBarrierWithWaitList(queue, 1, &own.gate, nullptr);
 }
 
-/// The host waits: everything may run.
+/// The host waits: all commands may run.
 void open(cl_command_queue queue) {
     auto& own = state().queues[queue];
-    look_at(own);
+    check_writes(own);
     own.writes.clear();
     if (own.gate == nullptr) return;
     clSetUserEventStatus(own.gate, CL_COMPLETE);
@@ -96,8 +96,8 @@ void open(cl_command_queue queue) {
 
 struct AtEnd {
     ~AtEnd() {
-        look_at(state().released);
-        for (const auto& [queue, own] : state().queues) look_at(own);
+        check_writes(state().released);
+        for (const auto& [queue, own] : state().queues) check_writes(own);
         const auto* file = std::getenv("SHIM_COUNT");
         if (file == nullptr) return;
         auto* out = std::fopen(file, "w");
@@ -120,9 +120,9 @@ void opencl_shim_fail(unsigned long call, int code) {
     state().fails = call;
     state().code = code;
     state().calls = 0;
-    state().begun = true;
+    state().has_started = true;
 }
-void opencl_shim_advise(unsigned long group_size) { state().advice = group_size; }
+void opencl_shim_report_group_size(unsigned long group_size) { state().reported_group_size = group_size; }
 unsigned long opencl_shim_calls() { return state().calls; }
 
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void* host, cl_int* code) {
@@ -146,12 +146,12 @@ cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* code) {
 cl_int clGetKernelWorkGroupInfo(cl_kernel kernel, cl_device_id device, cl_kernel_work_group_info what,
                                 size_t bytes, void* to, size_t* needed) {
     const auto code = REAL(clGetKernelWorkGroupInfo)(kernel, device, what, bytes, to, needed);
-    if (what == CL_KERNEL_WORK_GROUP_SIZE && state().advice != 0 && to != nullptr)
-        *static_cast<size_t*>(to) = state().advice;
+    if (what == CL_KERNEL_WORK_GROUP_SIZE && state().reported_group_size != 0 && to != nullptr)
+        *static_cast<size_t*>(to) = state().reported_group_size;
     return code;
 }
 cl_int clSetKernelArg(cl_kernel kernel, cl_uint index, size_t bytes, const void* value) {
-    if (index == 0 && fails()) return state().code; // one for all of a launch
+    if (index == 0 && fails()) return state().code; // one failure for all arguments of a launch
     return REAL(clSetKernelArg)(kernel, index, bytes, value);
 }
 cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,

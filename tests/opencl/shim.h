@@ -2,10 +2,10 @@
 #pragma once
 
 extern "C" {
-/// From now on the `call`-th of the calls that can fail returns `code` and does nothing; 0: none does.
+/// After this call, the `call`-th call that can fail returns `code` and does nothing; 0: no call fails.
 void opencl_shim_fail(unsigned long call, int code);
-/// The calls that can fail since the first command was enqueued or opencl_shim_fail was called.
+/// Number of calls that can fail, since the first enqueued command or the last opencl_shim_fail().
 unsigned long opencl_shim_calls();
-/// From now on that is said to be the largest work-group of every kernel; 0: what the platform says.
-void opencl_shim_advise(unsigned long group_size);
+/// Maximum work-group size reported for every kernel from then on; 0: the platform's value.
+void opencl_shim_report_group_size(unsigned long group_size);
 }

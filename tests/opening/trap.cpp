@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stands for a driver that breaks whoever loads it.
+// Replaces a driver: aborts any process that loads it.
 #include <cstdlib>
 
 namespace {

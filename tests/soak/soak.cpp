@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // soak [--device D] [--frames N] [--seed S]: N frames in sessions of random algorithms, settings, scenes and
-// lengths, several alive at a time, with results that outlive them, resets, and sessions under random memory
-// limits, whose frames run whole, in batches or not at all. Buffers are guarded (support/cells.h). One line a
-// tenth. Exit 1 where a frame has another answer than the same cell without a limit on the host, or the
-// process, its open files or the device's buffers have grown; 3 where a kernel wrote past a buffer's end.
+// lengths. Several sessions exist at a time, with resets and with results that outlive them. Some have random
+// memory limits: their frames run whole, in batches or not at all. Buffers are guarded (support/cells.h).
+// Prints one line per tenth. Exit code 1 if an answer differs from that of the same cell on the host without
+// a limit, or if memory, open files or device buffers grow; 3 if a kernel writes past the end of a buffer.
 #include "harness/record/environment.h"
 #include "base/error.h"
 #include "tests/support/limited.h"
@@ -40,14 +40,14 @@ std::size_t threads() {
     return static_cast<std::size_t>(std::distance(begin(tasks), end(tasks)));
 }
 
-/// Few enough that each compiles once: what is soaked is the sessions. On the host, which compiles nothing,
-/// rule, decision, precision and layout are drawn instead.
+/// Few variants, because each is compiled once and sessions are the subject. On the host, which compiles
+/// nothing, rule, decision, precision and layout are random as well.
 const std::vector<SettingTexts> variants{{{"k", "8"}, {"contact_rule", "opposing"}},
                                          {{"k", "8"}, {"contact_rule", "opposing"}, {"output", "digest"}},
                                          {{"k", "18"}, {"contact_rule", "sat"}, {"decision", "recheck"}}};
 
-/// What a process is made of that must not grow.
-struct Held {
+/// Resources of the process that must not grow.
+struct Resources {
     std::int64_t bytes = resident_bytes();
     std::size_t files = open_files(), tasks = threads();
 };
@@ -60,11 +60,12 @@ public:
         scenes_.push_back(breathing(5));
     }
 
-    /// Frames until `stop` in all.
+    /// Runs frames until their total is `stop`.
     void run_until(std::uint64_t stop) {
         while (frames_ < stop)
-            live(std::min<std::uint64_t>(stop - frames_, 1 + below(random_.uniform() < 0.9 ? 200 : 5000)));
-        kept_.clear();
+            run_session(
+                std::min<std::uint64_t>(stop - frames_, 1 + below(random_.uniform() < 0.9 ? 200 : 5000)));
+        results_.clear();
     }
 
     std::uint64_t frames() const { return frames_; }
@@ -79,7 +80,7 @@ private:
         return static_cast<std::size_t>(random_.uniform() * static_cast<double>(n)) % n;
     }
 
-    /// What decides an answer of the variants, and nothing else.
+    /// The settings that determine the answer.
     static SettingTexts cell_of(const SettingTexts& given) {
         SettingTexts cell;
         for (const auto* name : {"k", "contact_rule", "decision", "precision"})
@@ -87,7 +88,7 @@ private:
         return cell;
     }
 
-    /// Answer of each frame: that of the first session on the host, without a limit.
+    /// Reference answer of a frame: from an unlimited session on the host, computed once.
     const Answer& expected(std::size_t scene, std::size_t frame, const SettingTexts& given) {
         const auto cell = cell_of(given);
         const auto key = std::tuple(scene, frame, text(cell));
@@ -102,7 +103,7 @@ private:
         return made.first->second;
     }
 
-    /// The settings of the next session.
+    /// Random settings of the next session.
     SettingTexts draw_settings(const Traversal& traversal) {
         SettingTexts given = variants[below(variants.size())];
         if (device_.info().id == "host" && below(2) == 0) {
@@ -120,13 +121,13 @@ private:
         return given;
     }
 
-    /// A session for so many frames, another beside it half of the time.
-    void live(std::uint64_t length) {
+    /// Runs a session for `length` frames, with a second session beside it half of the time.
+    void run_session(std::uint64_t length) {
         const auto& traversal = *algorithms()[below(algorithms().size())];
         const auto scene = below(scenes_.size());
         auto given = draw_settings(traversal);
-        const auto room = std::size_t{1} << (below(13));
-        given["pair_capacity"] = given["contact_capacity"] = fmt::format("{}", room);
+        const auto capacity = std::size_t{1} << (below(13));
+        given["pair_capacity"] = given["contact_capacity"] = fmt::format("{}", capacity);
         const auto settings = resolve(traversal.parameters(), {}, given, traversal.name());
         const std::array devices{&device_};
         std::unique_ptr<Session> session, beside;
@@ -134,7 +135,7 @@ private:
             session = traversal.prepare(devices, scenes_[scene], settings);
             if (below(2) == 0)
                 beside = traversal.prepare(devices, scenes_[(scene + 1) % scenes_.size()], settings);
-        } catch (const InputError&) { // settings that do not go together
+        } catch (const InputError&) { // incompatible settings
             return;
         }
         ++sessions_;
@@ -142,29 +143,29 @@ private:
         for (std::uint64_t i = 0; i < length; ++i) {
             const auto chance = below(200);
             if (chance == 0) session->reset();
-            if (chance % 50 == 1) starve();
+            if (chance % 50 == 1) run_limited_session();
             if (chance == 2 && beside) beside->run(scenes_[(scene + 1) % scenes_.size()].frame(0));
             auto result = session->run(frames[i % 2]);
             ++frames_;
             batches_ += result.batches > 1;
-            // A digest costs more than a frame: of the first two and some.
+            // A digest costs more than a frame: check the first two and a random selection.
             if (i < 2 || chance < 10) check(result, scene, i % 2, given);
-            if (chance < 3) kept_.push_back(std::move(result));
-            if (kept_.size() > 20) kept_.pop_front();
+            if (chance < 3) results_.push_back(std::move(result));
+            if (results_.size() > 20) results_.pop_front();
         }
     }
 
     void check(const FrameResult& result, std::size_t scene, std::size_t frame, const SettingTexts& given) {
         const auto& right = expected(scene, frame, given);
-        // The digest that a walk sums knows no contacts.
+        // A digest summed during traversal does not cover contacts.
         const bool same = result.has_pairs() ? Answer(result) == right : result.digest() == right.pairs;
         if (!same) fmt::print(stderr, "wrong: {} frame {}{}\n", scenes_[scene].name, frame, text(given));
         wrong_ += !same;
     }
 
-    /// Frames of a session that has from a bit more than nothing to ten times of what it needs at least: they
-    /// run whole, in batches, or end with OutOfMemory.
-    void starve() {
+    /// Frames of a session with a random memory limit, from slightly too little to ten times the minimum:
+    /// they run whole, in batches, or end with OutOfMemory.
+    void run_limited_session() {
         const auto& traversal = *algorithms()[below(algorithms().size())];
         const auto scene = below(scenes_.size());
         const auto given = draw_settings(traversal);
@@ -172,7 +173,7 @@ private:
         std::vector<std::size_t> frames(2 + below(8));
         for (auto& frame : frames) {
             frame = below(frame_count);
-            expected(scene, frame, given); // before there is a limit, which may be the host's
+            expected(scene, frame, given); // before the limit, which may apply to the host
         }
         try {
             const auto least = static_cast<double>(least_bytes(device_, traversal, scenes_[scene], given));
@@ -182,7 +183,7 @@ private:
             for (const auto frame : frames) run_limited(*session, scene, frame, given);
         } catch (const OutOfMemory&) {
             ++refusals_;
-        } catch (const InputError&) {} // settings that do not go together
+        } catch (const InputError&) {} // incompatible settings
     }
 
     void run_limited(Session& session, std::size_t scene, std::size_t frame, const SettingTexts& given) {
@@ -199,7 +200,7 @@ private:
     Device& device_;
     Random random_;
     std::vector<Scene> scenes_;
-    std::deque<FrameResult> kept_;
+    std::deque<FrameResult> results_;
     std::map<std::tuple<std::size_t, std::size_t, std::string>, Answer> expected_;
     std::uint64_t frames_ = 0, sessions_ = 0, limited_ = 0, refusals_ = 0, batches_ = 0, wrong_ = 0;
 };
@@ -209,12 +210,12 @@ int run(const std::string& on, std::uint64_t frames, std::uint64_t seed) {
     fmt::print("soak of {} at {}, seed {}\n", on, version_line(), seed);
     Soak soak(soaked, seed);
     constexpr std::uint64_t parts = 10;
-    soak.run_until(frames / parts); // caches fill
-    const Held before;
+    soak.run_until(frames / parts); // fills caches
+    const Resources before;
     const auto device_before = soaked.bytes_allocated();
     for (std::uint64_t part = 2; part <= parts; ++part) {
         soak.run_until(frames * part / parts);
-        const Held now;
+        const Resources now;
         fmt::print("{} frames, {} sessions, {} under a limit, {} in batches, {} out of memory, {} wrong; "
                    "{:+} KiB, {:+} files, "
                    "{:+} threads, {:+} bytes on "
@@ -226,8 +227,8 @@ int run(const std::string& on, std::uint64_t frames, std::uint64_t seed) {
                    static_cast<std::int64_t>(soaked.bytes_allocated() - device_before));
         std::fflush(stdout);
     }
-    const Held now;
-    // Fragments of the heap, and what a driver keeps of each program.
+    const Resources now;
+    // Allows for heap fragmentation and for the driver's data per program.
     constexpr std::int64_t most_growth = 64 << 20;
     const bool flat = now.bytes - before.bytes < most_growth && now.files <= before.files
                       && now.tasks <= before.tasks && soaked.bytes_allocated() == device_before;
