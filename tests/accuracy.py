@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""accuracy.py PROGRAM SOURCE: errors against the exact truth as a user meets them: tandem accuracy, --truth, figures."""
+"""accuracy.py PROGRAM SOURCE: errors against the exact truth: tandem accuracy, --truth, figures."""
 import csv
 import json
 import subprocess
@@ -26,10 +26,10 @@ class Accuracy(Case):
         self.assertEqual((status, errors), (0, []), text)
         return self.records(out), text
 
-    def test_every_pair_is_compared_unless_told_otherwise(self):
+    def test_every_pair_is_compared_by_default(self):
         records, text = self.run_two("pairs", "--algorithm", "chunked")
         truth = records[0]["error"]["truth"]
-        # Equal meshes three cubes over each other: each of 18 tetrahedra lies on one of the other's.
+        # Equal meshes of three cubes on each other: each of 18 tetrahedra coincides with one of the other mesh.
         self.assertGreaterEqual(truth["overlapping"], 18)
         self.assertEqual(truth["missed_touching"] + truth["missed_overlapping"], 0)
         self.assertEqual(truth["false"] + truth["touching"] + truth["overlapping"], truth["candidates"])
@@ -43,19 +43,19 @@ class Accuracy(Case):
         self.assertIsNone(records[0]["error"]["truth"])
         self.assertNotIn("truth", text)
 
-    def test_contacts_are_compared_on_request_and_samples_say_so(self):
+    def test_contacts_are_compared_on_request_and_samples_are_marked(self):
         records, _ = self.run_two("contacts", "--algorithm", "chunked", "--truth", "contacts")
         contacts = records[0]["error"]["truth"]["contacts"]
         self.assertTrue(contacts["complete"])
         self.assertEqual(contacts["overlapping"], records[0]["error"]["truth"]["overlapping"])
         self.assertLess(contacts["point"]["max"], 1e-6)
-        self.assertEqual(records[0]["error"]["truth"]["drift"]["max"], 0)  # poses that move nothing
-        for rule in ("sat", "clip"):  # all vertices of every intersection
+        self.assertEqual(records[0]["error"]["truth"]["drift"]["max"], 0)  # identity poses
+        for rule in ("sat", "clip"):  # these rules find all vertices of every intersection
             records, _ = self.run_two(rule, "--algorithm", "chunked", "--truth", "contacts", "--set", f"contact_rule={rule}")
             own = records[0]["error"]["truth"]["contacts"]
             self.assertEqual((own["no_volume"], own["unanswered"]), (0, 0))
             self.assertLess(own["volume_relative"]["max"], 1e-4)
-        self.assertEqual(contacts["volume_relative"]["max"], 1)  # opposing drops some for being deep
+        self.assertEqual(contacts["volume_relative"]["max"], 1)  # opposing drops some contacts because of their depth
         records, _ = self.run_two("sample", "--algorithm", "chunked", "--truth", "contacts", "--truth-contacts", 5)
         contacts = records[0]["error"]["truth"]["contacts"]
         self.assertEqual((contacts["complete"], contacts["overlapping"]), (False, 5))
@@ -112,7 +112,7 @@ class Accuracy(Case):
         self.assertEqual(float(shown), float(f"{records[0]['error']['truth']['contacts']['volume_relative']['p99']:.3g}"))
         self.assertEqual(text.count("MISSES"), 1)  # in the legend
 
-    def test_the_reference_can_be_left_out_and_the_truth_stays(self):
+    def test_the_truth_works_without_the_reference(self):
         for arguments, checked in ((), True), (("--no-check",), False):
             records, _ = self.run_two(f"checked{checked}", "--set", "k=8", "--repeat", 1, *arguments, command="accuracy")
             self.assertEqual([r["agreement"] is not None for r in records], [checked])
@@ -137,8 +137,8 @@ class Accuracy(Case):
         self.assertEqual((done.returncode, done.stderr), (2, f"tandem: {empty}: is empty; name a file of records\n"))
 
     def test_accuracy_draws(self):
-        """With --out the records of that file, without it those beside the figures, old ones included."""
-        folder = self.work / "drawn figures" / "here"
+        """With --out it draws the records of that file; otherwise those beside the figures, including old ones."""
+        folder = self.work / "drawn figures" / "figures"
         rows = lambda: [row["k"] for row in csv.DictReader((folder / "pareto.csv").read_text().splitlines())]
         draw = lambda *more: tandem("accuracy", *self.two, "--device", "host", "--quiet", "--repeat", 1, "--figures", folder, *more)
         status, text, errors = draw("--set", "k=8,14")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Chromium without a window, driven by its own protocol: pages, clicks, keys, pictures, and what went wrong in them."""
+"""Headless Chromium, driven by its own protocol: pages, clicks, keys, pictures, and errors on the pages."""
 import base64
 import json
 import os
@@ -15,7 +15,7 @@ import urllib.request
 
 
 class Socket:
-    """A web socket of one server that is trusted: texts, one at a time (RFC 6455)."""
+    """A web socket to one trusted server: text messages, one at a time (RFC 6455)."""
 
     def __init__(self, port, path):
         self.connection = socket.create_connection(("127.0.0.1", port), timeout=120)
@@ -84,7 +84,7 @@ class Browser:
 
     def __exit__(self, *_):
         self.socket.connection.close()
-        os.killpg(self.process.pid, signal.SIGKILL)  # its own group, with all its children
+        os.killpg(self.process.pid, signal.SIGKILL)  # its own process group, with all children
         self.process.wait()
         self.log.close()
         self.home.cleanup()
@@ -108,7 +108,7 @@ class Browser:
         return result["result"].get("value")
 
     def until(self, condition, seconds=60):
-        """Waits for an expression to be true."""
+        """Waits until an expression is true."""
         end = time.time() + seconds
         while time.time() < end:
             if self.run(condition):
@@ -117,7 +117,7 @@ class Browser:
         raise AssertionError(f"never became true: {condition}")
 
     def open(self, path):
-        """Opens a file and returns the seconds until the page is whole: every row of its table is there."""
+        """Opens a file and returns the seconds until every row of its table is present."""
         self.events.clear()
         begin = time.time()
         self.ask("Page.navigate", url=pathlib.Path(path).resolve().as_uri())
@@ -126,7 +126,7 @@ class Browser:
         return time.time() - begin
 
     def problems(self):
-        """Errors that the page logged, and requests of anything but the file."""
+        """Errors that the page logged, and requests for anything but the file."""
         self.run("1")
         texts = []
         for event in self.events:

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""choosing.py PROGRAM SOURCE: --algorithm auto: what it chooses from, says, records and keeps."""
+"""choosing.py PROGRAM SOURCE: --algorithm auto: its candidates, messages, records and cache."""
 import json
 import sys
 import tempfile
@@ -29,7 +29,7 @@ class Choosing(Case):
         self.assertEqual(status, 0, (text, errors))
         return self.records(out)[0], errors
 
-    def test_the_record_says_what_was_chosen_and_why(self):
+    def test_the_record_has_the_choice_and_its_reasons(self):
         record, errors = self.choose()
         chosen = record["chosen"]
         self.assertEqual(len(errors), 1, errors)
@@ -58,7 +58,7 @@ class Choosing(Case):
             self.assertFalse(self.validator.is_valid({**record, "chosen": {**record["chosen"], "candidates": candidates}}))
         self.assertTrue(self.validator.is_valid({**record, "chosen": None}))
 
-    def test_the_second_run_takes_what_the_first_kept(self):
+    def test_the_second_run_uses_the_cached_choice(self):
         first = self.choose()[0]
         self.assertEqual(len(self.files()), 1)
         second, errors = self.choose()
@@ -79,7 +79,7 @@ class Choosing(Case):
         self.assertEqual((record["chosen"]["from_cache"], len(errors)), (False, 1))
         self.assertEqual(json.loads(file.read_text())["program"], kept["program"])
 
-    def test_damaged_and_unwritable_files_are_survived(self):
+    def test_damaged_and_unwritable_files_do_no_harm(self):
         self.choose()
         for damage in ("", "{", '{"program": 1}', "\0" * 100):
             self.files()[0].write_text(damage)
@@ -92,7 +92,7 @@ class Choosing(Case):
         self.assertIn("tandem: /dev/null/choices/choice-", errors[0])
         self.assertEqual((record["chosen"]["from_cache"], len(errors)), (False, 2))
 
-    def test_choices_of_others_are_not_believed(self):
+    def test_choices_of_other_users_are_ignored(self):
         self.work.joinpath(self.kept.name).chmod(0o777)
         self.bad(f"TANDEM_KERNEL_CACHE: other users can write to {self.kept.name}", "run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "auto",
                  environment=self.environment)
@@ -110,7 +110,7 @@ class Choosing(Case):
             self.choose(environment={**nothing, name: self.kept.name})
             self.assertEqual(len(list(self.work.joinpath(self.kept.name, folder).glob("choice-*.json"))), 1)
 
-    def test_what_is_given_is_kept(self):
+    def test_explicit_settings_are_kept(self):
         given = {"k": "6", "builder": "morton", "leaves": "32", "slabs": "all", "contact_rule": "none"}
         record = self.choose(given=given)[0]
         for candidate in [*record["chosen"]["candidates"], record]:
@@ -120,8 +120,9 @@ class Choosing(Case):
         self.assertEqual(len(record["chosen"]["candidates"]), 3)
         self.assertEqual((record["settings"]["k"], record["settings"]["contact_rule"]), ("6", "none"))
 
-    def test_what_fails_is_not_chosen(self):
-        """A TiB of queues is more than there is; frames in batches, with one session at a time, are no failure."""
+    def test_failing_candidates_are_not_chosen(self):
+        """A TiB of queues exceeds the memory; running frames in batches, with one session at a time, is not a
+        failure."""
         record, errors = self.choose(given={"queue_bytes": 2**40})
         self.assertEqual(len(errors), 1, errors)
         failures = {c["algorithm"]: c["failure"] for c in record["chosen"]["candidates"]}
@@ -131,7 +132,7 @@ class Choosing(Case):
         record = self.choose("--memory", "1MB")[0]
         self.assertEqual({c["failure"] for c in record["chosen"]["candidates"]}, {None})
 
-    def test_auto_beside_others_and_not_among_all(self):
+    def test_auto_works_beside_others_and_is_not_part_of_all(self):
         out = self.work / "beside.jsonl"
         arguments = ("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--repeat", 1, "--out", out, *sets(SMALL))
         self.assertEqual(tandem(*arguments, "--algorithm", "auto,chunked", "--choose-seconds", 0.1, environment=self.environment)[0], 0)

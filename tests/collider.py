@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""collider.py PROGRAM SOURCE: tandem.Collider of Python, as installed beside the program: its answers are those of tandem run on
-every device, also with vertices; memory is shared where it is said to be, by pointer; the interpreter's lock is released; bad
-input is one line. Prints what a call costs beside the program's frame."""
+"""collider.py PROGRAM SOURCE: tandem.Collider of Python, as installed beside the program. Its answers equal those of
+tandem run on every device, also with vertices; memory is shared where documented, checked by pointer; the
+interpreter's lock is released; bad input gives one line. Prints the cost of a call next to the program's frame."""
 import ast
 import csv
 import json
@@ -26,7 +26,7 @@ POSES = [[0, 0, 0, 1, 0, 0, 0], [0.125, 0, 0.0625, 0.98, 0.1, 0.05, 0.15]]
 
 
 def setUpModule():
-    """Installs the package into an empty folder, and imports it from there."""
+    """Installs the package into an empty folder and imports it from it."""
     global tandem, FOLDER
     FOLDER = tempfile.TemporaryDirectory(prefix="tandem-collider")
     subprocess.run(["cmake", "--install", PROGRAM.parent, "--component", "python", "--prefix", FOLDER.name], check=True, capture_output=True)
@@ -44,7 +44,7 @@ def address(array):
 
 
 class OnDevice:
-    """An array that says it is somewhere else, as those of libraries for GPUs do."""
+    """An array that reports device memory, as those of GPU libraries do."""
     def __dlpack_device__(self):
         return 2, 0
 
@@ -53,7 +53,7 @@ class OnDevice:
 
 
 class ByDlpack:
-    """An array of the host's that is no NumPy array."""
+    """An array in host memory that is not a NumPy array."""
     def __init__(self, array):
         self.array = array
 
@@ -76,12 +76,12 @@ class ColliderCase(Case):
         return tandem.Collider(self.meshes if meshes is None else meshes, **{**self.small(options.get("algorithm", "tiled")), **options})
 
     def small(self, algorithm):
-        """Rooms of few rows, of those that an algorithm has."""
+        """Capacities of few rows, for those that the algorithm has."""
         listed, = json.loads(run_tandem("algorithms", algorithm, "--json")[1])
         return {name: SMALL[name] for name in SMALL if name in {parameter["name"] for parameter in listed["parameters"]}}
 
     def dumps(self, *arguments):
-        """Pairs, contacts' pairs, and points, normals, depths, of the one frame of a run of the program."""
+        """Pairs, pairs of contacts, and points, normals and depths from a run of the program over one frame."""
         paths = self.work / "pairs.csv", self.work / "contacts.csv"
         status, text, errors = run_tandem("run", *arguments, "--no-check", "--no-count", "--dump-pairs", paths[0], "--dump-contacts", paths[1])
         self.assertEqual((status, errors), (0, []), text)
@@ -102,7 +102,7 @@ class ColliderCase(Case):
 
 
 class Answers(ColliderCase):
-    def test_are_those_of_the_program(self):
+    def test_equal_those_of_the_program(self):
         texts = [" ".join(map(str, pose)) for pose in POSES]
         for device in DEVICES:
             for algorithm, settings in (("tiled", {}), ("chunked", {"k": 8}), ("gproximity", {"precision": "double"})):
@@ -142,14 +142,14 @@ class Answers(ColliderCase):
         self.assertGreater(one.count(POSES), 0)
         self.assertEqual(one.run(POSES).body_pairs, 1)
 
-    def test_without_poses_all_are_where_their_meshes_are(self):
+    def test_without_poses_bodies_are_at_their_meshes(self):
         identities = [POSES[0], POSES[0]]
         collider = self.collider()
         collider.pairs(POSES)
         self.assertTrue((collider.pairs() == collider.pairs(identities)).all())
 
-    def test_vertices_are_where_they_are_given(self):
-        """The program's answer for a mesh that is there."""
+    def test_vertices_are_used_as_given(self):
+        """The program's answer for a mesh with these vertices."""
         moved = [numpy.array(points) * [1.0, 0.75, 1.25] + [0.125 * i, 0, 0] for i, (points, _) in enumerate(self.parts)]
         files = [gmsh(self.work / f"moved{i}.msh", points.tolist(), self.parts[i][1]) for i, points in enumerate(moved)]
         for device in DEVICES:
@@ -173,7 +173,7 @@ class Answers(ColliderCase):
         with self.assertRaisesRegex(IndexError, "numbered from 0"):
             scene.poses(scene.frame_count)
 
-    def test_devices_are_those_of_the_program(self):
+    def test_devices_equal_those_of_the_program(self):
         listed = {device["id"]: {**device, "backend": backend["backend"]} for backend in json.loads(run_tandem("devices", "--json")[1])
                   for device in backend["devices"]}
         mine = tandem.devices()
@@ -203,7 +203,7 @@ class Auto(ColliderCase):
         self.assertEqual(soft.count(), self.collider(deformable=True, output="count").count())
         self.assertNotEqual(soft.algorithm, "auto")
 
-    def test_what_is_refused(self):
+    def test_refused_settings(self):
         for words, options in (("unknown setting 'kk'", {"kk": 8}), ("k=7", {"k": 7}), ("unknown preset 'fairest'", {"preset": "fairest"})):
             with self.subTest(words), self.assertRaisesRegex(ValueError, words):
                 tandem.Collider(self.meshes, "auto", **options)
@@ -215,9 +215,10 @@ class Auto(ColliderCase):
         self.assertEqual(undecided.algorithm, "auto")
 
 
-class There(ColliderCase):
-    """What is done with arrays on a GPU, done with the host's, which are in memory of device host and are brought to others."""
-    def test_frames_have_the_answers_of_the_hosts_memory(self):
+class DeviceInput(ColliderCase):
+    """The code path of GPU arrays, run on host arrays, which are in memory of device host and are copied to other
+    devices."""
+    def test_frames_have_the_answers_of_host_memory(self):
         moved = [numpy.array(points) * [1.0, 0.75, 1.25] + [0.125 * i, 0, 0] for i, (points, _) in enumerate(self.parts)]
         for device in DEVICES:
             with self.subTest(device=device):
@@ -225,27 +226,27 @@ class There(ColliderCase):
                 mixed = self.collider(device=device, deformable=[1])
                 for dtype in (float, numpy.float32):
                     rows, points = numpy.array(POSES, dtype), [part.astype(dtype) for part in moved]
-                    for mine, here in ((collider._core.run_device_input(rows, []), collider.run(rows)), (soft._core.run_device_input(None, points), soft.run(vertices=points)),
+                    for mine, expected in ((collider._core.run_device_input(rows, []), collider.run(rows)), (soft._core.run_device_input(None, points), soft.run(vertices=points)),
                                        (soft._core.run_device_input(None, [None, points[1]]), soft.run(vertices={1: points[1]})),
                                        (mixed._core.run_device_input(rows, [None, points[1]]), mixed.run(rows, [points[1]]))):
-                        self.assertGreater(here.contact_count, 10)
-                        self.assertEqual(mine.digest(), tuple(here.digest()))
-                        self.assertEqual(mine.contact_digest(), tuple(here.contact_digest()))
-                        self.assertTrue((mine.pairs() == here.pairs()).all())
+                        self.assertGreater(expected.contact_count, 10)
+                        self.assertEqual(mine.digest(), tuple(expected.digest()))
+                        self.assertEqual(mine.contact_digest(), tuple(expected.contact_digest()))
+                        self.assertTrue((mine.pairs() == expected.pairs()).all())
                     if device == "host":
                         self.assertEqual(mixed._core.addresses, [address(rows), address(points[1])])
 
-    def test_what_is_out_of_range_has_the_same_sentence(self):
+    def test_values_out_of_range_give_the_same_error(self):
         collider, soft = self.collider(), self.collider(deformable=[1])
         for at, value in (((0, 0), numpy.inf), ((1, 3), numpy.nan), ((1, slice(3, 7)), 0), ((1, 2), -1e37)):
             rows = numpy.array(POSES)
             rows[at] = value
-            said = []
+            messages = []
             for run in (collider.run, lambda given: collider._core.run_device_input(given, [])):
                 with self.assertRaises(ValueError) as caught:
                     run(rows)
-                said.append(str(caught.exception))
-            self.assertEqual(said[0], said[1])
+                messages.append(str(caught.exception))
+            self.assertEqual(messages[0], messages[1])
         points = self.meshes[1][0].copy()
         points[3, 2] = numpy.nan
         with self.assertRaisesRegex(ValueError, "body 1: vertex 3 is not finite"):
@@ -264,7 +265,7 @@ class Memory(ColliderCase):
         self.assertEqual((first.dtype, first.shape), (numpy.int32, (answer.count, 4)))
         self.assertEqual(sorted(map(tuple, first)), list(map(tuple, answer.pairs())))
         kept = first.copy()
-        del collider, answer, given, second  # what is left keeps the memory
+        del collider, answer, given, second  # the remaining arrays keep the memory alive
         other = self.collider()
         for _ in range(5):
             other.pairs(POSES[::-1], on_device=True)
@@ -284,7 +285,7 @@ class Memory(ColliderCase):
         self.assertFalse(any(column.flags.owndata for column in contacts))
         self.assertTrue(numpy.allclose(numpy.linalg.norm(contacts.normals, axis=1), 1, atol=1e-6))
 
-    def test_input_is_read_where_it_is(self):
+    def test_input_is_not_copied(self):
         from tandem.arrays import host_array
         rows = numpy.array(POSES)
         self.assertIs(host_array(rows, "poses", 7), rows)
@@ -298,7 +299,7 @@ class Memory(ColliderCase):
         del mesh
         self.assertTrue((view == self.meshes[0][0]).all())
 
-    def test_an_answer_stays_when_the_collider_runs_on(self):
+    def test_an_answer_outlives_later_runs(self):
         collider = self.collider()
         answer = collider.run(POSES)
         before, digest = answer.pairs(), answer.digest()
@@ -307,13 +308,13 @@ class Memory(ColliderCase):
         self.assertTrue((answer.pairs() == before).all())
         self.assertEqual(answer.digest(), digest)
 
-    def test_other_libraries_take_the_pairs(self):
+    def test_other_libraries_accept_the_pairs(self):
         answer = self.collider().run(POSES)
         for library in ("torch", "cupy", "jax"):
             try:
                 taken = __import__(library)
             except ImportError:
-                print(f"\n  {library} is not here, and was not tried", end="", file=sys.stderr)
+                print(f"\n  {library} is not installed and was not tested", end="", file=sys.stderr)
                 continue
             if library == "torch":
                 tensor = taken.from_dlpack(answer.pairs(on_device=True))
@@ -338,8 +339,8 @@ class Memory(ColliderCase):
 
 
 class Threads(ColliderCase):
-    def test_others_run_meanwhile(self):
-        """A frame takes so long that with the lock held the other thread would wait for it."""
+    def test_other_threads_run_during_a_call(self):
+        """A frame takes so long that, with the lock held, the other thread would have to wait for it."""
         scene = tandem.make_scene("pile:bodies=200")
         collider = tandem.Collider(scene.meshes, bodies=scene.bodies, threads=1)
         poses = scene.poses(0)
@@ -438,7 +439,7 @@ class BadInput(ColliderCase):
         self.expect(ValueError, "deformable[0]: 2 is not the number of a body; there are 2", tandem.Collider, self.meshes, deformable=[2])
         self.expect(ValueError, "broken.msh", tandem.read_mesh, gmsh(self.work / "broken.msh", [(0, 0, 0)] * 3, [[0, 1, 2, 9]]))
 
-    def test_settings_are_the_programs_sentences(self):
+    def test_errors_of_settings_equal_the_programs(self):
         for words, options in (("unknown setting of tiled 'kk'", {"kk": 8}), ("unknown algorithm 'tild'", {"algorithm": "tild"}),
                                ("unknown device 'hst'", {"device": "hst"}), ("k=7", {"k": 7}), ("rounding=directed is impossible on host", {"rounding": "directed"}),
                                ("unknown preset of tiled 'fairest'", {"preset": "fairest"}), ("named twice", {"device": "host+host"}), ("device=all", {"device": "all"})):
@@ -450,8 +451,8 @@ class BadInput(ColliderCase):
             with self.assertRaises(ValueError) as caught:
                 tandem.Collider(self.meshes, **options)
             defaults = {"--algorithm": "tiled", "--device": "host", words[0]: words[1]}
-            said = run_tandem("run", "plates", *(word for pair in defaults.items() for word in pair))[2]
-            self.assertEqual([f"tandem: {caught.exception}"], said)
+            errors = run_tandem("run", "plates", *(word for pair in defaults.items() for word in pair))[2]
+            self.assertEqual([f"tandem: {caught.exception}"], errors)
 
     def test_frames(self):
         collider, soft = self.collider(), self.collider(deformable=[1])
@@ -478,7 +479,7 @@ class BadInput(ColliderCase):
         self.expect(ValueError, "no body is deformable; make the collider with deformable=True", collider.pairs, vertices=[points])
         self.assertTrue((collider.pairs(POSES) == self.collider().pairs(POSES)).all(), "goes on after bad input")
 
-    def test_answers_that_were_not_kept(self):
+    def test_answers_that_were_not_stored(self):
         counted = self.collider(output="count").run(POSES)
         self.assertEqual(counted.count, self.collider().count(POSES))
         for ask in (counted.pairs, counted.contacts, lambda: counted.pairs(on_device=True)):
@@ -510,7 +511,7 @@ class Example(ColliderCase):
             self.assertTrue(self.example(*arguments, code=2).startswith("collide.py: "))
 
 
-    def test_what_a_call_costs_is_told(self):
+    def test_the_cost_of_a_call_is_printed(self):
         text = self.example("plates:count=2", "--frames", "60:61", "--rounds", 1, "--arrays", "all", script="call_cost.py")
         self.assertRegex(text, r"arrays of numpy, 2 frames, 1 rounds: call [\d.]+ us, library's frame [\d.]+ us, the call beside it [\d.]+ us; pairs handed out")
         self.assertRegex(text, r"3 arrays, asked from Python: __dlpack_device__ [\d.]+ us, __dlpack__ [\d.]+ us; without DLPack's table")
@@ -519,7 +520,7 @@ class Example(ColliderCase):
 
 class Package(unittest.TestCase):
     def test_without_the_compiled_part(self):
-        """Records are read; what is not there says how to get it."""
+        """Records are readable without it; missing names explain how to get them."""
         with tempfile.TemporaryDirectory() as folder:
             shutil.copytree(SOURCE / "python/tandem", pathlib.Path(folder) / "tandem", ignore=shutil.ignore_patterns("__pycache__"))
             code = ("import tandem\nfrom tandem import *\nassert read and 'Collider' not in tandem.__all__\n"
@@ -529,11 +530,11 @@ class Package(unittest.TestCase):
         self.assertEqual([line.partition(" needs the compiled part")[0] for line in done.stdout.splitlines()], ["tandem.Collider", "tandem.devices"])
         self.assertIn("pip install .", done.stdout)
 
-    def test_importing_loads_no_more_than_is_asked_for(self):
+    def test_importing_loads_only_what_is_needed(self):
         code = "import sys, tandem; tandem.Collider; assert 'pandas' not in sys.modules and 'matplotlib' not in sys.modules"
         subprocess.run([sys.executable, "-c", code], check=True, env={**os.environ, "PYTHONPATH": FOLDER.name})
 
-    def test_stubs_name_what_there_is(self):
+    def test_stubs_name_everything(self):
         from tandem import _core
         stub = ast.parse((SOURCE / "python/tandem/_core.pyi").read_text())
         named = {}
@@ -542,15 +543,15 @@ class Package(unittest.TestCase):
                 named[node.name] = {inner.name for inner in node.body if isinstance(inner, ast.FunctionDef) and not inner.name.startswith("_")}
             elif isinstance(node, ast.FunctionDef):
                 named[node.name] = set()
-        there = {name: {inner for inner in vars(value) if not inner.startswith("_")} if isinstance(value, type) else set()
+        exported = {name: {inner for inner in vars(value) if not inner.startswith("_")} if isinstance(value, type) else set()
                  for name, value in vars(_core).items() if not name.startswith("_")}
-        self.assertEqual(named, there)
+        self.assertEqual(named, exported)
         self.assertTrue((SOURCE / "python/tandem/py.typed").exists())
         for name in tandem.__all__:
             self.assertTrue(getattr(tandem, name).__doc__, name)
 
-    def test_what_a_call_costs(self):
-        """Printed, not judged: a machine that is busy has no times."""
+    def test_the_cost_of_a_call(self):
+        """Printed, not checked: times on a busy machine mean nothing."""
         name, last, rounds = ("plates", 69, 5) if LONG else ("plates:count=2", 62, 2)
         scene = tandem.make_scene(name)
         for device in DEVICES:
@@ -567,7 +568,7 @@ class Package(unittest.TestCase):
 
     @staticmethod
     def replay(collider, frames):
-        """Seconds a frame, of the calls and within the library."""
+        """Seconds per frame, of the calls and within the library."""
         begin, within = time.perf_counter(), 0.0
         for frame in frames:
             within += collider.run(vertices=frame).seconds

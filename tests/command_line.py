@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""command_line.py PROGRAM SOURCE: the program as a user meets it: listings, tables, dumps, and every bad input."""
+"""command_line.py PROGRAM SOURCE: the command line of the program: listings, tables, dumps, and bad input."""
 import itertools
 import json
 import re
@@ -22,7 +22,7 @@ def overlapping(a, b):
 
 
 def own_algorithms():
-    """Those that are run where none is named."""
+    """The algorithms that run by default."""
     return [entry for entry in json.loads(tandem("algorithms", "--json")[1]) if not entry["baseline"]]
 
 
@@ -61,7 +61,7 @@ class CommandLine(Case):
         parts = [bar(4, (0, 0, 0)), bar(3, (0.5, 0.25, 0.375))]
         files = [gmsh(self.work / f"part{i}.msh", *part) for i, part in enumerate(parts)]
         header = ("frame,body_a,tet_a,body_b,tet_b", "frame,body_a,tet_a,body_b,tet_b,px,py,pz,nx,ny,nz,depth")
-        # Poses without any rounding: a shift, and half a turn about z.
+        # Poses without rounding: a translation, and half a turn about z.
         for pose, sign, shift in (("0.125 0 0 1 0 0 0", 1, (0.125, 0, 0)), ("3.5 1 -0.375 0 0 0 1", -1, (3.5, 1, -0.375))):
             moved = ([(sign * x + shift[0], sign * y + shift[1], z + shift[2]) for x, y, z in parts[1][0]], parts[1][1])
             expected = [(0, 0, a, 1, b) for a, b in overlapping(parts[0], moved)]
@@ -164,14 +164,14 @@ class CommandLine(Case):
         self.bad("the nearest is 'density'", "run", "pile:densty=1")
         for value in ("pile:density=-1", "pile:density=nan", "pile:bodies=0", "pile:bodies=2.5", "plates:count=99999999999999999"):
             self.bad("impossible", "run", value)
-        # More than any machine's memory: nothing is made of it.
+        # More than any machine's memory: nothing is generated.
         for value in ("pile:bodies=10000000,refine=4", "plates:count=100000,refine=4", "funnel:bodies=1000000,refine=3", "glasses:bodies=1000000,refine=3"):
             self.bad(["bodies of mesh", "take at least"], "run", value)
         self.bad("no value", "run", "pile:density")
         self.bad("the nearest is 'jack'", "run", "pile:mesh=jak")
         self.bad("absent.json", "run", self.work / "absent.json")
 
-    def test_words_of_a_file_stay_in_one_line(self):
+    def test_errors_that_quote_a_file_are_one_line(self):
         scene = self.work / "controls.json"
         scene.write_text('{"meshes": {"a\\n\\u001b[31mb": {"builtin": "jac"}}, "bodies": []}')
         self.bad(r"/meshes/a\n\x1b[31mb/builtin: unknown mesh 'jac'", "run", scene, "--device", "host")
@@ -218,7 +218,7 @@ class CommandLine(Case):
         self.assertIn(f", commit {environment['commit']}{', dirty' if environment['dirty'] else ''}, {environment['compiler']}, ", out)
 
     def test_unknown_words(self):
-        """In any form and any place: the nearest that there is, and where to read on."""
+        """Unknown words of any form and position: the error names the nearest known word and the help."""
         for arguments, named in (
                 (("run", "plates", "--algoritm"), "--algorithm"), (("run", "plates", "--algoritm", "tiled"), "--algorithm"),
                 (("run", "--algoritm=tiled", "plates"), "--algorithm"), (("check", "plates", "--algoritm", "tiled"), "--algorithm"),
@@ -241,8 +241,8 @@ class CommandLine(Case):
             self.assertEqual(tandem("run", "--device", "host", word, word)[0], 2, word)
 
     def test_contradictions(self):
-        """What would be left out silently is refused, and by what."""
-        for said, *arguments in (
+        """Options that would have no effect are refused, and the error names the conflicting option."""
+        for message, *arguments in (
                 (("--repeat cannot be combined with --noise", "N samples"), "--repeat", 3, "--noise", "1%"),
                 ("--repeat cannot be combined with --seconds", "--seconds", 3, "--repeat", 3),
                 ("--truth-contacts requires --truth contacts", "--truth", "none", "--truth-contacts", 3),
@@ -259,7 +259,7 @@ class CommandLine(Case):
                 ("--dry-run cannot be combined with --dump-pairs", "--dry-run", "--dump-pairs", "x"),
                 ("--dry-run cannot be combined with --dump-contacts", "--dry-run", "--dump-contacts", "x"),
                 ("--pose requires --mesh", "--pose", "0 0 0 1 0 0 0")):
-            self.bad(said, "run", "plates:count=2", "--frames", 0, *arguments)
+            self.bad(message, "run", "plates:count=2", "--frames", 0, *arguments)
         for command in ("check", "accuracy", "export"):
             self.bad("--pose requires --mesh", command, "--pose", "0 0 0 1 0 0 0")
         self.bad("--truth-contacts requires", "check", "plates", "--truth-contacts", 3)
@@ -273,13 +273,13 @@ class CommandLine(Case):
         self.bad("--device all: contacts need one device", "export", "plates", "--contacts", "--device", "all", "--vtu", self.work / "vtu")
         for option in (("--device", "host"), ("--out", "x")):
             self.bad(f"{option[0]} requires --measure", "devices", *option)
-        # What a rule must not hit: its options beside others, and the same ones where they say something.
+        # Combinations that must be accepted: such options beside others, and where they have an effect.
         for arguments in (("--truth", "contacts", "--truth-contacts", 3), ("--threads", 1, "--set", "k=6"), ("--seconds", 1, "--noise", "1%"),
                           ("--algorithm", "chunked,auto", "--choose-afresh", "--choose-seconds", 1), ("--set", "threads=1,2")):
             status, out, errors = tandem("run", "--mesh", self.good, "--device", "host", *arguments, "--dry-run")
             self.assertEqual((status, errors), (0, []), out)
 
-    def test_algorithms_at_length(self):
+    def test_descriptions_of_algorithms(self):
         algorithms = json.loads(tandem("algorithms", "--json")[1])
         for entry in algorithms:
             status, out, errors = tandem("algorithms", entry["name"])
@@ -287,7 +287,7 @@ class CommandLine(Case):
             self.assertEqual([line for line in out.splitlines() if len(line) > 100], [])
             initial = {p["name"]: p["default"] for p in entry["parameters"]}
             for preset in entry["presets"]:
-                # As they take effect: the preset's own over the parameters'.
+                # The effective values: the preset's values replace the parameters' defaults.
                 self.assertEqual(preset["settings"], {**initial, **preset["values"]})
                 text = " ".join(out.split(f"\n    {preset['name']}: ")[1].split("\n    ")[1:6]).replace("    ", " ")
                 for name, value in preset["settings"].items():
@@ -295,9 +295,9 @@ class CommandLine(Case):
             flat = " ".join(out.split())
             for parameter in entry["parameters"]:
                 value = entry["presets"][0]["settings"][parameter["name"]]
-                said = " ".join(f"{parameter['name']} = {value} {parameter['help']}".split())
+                description = " ".join(f"{parameter['name']} = {value} {parameter['help']}".split())
                 values = "choices: " + ", ".join(parameter["choices"]) if "choices" in parameter else "range: {}..{}".format(*parameter["range"])
-                self.assertIn(f"{said} {values}", flat)
+                self.assertIn(f"{description} {values}", flat)
             for counter in entry["counters"]:
                 self.assertIn(" ".join(f"{counter['name']} {counter['meaning']} [{counter['unit']}]".split()), flat)
             only = json.loads(tandem("algorithms", entry["name"], "--json")[1])
@@ -335,19 +335,20 @@ class CommandLine(Case):
             self.bad("device host only, not on opencl:0", "run", "plates", "--device", device, "--algorithm", "embree")
 
     def test_required_devices(self):
-        present = {e["backend"] for e in json.loads(tandem("devices", "--json")[1]) if e["devices"]}
-        absent = "cuda:99" if "cuda" in present else "cuda"
+        available = {e["backend"] for e in json.loads(tandem("devices", "--json")[1]) if e["devices"]}
+        absent = "cuda:99" if "cuda" in available else "cuda"
         for arguments in (("run", "plates"), ("check", "plates"), ("devices",)):
             self.bad(f"--require {absent}: ", *arguments, "--require", absent)
         self.assertEqual(tandem("devices", "--require", "host,opencl,opencl:0")[0], 0)
 
-    def test_unwritable_output_is_found_first(self):
+    def test_unwritable_output_is_detected_first(self):
         for option in ("--out", "--dump-pairs", "--dump-contacts"):
             out = self.bad("cannot be written", "run", "plates", "--frames", "0", option, self.work / "no/such/file")
             self.assertNotIn("traverse", out)
 
     def test_too_little_memory(self):
-        """1 TiB is more than any device has: both numbers are told, the record says failed, what was recorded stays."""
+        """1 TiB is more than any device has: the error names both numbers, the record has status failed, and earlier
+        records stay."""
         for device in ("host", "opencl:0"):
             out = self.work / f"memory{device}.jsonl"
             arguments = ("run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "gproximity", "--device", device,
@@ -379,8 +380,8 @@ class CommandLine(Case):
         self.assertEqual(status, 0, out)
 
 
-class Repaired(Case):
-    """What was wrong once."""
+class Regressions(Case):
+    """Regression tests of fixed errors."""
 
     def cell(self, *arguments, **options):
         return tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked",
@@ -404,12 +405,12 @@ class Repaired(Case):
             counts.append(self.records(out)[0]["work"]["candidate_pairs"] if status == 0 else status)
         self.assertIn(counts[1], (counts[0], 2))
 
-    def test_impossible_cells_are_found_before_any_is_measured(self):
+    def test_impossible_cells_are_detected_before_any_is_measured(self):
         out = self.work / "late.jsonl"
         self.cell("--set", "leaves=4,3", "--out", out)
         self.assertFalse(out.exists() and out.read_text())
 
-    def test_dumps_without_pairs_are_found_first(self):
+    def test_dumps_without_pairs_are_detected_first(self):
         out = self.work / "digest.jsonl"
         self.cell("--set", "output=digest", "--dump-pairs", self.work / "digest.csv", "--out", out)
         self.assertFalse(out.exists() and out.read_text())
@@ -425,10 +426,10 @@ class Repaired(Case):
                                "queue_bytes=1099511627776"], capture_output=True, text=True, timeout=60)
         self.assertTrue(done.stderr.startswith("tandem: "), done.stderr)
 
-    def test_records_go_into_a_pipe(self):
+    def test_records_can_be_written_to_a_pipe(self):
         self.assertEqual(self.cell("--out", "/dev/stdout")[0], 0)
 
-    def test_a_profile_says_that_nothing_was_measured(self):
+    def test_a_profile_without_measurements_is_an_error(self):
         status, out, errors = self.cell("--profile", "3")
         self.assertEqual((status, errors), (0, []))
         self.assertIn("on host: replayed frames 0:0 3 times; nothing measured or recorded", out)
@@ -455,7 +456,7 @@ class Repaired(Case):
         folder.mkdir()
         self.bad("folder.json", "run", folder)
 
-    def test_the_place_in_a_scene_description_reads_well(self):
+    def test_errors_locate_the_field_of_a_scene_description(self):
         path = self.work / "place.json"
         path.write_text('{"meshes": {"j": {"builtin": "jack"}}}')
         self.assertNotIn(": :", tandem("run", path)[2][0])

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""compare.py PROGRAM SOURCE: tandem compare as a user meets it, on records made from a committed one."""
+"""compare.py PROGRAM SOURCE: the command `tandem compare`, on records derived from a committed one."""
 import copy
 import json
 import subprocess
@@ -13,7 +13,7 @@ LINE = json.loads((SOURCE / "results/h200/plates.jsonl").read_text().split("\n",
 
 
 def record(factor=1.0, samples=9, k="8", commit="aaaa11112222", session=None):
-    """The committed record with samples around 10 ms times `factor`, 0.1 % apart; with a session one of schema 3."""
+    """The committed record with samples around 10 ms times `factor`, 0.1 % apart; with a session it has schema 3."""
     made = copy.deepcopy(LINE)
     made["key"] = made["key"].replace(",k=8,", f",k={k},")
     made["settings"]["k"] = k
@@ -59,7 +59,7 @@ class Compare(Case):
         out = self.compared(old, new, "--threshold", 10)
         self.assertIn("within the threshold", out)
         self.assertIn("beyond 10 % at level 0.05; 1 changed within the threshold", " ".join(out.split()))
-        # 2 of 48,620 arrangements are no rarer than once in 1e5.
+        # The smallest p-value of 9 against 9, 2 / 48,620, exceeds 1e-5.
         self.assertIn("too few samples to tell", self.compared(old, new, "--level", 1e-5))
         cell = self.json_of(old, new, code=1)["cells"][0]
         self.assertAlmostEqual(cell["times"]["ratio"], 1.05, places=6)
@@ -87,7 +87,7 @@ class Compare(Case):
         cell = self.json_of(old, self.write(other), code=1)["cells"][0]
         self.assertEqual((cell["verdict"], cell["times"]), ("another_answer", None))
 
-    def test_too_few(self):
+    def test_too_few_samples(self):
         out = self.compared(self.write(record(samples=3)), self.write(record(9, samples=3)))
         self.assertIn("too few samples to tell", out)
         self.assertIn("1 has too few samples to tell: 4 rounds on each side are enough", out.replace("\n  ", " "))
@@ -105,7 +105,7 @@ class Compare(Case):
         self.assertIn("old and new are the same records", out)
         self.assertIn("1 cell was recorded more than once; the last record that is ok counts", out.replace("\n  ", " "))
 
-    def test_what_takes_no_part_is_said(self):
+    def test_excluded_records_are_reported(self):
         failed, wrong = record(k="26"), record(k="14")
         failed.update(status="failed", failure="device\nlost", total_ns=None, work=None)
         wrong["status"] = "wrong"
@@ -119,7 +119,7 @@ class Compare(Case):
         self.assertEqual([len(found[side]["only_here"]) for side in ("old", "new")], [1, 1])
         self.bad("none of 2 records is ok and has samples", "compare", self.write(failed, wrong), new)
 
-    def test_a_torn_line_is_ignored_and_said(self):
+    def test_a_torn_line_is_ignored_and_reported(self):
         old, torn = self.write(record()), self.write(record(), record(k="18"), end="")
         for path in (torn, self.write(record(), end="\n" + json.dumps(record())[:77])):
             out = self.compared(old, path)
@@ -169,7 +169,7 @@ class Compare(Case):
             self.assertEqual(out, self.compared(old, new, "--format", form, code=1), "not the same twice")
             self.assertNotIn("\x1b", out)
 
-    def test_other_devices_are_said(self):
+    def test_other_devices_are_reported(self):
         new = record()
         new["devices"][0]["name"] = "NVIDIA A100"
         self.assertIn("other models: old NVIDIA H200, new NVIDIA A100", self.compared(self.write(record()), self.write(new)))
@@ -182,7 +182,7 @@ class Compare(Case):
             self.assertEqual({cell["times"]["ratio"] for cell in found["cells"]}, {1.0})
             self.assertLessEqual(max(map(len, self.compared(path, path).splitlines())), 100)
 
-    def test_what_cannot_be_written(self):
+    def test_unwritable_output(self):
         path = self.write(record())
         with open("/dev/full", "w") as full:
             done = subprocess.run([str(PROGRAM), "compare", path, path], stdout=full, stderr=subprocess.PIPE, text=True)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""comparison.py PROGRAM SOURCE: what is read of records to compare them, how cells are named, verdicts, and how often made-up records
-without a change are called changed and with one are not."""
+"""comparison.py PROGRAM SOURCE: reading records for comparison, labels of cells, verdicts, and the rates of false
+and missed changes in synthetic records."""
 import json
 import math
 import pathlib
@@ -20,7 +20,7 @@ from tandem.comparison import cells, matching, naming, notes, texts  # noqa: E40
 
 
 def record(key="8", samples=(1,), rounds=None, session=None):
-    """A record of schema 2 with what a comparison reads and nothing else; with rounds and a session of schema 3."""
+    """A record of schema 2 with only the fields that a comparison reads; with rounds and a session of schema 3."""
     digest = {"count": 3, "a": "0a", "b": "0b"}
     made = {"schema": 2, "key": key, "status": "ok", "failure": None, "algorithm": "chunked", "preset": "resident",
             "settings": {"k": key, "rounding": "safe"}, "scene": {"key": "pile:bodies=2,density=0.4", "digest": "00ff"}, "frames": {"first": 0, "last": 9},
@@ -34,7 +34,7 @@ def record(key="8", samples=(1,), rounds=None, session=None):
 
 
 def around(factor, count):
-    """10 ms and a little, another in each of `count` samples, times `factor`."""
+    """About 10 ms, slightly different in each of `count` samples, times `factor`."""
     return [factor * (1e7 + 1000 * (i * 7 % 11)) for i in range(count)]
 
 
@@ -62,7 +62,7 @@ class Files(unittest.TestCase):
         self.assertNotIn("\n", str(caught.exception))
 
     def compared(self, old, new, **how):
-        """The first cell, and everything."""
+        """The first cell, and the whole result."""
         found = comparison.matched_files(self.write(*old), self.write(*new), **how)
         return found[2].cells[0], found
 
@@ -107,7 +107,7 @@ class Reading(Files):
             self.assertEqual((read.torn, len(read.cells)), (True, 1))
         self.assertFalse(cells.read_cells(self.write_text(whole)).torn)
 
-    def test_refuses_what_is_no_record(self):
+    def test_refuses_invalid_records(self):
         empty = self.write_text("")
         self.refused(f"{empty}: is empty; name a file of records", empty)
         self.refused("its only line has no end", self.write_text('{"schema": 2'))
@@ -138,19 +138,19 @@ class Naming(Files):
     def labels(self, *records):
         return naming.label(self.read(*records).cells)
 
-    def test_what_differs(self):
+    def test_labels_name_the_differences(self):
         records = [record(key) for key in ("8", "18", "9", "10")]
         records[2]["algorithm"] = "tiled"
         records[3]["scene"]["key"], records[3]["settings"]["k"] = "pile:bodies=9,density=0.4", "8"
         self.assertEqual(self.labels(*records), (["chunked bodies=2 k=8", "chunked bodies=2 k=18", "tiled bodies=2 k=9", "chunked bodies=9 k=8"],
                                                  "resident, cuda:0, GPU, 1, pile, frames 0:9"))
 
-    def test_one_cell_and_cells_that_only_keys_tell_apart(self):
+    def test_one_cell_and_cells_that_differ_only_in_keys(self):
         self.assertEqual(self.labels(record())[0], ["chunked"])
         records = [record("8"), record("18")]
         records[1]["settings"]["k"] = "8"
         self.assertEqual(self.labels(*records)[0], ["chunked", "chunked #2"])
-        # What looks like parameters and is not, or has names of settings, stays the scene's name.
+        # Text that only resembles parameters, or has names of settings, stays in the scene's name.
         records[0]["scene"]["key"], records[1]["scene"]["key"] = "mesh:a.msh", "pile:k=3"
         self.assertEqual(self.labels(*records)[0], ["mesh:a.msh", "pile:k=3"])
 
@@ -161,7 +161,7 @@ class Verdicts(Files):
             self.assertEqual(self.verdict(factor), verdict, factor)
         for factor, verdict in ((1.19, "within_threshold"), (1.21, "slower"), (1 / 1.19, "within_threshold"), (1 / 1.21, "faster")):
             self.assertEqual(self.verdict(factor, threshold=0.2), verdict, factor)
-        # 2 / 48620 is the least of 9 against 9.
+        # 2 / 48620 is the smallest p-value of 9 against 9.
         self.assertEqual(self.verdict(1.21, level=1e-5), "too_few")
 
     def test_processors_have_a_wider_threshold(self):
@@ -172,7 +172,7 @@ class Verdicts(Files):
         self.assertEqual((cell.verdict, cell.threshold, found[2].changed), ("within_threshold", 0.03, False))
 
     def test_one_session_is_compared_in_pairs(self):
-        """Each round is 3 % slower in the new one; rounds differ by far more."""
+        """Each round is 3 % slower in the new record; rounds differ by far more."""
         times = [ns * (1 + 0.3 * i) for i, ns in enumerate(around(1, 10))]
         slower = [1.03 * ns for ns in times]
         cell, _ = self.compared([record("8", times, session="s")], [record("8", slower, session="s")])
@@ -196,18 +196,18 @@ class Verdicts(Files):
         self.assertEqual((cell.verdict, cell.rounds_needed, cell.p_holm, found[2].changed), ("too_few", 4, None, False))
         self.assertAlmostEqual(cell.least_p, 0.1, places=15)
 
-    def test_too_few_follows_from_what_the_correction_leaves(self):
-        """4 against 4 can give 2 / 70, which one cell may keep and two may not."""
+    def test_too_few_follows_from_the_corrected_level(self):
+        """4 against 4 can reach p = 2 / 70, which is significant for one cell but not for two."""
         before, after = ([record(key, around(factor, 4)) for key in ("8", "18")] for factor in (1, 1.5))
         self.assertEqual(self.compared(before[:1], after[:1])[0].verdict, "slower")
         cell, found = self.compared(before, after)
         self.assertEqual((found[2].count("too_few"), cell.rounds_needed, cell.least_effect), (2, 5, None))
-        # A cell that cannot reach the level by itself takes no part in the correction.
+        # A cell that cannot reach the level by itself is excluded from the correction.
         before[1], after[1] = record("18", around(1, 3)), record("18", around(1.5, 3))
         cell, found = self.compared(before, after)
         self.assertEqual((found[2].tested, cell.verdict), (1, "slower"))
 
-    def test_the_least_effect_is_that_of_the_only_cell_to_change(self):
+    def test_the_least_effect_is_that_of_a_single_changed_cell(self):
         records = [record(key, around(1, 9)) for key in ("8", "18", "26")]
         cell, _ = self.compared(records, records)
         self.assertGreater(cell.ratio.log_error, 0)
@@ -235,8 +235,8 @@ class Verdicts(Files):
         expect("none of 1 records is ok", record("8"), record("18") | {"status": "wrong"})
         expect("schemas 2 and 3", record("8"), record("18", [1], [0], "s"))
 
-    def test_what_is_left_out_has_an_end(self):
-        """Ten records that take no part are named, and five cells without a counterpart."""
+    def test_lists_of_excluded_records_are_limited(self):
+        """At most ten excluded records are named, and five cells without a counterpart."""
         failed = [record(str(key)) | {"status": "failed", "failure": "lost"} for key in range(100, 115)]
         more = [record(str(key), around(1, 9)) for key in range(20, 28)]
         _, found = self.compared([record("8", around(1, 9)), *more], [record("8", around(1, 9)), *failed])
@@ -247,11 +247,11 @@ class Verdicts(Files):
 
 
 class Rates(unittest.TestCase):
-    """Rates over many made-up pairs of records: noise of rounds, drift of the machine that interleaved cells share, and a change of the
-    first cell alone."""
+    """Rates over many pairs of synthetic records: noise of rounds, drift of the machine that interleaved cells
+    share, and a change of the first cell alone."""
 
     def setUp(self):
-        # What is found rests on ranks and on the ratio's value; its interval takes the time.
+        # Results depend on ranks and on the ratio's value; computing its interval would take most of the time.
         def value_of(before, after):
             return resampling.Ratio(float(numpy.exp(numpy.median(numpy.log(after)) - numpy.median(numpy.log(before)))), 1, 1, 0.01)
 
@@ -270,7 +270,7 @@ class Rates(unittest.TestCase):
         return cells.RecordedCells("", "", made, [], [], len(made), 0, False)
 
     def found(self, start, times=2000, paired=False, cells_each=1, rounds=10, noise=0.02, drift=0.0, change=0.0):
-        """The share of trials in which anything is found to have changed, by however little."""
+        """The fraction of trials in which any change is reported, however small."""
         random, count = numpy.random.default_rng(start), 0
         for _ in range(times):
             shared = random.normal(0, drift, (cells_each, rounds))
@@ -281,33 +281,33 @@ class Rates(unittest.TestCase):
         return count / times
 
     @staticmethod
-    def error(share, times):
-        """Four standard errors of a share of so many trials."""
-        return 4 * math.sqrt(share * (1 - share) / times)
+    def error(fraction, times):
+        """Four standard errors of a fraction of so many trials."""
+        return 4 * math.sqrt(fraction * (1 - fraction) / times)
 
-    def test_nothing_changed_is_found_as_often_as_the_tests_allow(self):
-        for start, share, how in ((11, 50 / 1024, {"paired": True}),  # 10 pairs: 50 of 1,024 sets of signs
+    def test_false_alarms_have_the_rate_of_the_tests(self):
+        for start, fraction, how in ((11, 50 / 1024, {"paired": True}),  # 10 pairs: 50 of 1,024 sets of signs
                                   (12, 50 / 1024, {"paired": True, "drift": 0.2}),  # shared by both of a pair
                                   (13, 0.0433, {})):  # 10 against 10, U of 23 or less
-            self.assertAlmostEqual(self.found(start, **how), share, delta=self.error(share, 2000))
+            self.assertAlmostEqual(self.found(start, **how), fraction, delta=self.error(fraction, 2000))
 
     def test_many_cells_together_raise_no_more_false_alarms(self):
         for paired in (False, True):
             self.assertLessEqual(self.found(14, 150, paired, 20, 12), 0.05 + self.error(0.05, 150))
-        # A change of one is found among 19 others.
+        # A change of one cell is found among 19 others.
         self.assertEqual(self.found(15, 20, True, 20, 12, change=0.2), 1)
 
-    def test_the_least_effect_is_shown_four_times_of_five(self):
-        """Rank tests use more of normal noise than medians do, so they find it more often."""
+    def test_the_least_effect_is_found_four_times_of_five(self):
+        """Rank tests use more of normal noise than medians do, so they detect the change more often."""
         for rounds in (8, 20):
-            # The variance of a median over that of a mean, for normal noise, is pi / 2; two medians differ.
+            # For normal noise, the variance of a median over that of a mean is pi / 2; two medians are subtracted.
             error = 0.02 * math.sqrt(math.pi / rounds)
             change = math.log1p(matching.least_effect(error, 0.05))
             for start, paired in ((16, True), (17, False)):
-                share = self.found(start, 1000, paired, rounds=rounds, change=change)
-                self.assertTrue(0.8 - self.error(0.8, 1000) < share < 0.99, (rounds, paired, share))
+                fraction = self.found(start, 1000, paired, rounds=rounds, change=change)
+                self.assertTrue(0.8 - self.error(0.8, 1000) < fraction < 0.99, (rounds, paired, fraction))
 
-    def test_pairs_see_through_drift(self):
+    def test_pairs_are_insensitive_to_drift(self):
         drifting = {"noise": 0.005, "drift": 0.1, "change": 0.02}
         self.assertLess(self.found(18, 200, False, **drifting), 0.2)
         self.assertGreater(self.found(18, 200, True, **drifting), 0.99)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""completion.py PROGRAM SOURCE: what a shell offers while a line is typed, asked of a real bash, and of zsh where there is one."""
+"""completion.py PROGRAM SOURCE: completions of command lines, in a real bash, and in zsh if installed."""
 import json
 import os
 import shutil
@@ -17,7 +17,7 @@ COMMANDS = ["accuracy", "algorithms", "check", "compare", "completion", "devices
 
 
 def asked(*words):
-    """What the program says of the last word."""
+    """The program's completions of the last word."""
     status, out, errors = tandem("completion", "--words", *words)
     assert (status, errors) == (0, []), (words, out, errors)
     return out.split()
@@ -25,10 +25,11 @@ def asked(*words):
 
 class Completion(Case):
     def bash(self, line, breaks=" \t\n\"'><=;|&(:"):
-        """What bash would put behind what is typed: COMPREPLY, which replaces what stands behind the last of its breaks."""
+        """What bash would insert at the end of the line: COMPREPLY, which replaces the text after the last word
+        break."""
         script = (f"COMP_WORDBREAKS=$1; source {BASH}; COMP_LINE=$2 COMP_POINT=${{#2}}; shift 2; COMP_WORDS=(\"$@\") COMP_CWORD=$(($# - 1)); "
                   "_tandem; printf '%s\\n' \"${COMPREPLY[@]}\"")
-        # As readline takes a line apart: breaks other than blanks are words of their own.
+        # Splits the line as readline does: breaks other than blanks are separate words.
         words, word = [], ""
         for letter in line:
             if letter in breaks:
@@ -69,7 +70,7 @@ class Completion(Case):
         whole = " \t\n"
         self.assertEqual(self.bash("tandem run --set slabs=t", whole), ["slabs=three"])
         self.assertEqual(self.bash("tandem run pile:bod", whole), ["pile:bodies="])
-        # Without a line, as other shells and tests have it.
+        # Without COMP_LINE, as other shells and tests call it.
         script = f"source {BASH}; COMP_WORDS=({PROGRAM} run --algo) COMP_CWORD=2; _tandem; echo ${{COMPREPLY[@]}}"
         self.assertEqual(subprocess.check_output(["bash", "--norc", "-c", script], text=True), "--algorithm\n")
 
@@ -82,7 +83,7 @@ class Completion(Case):
             self.assertIn(number, self.bash(f"tandem run --device {backend}:"))
         self.assertLessEqual(ids | {"opencl", "cuda"}, set(asked("run", "--require", "")))
 
-    def test_the_tables_are_the_programs_own(self):
+    def test_the_tables_equal_the_program(self):
         algorithms = json.loads(tandem("algorithms", "--json")[1])
         self.assertEqual(set(asked("algorithms", "")), {a["name"] for a in algorithms})
         self.assertEqual(set(asked("run", "--algorithm", "")), {"all", "auto", *(a["name"] for a in algorithms)})
@@ -103,7 +104,7 @@ class Completion(Case):
             self.assertEqual(asked("run", option, ""), values)
         self.assertEqual(asked("compare", "--format", "m"), ["markdown"])
 
-    def test_asking_is_fast(self):
+    def test_completion_is_fast(self):
         times = []
         for _ in range(5):
             begin = time.monotonic()
@@ -120,7 +121,7 @@ class Completion(Case):
     @unittest.skipUnless(shutil.which("zsh"), "no zsh")
     def test_zsh(self):
         subprocess.run(["zsh", "-n", ZSH], check=True, timeout=60)
-        # compadd works in a widget only, so that one of ours says what it is given.
+        # compadd works only in a widget, so a function that prints its arguments replaces it.
         script = (f"compdef() {{ }}; _files() {{ print FILES }}; compadd() {{ print -l -- ${{@:#-*}} }}; source {ZSH}; words=(\"$@\"); "
                   "CURRENT=$#; PREFIX=$words[-1]; _tandem")
         for words, offered in ((["run", "--algorithm", "ti"], ["tiled"]), (["run", "--set", "group_siz"], ["group_size="]),

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""device_arrays.py PROGRAM SOURCE: arrays of a GPU as input of tandem.Collider, on the stub of CUDA's driver (LD_LIBRARY_PATH and
-TANDEM_NVRTC name it): which stream their library is told, that kernels are given the very addresses, that what was borrowed is given
-back, and what is refused in which words. Kernels of the stub find nothing; what they make of numbers is tests/conformance's."""
+"""device_arrays.py PROGRAM SOURCE: GPU arrays as input of tandem.Collider, on the stub of CUDA's driver
+(LD_LIBRARY_PATH and TANDEM_NVRTC name it): the stream passed to the array's library, kernels that get the
+original addresses, release of borrowed arrays, and errors. Kernels of the stub find no pairs; tests/conformance
+checks their results."""
 import ctypes
 import gc
 import pathlib
@@ -72,7 +73,7 @@ ctypes.pythonapi.PyCapsule_New.argtypes = [ctypes.c_void_p, ctypes.c_char_p, cty
 
 
 class OnGpu:
-    """Memory of NumPy's that says it is a GPU's, as the stub's is; what it was asked for, and what was given back."""
+    """NumPy memory that reports itself as GPU memory, as in the stub; counts requests and releases."""
     def __init__(self, values, dtype=numpy.float64, device=(2, 0)):
         self.array, self.device = numpy.array(values, dtype), device
         self.streams, self.asked, self.given_back = [], 0, 0
@@ -104,7 +105,7 @@ class OnGpu:
 
 
 class ByInterface:
-    """The same by __cuda_array_interface__ alone."""
+    """The same with __cuda_array_interface__ only."""
     def __init__(self, array, **changes):
         self.array, self.changes = array, changes
 
@@ -115,7 +116,8 @@ class ByInterface:
 
 
 def with_table(stream=None, major=1, older=None, gives=0, tells=0, name=b"dlpack_exchange_api"):
-    """A type of such arrays whose library has DLPack's table of C functions, and gives its work to `stream`; what these return, and the version."""
+    """A type of such arrays whose library has DLPack's table of C functions with current stream `stream`; the
+    functions' return codes and the version are parameters."""
     def from_object(address, out):
         array = ctypes.cast(address, ctypes.py_object).value
         array.given += 1
@@ -136,7 +138,7 @@ def with_table(stream=None, major=1, older=None, gives=0, tells=0, name=b"dlpack
 
 
 class WithBoth(OnGpu):
-    """By DLPack and by an interface, as CuPy's."""
+    """With both DLPack and an interface, as CuPy's."""
     changes = {}
 
     @property
@@ -154,16 +156,17 @@ class Arrays(Case):
         return tandem.Collider(self.parts, device=device, **{"pair_capacity": 1024, "contact_capacity": 1024, **options})
 
     def expect_read(self, collider, run, *addresses):
-        """The frame's kernels are given these, and nothing is copied there or from there. Others may have had the addresses before."""
-        there = [address for address in addresses if address]
-        before = [(DRIVER.stub_launches_with(address), DRIVER.stub_copies_of(address)) for address in there]
+        """Checks that the frame's kernels get these addresses and that nothing is copied to or from them. Counters
+        include earlier uses of the addresses."""
+        passed = [address for address in addresses if address]
+        before = [(DRIVER.stub_launches_with(address), DRIVER.stub_copies_of(address)) for address in passed]
         run()
         self.assertEqual(collider._core.addresses, list(addresses))
-        self.assertEqual([(DRIVER.stub_launches_with(address), DRIVER.stub_copies_of(address)) for address in there],
+        self.assertEqual([(DRIVER.stub_launches_with(address), DRIVER.stub_copies_of(address)) for address in passed],
                          [(launches + 1, copies) for launches, copies in before])
 
     def stream(self):
-        """An application's, of the primary context."""
+        """An application's stream of the primary context."""
         context, stream = ctypes.c_void_p(), ctypes.c_void_p()
         DRIVER.cuDevicePrimaryCtxRetain(ctypes.byref(context), 0)
         DRIVER.cuCtxSetCurrent(context)
@@ -171,7 +174,7 @@ class Arrays(Case):
         DRIVER.cuCtxSetCurrent(None)
         return stream.value, context.value
 
-    def test_kernels_read_poses_where_they_are(self):
+    def test_kernels_read_poses_without_a_copy(self):
         collider = self.collider()
         for dtype in (numpy.float64, numpy.float32):
             for device in ((2, 0), (13, 0)):  # managed memory is also a GPU's
@@ -180,23 +183,23 @@ class Arrays(Case):
                 self.assertEqual((poses.streams, poses.given_back), ([collider._core.queue], 1))
                 self.assertNotIn(poses.streams[0], (None, 0, 1), "a stream of its own")
 
-    def test_kernels_read_vertices_where_they_are(self):
+    def test_kernels_read_vertices_without_a_copy(self):
         soft = self.collider(deformable=True)
         rows = [OnGpu(points, numpy.float32) for points, _ in self.parts]
         self.expect_read(soft, lambda: soft.run(vertices=rows), 0, *(array.address for array in rows))
-        soft.run(vertices={1: rows[1]})  # the other body has its mesh's
+        soft.run(vertices={1: rows[1]})  # the other body has the vertices of its mesh
         self.assertEqual(soft._core.addresses[2], rows[1].address)
         self.assertNotEqual(soft._core.addresses[1], rows[0].address)
-        soft.run(vertices=[self.parts[0][0], rows[1]])  # from the host's memory and from the GPU's
+        soft.run(vertices=[self.parts[0][0], rows[1]])  # from host memory and from GPU memory
         self.assertEqual(soft._core.addresses[2], rows[1].address)
         self.assertEqual([array.given_back for array in rows], [1, 3])
-        self.assertEqual([array.asked for array in rows], [1, 2], "where the second is once the first is there")
+        self.assertEqual([array.asked for array in rows], [1, 2], "the second is read after the first")
 
-    def test_an_array_is_not_where_the_one_before_it_is(self):
+    def test_arrays_at_different_addresses_are_different_input(self):
         soft, (first, second) = self.collider(deformable=True), (points for points, _ in self.parts)
-        here = soft.run(vertices=[first, second]).digest()
+        expected = soft.run(vertices=[first, second]).digest()
         rows = [OnGpu(first), OnGpu(second, device=(1, 0))]
-        self.assertEqual(soft.run(vertices=rows).digest(), here)
+        self.assertEqual(soft.run(vertices=rows).digest(), expected)
         self.assertEqual((rows[1].streams, rows[1].asked > 0), ([soft._core.queue, None], True))
         self.assertNotEqual(soft._core.addresses[2], rows[1].address)
         for words, array in (("is in CUDA's memory of GPU 1, and the collider works on cuda:0", OnGpu(second, device=(2, 1))), ("shape (1, 3, 3)", OnGpu([second[:3]])),
@@ -206,7 +209,7 @@ class Arrays(Case):
             with self.assertRaisesRegex(ValueError, words.replace("(", "\\(").replace(")", "\\)")):
                 soft.run(vertices=[OnGpu(first), array])
 
-    def test_arrays_may_come_by_the_cuda_array_interface(self):
+    def test_arrays_with_the_cuda_array_interface(self):
         collider, array = self.collider(), numpy.array(POSES)
         stream, context = self.stream()
         before = DRIVER.stub_calls(stream, context)
@@ -219,7 +222,7 @@ class Arrays(Case):
         run()
         self.assertEqual(DRIVER.stub_orderings(collider._core.queue, stream), before + times)
 
-    def test_a_stream_is_followed_once_a_frame(self):
+    def test_a_stream_is_followed_once_per_frame(self):
         soft, array = self.collider(deformable=True), numpy.array(POSES)
         first, second = (self.stream()[0] for _ in range(2))
         rows = [ByInterface(points, stream=first) for points, _ in self.parts]
@@ -230,8 +233,8 @@ class Arrays(Case):
         own = self.collider(stream=first)
         self.expect_followed(own, first, 0, lambda: own.run(ByInterface(array, stream=first)))
 
-    def test_arrays_may_come_by_dlpacks_table(self):
-        """Nothing of Python's is called, and the library's stream is followed."""
+    def test_arrays_with_dlpacks_table(self):
+        """No Python method is called, and the library's stream is followed."""
         stream, _ = self.stream()
         soft, kind = self.collider(deformable=True), with_table(stream)
         for dtype, device in ((numpy.float64, (2, 0)), (numpy.float32, (13, 0))):
@@ -250,8 +253,8 @@ class Arrays(Case):
         gc.collect()
         self.assertIsNone(gone())
 
-    def test_what_is_read_is_kept_meanwhile(self):
-        """Although the list that gave it is emptied before the frame runs."""
+    def test_arrays_stay_alive_during_a_frame(self):
+        """Also if the list that contained it is cleared before the frame runs."""
         soft, kept = self.collider(deformable=True), []
 
         class Emptying(OnGpu):
@@ -261,17 +264,17 @@ class Arrays(Case):
         for kind in (type("Plain", (numpy.ndarray,), {}), type("Both", (WithBoth,), {"changes": {"stream": 1}}), with_table(), OnGpu):
             points = self.parts[0][0]
             first, last = points.copy().view(kind) if issubclass(kind, numpy.ndarray) else kind(points), Emptying(self.parts[1][0])
-            rows, there = [first, last], weakref.ref(first)
+            rows, reference = [first, last], weakref.ref(first)
             del first
-            watcher = ctypes.CFUNCTYPE(None, ctypes.c_int)(lambda _: kept.append(there() is not None and not getattr(there(), "given_back", 0)))
+            watcher = ctypes.CFUNCTYPE(None, ctypes.c_int)(lambda _: kept.append(reference() is not None and not getattr(reference(), "given_back", 0)))
             DRIVER.stub_watch(watcher)
             soft.run(vertices=rows)
             DRIVER.stub_watch(None)
             self.assertEqual((rows, set(kept)), ([], {True}), kind)
             gc.collect()
-            self.assertIsNone(there())
+            self.assertIsNone(reference())
 
-    def test_what_the_table_does_not_give_comes_by_dlpack(self):
+    def test_arrays_that_the_table_lacks_use_dlpack(self):
         collider, stream = self.collider(), self.stream()[0]
         for options in ({"gives": -1}, {"tells": -1}, {"major": 2}, {"name": b"other"}):
             poses = with_table(stream, **options)(POSES)
@@ -293,7 +296,7 @@ class Arrays(Case):
         collider.run(poses)
         self.assertEqual((poses.given, poses.streams), (0, [collider._core.queue]))
 
-    def test_the_hosts_arrays_may_come_by_dlpacks_table(self):
+    def test_host_arrays_with_dlpacks_table(self):
         for device in ("host", "cuda:0"):
             collider = self.collider(device)
             for kind in ((1, 0), (3, 0)):
@@ -305,7 +308,7 @@ class Arrays(Case):
             self.assertEqual(collider.run(apart).digest(), answer.digest())
             self.assertEqual((apart.given, apart.streams), (1, [None]), "NumPy makes of it what is wanted")
 
-    def test_of_two_protocols_the_one_that_names_a_stream(self):
+    def test_the_protocol_that_names_a_stream_is_preferred(self):
         collider, stream = self.collider(), self.stream()[0]
 
         class Streamless(WithBoth):
@@ -316,7 +319,7 @@ class Arrays(Case):
             self.expect_followed(collider, stream, followed, lambda: self.expect_read(collider, lambda: collider.run(poses), poses.address))
             self.assertEqual((poses.streams, poses.given_back), ([], 0) if followed else ([collider._core.queue], 1))
 
-    def test_work_goes_by_the_applications_stream(self):
+    def test_work_follows_the_applications_stream(self):
         address, context = self.stream()
 
         class Stream:
@@ -350,7 +353,7 @@ class Arrays(Case):
         self.assertIn(words, str(caught.exception))
         print(f"\n  {kind.__name__}: {caught.exception}", end="", file=sys.stderr)
 
-    def test_what_is_refused(self):
+    def test_refused_input(self):
         collider, soft, array = self.collider(), self.collider(deformable=[1]), numpy.array(POSES)
         wide = OnGpu(numpy.zeros((2, 14)))
         wide.array = wide.array[:, ::2]
@@ -376,8 +379,8 @@ class Arrays(Case):
         self.expect(ValueError, "residency=published converts every frame on the host", self.collider(algorithm="chunked", preset="published", seed_capacity=1024).run,
                     OnGpu(array))
         for device in ("host", "host+cuda:0"):
-            for there in (OnGpu(array), with_table()(array)):
-                self.expect(ValueError, f"poses: is in CUDA's memory, and the collider works on {device}", self.collider(device=device).run, there)
+            for array_on_gpu in (OnGpu(array), with_table()(array)):
+                self.expect(ValueError, f"poses: is in CUDA's memory, and the collider works on {device}", self.collider(device=device).run, array_on_gpu)
         self.expect(ValueError, "stream: device host is not one of CUDA's", self.collider, "host", stream=0)
         self.expect(TypeError, "stream: type str; expected a CUDA stream or its address", self.collider, stream="main")
         self.expect(tandem.DeviceError, "cuda:4: the driver has 1 devices", self.collider, "cuda:4", stream=0)

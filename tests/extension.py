@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""extension.py PROGRAM SOURCE: a program with an algorithm of its own, lbvh: what is listed, run, recorded and checked."""
+"""extension.py PROGRAM SOURCE: a program with an additional algorithm, lbvh: listing, running, recording and
+checking it."""
 import json
 import sys
 import unittest
@@ -40,7 +41,7 @@ class Extension(Case):
         counters = lbvh["work"]["counters"]
         self.assertEqual(set(counters), {"bvtt_nodes", "seeds", OWN})
         self.assertNotIn(OWN, chunked["work"]["counters"])
-        # A leaf is reached when two leaves overlap: once a candidate pair.
+        # A leaf is reached when two leaves overlap: once per candidate pair.
         self.assertGreater(counters[OWN], 0)
         self.assertEqual(counters[OWN], lbvh["agreement"]["digest"]["count"])
         self.assertGreater(counters["bvtt_nodes"], counters["seeds"])

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""flawed.py PROGRAM SOURCE: tetrahedra of zero volume and numbers that are not finite, and a truth too large for memory."""
+"""flawed.py PROGRAM SOURCE: tetrahedra of zero volume, numbers that are not finite, and a truth too large for
+memory."""
 import sys
 import unittest
 
@@ -76,8 +77,8 @@ class Flawed(Case):
                 self.assertEqual(record["error"]["inputs"]["non_finite_elements"], 4)
 
     def test_a_truth_too_large_for_memory(self):
-        """Slivers along a diagonal: their boxes meet, all with all, and take more than there is; their 18-DOPs do not. Then
-        many frames of which each has room, but not all have."""
+        """Slivers along a diagonal: all their boxes overlap and would need more memory than there is; their 18-DOPs
+        do not overlap. Then many frames, each of which fits into memory, but not all together."""
         count = 9000
 
         def slivers(path, shift):

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""gpu_arrays.py LIBRARY [DEVICE]: tandem.Collider with arrays of cupy, torch or jax on a CUDA device (cuda:0): frames are read where
-they lie and have the answers of NumPy's to the bit, after what the library has enqueued; work goes by the library's stream; pairs stay
-on the device; what is wrong ends in the sentences of the host's memory. For a machine with a GPU: scripts/gpu/run python."""
+"""gpu_arrays.py LIBRARY [DEVICE]: tandem.Collider with arrays of cupy, torch or jax on a CUDA device (cuda:0).
+Frames are not copied and have bit for bit the answers of NumPy arrays, after the library's enqueued work. Work
+follows the library's stream, pairs stay on the device, and errors equal those for host memory. For a machine with
+a GPU: scripts/gpu/run python."""
 import sys
 import unittest
 import unittest.mock
@@ -14,11 +15,11 @@ import tandem
 if len(sys.argv) not in (2, 3) or sys.argv[1] not in ("cupy", "torch", "jax"):
     sys.exit(__doc__)
 LIBRARY, DEVICE = sys.argv[1], (sys.argv[2:] or ["cuda:0"])[0]
-SIDE = 4096  # of the matrices whose products keep the GPU busy for tens of milliseconds
+SIDE = 4096  # size of the matrices whose products keep the GPU busy for tens of milliseconds
 
 
 class Cupy:
-    """What the tests need of a library."""
+    """The interface of the tests to a library."""
     def __init__(self):
         import cupy
         self.module = cupy
@@ -42,7 +43,8 @@ class Cupy:
         return self.module.ones((SIDE, SIDE), self.module.float32)
 
     def written_late(self, target, values, matrix, products=60):
-        """`target`, which is `values` once the GPU has done much else; whether it was so already when this returned."""
+        """`target`, which gets `values` after much other work of the GPU; and whether it had them already when this
+        returned."""
         for _ in range(products):
             matrix = matrix @ matrix * numpy.float32(1 / SIDE)
         target[...] = values + 0 * matrix[0, 0].astype(target.dtype)
@@ -126,7 +128,7 @@ class Jax(Cupy):
         return self.module.numpy.ones((SIDE, SIDE), numpy.float32)
 
     def written_late(self, target, values, matrix, products=60):
-        """A new array: those of JAX never change."""
+        """A new array, because arrays of JAX never change."""
         for _ in range(products):
             matrix = matrix @ matrix * numpy.float32(1 / SIDE)
         late = values + 0 * matrix[0, 0].astype(values.dtype)
@@ -146,14 +148,14 @@ def setUpModule():
 
 
 class InterfaceAlone:
-    """An array by its __cuda_array_interface__ and nothing else."""
+    """An array with __cuda_array_interface__ only."""
     def __init__(self, array):
         self.__cuda_array_interface__ = array.__cuda_array_interface__
         self.kept = array
 
 
 class DlpackAlone:
-    """The same by DLPack's methods alone."""
+    """An array with DLPack's methods only."""
     def __init__(self, array):
         self.__dlpack__, self.__dlpack_device__ = array.__dlpack__, array.__dlpack_device__
 
@@ -169,22 +171,22 @@ class Arrays(unittest.TestCase):
     def collider(scene, **options):
         return tandem.Collider(scene.meshes, device=DEVICE, bodies=scene.bodies, deformable=scene.deformable, **options)
 
-    def expect_same(self, there, here):
-        self.assertGreater(here.count, 100)
-        self.assertEqual((there.count, there.contact_count), (here.count, here.contact_count))
-        self.assertEqual((there.digest(), there.contact_digest()), (here.digest(), here.contact_digest()))
-        self.assertTrue((there.pairs() == here.pairs()).all())
+    def expect_same(self, result, expected):
+        self.assertGreater(expected.count, 100)
+        self.assertEqual((result.count, result.contact_count), (expected.count, expected.contact_count))
+        self.assertEqual((result.digest(), result.contact_digest()), (expected.digest(), expected.contact_digest()))
+        self.assertTrue((result.pairs() == expected.pairs()).all())
 
-    def test_poses_are_read_where_they_are(self):
+    def test_poses_are_not_copied(self):
         for dtype in (numpy.float64, numpy.float32):
-            for frame in (0, 1, 0, 1, 0, 1):  # as one submission from the third time on
+            for frame in (0, 1, 0, 1, 0, 1):  # one submission from the third time on
                 rows = self.pile.poses(frame % self.pile.frame_count).astype(dtype)
                 poses = ON.array(rows, dtype)
                 answer = self.rigid.run(poses)
                 self.assertEqual(self.rigid._core.addresses, [ON.address(poses)])
                 self.expect_same(answer, self.rigid.run(rows))
 
-    def test_vertices_are_read_where_they_are(self):
+    def test_vertices_are_not_copied(self):
         buffers = None
         for frame in (60, 61, 62, 63):
             rows = self.plates.vertices(frame)
@@ -195,7 +197,7 @@ class Arrays(unittest.TestCase):
             mixed = self.soft.run(vertices={body: moved[body] if body % 2 else points for body, points in rows.items()})
             self.expect_same(mixed, answer)
             buffers = moved
-        for _ in range(5):  # the same commands again and again
+        for _ in range(5):  # the same commands again
             self.expect_same(self.soft.run(vertices=buffers), answer)
 
     def test_arrays_by_the_cuda_array_interface(self):
@@ -217,19 +219,19 @@ class Arrays(unittest.TestCase):
         with unittest.mock.patch.object(type(poses), "__dlpack__", side_effect=BufferError("not by the table")):
             self.expect_same(self.rigid.run(poses), self.rigid.run(self.pile.poses(0)))
 
-    def test_frames_come_after_what_was_enqueued_for_them(self):
-        """The library's stream is busy when the collider is called, and only then writes the frame."""
+    def test_frames_wait_for_their_enqueued_work(self):
+        """The library's stream is busy when the collider is called, and writes the frame afterwards."""
         self.expect_frames_after(lambda array: array)
 
-    def test_by_dlpacks_methods_as_well(self):
+    def test_frames_wait_with_dlpacks_methods(self):
         self.expect_frames_after(DlpackAlone)
 
-    def test_on_a_stream_of_the_librarys_as_well(self):
+    def test_frames_wait_for_another_stream_of_the_library(self):
         with ON.on(ON.stream()):
             self.expect_frames_after(lambda array: array)
 
     def expect_frames_after(self, given):
-        here = self.soft.run(vertices=self.plates.vertices(64))
+        expected = self.soft.run(vertices=self.plates.vertices(64))
         values = {body: ON.array(points) for body, points in self.plates.vertices(64).items()}
         targets = {body: ON.empty_like(array) for body, array in values.items()}
         matrix = ON.matrix()
@@ -242,14 +244,14 @@ class Arrays(unittest.TestCase):
                 targets[body][...] = 0
             array, was_done = ON.written_late(targets[body], values[body], matrix)
             late |= not was_done
-            self.expect_same(self.soft.run(vertices={**values, body: given(array)}), here)
+            self.expect_same(self.soft.run(vertices={**values, body: given(array)}), expected)
         self.assertTrue(late, "nothing was under way: the test says nothing")
 
-    def test_work_goes_by_the_librarys_stream(self):
+    def test_work_follows_the_librarys_stream(self):
         stream = ON.stream()
         collider = self.collider(self.pile, stream=stream)
         self.assertEqual(collider._core.queue, ON.stream_address(stream))
-        here = self.rigid.run(self.pile.poses(1))
+        expected = self.rigid.run(self.pile.poses(1))
         matrix, values = ON.matrix(), ON.array(self.pile.poses(1))
         ON.finish()
         with ON.on(stream):
@@ -257,11 +259,11 @@ class Arrays(unittest.TestCase):
             self.assertFalse(was_done)
             answer = collider.run(poses)
             self.assertEqual(collider._core.addresses, [ON.address(poses)])
-            self.expect_same(answer, here)
+            self.expect_same(answer, expected)
             rows = ON.taken(answer.pairs(on_device=True))
-            self.assertEqual(sorted(map(tuple, ON.host(rows).tolist())), sorted(map(tuple, here.pairs().tolist())))
+            self.assertEqual(sorted(map(tuple, ON.host(rows).tolist())), sorted(map(tuple, expected.pairs().tolist())))
         by_default_stream = self.collider(self.pile, stream=0)
-        self.expect_same(by_default_stream.run(values), here)
+        self.expect_same(by_default_stream.run(values), expected)
 
     def test_pairs_stay_on_the_device(self):
         answer = self.rigid.run(ON.array(self.pile.poses(0)))
@@ -282,22 +284,22 @@ class Arrays(unittest.TestCase):
         self.assertNotIn("\n", str(caught.exception))
         return str(caught.exception)
 
-    def test_what_is_wrong_has_the_sentences_of_the_hosts_memory(self):
+    def test_errors_equal_those_for_host_memory(self):
         for at, value in (((3, 0), numpy.nan), ((5, 4), numpy.inf), ((6, slice(3, 7)), 0), ((2, 1), 1e37)):
             rows = self.pile.poses(0).copy()
             rows[at] = value
-            said = self.failure(ValueError, self.rigid.run, ON.array(rows))
-            self.assertEqual(said, self.failure(ValueError, self.rigid.run, rows))
-            print(f"\n  ValueError: {said}", end="", file=sys.stderr)
+            message = self.failure(ValueError, self.rigid.run, ON.array(rows))
+            self.assertEqual(message, self.failure(ValueError, self.rigid.run, rows))
+            print(f"\n  ValueError: {message}", end="", file=sys.stderr)
         rows = self.plates.vertices(60)
         rows[1][7, 2] = numpy.nan
-        said = self.failure(ValueError, self.soft.run, vertices={1: ON.array(rows[1])})
-        self.assertEqual((said, self.failure(ValueError, self.soft.run, vertices={1: rows[1]})), (said, said))
-        self.assertIn("body 1: vertex 7 is not finite", said)
+        message = self.failure(ValueError, self.soft.run, vertices={1: ON.array(rows[1])})
+        self.assertEqual((message, self.failure(ValueError, self.soft.run, vertices={1: rows[1]})), (message, message))
+        self.assertIn("body 1: vertex 7 is not finite", message)
         good = self.pile.poses(0)
         self.expect_same(self.rigid.run(ON.array(good)), self.rigid.run(good))
 
-    def test_what_is_refused(self):
+    def test_refused_input(self):
         good = self.pile.poses(0)
         for kind, words, value in ((ValueError, "expected (n, 7)", ON.array(good[:, :6])), (ValueError, "rows for 64 bodies", ON.array(good[1:])),
                                    (TypeError, "neither float64 nor float32", ON.array(good, numpy.int32))):
@@ -309,7 +311,7 @@ class Arrays(unittest.TestCase):
         host = tandem.Collider(self.pile.meshes, bodies=self.pile.bodies)
         self.assertIn("the collider works on host", self.failure(ValueError, host.run, ON.array(good)))
 
-    def test_auto_measures_on_frames_there(self):
+    def test_auto_measures_on_device_frames(self):
         collider = self.collider(self.pile, algorithm="auto")
         trials = collider.tune(ON.array(self.pile.poses(0)), seconds=0.2)
         self.assertEqual(collider.algorithm, trials[0].algorithm)

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""isolation.py PROGRAM SOURCE: processes of their own for cells, and what kills of them and of the program cost."""
+"""isolation.py PROGRAM SOURCE: cells in separate processes, and the effects of killing these processes or the
+program."""
 import json
 import os
 import pathlib
@@ -12,12 +13,12 @@ import unittest
 
 from program import PROGRAM, SMALL, Case, sets, tandem
 
-ROOMS = {name: room for name, room in SMALL.items() if name in ("pair_capacity", "contact_capacity")}
-CELLS = ("plates:count=2", "--frames", "0:1", "--device", "host", "--algorithm", "chunked,tiled", "--truth", "none", *sets(ROOMS))
+CAPACITIES = {name: capacity for name, capacity in SMALL.items() if name in ("pair_capacity", "contact_capacity")}
+CELLS = ("plates:count=2", "--frames", "0:1", "--device", "host", "--algorithm", "chunked,tiled", "--truth", "none", *sets(CAPACITIES))
 
 
 def children(process):
-    """Processes for cells that it started and that run: past exec, before which the program waits for them."""
+    """Cell processes that it has started and that are past exec; the program waits for exec."""
     try:
         started = [int(word) for word in pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()]
         return [child for child in started if b"isolated" in pathlib.Path(f"/proc/{child}/cmdline").read_bytes()]
@@ -49,11 +50,11 @@ class Isolation(Case):
         return process.returncode, out, errors.splitlines()
 
     def test_the_same_answers(self):
-        here, there = self.work / "here.jsonl", self.work / "there.jsonl"
-        for path, more in ((here, ()), (there, ("--isolate", "--timeout", 100))):
+        local, isolated = self.work / "local.jsonl", self.work / "isolated.jsonl"
+        for path, more in ((local, ()), (isolated, ("--isolate", "--timeout", 100))):
             status, out, errors = tandem("run", *CELLS, "--repeat", 2, "--out", path, *more)
             self.assertEqual((status, errors), (0, []), out)
-        one, two = ({r["key"]: r for r in self.records(path)} for path in (here, there))
+        one, two = ({r["key"]: r for r in self.records(path)} for path in (local, isolated))
         self.assertEqual(set(one), set(two))
         for key, record in one.items():
             other = two[key]
@@ -63,7 +64,7 @@ class Isolation(Case):
                 self.assertEqual(record["work"][part], other["work"][part], part)
             self.assertEqual(len(other["stages"]["traverse"]["device_ns"]["samples"]), self.rounds_of_two_samples(other))
 
-    def test_a_crash_costs_its_cell(self):
+    def test_a_crash_affects_its_cell_only(self):
         out = self.work / "crash.jsonl"
         process = self.start(*CELLS, "--repeat", 2, "--isolate", "--out", out)
         victim = wait_for(lambda: children(process.pid))[0]
@@ -73,7 +74,7 @@ class Isolation(Case):
         self.assertIn("its process ended by signal 11 (Segmentation fault)", errors[0])
         self.assertEqual([r["status"] for r in self.records(out)], ["failed", "ok"])
 
-    def test_a_hang_costs_its_cell(self):
+    def test_a_hang_affects_its_cell_only(self):
         out = self.work / "hang.jsonl"
         process = self.start(*CELLS, "--repeat", 2, "--isolate", "--timeout", 10, "--out", out)
         victim = wait_for(lambda: children(process.pid))[0]
@@ -84,10 +85,11 @@ class Isolation(Case):
         self.assertEqual([r["status"] for r in self.records(out)], ["failed", "ok"])
         self.assertFalse(is_alive(victim))
 
-    def test_nothing_outlives_the_program(self):
-        process = self.start("pile:bodies=300,frames=1", "--device", "host", "--algorithm", "chunked", "--isolate")  # checked for 20 s
+    def test_no_process_outlives_the_program(self):
+        # checked for 20 s
+        process = self.start("pile:bodies=300,frames=1", "--device", "host", "--algorithm", "chunked", "--isolate")
         child = wait_for(lambda: children(process.pid))[0]
-        time.sleep(1)  # it has read what to do
+        time.sleep(1)  # it has read its task
         self.assertTrue(is_alive(child))
         process.kill()
         process.wait()
@@ -97,8 +99,8 @@ class Isolation(Case):
         self.bad("--timeout requires --isolate", "run", *CELLS, "--timeout", 3)
         self.bad("--timeout", "run", *CELLS, "--isolate", "--timeout", 0)
 
-    def test_rounds_outlive_a_kill(self):
-        """A cell that was killed in its third round goes on with the fourth, without another check."""
+    def test_rounds_survive_a_kill(self):
+        """A cell that was killed in its third round continues with the fourth, without another check."""
         out, left = self.work / "rounds.jsonl", self.work / "rounds.jsonl.unfinished"
         arguments = ("plates:count=2", "--frames", "0:8", "--device", "host", "--algorithm", "chunked,tiled", "--repeat", 8, "--truth", "none", "--out", out)
         process = self.start(*arguments)
@@ -110,16 +112,18 @@ class Isolation(Case):
         taken = [round["frame_ns"] for line in kept for round in line["rounds"]["samples"]]
         status, text, errors = tandem("run", *CELLS, "--repeat", 1, "--out", out)
         self.assertEqual(status, 0, errors)
-        self.assertGreaterEqual(len(left.read_text().splitlines()), len(kept))  # other cells' rounds are not the run's to remove
+        # the run must not remove rounds of other cells
+        self.assertGreaterEqual(len(left.read_text().splitlines()), len(kept))
         status, text, errors = tandem("run", *arguments, "--resume")
-        self.assertEqual((status, [line for line in errors if "torn" not in line]), (0, []), text)  # of a round half written
+        # a half-written round
+        self.assertEqual((status, [line for line in errors if "torn" not in line]), (0, []), text)
         records = self.records(out)[2:]
         self.assertEqual([len(r["total_ns"]["samples"]) for r in records], [8, 8])
         self.assertTrue(all(len(r["sampling"]["continued"]) == 1 for r in records))
         frames = [sample for r in records for sample in r["total_ns"]["frames"]]
         self.assertEqual(len([sample for sample in taken if sample in frames]), len(taken))
         at = {r["sampling"]["continued"][0] for r in records}
-        self.assertEqual(len(at), 1)  # side by side from here on
+        self.assertEqual(len(at), 1)  # all later ones interleave
         self.assertFalse(left.exists())
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""journal.py PROGRAM SOURCE: files of records whatever becomes of the program that writes them, and of what it prints."""
+"""journal.py PROGRAM SOURCE: files of records when the writing program fails or is killed, and its standard output."""
 import json
 import os
 import resource
@@ -16,7 +16,7 @@ LINE = b'{"what":"was there before"}\n'
 
 
 def run(*arguments, before=None, **streams):
-    """(exit code, standard output, lines of standard error); `before` is called in the process before the program."""
+    """(exit code, standard output, lines of standard error); `before` runs in the child process before the program."""
     process = subprocess.run([str(PROGRAM), *map(str, arguments)], preexec_fn=before, timeout=120, text=True,
                              **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **streams})
     return process.returncode, process.stdout, (process.stderr or "").splitlines()
@@ -27,7 +27,7 @@ class Journal(Case):
         return ("--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked", "--truth", "none", "--quiet", *more)
 
     def whole(self, path, before=LINE):
-        """The records behind what was there before."""
+        """The records after the earlier content."""
         data = path.read_bytes()
         self.assertTrue(data.startswith(before) and data.endswith(b"\n"), data[:100])
         rest = self.work / "rest.jsonl"
@@ -45,7 +45,7 @@ class Journal(Case):
         self.assertEqual(run("run", *self.cell("--repeat", 1, "--out", out))[::2], (0, []))
         self.assertEqual(len(self.whole(out, LINE + LINE)), 1)
 
-    def test_what_is_no_file_of_records_is_refused(self):
+    def test_files_that_are_not_records_are_refused(self):
         commands = (("run", *self.cell("--out")), ("check", *self.cell("--out")), ("accuracy", *self.cell()[:-3], "--out"),
                     ("devices", "--measure", "--device", "host", "--out"), ("simulate", "block", "--steps", 1, "--device", "host", "--record"))
         out = self.work / "other"
@@ -73,7 +73,7 @@ class Journal(Case):
         self.assertEqual((status, len(errors)), (2, 1), (text, errors))
 
     def test_a_file_at_its_limit(self):
-        """The first record fits, the second does not; what is there of it is taken back."""
+        """The first record fits, the second does not; its partial line is removed."""
         out = self.work / "limit.jsonl"
         self.assertEqual(run("run", *self.cell("--repeat", 1, "--set", "k=6", "--out", out))[0], 0)
         size = out.stat().st_size
@@ -96,7 +96,7 @@ class Journal(Case):
         self.assertEqual(dump.stat().st_size, 100)
 
     def test_exports_pages_and_pictures_at_a_limit(self):
-        """Each names the file that has no room, in one line, and exits alike."""
+        """Each error names the file without space, in one line, and all have the same exit code."""
         scene = "pile:bodies=2,frames=2"
         for number, words in enumerate((("export", scene, "--frames", "0:1", "--vtu"), ("export", scene, "--frames", 0, "--glb"),
                                         ("export", scene, "--chunks"), ("export", scene, "--geometry"), ("report", SOURCE / "results/cpu/walks.jsonl", "-o"),
@@ -105,13 +105,13 @@ class Journal(Case):
             status, _, errors = run(*words, out, before=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300)))
             self.assertEqual((status, len(errors)), (3, 1), (words, errors))
             self.assertRegex(errors[0], f"^tandem: {out}[^ ]*: writing failed \\(File too large\\)$")
-        # The geometry of a page is written first, in the folder for temporary files.
+        # The geometry of a page is written first, in the temporary directory.
         status, _, errors = run("view", scene, "-o", self.work / "page", before=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300)))
         self.assertEqual((status, len(errors)), (3, 1), errors)
         self.assertRegex(errors[0], "^tandem: .*/tandem-[^ ]*: writing failed \\(File too large\\)$")
 
-    def test_files_beside_are_no_links(self):
-        """Whose names follow from one that was given: what a link of that name leads to stays as it is."""
+    def test_links_with_derived_names_are_not_followed(self):
+        """Files whose names derive from a given one: the target of a link with such a name stays unchanged."""
         victim, out, frames, page = (self.work / name for name in ("victim", "linked.jsonl", "linked.frames", "linked.html"))
         victim.write_text("of another")
         for beside, words in ((f"{out}.torn", ("run", *self.cell("--repeat", 1, "--out", out))),
@@ -132,7 +132,7 @@ class Journal(Case):
         self.assertIn("rounds are no longer saved", errors[0])
         self.assertEqual((victim.read_text(), len(self.records(out))), ("of another", 1))
 
-    def test_programs_that_append_at_a_time(self):
+    def test_programs_that_append_concurrently(self):
         out, capacities = self.work / "two.jsonl", range(1000, 1012)
         out.write_bytes(LINE)
         values = "pair_capacity=" + ",".join(map(str, capacities))
@@ -141,8 +141,8 @@ class Journal(Case):
         self.assertEqual([p.wait(120) for p in processes], [0, 0])
         self.assertEqual(sorted(r["settings"]["pair_capacity"] for r in self.whole(out)), sorted([*map(str, capacities)] * 2))
 
-    def test_standard_output_that_takes_nothing(self):
-        """Exit code 3 and one line, from every command; records and files are written as ever."""
+    def test_standard_output_that_cannot_be_written(self):
+        """Exit code 3 and one line, from every command; records and files are still written."""
         commands = [("--help",), ("run", "--help"), ("devices",), ("devices", "--json"), ("scenes",), ("scenes", "--json"), ("algorithms",),
                     ("algorithms", "--json"), ("run", *self.cell("--repeat", 1, "--out")), ("check", *self.cell("--preset", "grouped", "--out")),
                     ("accuracy", *self.cell()[:-3], "--set", "k=6", "--out"),
@@ -166,12 +166,12 @@ class Journal(Case):
                         self.assertEqual([json.loads(line)["kind"] for line in out.read_text().splitlines()], ["step", "step", "run"])
         os.close(broken)
 
-    def test_what_prints_nothing_needs_no_output(self):
+    def test_commands_without_output_need_no_standard_output(self):
         for streams in ({"stdout": None, "before": lambda: os.close(1)}, {"before": lambda: (os.close(0), os.close(1)), "stdout": None}):
             status, _, errors = run("fly", **streams)
             self.assertEqual((status, len(errors)), (2, 1), errors)
 
-    def test_standard_error_that_takes_nothing(self):
+    def test_standard_error_that_cannot_be_written(self):
         with open("/dev/full", "w") as full:
             for streams in ({"stderr": None, "before": lambda: os.close(2)}, {"stderr": full},
                             {"stderr": None, "before": lambda: (os.close(0), os.close(2))}):
@@ -183,7 +183,7 @@ class Journal(Case):
                 self.assertEqual(len(self.whole(out)), 1)
 
     def test_records_and_table_in_one_file(self):
-        """--out /dev/stdout into a file: records between what is printed, nothing over anything."""
+        """--out /dev/stdout into a file: records between other output, and nothing is overwritten."""
         both = self.work / "both"
         with open(both, "w") as stream:
             self.assertEqual(run("run", *self.cell("--repeat", 1, "--out", "/dev/stdout"), stdout=stream)[::2], (0, []))
@@ -192,34 +192,34 @@ class Journal(Case):
         self.assertEqual([json.loads(line)["status"] for line in lines if line.startswith("{")], ["ok"])
         self.assertEqual(lines[-1], "1 records appended to /dev/stdout")
 
-    def test_no_step_of_a_resumed_simulation_twice(self):
+    def test_a_resumed_simulation_records_no_step_twice(self):
         record, frames = self.work / "simulation.jsonl", self.work / "resumed.frames"
         arguments = ["simulate", "block", "--device", "host", "--checkpoint", "7", "--quiet", "--record", record, "-o", frames]
 
         def steps():
             return [line for line in map(json.loads, record.read_text().splitlines()) if line.get("kind") == "step"]
 
-        # Another run of the same in the same file.
+        # Another run of the same scene in the same file.
         self.assertEqual(run(*arguments[:-1], self.work / "other.frames", "--steps", 25)[0], 0)
-        others = len(steps())
+        earlier = len(steps())
         process = subprocess.Popen([PROGRAM, *map(str, arguments), "--steps", "100000"], stdout=subprocess.DEVNULL)
         deadline = time.monotonic() + 60
-        while len(record.read_bytes().splitlines()) < others + 1 + 20 and time.monotonic() < deadline:
+        while len(record.read_bytes().splitlines()) < earlier + 1 + 20 and time.monotonic() < deadline:
             time.sleep(0.01)
         process.send_signal(signal.SIGKILL)
         self.assertEqual(process.wait(), -signal.SIGKILL)
         data = record.read_bytes()
-        record.write_bytes(data[:data.rfind(b"\n") + 1] + b'{"schema":2,"kind":"st')  # what a kill can leave
+        record.write_bytes(data[:data.rfind(b"\n") + 1] + b'{"schema":2,"kind":"st')  # possible remains of a kill
         steps_of = [s for s in map(json.loads, record.read_bytes().splitlines()[:-1]) if s["kind"] == "step"]
-        done = len(steps_of) - others
+        done = len(steps_of) - earlier
         self.assertGreater(done, 10)
         status, text, errors = run(*arguments, "--resume", "--steps", done + 5)
         self.assertEqual((status, len(errors)), (0, 1), (text, errors))
         self.assertIn("continues after step", text)
         lines = steps()
-        self.assertEqual(lines[:others + done], steps_of)
-        self.assertEqual([s["step"] for s in lines[others:]], list(range(done + 5)))
-        self.assertEqual(len({s["session"] for s in lines[others:]}), 1)
+        self.assertEqual(lines[:earlier + done], steps_of)
+        self.assertEqual([s["step"] for s in lines[earlier:]], list(range(done + 5)))
+        self.assertEqual(len({s["session"] for s in lines[earlier:]}), 1)
         self.assertNotEqual(lines[0]["session"], lines[-1]["session"])
 
 

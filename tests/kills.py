@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""kills.py PROGRAM SOURCE: run, plans, simulate and paper are killed at random moments and gone on with until they are done, again and again:
-nothing that was recorded is lost, and in the end all is as without a kill."""
+"""kills.py PROGRAM SOURCE: run, plans, simulate and paper are killed at random moments and resumed until they
+finish, repeatedly: no record is lost, and the final result equals that without a kill."""
 import collections
 import json
 import os
@@ -14,8 +14,8 @@ import unittest
 
 from program import LONG, PROGRAM, Case, sets, tandem, tried
 
-KILLS = 200 if LONG else 20  # of every command
-ROOM = {name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity", "seed_capacity")}
+KILLS = 200 if LONG else 20  # per command
+CAPACITIES = {name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity", "seed_capacity")}
 PLAN = {"plan": "to be killed", "scenes": ["plates:count=2", "pile:bodies=2,frames=1", "pile:bodies=3,frames=1"], "frames": 0,
         "devices": ["host", "opencl:0"] if LONG else "host", "algorithms": ["chunked", "tiled"], "settings": {"k": [6, 8]},
         "measure": {"repeat": 3, "truth": "none"}}
@@ -43,7 +43,7 @@ class Kills(Case):
         super().tearDownClass()
 
     def words(self, command, folder):
-        cells = ("--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked,tiled", *sets({"k": "6,8", **ROOM}), "--repeat", 2, "--truth", "none")
+        cells = ("--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked,tiled", *sets({"k": "6,8", **CAPACITIES}), "--repeat", 2, "--truth", "none")
         return {"run": ("run", *cells, "--resume", "--out", folder / "new.jsonl"),
                 "plan": ("run", self.plan, "--resume", "--out", folder / "new.jsonl"),
                 "simulate": ("simulate", "arch:segments=2", "--steps", 20, "--checkpoint", 3, "--device", "host", "-o", folder / "a.frames", "--record", folder / "new.jsonl", "--quiet"),
@@ -55,11 +55,12 @@ class Kills(Case):
             words += ("--resume",)
         if command == "plan" and self.chance.random() < 0.3:
             words += ("--isolate",)
-        # A group of its own: a kill of a machine's user, or of its scheduler, meets children as well; half of them go without.
+        # A separate process group: a kill by a user or a scheduler also reaches children; half of the kills here do
+        # not.
         return subprocess.Popen([str(PROGRAM), *map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True)
 
     def end(self, process, wait):
-        """Its exit code; killed after so many seconds, it or all of its group, when it has not ended by itself."""
+        """Its exit code. If it has not ended after `wait` seconds, kills it or its whole group."""
         try:
             process.communicate(timeout=wait)
         except subprocess.TimeoutExpired:
@@ -69,25 +70,25 @@ class Kills(Case):
 
     @staticmethod
     def records(command, folder):
-        """The file that lines are added to."""
+        """The file to which lines are appended."""
         return folder / ("steps.jsonl" if command == "paper" else "new.jsonl")
 
     @staticmethod
     def answers(path):
-        """What every run must record alike, and how often."""
+        """Values that every run must record equally, with their counts."""
         lines = [json.loads(line) for line in whole_lines(path)]
         return collections.Counter(json.dumps([line.get(name) for name in ("key", "kind", "step", "exit", "status", "asked", "agreement")]
                                               + [line["work"]["candidate_pairs"] if "work" in line else None]) for line in lines if line.get("kind") != "run")
 
     def undisturbed(self, command):
-        """(folder, seconds) of a run that nobody kills."""
+        """(folder, seconds) of a run without a kill."""
         folder = self.work / f"{command}-whole"
         if command != "paper":
             folder.mkdir()
         begin = time.monotonic()
         process = self.start(command, folder)
-        said = process.communicate(timeout=120)[1]
-        self.assertEqual(process.returncode, 0, said)
+        errors = process.communicate(timeout=120)[1]
+        self.assertEqual(process.returncode, 0, errors)
         return folder, time.monotonic() - begin
 
     def compare(self, command, folder, whole):
@@ -97,7 +98,7 @@ class Kills(Case):
         self.assertEqual([path.name for path in folder.glob("*.unfinished")], [])
 
     def kill(self, command):
-        """Goes on after every kill, and begins anew where it was done."""
+        """Resumes after every kill, and restarts after every finished run."""
         whole, seconds = self.undisturbed(command)
         done = 0
         while self.counts[command] < KILLS or done == 0:
@@ -105,7 +106,7 @@ class Kills(Case):
             if command != "paper":
                 folder.mkdir(exist_ok=True)
             before = whole_lines(self.records(command, folder))
-            # Past the number the last one is left to end, as whoever resumes would.
+            # After the last kill the run may end, as for a user who resumes.
             code = self.end(self.start(command, folder), self.chance.uniform(0, seconds) if self.counts[command] < KILLS else 120)
             after = whole_lines(self.records(command, folder))
             self.assertEqual(after[:len(before)], before, "a record is gone")

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""model.py PROGRAM SOURCE: tandem.model: coefficients that are known, tables of microbenchmarks, bad input, and the tables of results/scaling."""
+"""model.py PROGRAM SOURCE: tandem.model: known coefficients, tables of microbenchmarks, bad input, and the tables of
+results/scaling."""
 import contextlib
 import io
 import json
@@ -16,14 +17,14 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "python"))
 from tandem import model
 from tandem.model import fitting, loads, pages
-# Microseconds: of a frame, and of each count.
+# Microseconds: per frame, and per unit of each count.
 KNOWN = {"refit": (15, {"tetrahedra": 2e-5}), "broad": (8, {"tile_pairs": 1e-4}), "walk": (30, {"body_pairs": 5e-3, "pairs": 4e-5}), "contact": (20,
                                                                                                                                                  {"pairs": 1e-4}),
          "host": (40, {"bodies": 0.05, "scene_bodies": 0.03, "sorted": 0.02})}
 EXCHANGE = (50, {"messages": 3, "bytes": 2e-4})
 STAGE = {"refit": "refit", "broad": "broad", "walk": "traverse", "contact": "contact"}
-BESIDE = 20  # nanoseconds a body
-TETRAHEDRA = 1000  # of a body
+BESIDE = 20  # nanoseconds per body
+TETRAHEDRA = 1000  # per body
 
 
 def known_us(part, counts, chance):
@@ -36,7 +37,7 @@ def stage_ns(us, frames):
 
 
 def record(chance, bodies, devices, with_ranks=False, frames=2):
-    """Of a scene shared evenly, as the known coefficients have it."""
+    """A synthetic record of an evenly partitioned scene, computed from the known coefficients."""
     own, body_pairs, pairs = bodies // devices, int(bodies * chance.uniform(1, 12)), int(bodies * chance.uniform(500, 5000))
     scene = {"key": "made", "bodies": bodies, "tetrahedra": TETRAHEDRA * bodies}
     line = {"schema": 4, "key": "made", "status": "ok", "preset": "resident", "algorithm": "tiled", "settings": {"k": "18", "slabs": "three", "broad": "device"}, "scene": scene,
@@ -47,13 +48,13 @@ def record(chance, bodies, devices, with_ranks=False, frames=2):
             "preparation": {"device_bytes": 1e8 + 30 * TETRAHEDRA * bodies * devices + 45 * pairs}, "ranks": devices if with_ranks else None}
     parts = []
     for _ in range(devices):
-        present = own if devices == 1 else int(own * chance.uniform(1.1, 1.6))
-        counts = loads.counts_of(scene, present, own, body_pairs / devices, pairs / devices, devices == 1, present if with_ranks else None)
+        local_bodies = own if devices == 1 else int(own * chance.uniform(1.1, 1.6))
+        counts = loads.counts_of(scene, local_bodies, own, body_pairs / devices, pairs / devices, devices == 1, local_bodies if with_ranks else None)
         us = {part: known_us(part, counts, chance) for part in KNOWN}
         exchange = {"messages": chance.randrange(1, 20) * frames, "bytes": chance.randrange(1000, 1000000) * frames} if with_ranks else None
         if exchange:
             exchange["host_ns"] = (EXCHANGE[0] * frames + 3 * exchange["messages"] + 2e-4 * exchange["bytes"]) * 1e3
-        parts.append({"ns": {"median": sum(us.values()) * frames * 1e3}, "bodies": [present] * frames, "body_pairs": [body_pairs / devices] * frames,
+        parts.append({"ns": {"median": sum(us.values()) * frames * 1e3}, "bodies": [local_bodies] * frames, "body_pairs": [body_pairs / devices] * frames,
                       "candidate_pairs": [pairs / devices] * frames, "exchange": exchange, "stages": stage_ns(us, frames)})
     beside = BESIDE * bodies * frames if with_ranks else 0
     line["total_ns"] = {"median": max(l["ns"]["median"] + (l["exchange"] or {"host_ns": 0})["host_ns"] for l in parts) + beside}
@@ -69,7 +70,7 @@ def records():
     return [*(record(chance, n, 1) for n in sizes), *(record(chance, n, 2) for n in sizes), *(record(chance, n, 4, True) for n in sizes)]
 
 
-def said(*arguments):
+def run_model(*arguments):
     """(exit code, standard output, lines of standard error)."""
     out = io.TextIOWrapper(io.BytesIO(), "utf-8", write_through=True)
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(io.StringIO()) as errors:
@@ -79,7 +80,7 @@ def said(*arguments):
 
 class ModelCase(Case):
     def refused(self, expected, *arguments):
-        code, _, errors = said(*arguments)
+        code, _, errors = run_model(*arguments)
         self.assertEqual((code, len(errors)), (2, 1), (arguments, errors))
         self.assertTrue(errors[0].startswith("tandem: "), errors)
         self.assertIn(expected, errors[0])
@@ -106,7 +107,7 @@ class Fit(ModelCase):
         self.assertLess(abs(model.memory.per["tetrahedra"] / 30 - 1), 0.01)
         self.assertLess(abs(model.memory.per["pairs"] / 45 - 1), 0.05)
 
-    def test_what_every_rank_takes_is_found(self):
+    def test_the_costs_of_every_rank_are_found(self):
         every = fitting.every_rank(loads.read([self.file("made.jsonl", records())], self.fail))
         self.assertEqual((every.bodies, every.ranks), (30000, 4))
         self.assertLess(abs(every.beyond / BESIDE - 1), 0.01)
@@ -120,7 +121,7 @@ class Fit(ModelCase):
         self.assertGreater(min(term.fixed, term.per["tetrahedra"]), 0)
         self.assertGreater(max(term.errors), 1e-3)
 
-    def test_what_does_not_differ_has_no_coefficient(self):
+    def test_constant_counts_have_no_coefficient(self):
         term = fitting.fitted(("tetrahedra", "pairs"), [{"tetrahedra": n, "pairs": 7} for n in (1e5, 2e5, 3e5)], [12, 14, 16])
         self.assertEqual(list(term.per), ["tetrahedra"])
 
@@ -129,11 +130,11 @@ class Fit(ModelCase):
         few = self.file("few.jsonl", good[:2])
         self.refused("2 records: too few", "--fit", few)
         self.refused("No such file", "--fit", self.work / "none.jsonl")
-        for name, lines, said_of in (("empty", [], "is empty"), ("text", [good[0], "no JSON\n"], "text.jsonl:2: is not JSON"), ("list", ["[]\n"],
+        for name, lines, message in (("empty", [], "is empty"), ("text", [good[0], "no JSON\n"], "text.jsonl:2: is not JSON"), ("list", ["[]\n"],
                                                                                                                                          ":1: is no record"),
                                      ("half", [{**good[0], "work": None}], ":1: is no record"), ("frames", [{**good[0], "frames": {"first": 1, "last": 0}}],
                                                                                                 ":1: is no record")):
-            self.refused(said_of, "--fit", self.file(f"{name}.jsonl", lines))
+            self.refused(message, "--fit", self.file(f"{name}.jsonl", lines))
         self.refused("no such group; there are: made", "--group", "none", self.file("good.jsonl", good))
         self.refused("no record of ranks", "--group", "made", self.file("alone.jsonl", good[:10]))
 
@@ -155,13 +156,13 @@ class Fit(ModelCase):
 
 
 class Page(ModelCase):
-    def test_tables_are_those_of_records_and_counts(self):
+    def test_tables_equal_records_and_counts(self):
         if not (SOURCE / "results/h100x2").exists():
             self.skipTest("results/h100x2 is not there")
         text, copy = (SOURCE / "results/scaling/README.md").read_text(), self.work / "page.md"
         copy.write_text(re.sub(r"(<!-- model: [a-z ]+ -->).*?<!-- end -->", r"\1 <!-- end -->", text, flags=re.DOTALL))
         self.assertNotEqual(copy.read_text(), text)
-        self.assertEqual(said("--write", copy), (0, "", []))
+        self.assertEqual(run_model("--write", copy), (0, "", []))
         self.assertEqual(copy.read_text(), text)
 
 

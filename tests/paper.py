@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""paper.py PROGRAM SOURCE: the paper's tables as data agree with each other, and what is said of them with scripts/paper."""
+"""paper.py PROGRAM SOURCE: the paper's tables as data agree with each other and with the output of scripts/paper."""
 import csv
 import subprocess
 import sys
@@ -17,13 +17,14 @@ def rows(number):
 
 
 class Paper(unittest.TestCase):
-    def test_readme_has_what_the_script_prints(self):
+    def test_the_readme_contains_the_output_of_the_script(self):
         done = subprocess.run([SOURCE / "scripts/paper"], capture_output=True, text=True, check=True)
         self.assertEqual(len(done.stdout.splitlines()), 18)
         self.assertIn(done.stdout, (FOLDER / "README.md").read_text())
 
-    def test_factors_are_those_of_the_times(self):
-        """Launches and uploads of Table 4 are quotients of Table 5's, up to a fifth and the last digit printed; but for one."""
+    def test_factors_are_ratios_of_the_times(self):
+        """Launches and uploads of Table 4 are quotients of Table 5's, up to a fifth and the last printed digit, with
+        one exception."""
         times = {(row["scene"], row["gpu"], row["algorithm"]): row for row in rows(5)}
         self.assertEqual(len(times), 2 * len(rows(4)))
         odd = []
@@ -37,18 +38,18 @@ class Paper(unittest.TestCase):
                 self.assertEqual(int(other["launches"]) % 102, 0, "frames of the same commands")
         self.assertEqual(odd, [("plates", "W8100", "write")])
 
-    def test_transfers_are_shares_of_the_total(self):
+    def test_transfers_are_fractions_of_the_total(self):
         totals = {(row["scene"], row["gpu"]): row["total_min"] for row in rows(3)}
         self.assertEqual(len(totals), 12)
         for row in rows(6):
             self.assertEqual(row["total_min"], totals[row["scene"], row["gpu"]])
             for what in ("read", "write"):
                 if row[f"{what}_min"]:
-                    share = 100 * float(row[f"{what}_min"]) / float(row["total_min"])
-                    self.assertAlmostEqual(share, float(row[f"{what}_percent"]), delta=0.01 + 0.5 / float(row["total_min"]), msg=f"{row}")
+                    percent = 100 * float(row[f"{what}_min"]) / float(row["total_min"])
+                    self.assertAlmostEqual(percent, float(row[f"{what}_percent"]), delta=0.01 + 0.5 / float(row["total_min"]), msg=f"{row}")
 
-    def test_shares_of_a_step_stay_below_the_whole(self):
-        """Kernels of Table 7 take no more than their phases in Table 3."""
+    def test_parts_of_a_step_stay_below_the_whole(self):
+        """Kernels of Table 7 take no more time than their phases in Table 3."""
         phases = {(row["scene"], row["gpu"]): row for row in rows(3)}
         for row in rows(7):
             phase = phases[row["scene"], row["gpu"]]

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""paper_command.py PROGRAM SOURCE: tandem paper: steps are listed, run once, gone on with and measured anew; one that fails is said and
-stops none; what is drawn is what records say, the committed tables and verdicts with them; bad use is one line."""
+"""paper_command.py PROGRAM SOURCE: tandem paper: steps are listed, run once, resumed and repeated; a failing step is
+reported and does not stop the others. Drawings equal records, including the committed tables and verdicts; bad
+use gives one line."""
 import csv
 import json
 import os
@@ -17,7 +18,8 @@ from program import PROGRAM, SOURCE
 
 COMMITTED = SOURCE / "results/h200/paper"
 FILES = ["index.html", "claims.csv", *(f"table{i}.csv" for i in range(1, 8)), *(f"figure{i}.{kind}" for i in range(1, 15) for kind in ("svg", "csv"))]
-RENDERED = {f"figure{i}.{kind}" for i in (1, 2, 6) for kind in ("svg", "csv")}  # of scenes' surfaces, which are not committed
+# drawings of the scenes' surfaces, which are not committed
+RENDERED = {f"figure{i}.{kind}" for i in (1, 2, 6) for kind in ("svg", "csv")}
 
 
 def paper(*words, code=0):
@@ -57,7 +59,7 @@ class Paper(unittest.TestCase):
             self.assertEqual(error.count("\n"), 1, error)
             self.assertIn(says, error)
 
-    def test_steps_are_done_once_and_again_when_asked(self):
+    def test_steps_run_once_and_again_on_request(self):
         step = self.number("chunks-morton")
         paper(*self.host, "--steps", step, "--measure-only")
         first = self.steps()
@@ -87,8 +89,8 @@ class Paper(unittest.TestCase):
         journal.write_text("no JSON\n")
         self.assertIn("steps.jsonl:1: is not a line of 'tandem paper'", paper(*self.host, "--dry-run", code=2).stderr)
 
-    def test_a_step_that_fails_stops_none_and_the_page_says_so(self):
-        first = self.number("glb-tower")  # of a recording that is not there
+    def test_a_failing_step_is_reported_and_stops_no_other(self):
+        first = self.number("glb-tower")  # needs a recording that does not exist
         last = int(first) + 1
         error = paper(*self.host, "--steps", f"{first}:{last}", code=3).stderr
         self.assertIn("step glb-tower ended with 2", error)
@@ -100,7 +102,7 @@ class Paper(unittest.TestCase):
         self.assertIn("plates", (self.folder / "figure6.csv").read_text())
         self.assertIn("missing", (self.folder / "figure7.csv").read_text())
 
-    def test_a_simulation_goes_on_after_a_signal(self):
+    def test_a_simulation_resumes_after_a_signal(self):
         step = self.number("sim-colosseum")
         running = subprocess.Popen([PROGRAM, "paper", *map(str, self.host), "--steps", step, "--measure-only"], stderr=subprocess.PIPE, text=True)
         recording = self.folder / "colosseum.frames.checkpoint"
@@ -115,16 +117,16 @@ class Paper(unittest.TestCase):
         lines = [json.loads(line) for line in (self.folder / "records/sim-colosseum.jsonl").read_text().splitlines()]
         self.assertEqual(sorted({line["step"] for line in lines if line["kind"] == "step"}), list(range(60)))
 
-    def test_committed_tables_figures_and_verdicts_are_what_records_say(self):
+    def test_committed_tables_figures_and_verdicts_equal_the_records(self):
         shutil.copytree(COMMITTED, self.folder)
         for name in FILES:
             (self.folder / name).unlink()
-        said = paper("-o", self.folder, "--draw-only").stdout
-        self.assertIn("7 tables", said)
+        output = paper("-o", self.folder, "--draw-only").stdout
+        self.assertIn("7 tables", output)
         for name in (name for name in FILES if name.endswith(".csv") and name not in RENDERED):
             self.assertEqual((self.folder / name).read_text(), (COMMITTED / name).read_text(), name)
 
-    def test_markup_in_records_is_text(self):
+    def test_markup_in_records_is_escaped(self):
         shutil.copytree(COMMITTED, self.folder)
         steps = self.steps()
         steps[0]["says"], steps[0]["command"], steps[0]["exit"] = "<img src=x onerror=alert(1)>", "tandem </code><script>", 3

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""plans.py PROGRAM SOURCE: plan files: what cells they make, what goes before them, what is refused."""
+"""plans.py PROGRAM SOURCE: plan files: the cells that they make, precedence of options, and errors."""
 import json
 import re
 import sys
@@ -22,7 +22,7 @@ class PlanCase(Case):
         cls.schema = jsonschema.Draft7Validator(json.loads((SOURCE / "results/plan.schema.json").read_text()))
 
     def plan(self, **fields):
-        """A file of PLAN with other fields; those that are None are left out."""
+        """A file of PLAN with other fields; fields that are None are omitted."""
         path = self.work / "plan.json"
         path.write_text(json.dumps({name: value for name, value in {**PLAN, **fields}.items() if value is not None}))
         return path
@@ -31,16 +31,16 @@ class PlanCase(Case):
         return not list(self.schema.iter_errors(json.loads(path.read_text())))
 
     def listed(self, path, *arguments):
-        """(scene, frames, algorithm, k) of every cell, as --dry-run lists them; the schema agrees."""
+        """(scene, frames, algorithm, k) of every cell that --dry-run lists; checks the plan against the schema."""
         self.assertTrue(self.is_valid(path), path.read_text())
-        status, out, self.said = tandem("run", path, *arguments, "--dry-run")
-        self.assertEqual(status, 0, (out, self.said))
+        status, out, self.errors = tandem("run", path, *arguments, "--dry-run")
+        self.assertEqual(status, 0, (out, self.errors))
         return re.findall(r"(?m)^ +(\w+)\|[^|]+\|(\w+):[^|]*\|([\d:]+)\|.*,k=(\d+),", out)
 
-    def refused(self, said, schema_agrees=True, **fields):
+    def refused(self, message, schema_agrees=True, **fields):
         path = self.plan(**fields)
         self.assertEqual(self.is_valid(path), not schema_agrees, path.read_text())
-        self.bad(["plan.json", *([said] if isinstance(said, str) else said)], "run", path, "--dry-run")
+        self.bad(["plan.json", *([message] if isinstance(message, str) else message)], "run", path, "--dry-run")
 
 class Plans(PlanCase):
     def test_a_product(self):
@@ -58,9 +58,9 @@ class Plans(PlanCase):
                                              ("tiled", "pile", "0:0", "18"), ("gproximity", "plates", "3:3", "18")])
         repeated = self.listed(self.plan(include=[{"scenes": SMALL, "settings": {"k": 18}}]))
         self.assertEqual(len(repeated), 8)
-        self.assertIn("2 cells are named more than once", self.said[0])
+        self.assertIn("2 cells are named more than once", self.errors[0])
 
-    def test_the_command_line_goes_first(self):
+    def test_the_command_line_takes_precedence(self):
         path = self.plan(exclude=[{"settings": {"k": 8}}])
         cells = self.listed(path, "--set", "k=24", "--algorithm", "tiled", "--frames", 2, "--preset", "resident", "--device", "host")
         self.assertEqual(cells, [("tiled", scene, "2:2", "24") for scene in ("plates", "pile")])
@@ -78,23 +78,24 @@ class Plans(PlanCase):
         self.assertEqual(status, 0, text)
         records = self.records(out)
         self.assertEqual((len(records), len({r["key"] for r in records})), (8, 8))
-        self.assertIsNone(records[-1]["sampling"]["repeat"])  # a rule of the line goes before all of the plan's
+        # a stopping criterion on the command line replaces all of the plan's
+        self.assertIsNone(records[-1]["sampling"]["repeat"])
 
     def test_impossible_combinations(self):
         fields = {"scenes": SMALL, "algorithms": ["gproximity", "tiled"], "settings": {"batch": [0, 1]}}
         self.bad("goes with batch=0", "run", self.plan(**fields), "--dry-run")
         cells = self.listed(self.plan(**fields, impossible="skip"))
         self.assertEqual([cell[0] for cell in cells], ["gproximity", "tiled"])
-        self.assertIn("skipped 1 impossible combination: ", self.said[0])
+        self.assertIn("skipped 1 impossible combination: ", self.errors[0])
         far = {"meshes": {"box": {"box": [1e37, 1e37, 1e37]}}, "bodies": [{"mesh": "box"}, {"mesh": "box"}]}
         (self.work / "far.json").write_text(json.dumps(far))
         fields = {"scenes": [SMALL, "far.json"], "algorithms": "tiled", "settings": {"k": 18, "precision": ["float", "double"]}}
         self.bad("use precision=double", "run", self.plan(**fields), "--dry-run")
         self.assertEqual([cell[1] for cell in self.listed(self.plan(**fields, impossible="skip"))], ["plates", "plates", "far"])
-        self.assertEqual(len(self.said), 1)
-        self.assertIn("skipped a cell: body 0", self.said[0])
+        self.assertEqual(len(self.errors), 1)
+        self.assertIn("skipped a cell: body 0", self.errors[0])
 
-    def test_what_cannot_be_opened_yet(self):
+    def test_scenes_that_do_not_exist_yet(self):
         path = self.plan(scenes=["to-be-made.frames", SMALL])
         status, text, errors = tandem("run", path, "--dry-run")
         self.assertEqual((status, len(errors)), (2, 1), errors)
@@ -103,7 +104,7 @@ class Plans(PlanCase):
         self.bad("to-be-made.frames", "run", path)
 
     def test_options_and_the_plan(self):
-        """What an option of the line wants may stand in the plan, and what it says no to there gives way."""
+        """The plan can provide what an option requires, and the command line overrides what it excludes."""
         path = self.plan(algorithms="auto", settings=None, scenes=SMALL, measure={"repeat": 1, "truth": "none", "isolate": True})
         self.assertEqual(tandem("run", path, "--threads", 1, "--choose-seconds", 1, "--dry-run")[0], 0)
         self.bad("--threads requires --device host", "run", path, "--threads", 1, "--device", "opencl:0")
@@ -113,9 +114,9 @@ class Plans(PlanCase):
         self.assertEqual((status, errors), (0, []))
         self.assertIn("replayed frames", text)
         self.refused(["/measure", "--repeat cannot be combined with --noise"], measure={"repeat": 1, "noise": "1%"}, schema_agrees=False)
-        for option, said in (("--dump-pairs", "dumps need one scene"), ("--dump-contacts", "dumps need one scene"), ("--trace", "--trace needs one scene")):
-            self.bad(said, "run", self.plan(settings=None), option, self.work / "of-both")
-            self.bad(said, "run", self.plan(settings=None, scenes=SMALL, frames=["0", "1"]), option, self.work / "of-both")
+        for option, message in (("--dump-pairs", "dumps need one scene"), ("--dump-contacts", "dumps need one scene"), ("--trace", "--trace needs one scene")):
+            self.bad(message, "run", self.plan(settings=None), option, self.work / "of-both")
+            self.bad(message, "run", self.plan(settings=None, scenes=SMALL, frames=["0", "1"]), option, self.work / "of-both")
 
     def test_bad_plans(self):
         self.refused("unknown name 'algoritms'; the nearest is 'algorithms'", algoritms=["tiled"])
@@ -147,17 +148,17 @@ class Plans(PlanCase):
 
 
 class Shards(PlanCase):
-    """Groups are scenes with their frames, numbered as the plan names them."""
+    """Groups are scenes with their frames, numbered in the plan's order."""
     GROUPS = {"scenes": [SMALL, LARGE], "frames": ["0", "1"]}
 
     def groups(self, path, *arguments, environment=None):
-        """Scenes and frames of the cells that a dry run lists, each once and in order; its cells."""
-        status, out, self.said = tandem("run", path, *arguments, "--dry-run", environment=environment)
-        self.assertEqual(status, 0, (out, self.said))
+        """Scenes and frames of the cells that a dry run lists, each once and in order; and the cells."""
+        status, out, self.errors = tandem("run", path, *arguments, "--dry-run", environment=environment)
+        self.assertEqual(status, 0, (out, self.errors))
         cells = re.findall(r"(?m)^ +(\w+)\|([^|]+)\|(\w+):[^|]*\|([\d:]+)\|(.*)$", out)
         return list(dict.fromkeys((scene, frames) for _, _, scene, frames, _ in cells)), cells
 
-    def test_shards_are_the_plan(self):
+    def test_shards_partition_the_plan(self):
         path = self.plan(**self.GROUPS)
         whole, cells = self.groups(path)
         self.assertEqual((len(whole), len(cells)), (4, 16))
@@ -168,14 +169,14 @@ class Shards(PlanCase):
             self.assertCountEqual([cell for _, own in shards for cell in own], cells)
 
     def test_numbers_do_not_depend_on_devices(self):
-        """A device that a machine lacks, a setting that is impossible, and a group that is excluded on all of them."""
+        """A device that a machine lacks, an impossible setting, and a group that is excluded on all devices."""
         path = self.plan(**self.GROUPS, devices=["host", "opencl:0"], impossible="skip", include=[{"scenes": "plates:count=3", "devices": "opencl:0"}])
         lacks = {"OCL_ICD_VENDORS": "/nonexistent/"}
         for i in range(2):
-            here, _ = self.groups(path, "--shard", f"{i}/2")
-            there, _ = self.groups(path, "--shard", f"{i}/2", environment=lacks)
-            self.assertEqual([group for group in here if group in there], there)
-            self.assertTrue(any("skipped" in line for line in self.said), self.said)
+            all_devices, _ = self.groups(path, "--shard", f"{i}/2")
+            host_only, _ = self.groups(path, "--shard", f"{i}/2", environment=lacks)
+            self.assertEqual([group for group in all_devices if group in host_only], host_only)
+            self.assertTrue(any("skipped" in line for line in self.errors), self.errors)
         everywhere = [self.groups(path, "--shard", f"{i}/2", environment=lacks if i else None)[0] for i in range(2)]
         self.assertFalse(set(everywhere[0]) & set(everywhere[1]))
         excluded = self.plan(**self.GROUPS, exclude=[{"scenes": SMALL, "frames": "0"}])

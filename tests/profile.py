@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""profile.py PROGRAM SOURCE: `tandem profile`, `--trace` and scripts/gpu/profile as a user meets them."""
+"""profile.py PROGRAM SOURCE: `tandem profile`, `--trace` and scripts/gpu/profile."""
 import collections
 import importlib.machinery
 import importlib.util
@@ -19,7 +19,7 @@ sys.dont_write_bytecode = True
 script = importlib.util.module_from_spec(importlib.util.spec_from_loader("profile_script", loader))
 loader.exec_module(script)
 
-# As ncu prints them with --page raw: names, units, a row a launch.
+# Output of ncu with --page raw: names, units, a row per launch.
 RAW = '''==PROF== Connected to process 4711 (/x/tandem)
 "ID","Process ID","Process Name","Host Name","Kernel Name","Context","Stream","Block Size","Grid Size","Device","CC","gpu__time_duration.sum","dram__bytes.sum","lts__t_bytes.sum","smsp__inst_executed.sum","sm__throughput.avg.pct_of_peak_sustained_elapsed","dram__throughput.avg.pct_of_peak_sustained_elapsed","lts__throughput.avg.pct_of_peak_sustained_elapsed","sm__warps_active.avg.pct_of_peak_sustained_active","launch__registers_per_thread","smsp__average_warps_issue_stalled_long_scoreboard_per_issue_active.ratio","smsp__average_warps_issue_stalled_wait_per_issue_active.ratio"
 "","","","","","","","","","","","ns","byte","byte","inst","%","%","%","%","register/thread","inst","inst"
@@ -57,7 +57,7 @@ class Profile(Case):
         status, text, errors = tandem("profile", *self.cell("--device", "host,opencl:0", "--out", out))
         self.assertEqual((status, errors), (0, []), text)
         for line in text.splitlines():
-            if " resident " not in line: # the cell, with all that it was told
+            if " resident " not in line: # the header line of the cell, with all its settings
                 self.assertLessEqual(len(line), 100, line)
         for word in ("us/frame", "floor us", "x floor", "bound", "of ceiling", "ceilings, measured", "answer: right", "walk_leaf_tiles"):
             self.assertIn(word, text)
@@ -75,12 +75,12 @@ class Profile(Case):
             self.assertAlmostEqual(walk["of_operations"], walk["operations_per_s"] / record["ceilings"]["operations_per_s"])
             self.assertAlmostEqual(walk["over_floor"], walk["device_ns"]["median"] / walk["floor"]["ns"])
             self.assertEqual(walk["floor"]["ns"], max(walk["floor"][f"{term}_ns"] for term in ("bytes", "operations", "launches")))
-            # 24 tetrahedra a body, each with a mesh of its own: touched are some of these, each once.
+            # 24 tetrahedra per body, each body with its own mesh: touched tetrahedra are a subset, each counted once.
             self.assertTrue(0 < frame["touched_tetrahedra"] <= 48 and frame["touched_rows"] == frame["touched_tetrahedra"], frame)
             self.assertLessEqual(frame["touched_vertices"], 40)
             self.assertIsNone(record["counters"])
             self.assertEqual(walk["counters"], None)
-        # To others it is no record of a cell.
+        # For other commands it is not a record of a cell.
         self.assertIn("is no record of a cell", tandem("compare", out, out)[2][0])
         self.assertEqual(tandem("run", *self.cell("--device", "host", "--out", out, "--resume"))[0], 0)
         self.assertEqual(len(out.read_text().splitlines()), 3)
@@ -115,19 +115,19 @@ class Profile(Case):
         measured["device"]["clock"] = "CUPTI 13.0 activity records"
         ceilings.write_text(json.dumps(measured) + "\n")
         self.bad("were timed by CUPTI 13.0 activity records, but kernels are timed by steady clock", "profile", *self.cell("--device", "host", "--ceilings", ceilings))
-        measured["launch_timed_s"] = None # nothing that a clock has taken
+        measured["launch_timed_s"] = None # without a measured launch time
         ceilings.write_text(json.dumps(measured) + "\n")
         self.assertEqual(tandem("profile", *self.cell("--device", "host", "--ceilings", ceilings, "--no-check"))[0], 0)
         for name in ("copy_bytes_per_s", "read_bytes_per_s", "cache_read_bytes_per_s", "overlap_tests_k8_per_s", "overlap_tests_k18_per_s"):
-            measured[name]["median"] = 1.234567e7 # of a machine that does other things
+            measured[name]["median"] = 1.234567e7 # of a machine with other ceilings
         ceilings.write_text(json.dumps(measured) + "\n")
         status, text, _ = tandem("profile", *self.cell("--device", "host", "--ceilings", ceilings, "--no-check"))
-        said = text[text.index("ceilings, "):]
-        self.assertLessEqual(max(map(len, said.splitlines())), 100, said)
-        self.assertIn("0.0123 GB/s, cache 0.0123", " ".join(said.split()))
+        ceilings = text[text.index("ceilings, "):]
+        self.assertLessEqual(max(map(len, ceilings.splitlines())), 100, ceilings)
+        self.assertIn("0.0123 GB/s, cache 0.0123", " ".join(ceilings.split()))
         self.bad("is no record of ceilings", "profile", *self.cell("--device", "host", "--ceilings", self.good))
 
-    def test_a_limit_of_memory_is_for_cells(self):
+    def test_a_memory_limit_applies_to_cells_only(self):
         status, text, errors = tandem("profile", *self.cell("--device", "host", "--ceilings", self.known, "--memory", "4MB"))
         self.assertEqual((status, errors), (0, []), text)
         self.assertIn("answer: right", text)
@@ -196,15 +196,15 @@ class Profile(Case):
         counters = script.counters_of([m for name, m in launches if name == "ENTRY"], 2)
         self.assertEqual({name: counters[name] for name in ("launches", "duration_ns", "dram_bytes", "l2_bytes", "instructions", "registers")},
                          {"launches": 1, "duration_ns": 2000, "dram_bytes": 3e6, "l2_bytes": 4e6, "instructions": 600, "registers": 40})
-        # By duration: a quarter of the first, three of the second.
+        # Weighted by duration: a quarter of the first, three quarters of the second.
         self.assertAlmostEqual(counters["sm_percent"], 25.5)
         self.assertAlmostEqual(counters["dram_percent"], 65)
         self.assertEqual((counters["top_stall"], counters["top_stall_warps"], counters["bound"]), ("long_scoreboard", 3.5, "bandwidth"))
         self.assertEqual(script.counters_of([launches[2][1]], 1)["bound"], "latency")
         self.assertEqual(script.launches_of(LONG_FORM), [("kernel", {"gpu__time_duration.sum": 1500.0, "dram__bytes.sum": 2e9})])
-        # Kernels of 5 % or more have a row each, those that the profiler did not see none.
-        kernels = [{"entry": name, "share": share, "device_ns": {"median": 2000}, "over_floor": None, "counters": c}
-                   for name, share, c in (("long", 0.9, counters), ("short", 0.04, counters), ("unseen", 0.06, None))]
+        # Kernels of 5 % or more have a row each, except those that the profiler did not see.
+        kernels = [{"entry": name, "share": fraction, "device_ns": {"median": 2000}, "over_floor": None, "counters": c}
+                   for name, fraction, c in (("long", 0.9, counters), ("short", 0.04, counters), ("unseen", 0.06, None))]
         table = script.table({"kernels": kernels}).splitlines()
         self.assertEqual(len(table), 2, table)
         self.assertRegex(table[1], r"^long +2 +90% +- +3 +4 +65 .*long_scoreboard +bandwidth$")
@@ -214,7 +214,7 @@ class Profile(Case):
                          ["plates", "--set", "k=8"])
 
     def counted(self, ncu, *more):
-        """scripts/gpu/profile with such a profiler: exit code, what it printed, the record."""
+        """Runs scripts/gpu/profile with this replacement of ncu: exit code, output, record."""
         fake, out = self.work / "ncu", self.work / "counted.jsonl"
         out.unlink(missing_ok=True)
         fake.write_text("#!/bin/sh\n" + ncu)
@@ -245,7 +245,7 @@ cp {self.work}/raw.csv "$2"
         self.assertFalse({"--repeat", "--all", "--ceilings", "--out"} & set(words))
         self.assertTrue({"--clock-control", "--profile-from-start", "run"} < set(words))
 
-    def test_counters_that_cannot_be_had(self):
+    def test_unavailable_counters(self):
         done, records, _ = self.counted("echo '==ERROR== ERR_NVGPUCTRPERM: no permission' >&2; exit 1\n")
         self.assertEqual(done.returncode, 3)
         self.assertIn("ERR_NVGPUCTRPERM", done.stderr)

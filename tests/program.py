@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What tests of the program share: PROGRAM and SOURCE, the two arguments of each, how it is run, meshes, a case."""
+"""Helpers shared by tests of the program: PROGRAM and SOURCE (the two arguments of each test), running the program,
+meshes, a test case."""
 import csv
 import itertools
 import json
@@ -18,9 +19,9 @@ if len(sys.argv) != 3:
     sys.exit(sys.modules["__main__"].__doc__)
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
-# Tests of label full ask for every scene, preset and device; otherwise some of each, which compile or walk less.
+# Tests of label full use every scene, preset and device; otherwise a few, to compile and traverse less.
 LONG = "TANDEM_LONG_FORM" in os.environ
-# Rooms for a million pairs, and queues to match, are what takes the host longest with so few.
+# Capacities for a million pairs, and queues to match, would take the host most of the time for so few pairs.
 SMALL = {name: 65536 for name in ("pair_capacity", "contact_capacity", "queue_bytes", "seed_capacity", "tile_pair_capacity")}
 
 
@@ -29,9 +30,11 @@ def sets(settings):
 
 
 def tandem(*arguments, environment=None, timeout=300, address_space=None):
-    """(exit code, standard output, lines of standard error less PoCL's own); with so many bytes of address space.
-    A run takes one sample of a cell unless it says otherwise: ten rounds are for who measures."""
-    is_plan = any(str(argument).endswith("plan.json") for argument in arguments)  # which says itself when a cell has enough
+    """Returns (exit code, standard output, lines of standard error without PoCL's own). `address_space` limits the
+    bytes of address space. A run takes one sample per cell unless the arguments choose otherwise: the default of
+    ten rounds is for measurements."""
+    # a plan has its own stopping criterion
+    is_plan = any(str(argument).endswith("plan.json") for argument in arguments)
     if arguments[:1] == ("run",) and not is_plan and not {"--repeat", "--noise", "--seconds", "--profile"} & set(arguments):
         arguments = ("run", "--repeat", 1, *arguments[1:])
     limit = (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space))) if address_space else None
@@ -42,8 +45,9 @@ def tandem(*arguments, environment=None, timeout=300, address_space=None):
 
 
 def tried(what, count, unit, where="host", lost=0, crashes=0, hangs=0, others=0):
-    """Adds a line to the file TANDEM_TRIED, if there is one in the environment, for scripts/tried (tests/support/tried.h has the same):
-    so many units were tried; answers or records lost, crashes and hangs of the program, and how many ended in other people's libraries."""
+    """Appends a line to the file that TANDEM_TRIED names, if it is set, for scripts/tried (tests/support/tried.h has
+    the same function): `count` units were tried; `lost` answers or records; `crashes` and `hangs` of the program;
+    `others` ended in other people's libraries."""
     if "TANDEM_TRIED" not in os.environ:
         return
     commit = re.search(r"commit (\w+)", subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True, check=True).stdout)[1]
@@ -79,7 +83,7 @@ def gmsh(path, points, tets, kind=4):
 
 
 class Case(unittest.TestCase):
-    """What every case needs: a folder, a good mesh in it, and readers of what the program writes."""
+    """Base of all test cases: a folder with a valid mesh, and readers of the program's output."""
 
     @classmethod
     def setUpClass(cls):
@@ -101,7 +105,8 @@ class Case(unittest.TestCase):
         return records
 
     def rounds_of_two_samples(self, record):
-        """How many there were: each a round of its own, but where preparing one takes seconds, as on a busy machine."""
+        """Checks that the record has two samples, one per round; in one round if preparation takes seconds, as on a
+        busy machine."""
         rounds = record["total_ns"]["rounds"]
         self.assertEqual(len(record["total_ns"]["samples"]), 2)
         self.assertIn(rounds, ([0, 1], [0, 0]))
@@ -118,7 +123,7 @@ class Case(unittest.TestCase):
         return out
 
     def dump(self, path, header):
-        """Rows of a dump below its header, which must be sorted by their first five numbers."""
+        """Rows of a dump after its header, which must be sorted by their first five numbers."""
         rows = list(csv.reader(path.read_text().splitlines()))
         self.assertEqual(",".join(rows[0]), header)
         ids = [tuple(map(int, row[:5])) for row in rows[1:]]

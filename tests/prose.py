@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""prose.py PROGRAM SOURCE: scripts/check_prose on small trees, in which each rule holds and does not, and on this tree by the rules that
-hold in it; scripts/docs."""
+"""prose.py PROGRAM SOURCE: scripts/check_prose on small trees that satisfy and violate each rule, and on this tree
+for the rules that it satisfies; scripts/docs."""
 import contextlib
 import importlib.machinery
 import importlib.util
@@ -18,7 +18,7 @@ if len(sys.argv) != 3:
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 SOURCE = pathlib.Path(sys.argv[2]).resolve()
 
-# Rules that hold in this tree; `scripts/check_prose --help` lists all.
+# Rules that this tree satisfies; `scripts/check_prose --help` lists all.
 CLEAN = ["mean", "long", "size", "link", "program", "allowed"]
 
 HELP = """#!/usr/bin/env python3
@@ -37,7 +37,7 @@ def sentence(count):
 
 
 def loaded(script):
-    """A script, in this process."""
+    """Loads a script into this process."""
     sys.dont_write_bytecode = True
     loader = importlib.machinery.SourceFileLoader(script, str(SOURCE / "scripts" / script))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader(loader.name, loader))
@@ -178,7 +178,7 @@ class Sources(Tree):
                          ["docs/page.md:1: 'halo'", "docs/page.md:1: 'becomes of'", "docs/page.md:4: 'Halo'", "docs/page.md:6: 'halo'"])
 
     def test_the_list(self):
-        """The committed list has what it is for, and leaves ordinary words alone in prose."""
+        """The committed list matches its words, and accepts ordinary words in prose."""
         self.retired((SOURCE / "scripts/prose/retired.txt").read_text())
         self.write(a_o_cpp="// See here: others have a share of the room, a great deal, and deal with peer access.\nint placed, shared, AxisOrders, hereafter, meetings;\n")
         self.assertEqual(self.found("retired"), [])
@@ -272,7 +272,7 @@ class Use(Tree):
 
 
 class Docs(unittest.TestCase):
-    """scripts/docs, which needs doxygen for the reference itself."""
+    """scripts/docs, without doxygen, which only the reference itself needs."""
 
     def run_docs(self, *arguments, **environment):
         done = subprocess.run([sys.executable, "-B", SOURCE / "scripts/docs", *map(str, arguments)], capture_output=True, text=True, timeout=60, check=False,

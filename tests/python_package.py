@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""python_package.py PROGRAM SOURCE: the Python package, from its wheel alone: what it reads is what tandem export --csv says of
-the committed records, what it compares what tandem compare says; figures name who wins; the notebook runs; bad files are one line."""
+"""python_package.py PROGRAM SOURCE: the Python package, from its wheel alone: it reads the values of tandem export
+--csv from the committed records, and its comparisons equal tandem compare. Figures name the best cells, the
+notebook runs, and bad files give one line."""
 import csv
 import dataclasses
 import io
@@ -27,7 +28,8 @@ H200 = SOURCE / "results/h200"
 
 
 def setUpModule():
-    """Builds the wheel of a copy of what the package is made of, without its compiled part, and imports from there."""
+    """Builds the wheel of a copy of the package's sources without its compiled part, and imports the package from
+    there."""
     global tandem, FOLDER
     FOLDER = tempfile.TemporaryDirectory(prefix="tandem-package")
     copy = pathlib.Path(FOLDER.name) / "source"
@@ -37,7 +39,7 @@ def setUpModule():
         (copy / name).parent.mkdir(exist_ok=True)
         shutil.copy(SOURCE / name, copy / name)
     tools = SOURCE / ".cache/python"
-    assert tools.exists(), "scikit-build-core is not here; scripts/setup fetches it"
+    assert tools.exists(), "scikit-build-core is missing; scripts/setup fetches it"
     code = "import sys; from scikit_build_core.build import build_wheel; build_wheel(sys.argv[1], {'wheel.cmake': 'false'})"
     done = subprocess.run([sys.executable, "-c", code, FOLDER.name], cwd=copy, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(tools)})
     assert done.returncode == 0, done.stderr
@@ -54,17 +56,17 @@ def tearDownModule():
 
 
 def text_of(value):
-    """As the table of export --csv has it."""
+    """In the format of export --csv."""
     if pandas.isna(value):
         return ""
     return str(value).lower() if str(value) in ("True", "False") else str(value)
 
 
 class Reading(unittest.TestCase):
-    def test_cells_are_the_table_of_export(self):
+    def test_cells_equal_the_table_of_export(self):
         for path in sorted([*H200.glob("*.jsonl"), *(SOURCE / "results/cpu").glob("*.jsonl")]):
             done = subprocess.run([PROGRAM, "export", path, "--csv"], capture_output=True, text=True)
-            if done.returncode != 0:  # no records of cells
+            if done.returncode != 0:  # not records of cells
                 with self.assertRaises(tandem.RecordError, msg=path.name):
                     tandem.read(path)
                 continue
@@ -74,13 +76,13 @@ class Reading(unittest.TestCase):
                 self.assertEqual([*rows[0], "file", "partial"], list(cells.columns))
                 self.assertEqual(len(rows) - 1, len(cells))
                 for name, *texts in zip(*rows):
-                    for here, there in zip(cells[name], texts):
+                    for value, text in zip(cells[name], texts):
                         if name in ("ms", "ms_low", "ms_high") or name.endswith("_ms"):
-                            self.assertEqual(there, "" if math.isnan(here) else f"{here:.9g}", name)
+                            self.assertEqual(text, "" if math.isnan(value) else f"{value:.9g}", name)
                         elif name == "date":
-                            self.assertEqual(there, here.strftime("%Y-%m-%dT%H:%M:%SZ"))
-                        elif there != text_of(here):  # 1e+06 is 1000000.0
-                            self.assertEqual(float(there), float(here), name)
+                            self.assertEqual(text, value.strftime("%Y-%m-%dT%H:%M:%SZ"))
+                        elif text != text_of(value):  # 1e+06 is 1000000.0
+                            self.assertEqual(float(text), float(value), name)
 
     def test_other_frames_are_of_the_same_records(self):
         path = H200 / "plan.jsonl"
@@ -102,7 +104,7 @@ class Reading(unittest.TestCase):
         self.assertEqual(len(records.cells), len(raw))
         self.assertGreater(records.frames["ms"].min(), 0)
 
-    def test_errors_are_those_of_the_truth(self):
+    def test_errors_equal_those_of_the_truth(self):
         records = tandem.read(H200 / "accuracy.jsonl")
         written = [json.loads(line) for line in (H200 / "accuracy.jsonl").read_text().splitlines()]
         self.assertEqual(set(records.errors["cell"]), {i for i, r in enumerate(written) if r["error"]["truth"]})
@@ -122,8 +124,8 @@ class Reading(unittest.TestCase):
         self.assertEqual(list(cells["file"].unique()), [str(one), str(other)])
         self.assertEqual(len(cells), len(tandem.read(one).cells) + len(tandem.read(other).cells))
 
-    def test_a_result_stands_once(self):
-        """An interrupted cell, the same gone on with in another session, copies, and two that contradict each other."""
+    def test_every_result_occurs_once(self):
+        """An interrupted cell, its continuation in another session, copies, and two contradicting records."""
         line = json.loads((H200 / "plan.jsonl").read_text().splitlines()[0])
         rounds = sorted(set(line["total_ns"]["rounds"]))
 
@@ -148,7 +150,8 @@ class Reading(unittest.TestCase):
             self.assertEqual(read(begun), [("a", True)])
             self.assertEqual(read(begun, whole), [("b", False)])
             self.assertEqual(read(whole + begun + whole, whole, other), [("b", False), ("c", False)])
-            self.assertEqual(read(with_rounds(5, "a", 2), whole), [("a", True), ("b", False)])  # not what it went on with
+            # without the record that it continues
+            self.assertEqual(read(with_rounds(5, "a", 2), whole), [("a", True), ("b", False)])
             gpus = [{**line["devices"][0], "id": f"cuda:{i}"} for i in range(2)]
             self.assertEqual(len(read(with_rounds(9, "s", devices=gpus[:1]), with_rounds(9, "s", 2, devices=gpus[1:]))), 2)
             with self.assertRaises(tandem.RecordError) as caught:
@@ -177,7 +180,7 @@ class Reading(unittest.TestCase):
         with self.assertRaises(tandem.RecordError):
             tandem.read([])
 
-    def test_a_torn_line_is_warned_of(self):
+    def test_a_torn_line_gives_a_warning(self):
         good = (H200 / "seeds.jsonl").read_text().splitlines()[0]
         with tempfile.NamedTemporaryFile("w", suffix=".jsonl") as file:
             file.write(good + "\n" + good[:100])
@@ -189,20 +192,20 @@ class Reading(unittest.TestCase):
 class Comparing(unittest.TestCase):
     def expect_same(self, old, new):
         done = subprocess.run([PROGRAM, "compare", old, new, "--format", "json"], capture_output=True, text=True)
-        said = json.loads(done.stdout)
+        expected = json.loads(done.stdout)
         mine = tandem.compare(old, new)
-        self.assertEqual(mine.changed, said["changed"])
-        self.assertEqual(len(mine.cells), len(said["cells"]))
-        for cell in said["cells"]:
+        self.assertEqual(mine.changed, expected["changed"])
+        self.assertEqual(len(mine.cells), len(expected["cells"]))
+        for cell in expected["cells"]:
             row = mine.cells.loc[cell["key"]]
             self.assertEqual(row["verdict"], cell["verdict"])
             self.assertEqual(row["paired"], cell["paired"])
             for name in ("ratio", "low", "high", "p", "p_holm", "least_effect"):
-                there = (cell["times"] or {}).get(name)
-                if there is None:
+                ratio = (cell["times"] or {}).get(name)
+                if ratio is None:
                     self.assertTrue(math.isnan(row[name]), name)
                 else:
-                    self.assertAlmostEqual(row[name] / there if there else row[name] + 1, 1, delta=1e-9, msg=name)
+                    self.assertAlmostEqual(row[name] / ratio if ratio else row[name] + 1, 1, delta=1e-9, msg=name)
         return mine
 
     def changed(self, lines, change):
@@ -215,7 +218,7 @@ class Comparing(unittest.TestCase):
                 file.write(json.dumps(record) + "\n")
         return file.name
 
-    def test_says_what_the_program_says(self):
+    def test_equals_the_program(self):
         seeds = f"{H200}/seeds.jsonl"
         self.expect_same(f"{seeds}@4594fb1", f"{seeds}@8c7a169")
         lines = pathlib.Path(seeds).read_text().splitlines()[:14]
@@ -238,7 +241,7 @@ class Comparing(unittest.TestCase):
         self.assertEqual(len(mine.left_out), 1)
 
     def test_ties_and_large_numbers(self):
-        """Rounded times tie; more pairs than are counted exactly are approximated."""
+        """Rounded times tie; more pairs than the exact count supports are approximated."""
         lines = (H200 / "seeds.jsonl").read_text().splitlines()[:3]
 
         def of(count, step, session):
@@ -271,7 +274,7 @@ class Drawing(unittest.TestCase):
     def tearDown(self):
         matplotlib.pyplot.close("all")
 
-    def test_cells_are_all_there_and_the_first_is_named(self):
+    def test_all_cells_are_drawn_and_the_first_is_named(self):
         axes = tandem.plot_cells(self.plates)
         names = [text.get_text() for text in axes.get_yticklabels()]
         self.assertEqual(len(names), len(self.plates.cells))
@@ -280,13 +283,13 @@ class Drawing(unittest.TestCase):
         self.assertIn(f"{names[0]} is the fastest, the next takes", title)
         self.assertTrue(names[0].startswith("tiled"), names)
 
-    def test_those_not_told_apart_are_said_to_be(self):
+    def test_indistinguishable_cells_are_marked(self):
         cells = self.plates.cells.copy()
         cells["ms_high"] = cells["ms"].max()
         records = dataclasses.replace(self.plates, cells=cells)
         self.assertIn("not told apart", " ".join(tandem.plot_cells(records).get_title("left").split()))
 
-    def test_what_is_wrong_is_never_drawn(self):
+    def test_wrong_cells_are_never_drawn(self):
         cells = self.plates.cells.copy()
         first = cells["ms"].idxmin()
         cells["status"] = cells["status"].astype(str)
@@ -299,7 +302,7 @@ class Drawing(unittest.TestCase):
             warnings.simplefilter("ignore")
             tandem.plot_cells(records.of([first]))
 
-    def test_stages_and_frames_have_what_is_recorded(self):
+    def test_stages_and_frames_equal_the_records(self):
         axes = tandem.plot_stages(self.plates)
         drawn = sum(patch.get_width() for patch in axes.patches)
         stages = self.plates.cells.filter(like="stage_").fillna(0).to_numpy().sum()
@@ -315,7 +318,7 @@ class Drawing(unittest.TestCase):
         self.assertIn(str(best), axes.get_title("left"))
         self.assertEqual(sum(len(line.get_xdata()) for line in axes.lines), len(records.cells))
 
-    def test_errors_name_those_that_nothing_beats(self):
+    def test_errors_name_the_cells_that_none_beats(self):
         records = tandem.read(H200 / "accuracy.jsonl")
         scene = records.cells["scene"].str.startswith("plates") & (records.cells["device"] == "cuda:0")
         plates = records.of(scene & (records.cells["set_k"] == 18))
@@ -335,7 +338,7 @@ class Drawing(unittest.TestCase):
         self.assertEqual(len(axes.lines), 2 * len(points))
         self.assertRegex(" ".join(axes.get_title("left").split()), "has the least error and takes [0-9.]+ times as long as the fastest|is the fastest and has the least")
 
-    def test_no_error_at_all_is_drawn_too(self):
+    def test_zero_errors_are_drawn(self):
         errors = self.plates.cells.index[:3]
         table = pandas.DataFrame({"cell": errors, "error": "false_share", "median": [0.0, 0.5, 0.25], "p99": None, "max": None})
         axes = tandem.plot_errors(dataclasses.replace(self.plates, errors=table), "false_share")
@@ -345,7 +348,7 @@ class Drawing(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "volume: no such error in these records; there are false_share"):
             tandem.plot_errors(dataclasses.replace(self.plates, errors=table), "volume")
 
-    def test_what_cannot_be_drawn(self):
+    def test_records_that_cannot_be_drawn(self):
         with self.assertRaisesRegex(ValueError, "no such setting in these records; there are .*seed_threshold"):
             tandem.plot_sweep(self.plates, "seed_treshold")
         with self.assertRaisesRegex(ValueError, "combinations of scene, frames and device"):

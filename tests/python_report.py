@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""python_report.py PROGRAM SOURCE: what a page says of records, from the package python/tandem/report alone: groups, ranks, sentences, what
-there is no room for, interrupted cells, damaged records, libraries that are missing, pages that no text can break out of."""
+"""python_report.py PROGRAM SOURCE: content of a page about records, from the package python/tandem/report alone:
+groups, ranks, sentences, omissions for lack of space, interrupted cells, damaged records, missing libraries, and
+escaping of all text."""
 import copy
 import json
 import lzma
@@ -35,7 +36,7 @@ TWO_MS = [2 * ms for ms in ONE_MS]
 
 
 def cell_of(algorithm, rounds, k="18", **changes):
-    """A cell with these times of its rounds, in ms of its one frame."""
+    """A cell with these times of its rounds, in ms of its single frame."""
     names = {"algorithm": algorithm, "preset": "resident", "devices": "cuda:0", "model": "GPU", "driver": "1", "scene": "pile",
              "frames": "frames 0:0", "handling": "", "digest": "digest 1"}
     recorded = RecordedCell(line=1, schema=3, key=f"{algorithm}|k={k}", status="ok", failure="", names=names, settings={"k": k}, frames=1,
@@ -46,7 +47,7 @@ def cell_of(algorithm, rounds, k="18", **changes):
     return ShownCell(recorded, "pile:bodies=3", "pile", "1", row=[f"text {algorithm}"] * (len(FIELDS) - 1))
 
 
-def said(cells):
+def groups_and_sentences(cells):
     """The groups, and the sentences of the first."""
     groups = groups_of(cells)
     return groups, group_sentences(groups[0], cells)
@@ -55,7 +56,7 @@ def said(cells):
 class Sentences(unittest.TestCase):
     def test_the_fastest_and_by_how_much(self):
         cells = [cell_of("slow", TWO_MS), cell_of("quick", ONE_MS)]
-        groups, sentences = said(cells)
+        groups, sentences = groups_and_sentences(cells)
         self.assertEqual([group.title for group in groups], ["pile, frames 0:0, k = 18, on cuda:0 (GPU)"])
         self.assertEqual([ranked.cell for ranked in groups[0].ranked], [1, 0])
         self.assertIn("quick is the fastest of 2 with 1.000 ms a frame; the next, slow, takes 2.000 times as long [", sentences)
@@ -64,23 +65,23 @@ class Sentences(unittest.TestCase):
         self.assertEqual(len(summary), 1)
 
     def test_the_slowest_of_three(self):
-        _, sentences = said([cell_of("a", ONE_MS), cell_of("b", TWO_MS), cell_of("c", [3 * ms for ms in ONE_MS])])
+        _, sentences = groups_and_sentences([cell_of("a", ONE_MS), cell_of("b", TWO_MS), cell_of("c", [3 * ms for ms in ONE_MS])])
         self.assertIn("a is the fastest of 3 with 1.000 ms a frame; the next, b, takes 2.000", sentences)
         self.assertIn("The slowest, c, takes 3.000 times as long", sentences)
 
-    def test_what_is_not_told_apart(self):
+    def test_indistinguishable_cells(self):
         nearly = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
-        groups, sentences = said([cell_of("a", ONE_MS), cell_of("b", nearly)])
+        groups, sentences = groups_and_sentences([cell_of("a", ONE_MS), cell_of("b", nearly)])
         self.assertFalse(groups[0].ranked[1].is_distinguished)
         self.assertIn("is not told apart from it (1.000 times its time [", sentences)
 
-    def test_one_round_is_not_sure(self):
-        groups, sentences = said([cell_of("a", [1.0]), cell_of("b", [2.0])])
+    def test_one_round_is_not_enough(self):
+        groups, sentences = groups_and_sentences([cell_of("a", [1.0]), cell_of("b", [2.0])])
         self.assertFalse(groups[0].ranked[1].is_distinguished)
         self.assertIn("takes 2.000 times as long, in one round: how sure is not known", sentences)
 
     def test_rounds_of_one_session_are_pairs(self):
-        """Rounds that rise and fall together are told apart, which those of two sessions are not."""
+        """Rounds that rise and fall together distinguish cells of one session, but not cells of two sessions."""
         tide = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]
         for sessions, is_distinguished in ((("s", "s"), True), (("s", "t"), False)):
             cells = [cell_of(name, [factor * ms for ms in tide], session=session)
@@ -91,7 +92,7 @@ class Sentences(unittest.TestCase):
         cells = [cell_of("a", TWO_MS), cell_of("b", ONE_MS, status="wrong"), cell_of("c", ONE_MS, status="failed", failure="no memory"),
                  cell_of("d", ONE_MS)]
         cells[3].is_older = True
-        groups, sentences = said(cells)
+        groups, sentences = groups_and_sentences(cells)
         self.assertEqual([ranked.cell for ranked in groups[0].ranked], [0])
         self.assertIn("a takes 2.000 ms a frame; there is nothing to compare it with.", sentences)
         self.assertIn("b was wrong, and is not ranked: its answer is not the reference's.", sentences)
@@ -101,7 +102,7 @@ class Sentences(unittest.TestCase):
         self.assertIn("1 were recorded again later", summary[1])
 
     def test_of_many_failures_some_are_named(self):
-        _, sentences = said([cell_of(f"a{i}", [], status="failed", failure="x" * 150) for i in range(40)])
+        _, sentences = groups_and_sentences([cell_of(f"a{i}", [], status="failed", failure="x" * 150) for i in range(40)])
         self.assertTrue(sentences.startswith("None of its cells has times that count."), sentences)
         self.assertTrue(sentences.endswith(" There are more."), sentences)
         self.assertLess(len(sentences), 1300)
@@ -111,12 +112,12 @@ class Sentences(unittest.TestCase):
 
     def test_different_answers_have_no_fastest(self):
         cells = [cell_of("a", ONE_MS, pairs=Answer(3, "1", "2")), cell_of("b", TWO_MS, pairs=Answer(4, "1", "2"))]
-        groups, sentences = said(cells)
+        groups, sentences = groups_and_sentences(cells)
         self.assertIn("none is said to be the fastest", sentences)
         self.assertEqual(summary_sentences(groups, cells), [])
 
     def test_without_pairs_nothing_is_ranked(self):
-        groups, _ = said([cell_of("a", ONE_MS, pairs=Answer(0, "0", "0")), cell_of("b", TWO_MS)])
+        groups, _ = groups_and_sentences([cell_of("a", ONE_MS, pairs=Answer(0, "0", "0")), cell_of("b", TWO_MS)])
         self.assertEqual([ranked.cell for ranked in groups[0].ranked], [1])
 
     def test_processors(self):
@@ -145,7 +146,7 @@ class Conditions(unittest.TestCase):
 
 
 class Data(unittest.TestCase):
-    def test_leaves_out_the_last_cells_and_says_so(self):
+    def test_omits_the_last_cells_with_a_note(self):
         data = data_of(Records(cells=[cell_of(f"a{i}", ONE_MS) for i in range(200)]), 40_000, "", "")
         self.assertLess(len(data.json), 50_000)
         made = json.loads(data.json)
@@ -154,7 +155,7 @@ class Data(unittest.TestCase):
         self.assertEqual((len(made["cells"]), made["notes"]), (data.cells, data.notes))
         self.assertIn("of 200 cells are left out", data.notes[0])
 
-    def test_curves_go_before_cells(self):
+    def test_curves_are_omitted_before_cells(self):
         cells = [cell_of(f"a{i}", ONE_MS) for i in range(20)]
         for cell in cells:
             cell.curve, cell.rounds = [0.123] * 500, [1.5] * 10
@@ -166,7 +167,7 @@ class Data(unittest.TestCase):
         self.assertTrue(0 < missing < 20, missing)
         self.assertEqual(less["notes"], [f"times by frame or by round of some cells are left out ({missing} lists), so that the page stays small"])
 
-    def test_values_in_common_stand_once(self):
+    def test_common_values_are_stored_once(self):
         made = json.loads(data_of(Records(cells=[cell_of("a", ONE_MS), cell_of("a", TWO_MS)]), 1_000_000, "p", "d").json)
         self.assertEqual(made["values"], ["text a"])
         self.assertEqual((made["program"], made["date"], made["fields"][-1]), ("p", "d", "label"))
@@ -199,7 +200,7 @@ class Reading(Case):
     def shown(self, records):
         return [(cell.recorded.session, cell.is_older) for cell in records.cells]
 
-    def test_a_record_and_what_goes_on_with_it(self):
+    def test_a_record_and_its_continuation(self):
         begun, whole = self.of_rounds(3, "a"), self.of_rounds(9, "b")
         for records in ((begun, whole), (whole, begun)):
             read = self.read(*records)
@@ -214,17 +215,17 @@ class Reading(Case):
         read = self.read(self.of_rounds(3, "a", 2), self.of_rounds(9, "b"))
         self.assertEqual((self.shown(read), read.cell_records), ([("a", True), ("b", False)], 2))
 
-    def test_a_copy_stands_once(self):
+    def test_a_copy_is_shown_once(self):
         self.assertEqual(self.shown(self.read(self.of_rounds(9, "a"), self.of_rounds(9, "a"))), [("a", False)])
 
-    def test_the_last_that_is_ok_stands_for_its_key(self):
+    def test_the_last_ok_record_represents_its_key(self):
         failed = self.changed(session="f", status="failed", failure="lost", total_ns=None)
         good, again = self.of_rounds(5, "a"), self.of_rounds(5, "b", 2)
         for records, older in (((good, again), [True, False]), ((good, failed), [False, True]), ((failed, good), [True, False]),
                                ((failed, {**failed, "session": "g"}), [True, False]), ((good, failed, again), [True, True, False])):
             self.assertEqual([cell.is_older for cell in self.read(*records).cells], older)
 
-    def test_of_too_many_one_a_key_is_kept(self):
+    def test_of_too_many_records_one_per_key_is_kept(self):
         keys = [self.of_rounds(5, f"{i}", 1 + i / 100, key=f"key {i % 4}") for i in range(8)]
         read = self.read(*keys, most=6)
         self.assertEqual([cell.recorded.session for cell in read.cells], ["6", "7", "4", "5"])
@@ -233,14 +234,14 @@ class Reading(Case):
         self.assertEqual(len(read.cells), 3)
         self.assertRegex(read.notes[-1], "^[0-9]+ of 9 records of cells are left out, 1 of them failed or wrong: a page has room for 3; ")
 
-    def test_a_torn_line_is_ignored_and_said(self):
+    def test_a_torn_line_is_ignored_and_reported(self):
         read = read_records([self.file(self.record, self.record, end="")])
         self.assertEqual(len(read.cells), 1)
         self.assertRegex(read.notes[0], r"some\.jsonl:2: the last line has no end and is ignored; it is cut off or still being written$")
         with self.assertRaisesRegex(lines.RecordError, "its only line has no end; name a file of records"):
             read_records([self.file(self.record, end="")])
 
-    def test_numbers_that_json_has_not(self):
+    def test_numbers_that_json_lacks(self):
         for text in ('{"key": NaN}', '{"key": -Infinity}', '{"key": 1e999}', '{"key": 1' + "0" * 5000 + "}", "[" * 100_000, "\\"):
             path = self.work / "numbers.jsonl"
             path.write_text(text + "\n")
@@ -248,7 +249,7 @@ class Reading(Case):
                 read_records([str(path)])
 
     def test_damaged_records_are_one_line(self):
-        """Each part of records of every kind is left out or becomes something else: they are shown, or one line says where they stand."""
+        """Each part of records of every kind is removed or replaced: they are shown, or one line names the position."""
         chance = random.Random(20180606)
         sources = [H200 / name for name in ("plan.jsonl", "accuracy.jsonl", "profile.jsonl", "ceilings.jsonl", "simulation-funnel.jsonl")]
         shown = refused = 0
@@ -266,7 +267,7 @@ class Reading(Case):
         self.assertGreater(refused, 100)
 
     def short(self, value):
-        """With lists of two, which are as good as longer ones here."""
+        """With lists of two elements, which suffice for the test."""
         if isinstance(value, dict):
             return {name: self.short(part) for name, part in value.items() if name not in ("breakdown_ns", "chosen")}
         return list(map(self.short, value[:2])) if isinstance(value, list) else value
@@ -346,7 +347,7 @@ class Pages(Case):
         self.bad(["tandem view needs three.min.js", "libjs-three"], "view", "plates", "-o", page, environment=nowhere)
         self.assertFalse(page.exists())
 
-    def test_files_are_whole_or_as_they_were(self):
+    def test_files_are_complete_or_unchanged(self):
         path = self.work / "whole.txt"
         replace_whole(str(path), b"one")
         (self.work / "whole.txt.partial").write_text("what a kill has left")
@@ -362,7 +363,7 @@ class Pages(Case):
 
 
 class Commands(Case):
-    """What both commands do with the scene, which another process of the program exports."""
+    """The part of both commands that concerns the scene, which another process of the program exports."""
 
     def test_errors_of_the_export_are_the_only_line(self):
         out = ("-o", self.work / "none.html")
@@ -388,7 +389,7 @@ class Commands(Case):
         self.assertEqual((done.returncode, done.stderr, (self.work / "plates.html").exists()), (0, "", True))
 
     def end_group(self, group):
-        """What goes on where the test has failed."""
+        """Cleans up after a failed test."""
         try:
             os.killpg(group, signal.SIGKILL)
         except ProcessLookupError:

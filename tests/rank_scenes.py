@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""rank_scenes.py PROGRAM SOURCE: scenes whose frames the ranks of a job of MPI share."""
+"""rank_scenes.py PROGRAM SOURCE: scenes whose frames are distributed over the ranks of an MPI job."""
 import json
 import os
 import pathlib
@@ -14,10 +14,10 @@ from program import LONG, PROGRAM, SMALL, Case, sets, tandem
 from ranks import ENVIRONMENT, job, launch, of
 
 PILE = "pile:bodies=27,mesh=grain1,frames=2"
-ROOMS = sets({name: SMALL[name] for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")})
+CAPACITIES = sets({name: SMALL[name] for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")})
 SKEWED_CLOCKS = os.environ.get("SKEWED_CLOCKS", "")
 STUBS = pathlib.Path(os.environ.get("CUDA_STUBS", "/nonexistent"))
-CELL = ["--device", "host", "--algorithm", "tiled", *ROOMS]
+CELL = ["--device", "host", "--algorithm", "tiled", *CAPACITIES]
 
 
 def ranks_of(launcher):
@@ -49,7 +49,7 @@ class RankScenes(Case):
         self.assertIn(expected, errors[0])
         self.assertNotIn("ms/frame", text)
 
-    def test_answers_and_records_are_those_of_one_process(self):
+    def test_answers_and_records_equal_one_process(self):
         common = ["--repeat", 1, "--truth", "pairs", PILE, *CELL]
         status, _, errors = tandem("run", *common, "--out", self.work / "one.jsonl", "--dump-pairs", self.work / "one.csv",
                                    "--dump-contacts", self.work / "one-contacts.csv")
@@ -66,10 +66,10 @@ class RankScenes(Case):
             for field in ("body_pairs", "candidate_pairs", "contacts", "digest", "contact_digest", "rejected"):
                 self.assertEqual(record["work"][field], one["work"][field], field)
             self.assertEqual((record["ranks"], len(record["devices"])), (ranks, ranks))
-            shares = record["partition"]["devices"]
-            self.assertEqual(len(shares), ranks)
-            self.assertEqual([sum(pairs) for pairs in zip(*(share["candidate_pairs"] for share in shares))], one["work"]["candidate_pairs"])
-            self.assertGreater(sum(share["exchange"]["bytes"] for share in shares), 0)
+            device_work = record["partition"]["devices"]
+            self.assertEqual(len(device_work), ranks)
+            self.assertEqual([sum(pairs) for pairs in zip(*(work["candidate_pairs"] for work in device_work))], one["work"]["candidate_pairs"])
+            self.assertGreater(sum(work["exchange"]["bytes"] for work in device_work), 0)
             self.assertIn("exchange", record["stages"])
             self.assertNotEqual(record["key"], one["key"])
             for kind in ("", "-contacts"):
@@ -89,7 +89,7 @@ class RankScenes(Case):
         self.assertEqual((status, len(errors)), (3, 1), errors)
         self.assertRegex(errors[0], r"rank \d: .*raise --memory")
 
-    def test_what_is_refused_in_one_line(self):
+    def test_errors_are_one_line(self):
         self.one_line("names 3 devices for 2 ranks", PILE, "--device", "host+opencl:0+opencl:1")
         self.one_line("--device all makes several cells", PILE, "--device", "all")
         self.one_line("--isolate runs each cell in a process of its own", PILE, "--device", "host", "--isolate")
@@ -100,7 +100,8 @@ class RankScenes(Case):
 
     @unittest.skipUnless(STUBS.is_dir(), "no stubs of CUDA")
     def test_every_rank_has_a_gpu(self):
-        """As a launcher shows them: all of the machine to every rank, one to each (srun --gpus-per-task=1), one to both."""
+        """All visibilities that launchers set: all GPUs to every rank, one to each (srun --gpus-per-task=1), one to
+        both."""
         stubs = {"LD_LIBRARY_PATH": str(STUBS / "driver"), "TANDEM_NVRTC": str(STUBS / "nvrtc/libnvrtc.so"), "TANDEM_CUPTI": "", "STUB_DEVICES": "2"}
         stubs = ["env", *(f"{name}={value}" for name, value in stubs.items())]
         common = ["run", PILE, "--repeat", 1, "--truth", "none", "--no-check", "--algorithm", "tiled", "--device"]
@@ -116,9 +117,9 @@ class RankScenes(Case):
             self.assertIn(expected, errors[0])
 
     @unittest.skipUnless(SKEWED_CLOCKS, "no skewed clocks; ctest names them")
-    def test_ranks_decide_together_whatever_their_clocks_say(self):
-        """Each rank has a clock of its own pace and sleeps at random; what depends on clocks is rank 0's to decide."""
-        common = ["run", PILE, "--algorithm", "chunked,tiled", "--device", "host", *ROOMS, "--truth", "none", "--seconds", 0.8, "--noise", 1e-9]
+    def test_ranks_decide_together_with_different_clocks(self):
+        """Each rank's clock has its own pace and sleeps at random; rank 0 decides everything that depends on clocks."""
+        common = ["run", PILE, "--algorithm", "chunked,tiled", "--device", "host", *CAPACITIES, "--truth", "none", "--seconds", 0.8, "--noise", 1e-9]
         digests = set()
         for seed in range(20 if LONG else 6):
             ranks, out = (2, 4)[seed % 2], self.work / f"skewed{seed}.jsonl"
@@ -132,7 +133,7 @@ class RankScenes(Case):
                 self.assertGreaterEqual(len(set(record["total_ns"]["rounds"])), 10)
         self.assertEqual(len(digests), 1)
 
-    def test_a_rank_that_dies_ends_the_job_and_records_are_whole(self):
+    def test_a_killed_rank_ends_the_job_and_keeps_records_whole(self):
         out = self.work / "killed.jsonl"
         words = of(2)("run", PILE, "plates", *CELL, "--seconds", 60, "--noise", 1e-9, "--truth", "none", "--out", out)
         process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
@@ -145,7 +146,7 @@ class RankScenes(Case):
         self.assertNotEqual(process.returncode, 0)
         self.assertRegex(text, r"rank 1\b.*\bsignal 9")
         if out.exists():
-            self.records(out)  # whatever there is, whole and valid
+            self.records(out)  # all existing records are complete and valid
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""rank_tests.py PROGRAM SOURCE: p-values against published tables and every arrangement of ranks, ratios by hand and against what is
-known of made-up noise."""
+"""rank_tests.py PROGRAM SOURCE: p-values against published tables and all arrangements of ranks; ratios computed by
+hand and against known properties of synthetic noise."""
 import itertools
 import math
 import statistics
@@ -19,7 +19,7 @@ from tandem.comparison import matching  # noqa: E402
 
 
 def with_rank_sum(pairs, total):
-    """Differences of sizes 1 to `pairs`: the positive ones have ranks that add up to `total`."""
+    """Differences of sizes 1 to `pairs`; the ranks of the positive ones sum to `total`."""
     differences = []
     for rank in range(pairs, 0, -1):
         differences.append(rank if rank <= total else -rank)
@@ -32,7 +32,7 @@ def signed_p(pairs, total):
 
 
 def sums_p(side, other, u):
-    """Ranks 1 to all values, `side` of them on one side: the lowest, moved up one at a time until U is `u`."""
+    """Ranks from 1, `side` of them on one side: starts with the lowest ranks and moves them up until U is `u`."""
     one = list(range(1, side + 1))
     for i in range(side - 1, -1, -1):
         up = min(u, other)
@@ -48,7 +48,8 @@ class SignedRanks(unittest.TestCase):
         for pairs, total in {6: 0, 7: 2, 8: 3, 9: 5, 10: 8, 12: 13, 15: 25, 20: 52, 25: 89, 30: 137}.items():
             self.assertLessEqual(signed_p(pairs, total), 0.05, pairs)
             self.assertGreater(signed_p(pairs, total + 1), 0.05, pairs)
-        self.assertAlmostEqual(signed_p(10, 8), 50 / 1024, places=15)  # 25 of 1,024 sets of ranks add up to 8 or less
+        # 25 of 1,024 sets of ranks have a sum of 8 or less
+        self.assertAlmostEqual(signed_p(10, 8), 50 / 1024, places=15)
         for total, p in ((0, 2 / 32), (15, 2 / 32)):
             self.assertAlmostEqual(signed_p(5, total), p, places=15)
         self.assertEqual(signed_p(3, 3), 1)
@@ -56,7 +57,7 @@ class SignedRanks(unittest.TestCase):
     def test_ties_and_zeros(self):
         for differences in ([], [0, 0, 0]):
             self.assertEqual(rank_tests.signed_ranks(differences), (1, True))
-        # All ranks tie, so that this is a sign test: 1 of 6 negative or fewer, 2 * 7 / 64.
+        # All ranks tie, so this is a sign test: 1 of 6 negative or fewer, 2 * 7 / 64.
         self.assertAlmostEqual(rank_tests.signed_ranks([1, 1, 1, 1, 1, -1, 0])[0], 14 / 64, places=15)
 
     def test_every_sign(self):
@@ -68,11 +69,11 @@ class SignedRanks(unittest.TestCase):
             self.assertAlmostEqual(rank_tests.signed_ranks(sizes * sign)[0], expected, places=14)
 
     def test_approximation_by_hand(self):
-        # 60 pairs of ranks 1 to 60, of which those above 20 are positive: W = 1620, mean 915, variance 18452.5.
+        # 60 pairs of ranks 1 to 60; those above 20 are positive: W = 1620, mean 915, variance 18452.5.
         p, exact = rank_tests.signed_ranks([rank if rank > 20 else -rank for rank in range(1, 61)])
         self.assertAlmostEqual(p, math.erfc(704.5 / math.sqrt(2 * 18452.5)), delta=1e-15)
         self.assertFalse(exact)
-        # 60 pairs that all tie, 40 of them positive: W = 40 * 30.5 = 1220, and the variance is less by (60^3 - 60) / 48.
+        # 60 pairs that all tie, 40 of them positive: W = 40 * 30.5 = 1220; the variance is smaller by (60^3 - 60) / 48.
         self.assertAlmostEqual(rank_tests.signed_ranks([-1] * 20 + [1] * 40)[0], math.erfc(304.5 / math.sqrt(2 * 13953.75)), delta=1e-15)
 
 
@@ -100,7 +101,7 @@ class RankSums(unittest.TestCase):
         self.assertEqual(rank_tests.rank_sums([1] * 5, [1] * 5)[0], 1)
 
     def test_approximation_by_hand(self):
-        # 50 values of 1 and 50 of which 25 are 1: ties of 75 and 25. W = 50 * 38 = 1900, mean 2525.
+        # 50 values of 1 against 50 values, 25 of them 1: ties of 75 and 25. W = 50 * 38 = 1900, mean 2525.
         variance = 2500 / 12 * (101 - (421800 + 15600) / 9900)
         p, exact = rank_tests.rank_sums([1] * 50, [2] * 25 + [1] * 25)
         self.assertAlmostEqual(p, math.erfc(624.5 / math.sqrt(2 * variance)), delta=1e-15)
@@ -109,19 +110,19 @@ class RankSums(unittest.TestCase):
 
 
 class BothTests(unittest.TestCase):
-    def test_approximations_go_on_from_what_is_exact(self):
+    def test_approximations_continue_exact_values(self):
         random = numpy.random.default_rng(1)
         for draw in range(20):
             pairs = random.integers(40, size=50) - 14.4 - draw * 0.25
             before, after = random.integers(40, size=45), random.integers(40, size=45) + draw * 0.5
             exact = rank_tests.signed_ranks(pairs), rank_tests.rank_sums(before, after)
-            # One value more in the middle changes little but the method.
+            # One more value in the middle changes little except the method.
             near = rank_tests.signed_ranks([*pairs, 0.001]), rank_tests.rank_sums([*before, 20], [*after, 20])
             for (p, counted), (approximate, also) in zip(exact, near):
                 self.assertEqual((counted, also), (True, False))
                 self.assertAlmostEqual(approximate, p, delta=0.02 + 0.05 * p)
 
-    def test_least_values_are_those_of_sides_apart(self):
+    def test_least_values_are_those_of_separated_sides(self):
         for n in range(1, 13):
             self.assertAlmostEqual(rank_tests.least_signed_rank_p(n), signed_p(n, 0), places=15)
             for m in range(1, 13):
@@ -141,14 +142,14 @@ class Ratios(unittest.TestCase):
         self.assertAlmostEqual(ratio.value, 3.5 / 2, places=15)
         self.assertTrue(ratio.low <= ratio.value <= ratio.high)
 
-    def test_the_programs_ratio_is_the_same(self):
-        """tests/unit/sampling_ratio.cpp has the same numbers of the program's table."""
+    def test_the_ratio_equals_the_programs(self):
+        """tests/unit/sampling_ratio.cpp has the same numbers for the program's table."""
         logs = [0.01 * (i * 7 % 11) - 0.03 for i in range(12)]
         ratio = resampling.paired_ratio([1] * 12, numpy.exp(logs))
         for value, expected in ((ratio.value, 1.015113064615719), (ratio.low, 0.9801986733067553), (ratio.high, 1.0512710963760241)):
             self.assertAlmostEqual(value, expected, delta=1e-14)
 
-    def test_generator_is_the_standards(self):
+    def test_the_generator_is_the_standard_one(self):
         """The 10,000th word of mt19937_64 from its default seed is in the C++ standard, [rand.predef]."""
         words, seed = resampling._words, resampling.SEED
         try:
@@ -164,8 +165,9 @@ class Ratios(unittest.TestCase):
         self.assertEqual(ratio.log_error, 0)
         self.assertEqual(resampling.paired_ratio([1], [1.6]).log_error, 0)
 
-    def test_intervals_hold_the_truth(self):
-        """3 standard errors of 1,000 draws are 2 %; unpaired medians of so few values are held more often."""
+    def test_intervals_contain_the_truth(self):
+        """Three standard errors of 1,000 draws are 2 %; unpaired intervals of so few values contain the median more
+        often."""
         random = numpy.random.default_rng(4)
 
         def coverage(ratio, rounds):
@@ -179,8 +181,8 @@ class Ratios(unittest.TestCase):
             self.assertTrue(0.94 < coverage(resampling.unpaired_ratio, rounds) < 0.995, rounds)
             self.assertTrue(0.94 < coverage(resampling.paired_ratio, rounds) < 0.99, rounds)
 
-    def test_intervals_of_medians_are_those_of_the_program(self):
-        """To the bit: those of records, which the program wrote."""
+    def test_intervals_of_medians_equal_the_programs(self):
+        """Bit for bit equal to the intervals that the program wrote to records."""
         found = 0
         for name in ("h200/plan.jsonl", "h200/seeds.jsonl", "h100x2/shares.jsonl"):
             for record, place in lines.each(SOURCE / "results" / name):
@@ -194,7 +196,7 @@ class Ratios(unittest.TestCase):
             tail = scipy.stats.norm.sf(math.sqrt(values / (values - 1)) * scipy.stats.t.ppf(0.975, values - 1))
             self.assertAlmostEqual(resampling.interval_tail(values) / tail, 1, delta=1e-7)
 
-    def test_error_is_the_deviation_of_what_is_estimated(self):
+    def test_the_error_is_the_deviation_of_the_estimate(self):
         random = numpy.random.default_rng(5)
         ratios = [resampling.unpaired_ratio(*numpy.exp(random.normal(0, 0.03, (2, 15)))) for _ in range(400)]
         deviation = math.sqrt(statistics.fmean(math.log(ratio.value)**2 for ratio in ratios))

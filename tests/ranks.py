@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""ranks.py PROGRAM SOURCE: plans under a launcher of MPI, whose ranks measure each cell together, and what other commands do there."""
+"""ranks.py PROGRAM SOURCE: plans under an MPI launcher, whose ranks measure each cell together, and other commands
+under it."""
 import json
 import os
 import re
@@ -11,20 +12,20 @@ import unittest
 from program import PROGRAM, SMALL, Case, tandem
 
 SCENES = ["plates:count=2", "pile:bodies=2,frames=3"]
-ROOMS = {name: room for name, room in SMALL.items() if name in ("pair_capacity", "contact_capacity")}
+CAPACITIES = {name: capacity for name, capacity in SMALL.items() if name in ("pair_capacity", "contact_capacity")}
 PLAN = {"plan": "two walks", "scenes": SCENES, "frames": 0, "algorithms": ["chunked", "tiled"], "devices": ["host"],
-        "settings": {"k": [8, 18], **ROOMS}, "measure": {"repeat": 2, "truth": "none", "no-count": True}}
+        "settings": {"k": [8, 18], **CAPACITIES}, "measure": {"repeat": 2, "truth": "none", "no-count": True}}
 CORES = sorted(os.sched_getaffinity(0))
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "POCL_EXTRA_BUILD_FLAGS": "-cl-opt-disable"}
 
 
 def on_core(number):
-    """Ranks with a core of their own measure on their processor side by side."""
+    """Each rank measures on its own core."""
     return ("taskset", "-c", str(CORES[number % len(CORES)]))
 
 
 def job(*ranks):
-    """The words of a job of one rank for each of these beginnings of a line, all of which go on with the words of `run`."""
+    """The words of a job with one rank for each of these command beginnings, each followed by the words of `run`."""
     def words(*arguments):
         line = ["mpirun", "--oversubscribe", "--bind-to", "none"]
         for number, beginning in enumerate(ranks):
@@ -37,16 +38,16 @@ def of(count):
     return job(*(on_core(number) for number in range(count)))
 
 
-def said(text):
+def own_lines(text):
     """The program's own lines of standard error."""
     return [line for line in text.splitlines() if line.startswith("tandem: ")]
 
 
 def launch(words, timeout=100):
-    """A job that ends by itself: mpirun waits for nobody where the exit code is not 0."""
+    """A job that ends by itself; mpirun does not wait for other ranks when an exit code is not 0."""
     environment = {**ENVIRONMENT, "OMPI_MCA_odls_base_sigkill_timeout": "0"}
     done = subprocess.run(words, capture_output=True, text=True, timeout=timeout, env=environment)
-    return done.returncode, done.stdout, said(done.stderr)
+    return done.returncode, done.stdout, own_lines(done.stderr)
 
 
 class RanksCase(Case):
@@ -81,7 +82,7 @@ class Plans(RanksCase):
         self.assertEqual((status, errors), (0, []), text)
         self.assertIn(f"8 cells are already in {shared}", text)
 
-    def test_ranks_take_one_shard_together(self):
+    def test_ranks_measure_one_shard_together(self):
         out = self.work / "shard.jsonl"
         self.assertEqual(launch(of(2)("run", self.plan(), "--shard", "1/2", "--out", out))[0], 0)
         self.assertEqual({record["scene"]["name"] for record in self.records(out)}, {"pile"})
@@ -94,7 +95,7 @@ class Refusals(RanksCase):
         self.assertIn(expected, errors[0])
         return text
 
-    def test_other_lines_and_other_programs(self):
+    def test_different_command_lines_and_programs(self):
         line = of(2)("run", self.plan(), "--dry-run")
         line[-1] = "--quiet"
         self.one_line(line, "rank 1 has another command line than rank 0: run ")
@@ -103,7 +104,7 @@ class Refusals(RanksCase):
         tandem("run", SCENES[0], "--device", "host", "--frames", 0, "--truth", "none", "--algorithm", "tiled", "--out", alone)
         digest = self.records(alone)[0]["environment"]["sources"].encode()
         text = PROGRAM.read_bytes()
-        self.assertTrue(digest[:8] in text)  # a compiler may keep it in halves
+        self.assertTrue(digest[:8] in text)  # a compiler may store it in two halves
         other.write_bytes(text.replace(digest[:8], b"01234567"))
         other.chmod(0o755)
         words = ["mpirun", "--oversubscribe", "-n", "1", str(PROGRAM), "algorithms", ":", "-n", "1", str(other), "algorithms"]
@@ -126,11 +127,12 @@ class Refusals(RanksCase):
         self.assertEqual((len(errors), errors[0]), (2, "tandem: check runs on one rank; the other 3 wait"))
 
     def test_tasks_of_slurm_that_are_no_ranks(self):
-        """srun without --mpi tells its tasks nothing: the first says what that means, and each measures."""
+        """srun without --mpi passes no rank information to its tasks: the first task explains this, and each one
+        measures."""
         of_one = [SCENES[0], "--device", "host", "--frames", 0, "--truth", "none", "--algorithm", "tiled", "--no-check"]
-        for number, said_by in (("0", 1), ("1", 0)):
+        for number, line_count in (("0", 1), ("1", 0)):
             status, _, errors = tandem("run", *of_one, environment={"SLURM_STEP_NUM_TASKS": "2", "SLURM_PROCID": number})
-            self.assertEqual((status, len(errors)), (0, said_by), errors)
+            self.assertEqual((status, len(errors)), (0, line_count), errors)
             self.assertTrue(all("srun started 2 independent tasks" in line for line in errors), errors)
         self.assertEqual(tandem("run", *of_one, environment={"SLURM_STEP_NUM_TASKS": "1", "SLURM_PROCID": "0"})[2], [])
         self.assertEqual(tandem("algorithms", environment={"SLURM_STEP_NUM_TASKS": "2", "SLURM_PROCID": "0"})[2], [])

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""recordings.py PROGRAM SOURCE: recordings and exports as a user meets them. The recordings are written here, by what
-scenes/recording/README.md says of their bytes."""
+"""recordings.py PROGRAM SOURCE: recordings and exports by the program. The test writes the recordings itself, in the
+format of scenes/recording/README.md."""
 import array
 import base64
 import csv
@@ -25,7 +25,7 @@ def sealed(data, start=0):
 
 
 def recording(key, digest, kinds, frames, version=1):
-    """The bytes of a recording of rigid (0) and fixed (1) bodies; frames hold (time, [pose of each rigid body])."""
+    """The bytes of a recording of rigid (0) and fixed (1) bodies; frames are (time, [pose of each rigid body])."""
     text = key.encode()
     header = b"\x89TDMFR\r\n" + struct.pack("<IIQdII", version, 44 + len(text) + 8 * len(kinds), digest, 0.01, len(kinds), len(text))
     header += text + b"".join(struct.pack("<II", kind, 0) for kind in kinds)
@@ -57,7 +57,7 @@ class Recordings(Case):
         return path
 
     def pairs_of_poses(self, poses):
-        """Candidate pairs of the pile's bodies when the poses are given on the command line, as single precision has them."""
+        """Candidate pairs of the pile's bodies with the poses given on the command line in single precision."""
         for end in ("node", "ele"):
             (self.work / f"jack.{end}").write_bytes((SOURCE / f"scenes/meshes/jack.{end}").read_bytes())
         arguments = []
@@ -83,7 +83,7 @@ class Recordings(Case):
         status, text, errors = tandem("check", file, "--frames", "3", "--device", "host", "--algorithm", "chunked")
         self.assertEqual((status, errors), (0, []), text)
 
-    def test_damage_is_told(self):
+    def test_damage_is_reported(self):
         cut = self.file("cut.frames", self.whole[:-1])
         self.assertEqual(tandem("run", cut, "--profile", 1, "--device", "host", "--algorithm", "chunked")[0], 0)
         self.bad(["frames 3:9", f"{cut}: frame 9 is cut off; frames 0:8 are whole"], "run", cut, "--frames", "3:9")
@@ -95,7 +95,7 @@ class Recordings(Case):
         self.bad(f"{file}: frame 2 does not match its checksum", "run", file)
         self.bad(f"{file}: frame 2 does not match its checksum", "export", file, "--glb", self.work / "f.glb")
         self.assertEqual(tandem("run", file, "--frames", "3:9", "--profile", 1, "--device", "host", "--algorithm", "chunked")[0], 0)
-        for name, data, said in (("version", recording(self.key, self.digest, [0] * 4, [], 2), "has version 2 of the format, this program reads version 1"),
+        for name, data, message in (("version", recording(self.key, self.digest, [0] * 4, [], 2), "has version 2 of the format, this program reads version 1"),
                                  ("digest", recording(self.key, self.digest ^ 1, [0] * 4, self.frames), "was recorded from a scene with digest"),
                                  ("kinds", recording(self.key, self.digest, [0, 0, 1, 0], self.frames), "was recorded from a scene with digest"),
                                  ("text", recording("pyle", self.digest, [0] * 4, self.frames), "cannot be made again: unknown scene 'pyle'"),
@@ -109,7 +109,7 @@ class Recordings(Case):
                                  ("header", self.whole[:50], "is cut off in its header"),
                                  ("noise", b"frame,body_a\n0,1\n", "is not a recording of frames")):
             file = self.file(f"{name}.frames", data)
-            self.bad([f"tandem: {file}: ", said], "run", file)
+            self.bad([f"tandem: {file}: ", message], "run", file)
         self.bad("absent.frames: cannot be read (No such file", "run", self.work / "absent.frames")
 
     def test_export(self):
@@ -132,14 +132,14 @@ class Recordings(Case):
         tandem("run", file, "--frames", "2:4", "--device", "host", "--algorithm", "chunked", "--repeat", 1, "--dump-contacts", dump)
         self.assertEqual(counted, len(dump.read_text().splitlines()) - 1)
         self.assertGreater(counted, 100)
-        # What was exported is a mesh that can be read again.
+        # An exported mesh can be read again.
         status, text, errors = tandem("run", "--mesh", folder / "bodies_000002.vtu", "--profile", 1, "--device", "host", "--algorithm", "chunked")
         self.assertEqual((status, errors), (0, []), text)
         self.assertEqual(glb.read_bytes()[:8], b"glTF\x02\0\0\0")
         self.assertEqual(struct.unpack("<I", glb.read_bytes()[8:12])[0], glb.stat().st_size)
 
     def test_export_of_geometry(self):
-        """What the recording has, in the format of scenes/export/README.md."""
+        """The content of the recording in the format of scenes/export/README.md."""
         file, out = self.file("drawn.frames", self.whole), self.work / "drawn.json"
         status, text, errors = tandem("export", file, "--frames", "2:8", "--every", 3, "--geometry", out, "--contacts")
         self.assertEqual((status, errors), (0, []))
@@ -168,16 +168,17 @@ class Recordings(Case):
         for contacts in made["contacts"]:
             found += contacts["found"]
             normals = numbers(contacts["normals"], "b")
-            self.assertEqual((len(numbers(contacts["points"])), len(normals)), (9000, 9000))  # no more are drawn of a frame
+            # the maximum drawn per frame
+            self.assertEqual((len(numbers(contacts["points"])), len(normals)), (9000, 9000))
             for i in range(0, 9000, 300):
                 self.assertAlmostEqual(math.hypot(*normals[i:i + 3]) / 127, 1, delta=0.02)
         self.assertEqual(made["notes"], [f"9000 of {found} contacts are shown, evenly spaced"])
 
     def test_bad_geometry(self):
         file = self.work / "bad.json"
-        for said, *arguments in (("--csv makes a table", "--csv", self.work / "x.csv"), ("name the same file", "--glb", file),
+        for message, *arguments in (("--csv makes a table", "--csv", self.work / "x.csv"), ("name the same file", "--glb", file),
                                  ("name the same file", "--chunks", file), ("frames 3:900", "--frames", "3:900"), ("--device requires --contacts", "--device", "host")):
-            self.bad(said, "export", "plates", "--geometry", file, *arguments)
+            self.bad(message, "export", "plates", "--geometry", file, *arguments)
         self.bad("cannot be written", "export", "plates", "--frames", 0, "--geometry", self.work / "no/x.json")
         self.assertFalse(file.exists())
 
@@ -195,7 +196,7 @@ class Recordings(Case):
         self.assertIn("3 of frames 1:8 of plates", text)
 
     def chunks(self, *arguments):
-        """What the program says and the rows of the file."""
+        """The program's output and the rows of the file."""
         table = self.work / "chunks.csv"
         status, text, errors = tandem("export", *arguments, "--chunks", table)
         self.assertEqual((status, errors), (0, []), text)
@@ -233,17 +234,17 @@ class Recordings(Case):
         self.assertTrue(glb.stat().st_size > 1000 and f"{glb}: 1 of frames 3:3" in text, text)
         jack = self.chunks("--mesh", SOURCE / "scenes/meshes/jack.ele", "--vtu", folder)[1]
         self.assertEqual(sorted(os.listdir(folder)), ["bodies.pvd", "bodies_000000.vtu"])
-        # Bodies of one mesh have it once, where no pose moves it.
+        # Bodies with the same mesh share its rows, without poses.
         self.assertEqual([row["tetrahedron"] for row in rows if row["mesh"] == 0], [row["tetrahedron"] for row in jack])
 
     def test_bad_chunks(self):
         table = self.work / "bad.csv"
-        for said, *arguments in (("setting builder=zebra is impossible", "--builder", "zebra"), ("setting k=7 is impossible", "--k", 7),
+        for message, *arguments in (("setting builder=zebra is impossible", "--builder", "zebra"), ("setting k=7 is impossible", "--k", 7),
                                  ("--chunk-bytes", "--chunk-bytes", 0), ("--chunk-bytes", "--chunk-bytes", "much"),
                                  ("--frames and --every require --vtu", "--frames", 0), ("--frames and --every require --vtu", "--every", 2),
                                  ("name the same file", "--glb", table), ("--chunks cannot be combined with --csv", "--csv", self.work / "x.csv"),
                                  ("frames 3:900", "--frames", "3:900", "--glb", self.work / "x.glb")):
-            self.bad(said, "export", "plates", "--chunks", table, *arguments)
+            self.bad(message, "export", "plates", "--chunks", table, *arguments)
         for option, value in (("--builder", "sah"), ("--chunk-bytes", 100), ("--k", 18)):
             self.bad(f"{option} requires --chunks FILE", "export", "plates", "--glb", self.work / "x.glb", option, value)
         self.bad("cannot be written", "export", "plates", "--chunks", self.work / "no/x.csv")

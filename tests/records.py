@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""records.py PROGRAM SOURCE: what the program records: one line a cell, appended, and schemas that can fail."""
+"""records.py PROGRAM SOURCE: records of the program: one line per cell, appended, and schemas that reject invalid
+records."""
 import csv
 import itertools
 import json
@@ -13,11 +14,11 @@ import unittest
 from program import LONG, PROGRAM, SOURCE, Case, tandem
 
 
-def places(value, path=()):
+def paths(value, path=()):
     """Every path to a value inside a JSON document, parents first."""
     for name, child in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
         yield (*path, name)
-        yield from places(child, (*path, name))
+        yield from paths(child, (*path, name))
 
 
 def changed(record, path, change):
@@ -40,7 +41,7 @@ class Records(Case):
         self.assertEqual([r["device"]["id"] for r in records], ["opencl:0"])
         for name in ("copy_bytes_per_s", "launch_s", "overlap_tests_k8_per_s"):
             self.assertGreater(records[0][name]["median"], 0)
-        # Eighteen planes take more comparisons than eight.
+        # Eighteen planes need more comparisons than eight.
         self.assertGreater(records[0]["overlap_tests_k8_per_s"]["median"], records[0]["overlap_tests_k18_per_s"]["median"])
         script = [sys.executable, str(SOURCE / "tests/validate_records.py"), str(out)]
         self.assertEqual(subprocess.run(script, capture_output=True).returncode, 0)
@@ -60,12 +61,12 @@ class Records(Case):
             self.assertIn(word, text)
         first = out.read_bytes()
         records = self.records(out)
-        # Cells end in the order of their last turns, which is drawn.
+        # Cells end in the random order of their last turns.
         self.assertEqual(sorted((r["devices"][0]["id"], r["algorithm"]) for r in records),
                          list(itertools.product(["host", "opencl:0"], ["chunked", "gproximity"])))
         self.assertEqual(len({r["session"] for r in records}), 1)
         self.assertTrue(records[0]["command"].startswith("tandem run plates --frames 20:21 "), records[0]["command"])
-        self.assertNotIn(str(self.work), records[0]["command"])  # folders say whose machine it was
+        self.assertNotIn(str(self.work), records[0]["command"])  # folder names would identify the machine's user
         self.assertEqual({r["status"] for r in records}, {"ok"})
         self.assertEqual(len({json.dumps(r["agreement"]["digest"]) for r in records}), 1)
         self.assertEqual(len({json.dumps(r["agreement"]["contact_digest"]) for r in records}), 1)
@@ -89,7 +90,8 @@ class Records(Case):
         self.assertNotEqual(again[0]["session"], records[0]["session"])
 
     def test_host_work_has_names(self):
-        """What the paper's release leaves untimed (making of seeds, allocation of the queue array) is told apart, within its stage."""
+        """The record lists host work that the paper's release does not time (making of seeds, allocation of the
+        queue array) separately, within its stage."""
         out = self.work / "host-work.jsonl"
         status, text, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--preset", "published", "--set", "k=8", "--repeat", 2,
                                       "--set", "queue_bytes=4096", "--truth", "none", "--out", out)
@@ -103,7 +105,7 @@ class Records(Case):
             within = [sum(w["host_ns"]["samples"][i] for w in work.values() if w["stage"] == "preprocess") for i in range(2)]
             self.assertEqual(within, record["stages"]["preprocess"]["host_ns"]["samples"])
 
-    def test_samples_until_they_suffice(self):
+    def test_samples_until_the_stopping_criterion(self):
         out = self.work / "suffice.jsonl"
         arguments = ("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked,tiled", "--set", "k=6",
                      "--truth", "none", "--out", out)
@@ -132,13 +134,13 @@ class Records(Case):
                          list(itertools.product(["6", "8"], ["float", "double"])))
 
     def test_schema_can_fail(self):
-        """Every field of a real record: taken away, of another type, null, or with another one beside it."""
+        """Every field of a real record: removed, of another type, null, or with an additional field beside it."""
         out = self.work / "schema.jsonl"
         flat, _ = self.flawed("schema.msh")
         tandem("run", "--mesh", flat, "--mesh", self.good, "--device", "opencl:0", "--algorithm", "gproximity", "--truth", "contacts",
                "--out", out)
         record = self.records(out)[0]
-        for name in ("stages", "kernel_times", "host_work"):  # maps by names, every entry of which has the same fields
+        for name in ("stages", "kernel_times", "host_work"):  # maps by name whose entries all have the same fields
             record[name] = {key: record[name][key] for key in sorted(record[name])[-2:]}
         record["kernels"] = record["kernels"][:1]
         maps, nullable = {"settings", "defines", "counters", "kernel_times", "host_work"}, {"chosen", "failure", "agreement", "commit", "hardware", "device_span_ns",
@@ -151,10 +153,11 @@ class Records(Case):
                           *(("conditions", when, "gpus", 0) for when in ("before", "after")), *(("sampling", name) for name in ("cells", "seed", "repeat", "noise", "seconds", "spent_seconds", "converged", "drift")), ("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift"),
                           *(("work", name) for name in ("undecided_by_filter", "undecided_by_double", "batches")),
                           *(("work", "counters", name) for name in record["work"]["counters"])}
-        since = {"chosen", "truth", "inputs", "volume_relative", "no_volume"}  # records from before each lack it
+        # fields that records of earlier versions lack
+        since = {"chosen", "truth", "inputs", "volume_relative", "no_volume"}
         since_paths = {("devices", 0, "clock"), ("work", "digest"), ("work", "contact_digest"), ("work", "submissions"), ("sampling", "continued"), ("host_work",), ("ranks",), ("partition",)}
         seen = set()
-        for path in places(record):
+        for path in paths(record):
             shape = tuple(0 if isinstance(name, int) else name for name in path)
             if shape in seen:
                 continue
@@ -199,7 +202,7 @@ class Records(Case):
         for files in ([empty], [self.work / "none.jsonl"], [good, self.work / "none.jsonl"]):
             self.assertEqual(validate(*files)[0], 1, files)
 
-    def test_a_failing_cell_keeps_what_is_recorded(self):
+    def test_a_failing_cell_keeps_earlier_records(self):
         out = self.work / "fail.jsonl"
         out.write_text('{"what": "was there before"}\n')
         memory = min(d["memory_bytes"] for e in json.loads(tandem("devices", "--json")[1]) for d in e["devices"]
@@ -254,7 +257,7 @@ class Records(Case):
                 on_device = stage["device_ns"]["median"] if stage["device_ns"] else 0
                 median = on_device or stage["host_ns"]["median"]
                 self.assertAlmostEqual(float(row[f"stage_{name}_ms"]), median / frames / 1e6, delta=1e-8)
-        # A setting of the other algorithm is no value of this one.
+        # Settings of the other algorithm are empty.
         self.assertEqual({row["set_most_seeds"] for row in rows if row["algorithm"] == "chunked"}, {""})
         self.assertEqual((rows[4]["status"], rows[4]["failure"], rows[4]["ms"]), ("failed", failed["failure"], ""))
         with open(out, "a") as file:
@@ -264,7 +267,7 @@ class Records(Case):
         self.assertEqual(len(errors), 1)
         self.assertIn(f"{out}:6: the last line has no end", errors[0])
 
-    def test_no_table_of_what_is_no_record(self):
+    def test_files_that_are_not_records_give_no_table(self):
         other, empty = self.work / "other.jsonl", self.work / "empty.jsonl"
         other.write_text('{"schema":4}\n')
         empty.write_text("")

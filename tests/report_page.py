@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""report_page.py PROGRAM SOURCE: pages of `tandem report` and `tandem view` in Chromium: they load without an error or a request, show
-every cell, filter, sort, turn the scene, fit a phone, and hold what is bad or too much."""
+"""report_page.py PROGRAM SOURCE: pages of `tandem report` and `tandem view` in Chromium: they load without errors or
+requests, show every cell, filter, sort, rotate the scene, fit a phone, and handle bad or very large input."""
 import json
 import lzma
 import sys
@@ -14,10 +14,10 @@ from program import SOURCE, Case, tandem
 RECORDS = SOURCE / "results/h200"
 MARKUP = "<img src=x onerror=document.title='run'></script><script>document.title='run'</script>"
 ROWS = "[...document.querySelectorAll('#cell-table tbody tr')]"
-# The distinct pixels of the scene, for a script to go on with.
+# The distinct pixels of the scene, as the beginning of a script.
 PIXELS = "(() => { const c = document.getElementById('scene-canvas'), g = c.getContext('webgl2') || c.getContext('webgl'), p = new Uint8Array(4 * c.width * c.height); " \
     "tandem.sceneView.draw(); g.readPixels(0, 0, c.width, c.height, g.RGBA, g.UNSIGNED_BYTE, p); const pixels = [...new Set(new Uint32Array(p.buffer))]; return "
-# How many of 36 hues these have.
+# The number of distinct hues, of 36, among these pixels.
 HUES = PIXELS + "new Set(pixels.map(p => new THREE.Color(`rgb(${p & 255},${p >> 8 & 255},${p >> 16 & 255})`).getHSL({})).filter(c => c.s > 0.5)" \
     ".map(c => Math.floor(c.h * 36))).size; })()"
 CAMERA = "tandem.sceneView.camera.position.toArray().map(x => x.toFixed(4)).join()"
@@ -57,7 +57,7 @@ class Pages(Case):
         return path
 
     def made_up(self, count):
-        """So many cells: several sizes of the committed scenes, the settings of the committed cells."""
+        """`count` cells: several sizes of the committed scenes with the settings of the committed cells."""
         for i in range(count):
             record = dict(self.plan[i % len(self.plan)])
             copy = i // len(self.plan)
@@ -84,7 +84,7 @@ class Pages(Case):
         self.browser.until("document.querySelector('#cell-table tbody').dataset.complete === 'true'")
         return self.browser.run("document.getElementById('cell-count').textContent")
 
-    def test_everything_that_is_committed(self):
+    def test_all_committed_records(self):
         files = ["plan", "profile", "accuracy", "ceilings", "simulation-colosseum", "simulation-funnel"]
         page = self.report(*(RECORDS / f"{name}.jsonl" for name in files), "--scene", "plates", "--frames", "20:23", "--contacts")
         self.opened(page)
@@ -106,7 +106,7 @@ class Pages(Case):
         self.assertEqual(self.browser.run(empty), [])
         blank = "[...document.querySelectorAll('figure canvas')].filter(c => !c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some(b => b)).length"
         self.assertEqual(self.browser.run(blank), 0)
-        # Another choice is another chart.
+        # Another choice gives another chart.
         title = "document.querySelector('#medians h3').textContent"
         before = self.browser.run(title)
         self.browser.run("(() => { const s = document.querySelector('#medians select'); s.selectedIndex = 1; s.dispatchEvent(new Event('change')); })()")
@@ -167,7 +167,8 @@ class Pages(Case):
     def check_sorting(self):
         self.assertEqual(self.sort_by("ms a frame"), "ascending")
         times = [float(text.replace(",", "")) for text in self.column("ms a frame") if text]
-        self.assertTrue(times == sorted(times), times[:20])  # differences of long lists take minutes to tell
+        # sorting by duration is correct; differences of long lists take minutes to print
+        self.assertTrue(times == sorted(times), times[:20])
         self.assertEqual(self.sort_by("ms a frame"), "descending")
         falling = [float(text.replace(",", "")) for text in self.column("ms a frame") if text]
         self.assertTrue(falling == times[::-1], falling[:20])
@@ -195,9 +196,9 @@ class Pages(Case):
         times = {"samples": [], "rounds": [], "frames": []}
         failed.update(status="failed", failure=f"no memory {MARKUP}", total_ns=times)
         wrong["status"] = "wrong"
-        wrong["total_ns"]["samples"] = [1] * len(wrong["total_ns"]["samples"])  # faster than any
+        wrong["total_ns"]["samples"] = [1] * len(wrong["total_ns"]["samples"])  # faster than all others
         named["scene"]["key"], named["key"] = MARKUP, MARKUP
-        older["session"] = "an earlier one"  # in the same one it would be a copy, which is left out
+        older["session"] = "an earlier one"  # in the same session it would be a copy, which is omitted
         page = self.report(self.write("bad.jsonl", [failed, wrong, older, self.plan[2], named]))
         self.opened(page)
         self.assertEqual(self.column("status"), ["failed", "wrong", "ok, recorded again", "ok", "ok"])
@@ -211,7 +212,7 @@ class Pages(Case):
         self.assertIn(MARKUP, self.column("scene"))
 
     def test_interrupted_and_compressed(self):
-        """A cell that was resumed stands once, across files, compressed or not."""
+        """A resumed cell is shown once, across files, compressed or not."""
         interrupted = json.loads(json.dumps(self.plan[0]))
         interrupted["session"], interrupted["sampling"]["interrupted"] = "another", True
         for name in ("samples", "rounds", "frames"):
@@ -224,7 +225,7 @@ class Pages(Case):
         self.assertEqual(self.browser.run("document.getElementById('made').textContent.split('.')[0]"), "Of packed")
         self.assertNotIn("recorded again", self.browser.run("document.getElementById('summary').textContent"))
 
-    def test_against_is_what_compare_says(self):
+    def test_against_equals_compare(self):
         old, new = RECORDS / "tiled.jsonl", self.work / "new.jsonl"
         records = [json.loads(line) for line in old.read_text().splitlines()]
         for i, record in enumerate(records):
@@ -233,12 +234,12 @@ class Pages(Case):
                 record["total_ns"]["samples"] = [round(1.1 * ns) for ns in record["total_ns"]["samples"]]
         self.write("new.jsonl", records)
         self.opened(self.report(new, "--against", old))
-        said = json.loads(tandem("compare", old, new, "--format", "json")[1])
+        compared = json.loads(tandem("compare", old, new, "--format", "json")[1])
         shown = self.browser.run("JSON.parse(document.getElementById('data-differences').textContent)")
-        self.assertEqual(shown["summary"], said["summary"])
-        self.assertIn(said["summary"], self.browser.run("document.querySelector('#differences-title').textContent"))
-        self.assertEqual(len(shown["cells"]), len(said["cells"]))
-        for a, b in zip(shown["cells"], said["cells"]):
+        self.assertEqual(shown["summary"], compared["summary"])
+        self.assertIn(compared["summary"], self.browser.run("document.querySelector('#differences-title').textContent"))
+        self.assertEqual(len(shown["cells"]), len(compared["cells"]))
+        for a, b in zip(shown["cells"], compared["cells"]):
             self.assertEqual(a["label"], b["label"])
             for value, name in zip(a["ratio"], ("ratio", "low", "high")):
                 self.assertAlmostEqual(value, b["times"][name], delta=1e-5 * value)

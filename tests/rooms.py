@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""rooms.py PROGRAM SOURCE: every include of the tree is one that the tables of docs/developer/rooms.md allow."""
+"""rooms.py PROGRAM SOURCE: the tables of docs/developer/rooms.md allow every include of the tree."""
 import pathlib
 import re
 import tempfile
@@ -11,11 +11,11 @@ from program import SOURCE
 PAGE = "docs/developer/rooms.md"
 INCLUDE = re.compile(r'\s*#\s*include\s*"([^"]+)"')
 ENDINGS = {".h", ".hpp", ".cpp", ".c", ".cl", ".clh", ".cu"}
-LEAST = 500  # includes that a whole tree has at least: fewer mean that the search has missed files
+LEAST = 500  # minimum number of includes in a whole tree: fewer mean that the search has missed files
 
 
 def words(cell):
-    """What stands in backquotes in a cell of a table."""
+    """Texts in backquotes in a cell of a table."""
     return re.findall(r"`([^`]+)`", cell)
 
 
@@ -29,7 +29,7 @@ def tables(text):
 
 
 class Rules:
-    """What the page allows."""
+    """Includes that the page allows."""
 
     def __init__(self, text):
         of_page = tables(text)
@@ -38,12 +38,12 @@ class Rules:
         self.elsewhere = {words(row[0])[0] for row in of_page["Header", "Found in"]}
 
     def room_of(self, path):
-        """The longest room that holds the path; without one the folder that has no row."""
+        """The longest room that contains the path; otherwise the folder, which has no row."""
         names = [name for name in self.rooms if path.startswith(name + "/")]
         return max(names, key=len) if names else path.rpartition("/")[0] or "."
 
     def error(self, path, target):
-        """Why the file must not include the other; empty where it may."""
+        """Why the file must not include the other; empty if it may."""
         own, other = self.room_of(path), self.room_of(target)
         for room in (own, other):
             if room not in self.rooms:
@@ -61,13 +61,13 @@ class Rules:
 
 
 def files(root):
-    """Paths below the root that may have includes; build folders and hidden ones are no part of the tree."""
+    """Paths below the root that may have includes; build folders and hidden ones are excluded."""
     for folder in sorted(entry for entry in root.iterdir() if entry.is_dir() and not re.match(r"build|\.", entry.name)):
         yield from (path for path in sorted(folder.rglob("*")) if path.suffix in ENDINGS)
 
 
 def check(root):
-    """(number of includes, what is wrong with them); each error begins with FILE:LINE."""
+    """(number of includes, errors); each error begins with FILE:LINE."""
     rules = Rules((root / PAGE).read_text(encoding="utf-8"))
     count, errors = 0, []
     for path in files(root):
@@ -92,16 +92,16 @@ def check(root):
 
 
 class Rooms(unittest.TestCase):
-    def test_the_tree_keeps_to_the_page(self):
+    def test_the_tree_follows_the_page(self):
         count, errors = check(SOURCE)
         print(f"{count} includes")
         self.assertEqual(errors, [])
 
     def test_the_page_names_rooms_that_exist(self):
         rules = Rules((SOURCE / PAGE).read_text(encoding="utf-8"))
-        for room, others in rules.rooms.items():
+        for room, allowed in rules.rooms.items():
             self.assertTrue((SOURCE / room).is_dir(), room)
-            self.assertLessEqual(others, set(rules.rooms), room)
+            self.assertLessEqual(allowed, set(rules.rooms), room)
         for (own, other), (only, never) in rules.limits.items():
             self.assertIn(other, rules.rooms[own])
             for entry in (*only, *never):

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""running.py PROGRAM SOURCE: cells of several scenes and ranges, listed, interrupted and continued."""
+"""running.py PROGRAM SOURCE: cells of several scenes and ranges are listed, interrupted and continued."""
 import json
 import os
 import re
@@ -21,7 +21,7 @@ class Running(Case):
         return [json.loads(line) for line in path.read_text().splitlines()]
 
     def cells(self, path):
-        """What was asked for in each record."""
+        """Scene, algorithm and k of each record."""
         return sorted((r["scene"]["name"], r["algorithm"], r["settings"]["k"]) for r in self.records(path))
 
     def test_ranges(self):
@@ -29,9 +29,9 @@ class Running(Case):
             status, out, errors = tandem("run", "plates:count=2", "--frames", 0, "--device", "host", "--algorithm", "tiled", "--set", f"k={text}", "--dry-run")
             self.assertEqual((status, errors), (0, []), out)
             self.assertEqual(re.findall(r",k=(\d+),", out), values.split())
-        for text, said in (("8..6", "never ends"), ("6..8*1", "never ends"), ("0..8*2", "never ends"), ("6..8:0", "never ends"), ("x..8", "a range is"),
+        for text, message in (("8..6", "never ends"), ("6..8*1", "never ends"), ("0..8*2", "never ends"), ("6..8:0", "never ends"), ("x..8", "a range is"),
                            ("6..", "a range is"), ("6..8*", "a range is"), ("0..1e9", "more than 10000 values"), ("6..1e999", "a range is"), ("-2..6", "a range is")):
-            self.bad(said, "run", "plates:count=2", "--set", f"k={text}")
+            self.bad(message, "run", "plates:count=2", "--set", f"k={text}")
 
     def test_dry_run_lists_and_writes_nothing(self):
         out = self.work / "dry.jsonl"
@@ -42,16 +42,16 @@ class Running(Case):
         self.assertEqual(len(re.findall(r"(?m)^ +(?:chunked|tiled)\|host:", text)), 8)
         self.assertFalse(out.exists())
 
-    def test_checks_are_kept(self):
-        """What a reference and a truth said of a frame is there in the next run; none of it makes an answer wrong."""
-        folder = self.work / "kept"
+    def test_checks_are_cached(self):
+        """The next run reuses the results of reference and truth for a frame; none of them makes an answer wrong."""
+        folder = self.work / "cache"
         arguments = ("run", "plates:count=2", "--frames", "0:1", "--device", "host", "--algorithm", "tiled")
         words = lambda *more: re.search(r"right: (\d+) pairs.* (\d+) candidates do not meet", tandem(*arguments, *more, environment={"TANDEM_KERNEL_CACHE": str(folder)})[1]).groups()
         first = words()
         files = {path: path.read_text() for path in folder.glob("checks-*.jsonl")}
         self.assertEqual((len(files), [text.count("question") for text in files.values()]), (2, [2, 2]))
         self.assertEqual(words("--isolate"), first)
-        self.assertEqual({path: path.read_text() for path in files}, files)  # nothing was found anew
+        self.assertEqual({path: path.read_text() for path in files}, files)  # nothing was recomputed
         for path, text in files.items():
             path.write_text(re.sub(r'"disjoint":(\d+)', '"disjoint":1000000', text).replace('"pairs":[', '"pairs":[1'))
         self.assertEqual(words(), (first[0], "2000000"))
@@ -60,14 +60,14 @@ class Running(Case):
             path.write_text(text[:len(text) // 3] + '\n{"question": 3}\n[]\n' + text.replace('"pairs":', '"pair":'))
         self.assertEqual(words(), first)
 
-    def test_resume_measures_what_is_left(self):
+    def test_resume_measures_the_remaining_cells(self):
         out = self.work / "resumed.jsonl"
         arguments = ("run", *CELLS, "--set", "k=6,8", "--out", out)
         self.assertEqual(tandem(*arguments)[0], 0)
         whole = self.cells(out)
         self.assertEqual(len(set(whole)), 8)
         lines = out.read_text().splitlines(keepends=True)
-        # Another program's record of a cell counts as none, a failed and an interrupted one too.
+        # Records of another program version, and failed or interrupted ones, do not count as finished.
         other = json.loads(lines[3])
         other["environment"]["sources"] = "0" * 16
         failed = {**json.loads(lines[4]), "status": "failed", "failure": "device lost"}
@@ -88,7 +88,7 @@ class Running(Case):
         out.write_text(lines[0].replace('"schema":4', '"schema":2', 1))
         self.bad("has records of schema 2", *arguments, "--resume")
 
-    def test_interrupt_keeps_what_is_measured(self):
+    def test_an_interrupt_keeps_finished_measurements(self):
         for number in (signal.SIGINT, signal.SIGTERM):
             out = self.work / f"interrupted{number}.jsonl"
             words = ["run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked,tiled", "--truth", "none", "--no-count",
@@ -96,7 +96,7 @@ class Running(Case):
             process = subprocess.Popen([str(PROGRAM), *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
             time.sleep(3)
             process.send_signal(number)
-            if number == signal.SIGTERM:  # Slurm sends two when time is up
+            if number == signal.SIGTERM:  # Slurm sends two when the time limit is reached
                 time.sleep(0.002)
                 process.send_signal(number)
             text, errors = process.communicate(timeout=60)
@@ -109,7 +109,7 @@ class Running(Case):
                 self.assertTrue(record["sampling"]["interrupted"])
                 self.assertGreater(record["sampling"]["rounds"], 1)
 
-    def test_what_speaks_against_a_time_is_said(self):
+    def test_doubts_about_a_time_are_reported(self):
         status, text, _ = tandem("run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "tiled", "--truth", "none",
                                  "--noise", "0.0001%", "--seconds", 0.01)
         self.assertEqual(status, 0)

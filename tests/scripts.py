@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""scripts.py PROGRAM SOURCE: what reads records and exports (tandem.tables, tandem.error_figures, tandem.answer, scripts/convert_records,
-scripts/render): over every committed file, over cells of every status, and over files that are no such files; and the committed
-microbenchmarks."""
+"""scripts.py PROGRAM SOURCE: readers of records and exports (tandem.tables, tandem.error_figures, tandem.answer,
+scripts/convert_records, scripts/render) on every committed file, on cells of every status, and on invalid files.
+Also checks the committed microbenchmarks."""
 import collections
 import contextlib
 import importlib
@@ -27,19 +27,20 @@ from program import LONG, PROGRAM, SMALL, SOURCE, Case, sets, tandem
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "python")]
 COMMITTED = sorted([*SOURCE.glob("results/*/*.jsonl"), *SOURCE.glob("results/*/*.jsonl.xz")])
-MODULES = {"tables": "tandem.tables", "figures": "tandem.error_figures", "answer": "tandem.answer"}  # other names are those of scripts
+# other names are those of scripts
+MODULES = {"tables": "tandem.tables", "figures": "tandem.error_figures", "answer": "tandem.answer"}
 
 QUOTE = re.compile(r"(?s)<!-- quote: (\S+) -->\n```\w+\n(.*?)```")
 
 
 def stands_in(quote, lines):
-    """Whether the lines of a quote follow each other in a file, whatever their common indentation."""
+    """Whether the lines of a quote are consecutive lines of a file, ignoring their common indentation."""
     own = textwrap.dedent(quote).splitlines()
     return bool(own) and any(textwrap.dedent("\n".join(lines[i:i + len(own)])).splitlines() == own for i in range(len(lines)))
 
 
 def wrong_quotes(page):
-    """What is wrong with the blocks of a page that stand below <!-- quote: FILE -->, which all blocks of C++ do."""
+    """Errors in the blocks of a page that follow <!-- quote: FILE -->; every block of C++ must be such a quote."""
     quotes, blocks = QUOTE.findall(page), page.count("```cpp")
     of_cpp = sum(name.endswith((".cpp", ".h")) for name, _ in quotes)
     wrong = [f"{blocks} blocks of C++ and {of_cpp} quotes of it"] if blocks != of_cpp else []
@@ -54,7 +55,7 @@ def wrong_quotes(page):
 
 
 def loaded(name, scripts={}):
-    """The module or script, loaded once: starting a Python and reading its libraries takes longer than most files."""
+    """The module or script, loaded once: starting Python and loading its libraries takes longer than most tests."""
     if name in MODULES:
         return importlib.import_module(MODULES[name])
     if name not in scripts:
@@ -77,8 +78,8 @@ def called(module, *arguments):
 
 
 def script(name, *arguments, address_space=None):
-    """(exit code, standard output, lines of standard error): in this process unless with so many bytes of address space, or of a Python
-    other than the scripts' own, which need not have their libraries."""
+    """(exit code, standard output, lines of standard error). Runs in this process, unless the address space is
+    limited or Python is not the scripts' own and may lack their libraries."""
     if not address_space and name != "render" and os.path.realpath(sys.executable) == os.path.realpath("/usr/bin/python3"):
         return called(loaded(name), *arguments)
     limit = (lambda: resource.setrlimit(resource.RLIMIT_AS, (address_space, address_space))) if address_space else None
@@ -103,7 +104,7 @@ class Scripts(Case):
         path.write_text("".join(json.dumps(record) + "\n" for record in records))
         return path
 
-    def said(self, name, *arguments, **options):
+    def output_of(self, name, *arguments, **options):
         code, text, errors = script(name, *arguments, **options)
         self.assertEqual((code, errors), (0, []), (name, arguments, text[-500:]))
         return text
@@ -116,10 +117,10 @@ class Scripts(Case):
             self.assertIn(part, errors[0])
 
     def table(self, *records):
-        return self.said("tables", self.file("shown.jsonl", records))
+        return self.output_of("tables", self.file("shown.jsonl", records))
 
     def sample(self, path):
-        """A copy of a committed file, in the short form of a few of its lines."""
+        """A copy of a committed file; in the short form only a few of its lines."""
         data = lzma.open(path).read() if path.suffix == ".xz" else path.read_bytes()
         lines = data.splitlines(keepends=True)
         lines = lines if LONG else [*lines[:-1:-(-len(lines) // 12)], lines[-1]]
@@ -132,7 +133,7 @@ class Scripts(Case):
         for path in COMMITTED:
             copy, records = self.sample(path)
             with self.subTest(path.name):
-                text = self.said("tables", copy)
+                text = self.output_of("tables", copy)
                 cells = [record for record in records if "key" in record]
                 rows = [row for row in rows_of(text) if "±" in "".join(row)]
                 kernels = [kernel for record in records if "profile_of" in record for kernel in record["kernels"]]
@@ -142,18 +143,18 @@ class Scripts(Case):
                     self.assertEqual(len(labels), len(set(labels)), part[:200])
                 drawn = [record for record in cells if (record["error"] or {}).get("truth")]
                 if drawn:
-                    self.assertIn(f"{len(drawn)} records drawn", self.said("figures", copy, self.work / "drawn"))
+                    self.assertIn(f"{len(drawn)} records drawn", self.output_of("figures", copy, self.work / "drawn"))
                 else:
                     self.refused("figures", "no record has errors against the truth", copy, self.work / "drawn")
                 before = copy.read_bytes()
-                self.assertIn(f"{len(records)} lines of the newest schema", self.said("convert_records", copy))
+                self.assertIn(f"{len(records)} lines of the newest schema", self.output_of("convert_records", copy))
                 unpack = lzma.decompress if path.suffix == ".xz" else bytes
                 same = [json.loads(line) for line in unpack(copy.read_bytes()).splitlines()]
                 self.assertEqual(same, [json.loads(line) for line in unpack(before).splitlines()])
                 self.refused("render", "no .glb", copy, self.work / "picture")
 
-    def test_launches_are_counted_as_theirs_too(self):
-        """A frame of plates has three in the paper's Table 5, 306 of 102 frames."""
+    def test_launches_are_counted_as_in_the_paper_too(self):
+        """A frame of plates has three launches in the paper's Table 5: 306 in 102 frames."""
         records = [record for record in committed("h200/plan.jsonl") if record["scene"]["name"] == "plates" and record["settings"]["k"] == "8"]
         header, *rows = rows_of(self.table(*records))
         ratio = next(row for row in rows if row[0] == "published / published")
@@ -173,7 +174,7 @@ class Scripts(Case):
         self.assertEqual({theirs for name, (_, theirs) in of.items() if name.startswith("tiled")}, {"-"})
         self.assertNotIn("as theirs", self.table(*committed("h200/published.jsonl")), "nothing is known of their kernels")
 
-    def test_files_that_are_none(self):
+    def test_invalid_files(self):
         record = committed("cpu/walks.jsonl")[0]
         line = json.dumps(record).encode() + b"\n"
         packed = lzma.compress(line)
@@ -192,7 +193,7 @@ class Scripts(Case):
             path.write_bytes(data)
             for reader in ("tables", "figures"):
                 with self.subTest(f"{reader} {name}"):
-                    # A line without an end is warned of, and may be all that there is.
+                    # An unfinished line causes a warning, and may be the only line.
                     status, _, errors = script(reader, path, *([self.work / "none"] if reader == "figures" else []))
                     self.assertEqual((status, len(errors)), (2, 1 + (name == "torn.jsonl")), errors)
                     self.assertTrue(errors[-1].startswith("tandem: "), errors)
@@ -218,17 +219,17 @@ class Scripts(Case):
                 self.assertLessEqual((code, len(errors)), (2, 1), (fields, value, errors))
                 self.assertNotIn("Traceback", "".join(errors))
 
-    def test_a_last_line_without_an_end_is_left_out(self):
+    def test_an_unfinished_last_line_is_ignored(self):
         whole = self.file("whole.jsonl", committed("h200/accuracy.jsonl")[:2])
         torn = self.work / "cut.jsonl"
         torn.write_text(whole.read_text() + whole.read_text()[:100])
         for reader, more in (("tables", []), ("figures", [self.work / "of the whole"])):
             code, text, errors = script(reader, torn, *more)
-            self.assertEqual((code, text, len(errors)), (0, self.said(reader, whole, *more), 1))
+            self.assertEqual((code, text, len(errors)), (0, self.output_of(reader, whole, *more), 1))
             self.assertIn("cut.jsonl:3: the last line has no end", errors[0])
 
-    def test_every_answer_to_odd_bytes_is_one_line(self):
-        """The files of the fuzz target of records, which readers in C++ are given as well."""
+    def test_errors_for_arbitrary_bytes_are_one_line(self):
+        """The inputs of the fuzz target of records, which the readers in C++ get as well."""
         inputs = sorted((SOURCE / "tests/fuzz/corpus/records").iterdir())
         self.assertGreater(len(inputs), 3)
         export = importlib.import_module("tandem.commands.export_csv")
@@ -239,7 +240,7 @@ class Scripts(Case):
                 self.assertIn((code, len(errors)), ((0, 0), (2, 1)), (path.name, errors))
 
     def test_the_standard_library_is_enough(self):
-        """For reading, tables, exports and conversion: without the system's packages, and without those of users."""
+        """Reading, tables, exports and conversion work without the packages of the system and of users."""
         walks, copy = SOURCE / "results/cpu/walks.jsonl", self.work / "walks.jsonl"
         shutil.copy(walks, copy)
         programs = PROGRAM.parent / "libexec/tandem"
@@ -290,7 +291,7 @@ class Scripts(Case):
         self.assertEqual(["**" in row[-2] for row in rows[:4]], [False, False, False, True])
         self.assertEqual(rows[4][0], "gProximity / chunked")
 
-    def test_labels_have_what_differs(self):
+    def test_labels_name_the_differences(self):
         def cell(device=0, commit=None, asked=None, **settings):
             record = json.loads(json.dumps(committed("h200/tiled.jsonl")[0]))
             record["settings"].update(settings)
@@ -303,7 +304,7 @@ class Scripts(Case):
         self.assertEqual(plain[1], "cuda:0")
         self.assertEqual(name_of(cell(threads="1"), cell(threads="4")), [(f"{plain[0]} threads=1", "cuda:0"), (f"{plain[0]} threads=4", "cuda:0")])
         self.assertEqual(name_of(cell(), cell((0, 1))), [plain, (plain[0], "cuda:0+cuda:1")])
-        # Groups that a device takes otherwise are no other cell.
+        # An adjusted group size does not make a different cell.
         self.assertEqual(name_of(cell(0, group_size="64"), cell(1, asked={"group_size": "64"}, group_size="1")), [plain, (plain[0], "cuda:1")])
         self.assertEqual([name for name, _ in name_of(cell(), cell(commit="a" * 40), cell(commit="a" * 40))],
                          [f"{plain[0]} @{cell()['environment']['commit'][:7]}", f"{plain[0]} @aaaaaaa", f"{plain[0]} @aaaaaaa (2)"])
@@ -321,7 +322,7 @@ class Scripts(Case):
         self.assertEqual((status, errors), (0, []), text)
         kernels = json.loads(profile.read_text())["kernels"]
         steps = committed("h200/simulation-funnel.jsonl")
-        text = self.said("tables", profile, SOURCE / "results/h200/ceilings.jsonl", self.file("simulation.jsonl", [*steps, *steps[:5]]))
+        text = self.output_of("tables", profile, SOURCE / "results/h200/ceilings.jsonl", self.file("simulation.jsonl", [*steps, *steps[:5]]))
         rows = {row[0]: row for row in rows_of(text)}
         ceilings = [row[2] for row in rows_of(text) if row[0].startswith("cuda:0")]
         for kernel in kernels:
@@ -333,7 +334,7 @@ class Scripts(Case):
         self.refused("figures", "no record has errors", profile, self.work / "none")
 
     def test_long_files(self):
-        """A hundred thousand cells of one scene, each with a setting of its own, in bounded memory."""
+        """A hundred thousand cells of one scene, each with its own setting, in bounded memory."""
         record = {**committed("h200/plates.jsonl")[0], "kernels": [], "conditions": None, "kernel_times": {}, "breakdown_ns": None, "device_span_ns": None}
         record["total_ns"] = {**record["total_ns"], "frames": [], "samples": []}
         path, count = self.work / "long.jsonl", 100000 if LONG else 4000
@@ -342,12 +343,12 @@ class Scripts(Case):
                 settings = {**record["settings"], "threads": str(i)}
                 algorithm, preset = (("chunked", "grouped"), ("gproximity", "fair"))[i % 2]
                 out.write(json.dumps({**record, "algorithm": algorithm, "preset": preset, "settings": settings}) + "\n")
-        text = self.said("tables", path, address_space=1 << 29)
-        self.assertEqual(text.count("threads="), count + count) # a row each; half of them as ratios, of two cells
+        text = self.output_of("tables", path, address_space=1 << 29)
+        self.assertEqual(text.count("threads="), count + count) # a row each, and half as many ratios, each of two cells
         self.assertIn("only those to the fastest chunked cell are shown", text)
         path.unlink()
 
-    def test_figures_say_what_they_lack(self):
+    def test_figures_report_missing_data(self):
         records = [record for record in committed("h200/accuracy.jsonl") if record["settings"]["contact_rule"] == "opposing"][:3]
         truth = {**records[0]["error"]["truth"], "contacts": None}
         bare = [{**record, "error": {**record["error"], "truth": truth}} for record in records]
@@ -364,19 +365,20 @@ class Scripts(Case):
                                               ("swept", swept, "bars", "group_size=64"), ("swept", swept, "pareto", "placement exact, rounded"),
                                               ("many", many, "bars", "the first 200 of 205 configurations"), ("many", many, "pareto", "(205 values)")):
             with self.subTest(name):
-                self.said("figures", self.file(f"{name}.jsonl", cells), folder)
+                self.output_of("figures", self.file(f"{name}.jsonl", cells), folder)
                 self.assertIn(expected, (folder / f"{figure}.svg").read_text())
         self.assertIn("group_size", (folder / "pareto.csv").read_text().splitlines()[0].split(","))
         wrong = {**records[1], "status": "wrong"}
-        self.assertIn("1 records drawn", text := self.said("figures", self.file("wrong.jsonl", [records[0], wrong]), folder))
+        self.assertIn("1 records drawn", text := self.output_of("figures", self.file("wrong.jsonl", [records[0], wrong]), folder))
         self.assertIn("1 failed, wrong or untimed left out", text)
         self.refused("figures", "the last argument", self.file("a.jsonl", records), self.work / "a.jsonl")
         if os.geteuid() != 0:
             folder.chmod(0o500)
             self.refused("figures", "cannot write", self.work / "a.jsonl", folder, code=3)
 
-    def test_pareto_names_who_is_beaten_by_none(self):
-        """Four made-up cells: fast and coarse, slow and exact, one beaten by both, and the best of all, which misses pairs."""
+    def test_pareto_names_the_cells_that_none_beats(self):
+        """Four synthetic cells: fast and coarse, slow and exact, one beaten by both, and the best of all, which
+        misses pairs."""
         record = next(record for record in committed("h200/accuracy.jsonl") if record["error"]["truth"]["contacts"])
 
         def cell(k, ms, ratio, missed=0):
@@ -386,13 +388,13 @@ class Scripts(Case):
             return {**record, "settings": {**record["settings"], "k": str(k)}, "total_ns": ns, "error": {**record["error"], "truth": truth}}
         cells = [cell(8, 1, 4), cell(26, 2, 1.6), cell(14, 3, 3), cell(6, 0.5, 1.5, missed=1), cell(18, 2.01, 1.6)]
         folder = self.work / "named"
-        self.said("figures", self.file("named.jsonl", cells), folder)
+        self.output_of("figures", self.file("named.jsonl", cells), folder)
         text = (folder / "pareto.svg").read_text()
         for expected in ("k=8: the fastest; k=26: 2.50 times fewer candidates for 2.00 times the time", "<!-- k=8 -->", "<!-- k=26 (and 1 alike) -->"):
             self.assertIn(expected, text)
         for beaten in (14, 6, 18):
             self.assertNotIn(f"<!-- k={beaten}", text)
-        self.said("figures", self.file("named.jsonl", [cell(8, 1, 4), cell(18, 2, 4)]), folder)
+        self.output_of("figures", self.file("named.jsonl", [cell(8, 1, 4), cell(18, 2, 4)]), folder)
         self.assertIn("k=8: the fastest, and nothing is better", (folder / "pareto.svg").read_text())
 
     def test_pictures(self):
@@ -403,7 +405,7 @@ class Scripts(Case):
         glb, out = self.work / "plates.glb", self.work / "picture"
         status, text, errors = tandem("export", "plates", "--frames", "0:10", "--every", 5, "--glb", glb)
         self.assertEqual((status, errors), (0, []), text)
-        self.assertEqual(self.said("render", glb, out, "--at", "0,1", "--size", "64x48"), f"{out}-0.png\n{out}-1.png\n")
+        self.assertEqual(self.output_of("render", glb, out, "--at", "0,1", "--size", "64x48"), f"{out}-0.png\n{out}-1.png\n")
         data, bad = glb.read_bytes(), self.work / "bad.glb"
         for length, expected in ((0, "empty"), (3, "no .glb"), (4, "ends within"), (16, "ends within"), (100, "ends within"), (len(data) - 1, "ends within")):
             bad.write_bytes(data[:length])
@@ -418,8 +420,8 @@ class Scripts(Case):
         for option in ("--at=2", "--at=x", "--size=0x4", "--size=9", "--zoom=0", "--box=1,2", "--from=0,0,0", "--cut=x", "--unheard-of"):
             self.refused("render", option.split("=")[0], glb, out, option)
 
-    def test_commands_of_the_pictures_are_those_of_the_page(self):
-        """Each row of the table has the command that its three pictures are made by."""
+    def test_commands_of_the_pictures_equal_the_page(self):
+        """Each row of the table contains the command of its three pictures."""
         status, text, errors = script("pictures", "--list")
         self.assertEqual((status, errors), (0, []))
         page = SOURCE / "docs/user/scenes.md"
@@ -431,7 +433,7 @@ class Scripts(Case):
             for path in pictures:
                 self.assertTrue((page.parent / path).is_file(), path)
 
-    def test_the_tables_of_the_pages_are_those_of_the_records(self):
+    def test_tables_of_pages_equal_the_records(self):
         plan = SOURCE / "results/h200/plan.jsonl"
         for page in ("README.md", "results/h200/README.md"):
             copy = self.work / "page.md"
@@ -451,7 +453,7 @@ class Scripts(Case):
         few = self.file("few.jsonl", committed("h200/plan.jsonl")[:3])
         self.refused("answer", "--picture needs all scenes of the plan", few, "--picture", self.work / "few.svg")
 
-    def test_the_table_of_what_was_tried_is_of_its_lines(self):
+    def test_the_table_of_trials_equals_its_lines(self):
         tried, copy = SOURCE / "results/tried.jsonl", self.work / "page.md"
         text = (SOURCE / "README.md").read_text()
         copy.write_text(re.sub(r"<!-- tried -->.*?<!-- end -->", "<!-- tried --><!-- end -->", text, flags=re.DOTALL))
@@ -460,29 +462,29 @@ class Scripts(Case):
         self.assertEqual(copy.read_text(), text)
         line = json.loads(tried.read_text().splitlines()[0])
         bad = self.work / "tried.jsonl"
-        for lines, said in (("", "has no lines"), ("{}\n", "tried.jsonl:1: no line of what was tried"), (json.dumps({**line, "count": "3"}), "tried.jsonl:1: no line")):
+        for lines, message in (("", "has no lines"), ("{}\n", "tried.jsonl:1: no line of what was tried"), (json.dumps({**line, "count": "3"}), "tried.jsonl:1: no line")):
             bad.write_text(lines)
             status, _, errors = script("tried", bad)
             self.assertEqual((status, len(errors)), (1, 1), errors)
-            self.assertIn(said, errors[0])
+            self.assertIn(message, errors[0])
         bad.write_text(json.dumps({**line, "count": 1}) + "\n" + json.dumps({**line, "count": 2222}) + "\n")
         self.assertIn("2,222", script("tried", bad)[1])  # the newest of each
         self.assertEqual(len(script("tried", bad)[1].splitlines()), 3)
 
-    def test_the_picture_of_the_pages_is_of_the_records(self):
-        """By its words, which are comments beside their outlines: how they are drawn is the library's."""
+    def test_the_picture_of_the_pages_equals_the_records(self):
+        """Compares words, which are comments beside their outlines; the outlines depend on the library."""
         words = lambda path: re.findall(r"<!-- (.*?) -->", path.read_text())
         drawn = self.work / "answer.svg"
         self.assertEqual(script("answer", SOURCE / "results/h200/plan.jsonl", "--picture", drawn), (0, "", []))
         self.assertGreater(len(words(drawn)), 10)
         self.assertEqual(words(SOURCE / "results/h200/answer.svg"), words(drawn))
 
-    def test_numbers_of_the_readme_are_made(self):
-        """What was measured stands between the marks of tandem.answer alone."""
+    def test_numbers_of_the_readme_are_generated(self):
+        """Measured numbers occur only between the marks of tandem.answer."""
         text = re.sub(r"<!-- answer: [a-z ]+ -->.*?<!-- end -->|^    .*?$", "", (SOURCE / "README.md").read_text(), flags=re.DOTALL | re.MULTILINE)
         self.assertEqual(re.findall(r"\d[\d.,]* ?(?:%|ms|us|ns|s|GB|GiB|MB|times|minutes|seconds)(?![A-Za-z])", text), [])
 
-    def test_links_of_pages_lead_somewhere(self):
+    def test_links_of_pages_resolve(self):
         pages = [p for p in SOURCE.rglob("*.md") if not p.relative_to(SOURCE).parts[0].startswith(("build", "."))]
         self.assertGreater(len(pages), 15)
         for page in pages:
@@ -490,8 +492,8 @@ class Scripts(Case):
                 if not re.match(r"[a-z]+:", target):
                     self.assertTrue((page.parent / target).exists(), f"{page.relative_to(SOURCE)}: {target}")
 
-    def test_quotes_of_the_examples_are_theirs(self):
-        """Every example is quoted by the user guide, and every quote stands in its file."""
+    def test_quotes_equal_the_examples(self):
+        """The user guide quotes every example, and every quote is in its file."""
         quoted, folder = collections.Counter(), SOURCE / "scripts/examples"
         for page in sorted((SOURCE / "docs/user").glob("*.md")):
             text = page.read_text()
@@ -501,7 +503,7 @@ class Scripts(Case):
         self.assertGreater(len(examples), 4)
         self.assertLessEqual(examples, set(quoted))
 
-    def test_wrong_quotes_are_found(self):
+    def test_wrong_quotes_are_detected(self):
         name = "scripts/examples/find_pairs.h"
         lines = (SOURCE / name).read_text().splitlines()
         page = lambda *quote: "\n".join([f"<!-- quote: {name} -->", "```cpp", *quote, "```", ""])
@@ -514,7 +516,8 @@ class Scripts(Case):
         self.assertEqual(wrong_quotes(f"<!-- quote: {name} -->\ntext\n"), ["1 marks and 0 quotes"])
 
     def test_committed_microbenchmarks(self):
-        """What compare.py of Google Benchmark reads, of every benchmark as often, partitions aside; and nothing that names the machine."""
+        """The data that compare.py of Google Benchmark reads: the same repetitions for every benchmark except
+        partitions, and nothing that identifies the machine."""
         result = json.loads((SOURCE / "results/cpu/bench.json").read_text(), parse_constant=self.fail)
         context = result["context"]
         self.assertEqual({"host_name", "executable"} & set(context), set())
@@ -533,7 +536,8 @@ class Scripts(Case):
             self.assertGreaterEqual(one["cpu_time"], 0)
             repetitions.setdefault(one["name"], []).append(one["repetition_index"])
         for name, own in repetitions.items():
-            times = 1 if re.match("partition,|ghosts,", name) else 10  # the U test wants nine; a partition takes seconds
+            # the U test needs nine; a partition takes seconds
+            times = 1 if re.match("partition,|ghosts,", name) else 10
             self.assertEqual(sorted(own), list(range(times)), name)
         self.assertGreater(len(repetitions), 50)
         compare = shutil.which("compare.py", path="/usr/share/benchmark")

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""simulations.py PROGRAM SOURCE: 'tandem simulate' as a user meets it: recordings that are the same on every device and after
-a kill, the lines it records, motions with known ends, and every bad use."""
+"""simulations.py PROGRAM SOURCE: 'tandem simulate': recordings that are equal on every device and after a kill, its
+records, motions with known results, and bad use."""
 import json
 import math
 import os
@@ -20,7 +20,7 @@ from validate_records import validator_of
 
 ARCH = "arch:segments=2"
 NOT_CONVERGED = "the contact solver has not converged"
-STACKS = ("arch", "colosseum")  # at the iterations they were measured with
+STACKS = ("arch", "colosseum")  # with the iteration counts of their measurements
 
 
 def poses(path, bodies):
@@ -32,7 +32,7 @@ def poses(path, bodies):
 
 
 def frame_times(path):
-    """s, of each frame of a recording whose frames have one size: the second field of each."""
+    """Times in s of the frames of a recording with frames of equal size: the second field of each."""
     data = path.read_bytes()
     header = struct.unpack_from("<I", data, 12)[0]
     bodies, text = struct.unpack_from("<II", data, 32)
@@ -46,13 +46,13 @@ def frame_times(path):
 
 class Simulations(Case):
     def simulate(self, scene, *arguments):
-        """Standard output of a run that says nothing else; of a scene in STACKS it may say that it does not converge."""
-        text, errors = self.told("simulate", scene, "--device", "host", *arguments)
+        """Standard output of a run without other messages; scenes in STACKS may report that they do not converge."""
+        text, errors = self.outputs("simulate", scene, "--device", "host", *arguments)
         self.assertTrue(not errors or str(scene).split(":")[0] in STACKS, errors)
         return text
 
-    def told(self, *arguments, environment=None):
-        """Standard output, and the lines on standard error, which are about convergence alone."""
+    def outputs(self, *arguments, environment=None):
+        """Standard output, and the lines of standard error, which may only report missing convergence."""
         status, text, errors = tandem(*arguments, environment=environment)
         self.assertEqual((status, [line for line in errors if NOT_CONVERGED not in line]), (0, []), text)
         return text, errors
@@ -68,7 +68,7 @@ class Simulations(Case):
         files, steps = [], 30 if LONG else 10
         for device, algorithm in (("host", "chunked"), ("opencl:0", "chunked"), ("opencl:0", "gproximity")):
             files.append(self.work / f"{device}-{algorithm}.frames")
-            text, _ = self.told("simulate", ARCH, "--steps", steps, "-o", files[-1], "--device", device, "--algorithm", algorithm)
+            text, _ = self.outputs("simulate", ARCH, "--steps", steps, "-o", files[-1], "--device", device, "--algorithm", algorithm)
             self.assertIn(f"{steps} frames", text)
         self.assertEqual(len({file.read_bytes() for file in files}), 1)
         status, text, errors = tandem("check", files[0], "--frames", f"{steps - 2}:{steps - 1}", "--device", "host,opencl:0",
@@ -76,8 +76,9 @@ class Simulations(Case):
         self.assertEqual((status, errors), (0, []), text)
         self.assertIn("all agree with the reference", text)
 
-    def test_frames_have_the_time_they_are_of(self):
-        """The middle of their step, also of steps that adapt: what flies at 2 m/s is where it is at that time."""
+    def test_frames_have_their_own_time(self):
+        """The time is the middle of the step, also for adaptive steps: a body that flies at 2 m/s is at the matching
+        position."""
         file, record = self.work / "flying.frames", self.work / "simulation-flying.jsonl"
         for scene in ("block:speed=2,drop=9", "tower:segments=1,slices=3"):
             self.simulate(scene, "--steps", 20, "-o", file, "--record", record)
@@ -108,11 +109,12 @@ class Simulations(Case):
         self.assertIn("12 steps in", text)
         self.assertEqual(runs[0]["dynamics"]["warm_start"], "1")
 
-    def test_steps_that_do_not_converge_are_told(self):
-        """A line at the first and one of all; the record says the same; a run that went on counts each step once and changes nothing."""
+    def test_steps_that_do_not_converge_are_reported(self):
+        """One line at the first such step and one with the total; the record has the same counts. A resumed run
+        counts each step once and gives the same result."""
         few, scene = ("--dynamics", "iterations=3"), "block:bodies=3,stack=1,restitution=0"
         record = self.work / "simulation-few.jsonl"
-        _, errors = self.told("simulate", scene, "--device", "host", "--steps", 30, "--record", record, *few)
+        _, errors = self.outputs("simulate", scene, "--device", "host", "--steps", 30, "--record", record, *few)
         steps, runs = self.lines(record)
         missed = [line for line in steps if not line["converged"]]
         self.assertTrue(1 < len(missed) <= 30)
@@ -127,14 +129,14 @@ class Simulations(Case):
             self.assertAlmostEqual(line["energy_change_j"], sum(line["energy_j"].values()) - sum(before["energy_j"].values()), delta=1e-6)
         parts, again = self.work / "few.frames", self.work / "simulation-parts.jsonl"
         for more in (("--steps", 12), ("--steps", 30, "--resume")):
-            self.told("simulate", scene, "--device", "host", "-o", parts, "--record", again, *more, *few)
+            self.outputs("simulate", scene, "--device", "host", "-o", parts, "--record", again, *more, *few)
         resumed, processes = self.lines(again)
         self.assertEqual(sum(run["steps_not_converged"] for run in processes), len(missed))
         self.assertEqual(max(run["worst_residual"] for run in processes), worst["residual"])
         for name in ("converged", "residual", "energy_change_j"):
             self.assertEqual([line[name] for line in resumed], [line[name] for line in steps], name)
-        # One step alone is told once; a run that converges is silent.
-        self.assertEqual(len(self.told("simulate", scene, "--device", "host", "--steps", 1, *few)[1]), 1)
+        # A single step is reported once; a converging run prints nothing.
+        self.assertEqual(len(self.outputs("simulate", scene, "--device", "host", "--steps", 1, *few)[1]), 1)
         record.unlink()
         self.simulate("block", "--steps", 5, "--record", record)
         steps, runs = self.lines(record)
@@ -142,8 +144,8 @@ class Simulations(Case):
         self.assertEqual((runs[0]["steps_not_converged"], runs[0]["worst_residual"]), (0, None))
 
     def test_warm_up_comes_before_step_0(self):
-        """Nothing is compiled and no buffer grows in step 0: with capacities of 1 it walks once, by the same commands whether
-        kernels lie in a cache or not. Frames stay the same, also of a run that went on, which warms up again."""
+        """Step 0 compiles nothing and grows no buffer: with capacities of 1 it traverses once, with the same
+        commands with or without cached kernels. Frames are equal, also in a resumed run, which warms up again."""
         scene, small = "block:bodies=3", ("--set", "pair_capacity=1", "--set", "contact_capacity=1")
         cold = {name: str(self.work / "cold") for name in ("XDG_CACHE_HOME", "POCL_CACHE_DIR", "TANDEM_KERNEL_CACHE")}
         whole, first_steps = self.work / "warm-host.frames", []
@@ -167,7 +169,7 @@ class Simulations(Case):
     def test_killed_at_any_moment(self):
         whole, broken = self.work / "whole.frames", self.work / "broken.frames"
         arguments = ["simulate", ARCH, "--steps", "60", "--device", "host", "--checkpoint", "7", "--quiet"]
-        self.told(*arguments, "-o", whole)
+        self.outputs(*arguments, "-o", whole)
         kills = 0
         for wait in (0.15, 0.3, 0.5, 0.8):
             resume = ["--resume"] if broken.exists() else []
@@ -178,9 +180,9 @@ class Simulations(Case):
             if process.returncode == 0:
                 break
         self.assertGreater(kills, 0)
-        self.told(*arguments, "-o", broken, *(["--resume"] if broken.exists() else []))
+        self.outputs(*arguments, "-o", broken, *(["--resume"] if broken.exists() else []))
         self.assertEqual(broken.read_bytes(), whole.read_bytes())
-        text, _ = self.told(*arguments, "-o", broken, "--resume")
+        text, _ = self.outputs(*arguments, "-o", broken, "--resume")
         self.assertIn("continues after step 60", text)
         self.assertEqual(broken.read_bytes(), whole.read_bytes())
         for other in (("--dynamics", "iterations=10"), ("--set", "contact_rule=clip")):
@@ -190,21 +192,21 @@ class Simulations(Case):
         self.assertEqual(broken.read_bytes(), whole.read_bytes())
 
     def path_of(self, scene, steps, *settings):
-        """Where a block is in the middle of its last step; the settings are the defaults unless others are given."""
+        """Position of a block in the middle of its last step; settings are the defaults unless given."""
         file = self.work / "path.frames"
         for left in self.work.glob("path.frames*"):
             left.unlink()
         self.simulate(f"block:{scene}", "--steps", steps, "-o", file, *settings)
         return poses(file, 1)[-1][0]
 
-    def test_sliding_block_stops_where_it_must(self):
+    def test_a_sliding_block_stops_at_the_known_position(self):
         for friction in (0.2, 0.5):
             expected = 2 * 2 / (2 * friction * 9.82)
             self.assertAlmostEqual(self.path_of(f"speed=2,friction={friction}", 150)[0], expected, delta=0.005 * expected)
 
-    def test_block_slides_down_a_slope_as_far_as_it_must(self):
-        """Gravity and friction cancel but for a hundredth. A solver that ends as early as for the paper's scenes lets a light block go a
-        tenth too far; without the normals of surfaces one sticks."""
+    def test_a_block_slides_down_a_slope_by_the_known_distance(self):
+        """Gravity and friction cancel to a hundredth. With the solver tolerance for the paper's scenes, a light
+        block slides a tenth too far; without surface normals, a block sticks."""
         expected = 0.5 * 9.82 * (math.sin(math.radians(27)) - 0.5 * math.cos(math.radians(27))) * (199.5 * 0.01) ** 2
         for size in (0.05, 0.125, 0.3, 0.5, 1, 20):
             self.assertAlmostEqual(self.path_of(f"slope=27,friction=0.5,size={size}", 200)[0], expected, delta=0.02 * expected, msg=size)
@@ -212,9 +214,9 @@ class Simulations(Case):
         self.assertGreater(early, 1.1 * expected)
         self.assertLess(self.path_of("slope=27,friction=0.5", 200, "--dynamics", "surface_normals=0")[0], 0.1 * expected)
 
-    def test_block_slides_as_far_whichever_body_comes_first(self):
-        """On a ground that is turned, so that nothing lies along the axes of the numbers, and is number 1; without the normals of
-        surfaces it sticks."""
+    def test_a_block_slides_as_far_in_either_body_order(self):
+        """On a rotated ground with body number 1, so nothing is aligned with the axes; without surface normals it
+        sticks."""
         tilt, scene = math.radians(27), self.work / "tilted.json"
         down, up = (math.cos(tilt), -math.sin(tilt), 0), (math.sin(tilt), math.cos(tilt), 0)
         expected = 0.5 * 9.82 * (math.sin(tilt) - 0.5 * math.cos(tilt)) * (199.5 * 0.01) ** 2
@@ -238,9 +240,9 @@ class Simulations(Case):
             self.assertAlmostEqual(along(size), expected, delta=0.02 * expected, msg=size)
         self.assertLess(along(0.05, "--dynamics", "surface_normals=0", "--dynamics", "contact_layer=0"), 0.5 * expected)
 
-    def test_block_that_falls_lies_on_the_ground(self):
+    def test_a_falling_block_ends_on_the_ground(self):
         sunk = 0.5 - self.path_of("drop=1", 200)[1]
-        self.assertTrue(0 <= sunk <= 0.00101, sunk)  # tolerated is 0.001 of its size
+        self.assertTrue(0 <= sunk <= 0.00101, sunk)  # the tolerance is 0.001 of its size
         self.assertGreater(0.5 - self.path_of("drop=1", 200, "--dynamics", "post_stabilize=0")[1], 0.01)
 
     def test_block_at_rest_stays(self):
@@ -261,8 +263,8 @@ class Simulations(Case):
         self.assertLess(lost("arch"), 1e-3)
         self.assertGreater(lost("arch:keystone=0"), 0.05)
 
-    def test_stones_that_only_touch_stay_where_they_are(self):
-        """By the least translation of pairs that surely meet; the paper's rule pushes them a metre sideways."""
+    def test_touching_stones_stay_in_place(self):
+        """With the least translation of certainly intersecting pairs; the paper's rule pushes them a metre sideways."""
         def deepest(*settings):
             record = self.work / "simulation-stones.jsonl"
             record.unlink(missing_ok=True)
@@ -276,7 +278,7 @@ class Simulations(Case):
         self.assertEqual((settings["contact_rule"], settings["decision"]), ("opposing", "fp32"))
         self.assertGreater(depth, 0.5)
 
-    def test_divergence_is_told(self):
+    def test_divergence_is_reported(self):
         record, file = self.work / "simulation-bad.jsonl", self.work / "bad.frames"
         self.bad(["step ", "body ", "J"], "simulate", "tower:segments=1,slices=3", "--device", "host", "--steps", 200, "-o", file,
                  "--record", record, "--dynamics", "adaptive_tolerance=0", "--dynamics", "step=0.1")
@@ -287,7 +289,7 @@ class Simulations(Case):
         status, text, errors = tandem("export", file, "--frames", "0", "--glb", self.work / "bad.glb")
         self.assertEqual((status, errors), (0, []), text)
 
-    def test_pictures_are_of_the_recording(self):
+    def test_pictures_show_the_recording(self):
         frames, out = self.work / "pictured.frames", self.work / "new" / "arch"
         text = self.simulate("tower:segments=1,slices=3", "--steps", 40, "-o", frames, "--pictures", out)
         paths = [f"{out}-{i}.png" for i in range(3)]

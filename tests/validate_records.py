@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""validate_records.py [FILE.jsonl|FILE.jsonl.xz ...]: checks records against results/record.schema.json, those of files named
-ceilings*.jsonl against results/ceilings.schema.json, simulation*.jsonl against results/simulation.schema.json (also sim-*, host-*, serial-* and
-parallel-*.jsonl), steps.jsonl against results/paper.schema.json, tried*.jsonl against results/tried.schema.json, and profile*.jsonl,
-or a profile's in any file, against results/profile.schema.json; without files, all committed ones. Exit 1 names file:line and the place of the first problems."""
+"""validate_records.py [FILE.jsonl|FILE.jsonl.xz ...]: checks records against results/record.schema.json. Files with
+other names have other schemas of results/: ceilings*.jsonl (ceilings), simulation*.jsonl, sim-*, host-*, serial-*
+and parallel-*.jsonl (simulation), steps.jsonl (paper), tried*.jsonl (tried), profile*.jsonl and profile records
+in any file (profile). Without files it checks all committed ones. Exit code 1; FILE:LINE and position of the
+first errors are printed."""
 import json
 import lzma
 import pathlib
@@ -14,7 +15,7 @@ import jsonschema
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SHOWN = 10
-# By the beginning of a file's name; files of 'tandem paper' are named after its steps.
+# Schema by the beginning of a file's name; files of 'tandem paper' are named after its steps.
 KINDS = {"ceilings": "ceilings", "simulation": "simulation", "profile": "profile", "steps": "paper", "tried": "tried", "sim-": "simulation", "host-": "simulation",
          "serial-": "simulation", "parallel-": "simulation"}
 
@@ -24,25 +25,25 @@ def no_constant(name):
 
 
 def problems_of(line, validators, kind):
-    """What is wrong with one line, each with its place in the record."""
+    """Errors of one line, each with its position in the record."""
     try:
         record = json.loads(line, parse_constant=no_constant)
     except ValueError as error:
         return [f"not JSON: {error}"]
-    # A profile's line and a cell's say themselves what they are, in one file as well.
+    # Records of profiles and cells identify themselves, also in one file.
     if isinstance(record, dict) and kind in ("record", "profile"):
         kind = "profile" if "profile_of" in record else "record" if "key" in record else kind
     is_valid, validator = validators[kind]
     try:
         is_valid(record)
         return []
-    except fastjsonschema.JsonSchemaException:  # names the first problem only
+    except fastjsonschema.JsonSchemaException:  # reports the first error only
         pass
     return [f"/{'/'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in validator.iter_errors(record)] or ["/: not as the schema says"]
 
 
 def problems_in(path, validators, kind):
-    """(line number, text) of everything wrong in a file, and how many lines it has."""
+    """(line number, text) of every error in a file, and its number of lines."""
     try:
         data = lzma.open(path).read() if path.suffix == ".xz" else path.read_bytes()
         lines = data.decode("utf-8").removesuffix("\n").split("\n")
@@ -53,7 +54,7 @@ def problems_in(path, validators, kind):
 
 
 def resolved(schema, records):
-    """`schema` with its references into record.schema.json replaced by what they name."""
+    """`schema` with its references into record.schema.json replaced by their targets."""
     if isinstance(schema, list):
         return [resolved(part, records) for part in schema]
     if not isinstance(schema, dict):
@@ -67,7 +68,7 @@ def resolved(schema, records):
 
 
 def schema_of(name):
-    """A schema of results/ without references to others."""
+    """A schema of results/ without external references."""
     records = json.loads((ROOT / "results/record.schema.json").read_text())
     schema = resolved(json.loads((ROOT / "results" / name).read_text()), records)
     schema["definitions"] = {**records["definitions"], **schema.get("definitions", {})}
@@ -80,7 +81,7 @@ def validator_of(name):
 
 
 def main(names):
-    # The first decides, in a tenth of the other's time; the other names everything that is wrong.
+    # The first validator decides, in a tenth of the other's time; the second finds all errors.
     validators = {kind: (fastjsonschema.compile(schema_of(kind + ".schema.json")), validator_of(kind + ".schema.json")) for kind in ("record", "ceilings", "simulation", "profile", "paper", "tried")}
     files = [pathlib.Path(name) for name in names] or sorted([*(ROOT / "results").glob("**/*.jsonl"), *(ROOT / "results").glob("**/*.jsonl.xz")])
     if not files:

@@ -100,16 +100,16 @@ void broad_on_device(benchmark::State& state, Device& device) {
     BroadStage stage(on.bodies, on.trees, {group_size(device), 64 * device.info().compute_units});
     const StageScope scope(device, Stage::broad);
     const auto status = device.allocate(STATUS_WORDS * 4, "status");
-    const auto room = static_cast<std::uint32_t>(std::min<std::uint64_t>(stage.most_pairs(), 1 << 22));
-    const auto pairs = device.allocate(std::size_t{room} * sizeof(BodyPair), "body pairs");
+    const auto capacity = static_cast<std::uint32_t>(std::min<std::uint64_t>(stage.most_pairs(), 1 << 22));
+    const auto pairs = device.allocate(std::size_t{capacity} * sizeof(BodyPair), "body pairs");
     const auto frame = scene.frame(0);
     on.update(frame);
     stage.sort(frame);
-    stage.launch(pairs, room, status);
+    stage.launch(pairs, capacity, status);
     device.finish();
     for ([[maybe_unused]] auto _ : state) {
         device.clear(status, STATUS_WORDS * 4);
-        stage.launch(pairs, room, status);
+        stage.launch(pairs, capacity, status);
         device.finish();
     }
     state.SetComplexityN(state.range(0));

@@ -31,12 +31,12 @@ void decisions(benchmark::State& state, const std::vector<OraclePair>& pairs) {
         counts.add(decide(pairs[i].a, pairs[i].b));
         i = i + 1 < pairs.size() ? i + 1 : 0;
     }
-    const auto share = [&](auto what) {
+    const auto fraction = [&](auto what) {
         return static_cast<double>(counts[what]) / static_cast<double>(state.iterations());
     };
-    state.counters["overlapping"] = share(Relation::overlapping);
-    state.counters["touching"] = share(Relation::touching);
-    state.counters["filtered"] = share(Tier::screen) + share(Tier::filter);
+    state.counters["overlapping"] = fraction(Relation::overlapping);
+    state.counters["touching"] = fraction(Relation::touching);
+    state.counters["filtered"] = fraction(Tier::screen) + fraction(Tier::filter);
 }
 
 void contacts(benchmark::State& state, const std::vector<OraclePair>& pairs) {

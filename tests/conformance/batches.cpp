@@ -82,16 +82,16 @@ TEST_P(Batches, GiveTheSameAnswerOnThePapersDataPath) {
     const auto scene = crowd(72, 10, 0.9);
     for (const auto* traversal : algorithms()) {
         if (!declares(*traversal, "residency")) continue;
-        for (const double share : {0.5, 0.1}) {
+        for (const double fraction : {0.5, 0.1}) {
             const SettingTexts given{{"residency", "published"}, {"broad", "sphere"}, {"k", "8"}};
-            SCOPED_TRACE(fmt::format("{} {}", traversal->name(), share));
+            SCOPED_TRACE(fmt::format("{} {}", traversal->name(), fraction));
             const auto frame = scene.frame(0);
             const auto settings = resolve(traversal->parameters(), {}, given, traversal->name());
             const auto right = reference(scene, frame, geometry_of(settings), true, Method::brute_force,
                                          contact_settings_of(settings));
             const auto wanted = 16 * right.digest.count + 72 * right.contacts;
             const Limited limit(on, least_bytes(on, *traversal, scene, given)
-                                        + static_cast<std::size_t>(share * static_cast<double>(wanted)));
+                                        + static_cast<std::size_t>(fraction * static_cast<double>(wanted)));
             const auto session = prepare(*traversal, scene, given);
             const auto result = session->run(frame);
             EXPECT_GT(result.batches, 1u);

@@ -23,8 +23,8 @@ inline Scene still_scene(Mesh mesh, const std::vector<std::vector<Eigen::Vector3
     scene.frame = [positions](std::size_t frame) {
         Frame result;
         result.deformed.resize(positions[frame].size());
-        for (const auto& place : positions[frame])
-            result.poses.push_back({Eigen::Quaterniond::Identity(), place});
+        for (const auto& position : positions[frame])
+            result.poses.push_back({Eigen::Quaterniond::Identity(), position});
         return result;
     };
     scene.digest = digest_of(scene);

@@ -40,13 +40,13 @@ protected:
                                  resolve(traversal.parameters(), {}, given, traversal.name()));
     }
 
-    static void expect_equal(const FrameResult& there, const FrameResult& here) {
-        EXPECT_GT(here.count, 50u);
-        EXPECT_EQ(there.download(), here.download());
-        EXPECT_EQ(there.digest(), here.digest());
-        EXPECT_EQ(there.contacts, here.contacts);
-        EXPECT_EQ(there.contact_digest(), here.contact_digest());
-        EXPECT_EQ(there.download_contacts().size(), here.download_contacts().size());
+    static void expect_equal(const FrameResult& result, const FrameResult& right) {
+        EXPECT_GT(right.count, 50u);
+        EXPECT_EQ(result.download(), right.download());
+        EXPECT_EQ(result.digest(), right.digest());
+        EXPECT_EQ(result.contacts, right.contacts);
+        EXPECT_EQ(result.contact_digest(), right.contact_digest());
+        EXPECT_EQ(result.download_contacts().size(), right.download_contacts().size());
     }
 
     /// Frames of the scene from both memories: a session for each, and a third session that alternates.
@@ -124,9 +124,9 @@ TEST_P(DeviceFrames, RunWithRetriesAndInBatches) {
     EXPECT_GT(again.retries, 0u);
     const auto small = prepare("chunked", scene, least);
     small->run(frame);
-    const auto little = prepare("chunked", scene, least);
+    const auto limited_session = prepare("chunked", scene, least);
     on.set_memory_limit(on.bytes_allocated() + 20000);
-    const auto parts = little->run(frame);
+    const auto parts = limited_session->run(frame);
     on.set_memory_limit(Device::no_memory_limit);
     EXPECT_GT(parts.batches, 1u);
     expect_equal(parts, right);

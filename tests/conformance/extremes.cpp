@@ -36,9 +36,9 @@ Scene touching() {
     for (auto& v : mesh.vertices) v = (v * 2).array().round() / 2; // back to the lattice
     complete_mesh(mesh, "touching");
     mesh.name = "touching";
-    Pose beside;
-    beside.translation = {1, 0, 0};
-    return still(mesh, {Pose{}, beside});
+    Pose shifted;
+    shifted.translation = {1, 0, 0};
+    return still(mesh, {Pose{}, shifted});
 }
 
 constexpr std::uint32_t crossing = 128;

@@ -186,13 +186,13 @@ TEST_F(Partitions, FramesInBatches) {
     const auto one = on_host(algorithm("tiled"), scene)->run(scene.frame(0));
     auto& limited = device("opencl:0");
     // With memory for some body pairs, and with none: then the host finds them.
-    for (const std::size_t left : {3'000u, 0u}) {
+    for (const std::size_t spare : {3'000u, 0u}) {
         const auto both = on_two_devices(
             algorithm("tiled"), scene,
             {{"pair_capacity", "256"}, {"contact_capacity", "256"}, {"body_pair_capacity", "1"}});
         const std::vector<BodyPair> few{{2, 3}};
         both->run(scene.frame(0), few); // partitions, and grows no buffer of body pairs
-        limited.set_memory_limit(limited.bytes_allocated() + left);
+        limited.set_memory_limit(limited.bytes_allocated() + spare);
         const auto result = both->run(scene.frame(0));
         limited.set_memory_limit(Device::no_memory_limit);
         EXPECT_GT(result.batches, 2u);

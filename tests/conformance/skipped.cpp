@@ -224,8 +224,8 @@ TEST_P(Skipping, AgreesWithTheTruth) {
     EXPECT_GT(range.flaws().degenerate, 0u);
     EXPECT_GT(range.flaws().non_finite, 0u);
     for (std::size_t i = 0; i < range.size(); ++i) {
-        const auto held = range.frame(i);
-        const auto& frame = *held;
+        const auto loaded = range.frame(i);
+        const auto& frame = *loaded;
         const auto truth = frame_truth(scene, frame, Precision::fp32);
         EXPECT_GT(truth.overlapping.size(), 100u);
         EXPECT_TRUE(truth.invalid.empty());

@@ -125,7 +125,7 @@ TEST_F(CuptiClock, ALostRecordIsUnknown) {
     times = expected(5, first + 5);
     times[0] = {-1, -1};
     for (std::size_t i = 1; i < times.size(); ++i) times[i].first -= 1000;
-    EXPECT_EQ(work.all(), times) << "counted from the first that is known";
+    EXPECT_EQ(work.all(), times) << "relative to the first known time";
     EXPECT_EQ(device->clock(), "CUPTI 13.0 activity records");
 }
 
@@ -161,15 +161,15 @@ TEST_F(CuptiClock, EveryDeviceHasItsOwn) {
     adopted->set_clocks(Clocks::on);
     const auto first = next();
     {
-        Work here(*device), there(*adopted);
-        here.launch();
-        there.clear();
-        here.launch();
-        there.launch();
-        EXPECT_THAT(there.times(), ElementsAre(std::pair(0, 101 + first), std::pair(2000, 103 + first)));
-        there.launch();
-        EXPECT_THAT(here.times(), ElementsAre(std::pair(0, 100 + first), std::pair(2000, 102 + first)));
-        EXPECT_THAT(there.times(), ElementsAre(std::pair(0, 104 + first)));
+        Work on_device(*device), on_adopted(*adopted);
+        on_device.launch();
+        on_adopted.clear();
+        on_device.launch();
+        on_adopted.launch();
+        EXPECT_THAT(on_adopted.times(), ElementsAre(std::pair(0, 101 + first), std::pair(2000, 103 + first)));
+        on_adopted.launch();
+        EXPECT_THAT(on_device.times(), ElementsAre(std::pair(0, 100 + first), std::pair(2000, 102 + first)));
+        EXPECT_THAT(on_adopted.times(), ElementsAre(std::pair(0, 104 + first)));
     }
     device->set_clocks(Clocks::off);
     EXPECT_TRUE(cupti_attached()) << "for the other device";

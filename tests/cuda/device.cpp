@@ -13,9 +13,9 @@ namespace {
 /// Runs every operation, and calls `after` after each.
 template<class After>
 void every_operation(Device& device, const After& after) {
-    const auto done = [&](const char* what, auto operation) {
+    const auto done = [&](const char* name, auto operation) {
         operation();
-        after(what);
+        after(name);
     };
     const StageScope scope(device, Stage::traverse);
     Buffer words;
@@ -40,7 +40,8 @@ void every_operation(Device& device, const After& after) {
 TEST_F(CudaDevice, LeavesTheCurrentContextAlone) {
     for (auto* before : {Context{}, other}) {
         make_current(before);
-        every_operation(*device, [&](const char* what) { EXPECT_EQ(current(), before) << what; });
+        every_operation(*device,
+                        [&](const char* operation_name) { EXPECT_EQ(current(), before) << operation_name; });
         { const auto found = cuda::discover(); }
         EXPECT_EQ(current(), before) << "opened and closed";
     }
@@ -53,19 +54,20 @@ TEST_F(CudaDevice, AdoptedRunsOnTheGivenStreamOfTheGivenContext) {
     CUstream_st* stream = nullptr;
     make_current(other);
     entry<CUstream_st**, unsigned>("cuStreamCreate")(&stream, 0);
-    const auto there = entry_of_stub<unsigned long(CUstream_st*, Context)>("stub_calls");
+    const auto calls_with = entry_of_stub<unsigned long(CUstream_st*, Context)>("stub_calls");
     const auto all = entry_of_stub<unsigned long()>("stub_all_calls");
-    const auto elsewhere = all() - there(stream, other);
+    const auto other_calls = all() - calls_with(stream, other);
     for (auto* before : {Context{}, other}) {
         make_current(before);
         auto adopted = cuda::adopt(other, stream);
         EXPECT_EQ(current(), before);
-        every_operation(*adopted, [&](const char* what) { EXPECT_EQ(current(), before) << what; });
+        every_operation(*adopted,
+                        [&](const char* operation_name) { EXPECT_EQ(current(), before) << operation_name; });
         adopted.reset();
         EXPECT_EQ(current(), before);
     }
-    EXPECT_GT(there(stream, other), 20u);
-    EXPECT_EQ(all() - there(stream, other), elsewhere);
+    EXPECT_GT(calls_with(stream, other), 20u);
+    EXPECT_EQ(all() - calls_with(stream, other), other_calls);
 }
 
 TEST_F(CudaDevice, AnInvalidContextCannotBeAdopted) {

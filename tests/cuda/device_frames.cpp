@@ -81,15 +81,15 @@ TEST_F(CudaFrames, AreGraphsFromTheThirdTimeOn) {
         return device->submissions() - before;
     };
     EXPECT_GT(submissions(given), 7u) << "sorts bodies";
-    EXPECT_GT(submissions(given), 7u) << "is not known yet";
+    EXPECT_GT(submissions(given), 7u) << "is not a graph yet";
     for (int i = 0; i < 3; ++i) EXPECT_EQ(submissions(given), 1u);
-    Numbers others(poses);
-    const auto before = launches_with(others.data());
-    const auto elsewhere = frame(*device, others, vertices);
-    EXPECT_GT(submissions(elsewhere), 7u);
-    EXPECT_EQ(submissions(elsewhere), 1u);
+    Numbers other_poses(poses);
+    const auto before = launches_with(other_poses.data());
+    const auto other_frame = frame(*device, other_poses, vertices);
+    EXPECT_GT(submissions(other_frame), 7u);
+    EXPECT_EQ(submissions(other_frame), 1u);
     EXPECT_EQ(submissions(given), 1u);
-    EXPECT_EQ(launches_with(others.data()), before + 2) << "at once, and when the graph was captured";
+    EXPECT_EQ(launches_with(other_poses.data()), before + 2) << "at once, and when the graph was captured";
 }
 
 TEST_F(CudaFrames, WorkOnTheApplicationsStream) {
@@ -127,7 +127,7 @@ TEST_F(CudaFrames, FollowOtherStreams) {
         EXPECT_EQ(orderings(own, named), before + (stream != own));
         EXPECT_EQ(current(), nullptr);
     }
-    EXPECT_EQ(waits(), waited) << "the host goes on";
+    EXPECT_EQ(waits(), waited) << "the host does not wait";
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""faults.py PROGRAM FOLDER NVML CUPTI: what the program says when CUDA is absent, old, broken or failing, with the stubs of
-FOLDER and those of NVML and CUPTI, two files."""
+"""faults.py PROGRAM FOLDER NVML CUPTI: errors of the program when CUDA is absent, old, broken or failing, with the
+stubs of the driver and NVRTC in FOLDER and those of NVML and CUPTI (two files)."""
 import json
 import os
 import pathlib
@@ -30,7 +30,7 @@ def tandem(*arguments, driver="driver", nvrtc=FOLDER / "nvrtc/libnvrtc.so", **va
 
 
 def reason(**options):
-    """Why there is no CUDA device, and that nothing else was said or broken."""
+    """The reason for the missing CUDA device; checks that there is no other error."""
     status, out, errors = tandem("devices", "--json", **options)
     assert status == 0 and not errors, (status, errors)
     entries = {entry["backend"]: entry for entry in json.loads(out)}
@@ -44,7 +44,7 @@ class Faults(unittest.TestCase):
         self.assertEqual((status, errors), (0, []))
         self.assertRegex(out, r"cuda:0 +Stub GPU \(CUDA 13\.0")
 
-    def test_what_it_is_like_now(self):
+    def test_conditions_of_the_device(self):
         def now(**options):
             status, out, errors = tandem("devices", "--json", **options)
             self.assertEqual((status, errors), (0, []))
@@ -61,9 +61,9 @@ class Faults(unittest.TestCase):
             self.assertNotIn("now:", tandem("devices", **without)[1])
             self.assertEqual(now(**without), [None, None])
 
-    def test_what_takes_the_times(self):
+    def test_the_source_of_times(self):
         def clocks(**options):
-            """By 'tandem devices', by its --json, and by a record."""
+            """In 'tandem devices', in its --json output, and in a record."""
             listed = [d["clock"] for e in json.loads(tandem("devices", "--json", **options)[1]) for d in e["devices"] if d["id"] == "cuda:0"]
             self.assertIn(f"; times by {listed[0]}", tandem("devices", **options)[1])
             with tempfile.TemporaryDirectory() as folder:
@@ -106,7 +106,8 @@ class Faults(unittest.TestCase):
         self.assertIn("no NVRTC goes with a driver for CUDA 10.2", reason(nvrtc=None, STUB_VERSION=10020))
 
     def failed(self, **options):
-        """The one line on standard error and the record of a cell on the stub that fails after one that does not."""
+        """The single line on standard error, and the record of a failing cell on the stub, after a cell that
+        succeeds."""
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "out.jsonl"
             status, _, errors = tandem(*RUN, "--device", "host,cuda:0", "--out", str(out), **options)
@@ -114,7 +115,7 @@ class Faults(unittest.TestCase):
         self.assertEqual(status, 3)
         self.assertEqual(len(errors), 1, errors)
         self.assertEqual([r["status"] for r in records], ["ok", "failed"])
-        # No UUID, which is 5a for each byte, but its digest.
+        # The digest of the UUID, whose bytes are all 5a, and not the UUID.
         self.assertEqual(records[1]["devices"][0]["hardware"], "debc1d4a800261d4")
         self.assertIn(records[1]["failure"], errors[0])
         self.assertIn("Stub GPU", errors[0])
@@ -133,7 +134,7 @@ class Faults(unittest.TestCase):
     def test_a_kernel_that_does_not_compile(self):
         self.assertRegex(self.failed(STUB_BROKEN=1), r"\.cl does not compile with NVRTC 13\.0 for sm_90 cubin")
 
-    def test_kept_images_are_not_compiled_again(self):
+    def test_cached_images_are_not_compiled_again(self):
         with tempfile.TemporaryDirectory() as folder:
             cache = pathlib.Path(folder) / "made" / "here"
             run = lambda **options: tandem(*RUN, "--device", "cuda:0", TANDEM_KERNEL_CACHE=cache, **options)[0]
@@ -150,10 +151,10 @@ class Faults(unittest.TestCase):
                 self.assertEqual(run(STUB_BROKEN=1), 3)
                 self.assertEqual(run(), 1)
                 self.assertEqual(files[0].read_bytes(), whole)
-            files[0].write_bytes(files[1].read_bytes())  # as if two programs had one name
+            files[0].write_bytes(files[1].read_bytes())  # as if two programs had the same name
             self.assertEqual(run(STUB_BROKEN=1), 3)
 
-    def test_images_are_not_taken_from_where_others_can_write(self):
+    def test_images_are_not_read_from_folders_that_others_can_write(self):
         with tempfile.TemporaryDirectory() as folder:
             cache = pathlib.Path(folder) / "images"
             self.assertEqual(tandem(*RUN, "--device", "cuda:0", TANDEM_KERNEL_CACHE=cache)[0], 1)
@@ -164,11 +165,11 @@ class Faults(unittest.TestCase):
             cache.chmod(0o755)
             self.assertEqual(tandem(*RUN, "--device", "cuda:0", TANDEM_KERNEL_CACHE=cache)[0], 1)
 
-    def test_a_folder_for_images_that_cannot_be_made(self):
+    def test_a_cache_folder_that_cannot_be_created(self):
         text = reason(TANDEM_KERNEL_CACHE="/dev/null/images")
         self.assertIn("TANDEM_KERNEL_CACHE: cannot make /dev/null/images: Not a directory", text)
 
-    def test_wrong_answers_are_found(self):
+    def test_wrong_answers_are_detected(self):
         """The stub's kernels do nothing: every pair is missing."""
         status, out, errors = tandem(*RUN, "--device", "cuda:0")
         self.assertEqual((status, errors), (1, []))

@@ -80,7 +80,7 @@ TEST(Nvml, FollowsChanges) {
     EXPECT_THAT(c.power_limit_w, Optional(500));
     EXPECT_THAT(c.busy_percent, Optional(97));
     EXPECT_THAT(c.throttle, Optional(0x24));
-    EXPECT_THAT(c.processes, Optional(2)) << "each is listed twice, and one is this one";
+    EXPECT_THAT(c.processes, Optional(2)) << "each is listed twice, and this process is excluded";
 }
 
 TEST(Nvml, CountsMoreProcessesThanItLists) {
@@ -88,7 +88,7 @@ TEST(Nvml, CountsMoreProcessesThanItLists) {
     const Variable processes("STUB_PROCESSES", "100");
     EXPECT_THAT(condition(nvml).processes, Optional(99));
     const Variable none("STUB_PROCESSES", "0");
-    EXPECT_THAT(condition(nvml).processes, Optional(0)) << "of a container that shows none";
+    EXPECT_THAT(condition(nvml).processes, Optional(0)) << "in a container that lists none";
 }
 
 TEST(Nvml, RefusedValuesAreUnknown) {
@@ -106,7 +106,7 @@ TEST(Nvml, RefusedValuesAreUnknown) {
     expected = condition(nvml);
     expected.processes = expected.busy_percent = std::nullopt;
     EXPECT_EQ(without("nvmlDeviceGetComputeRunningProcesses_v3,nvmlDeviceGetUtilizationRates"), expected);
-    EXPECT_EQ(nvml.read(nullptr), unknown) << "a GPU that is lost";
+    EXPECT_EQ(nvml.read(nullptr), unknown) << "a lost GPU";
     const Variable refuses("STUB_REFUSES", "nvmlDeviceGetHandleByUUID,nvmlSystemGetDriverVersion");
     EXPECT_EQ(nvml.find(uuid), nullptr);
     EXPECT_EQ(nvml.driver(), std::nullopt);

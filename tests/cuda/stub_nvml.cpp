@@ -32,8 +32,8 @@ NvmlHandle handle() { return reinterpret_cast<NvmlHandle>(&gpu); }
 
 /// Answers `value`, except for another GPU or a refused call.
 template<class Value>
-NvmlResult answer(std::string_view call, NvmlHandle asked, Value* to, Value value) {
-    if (asked != handle()) return not_found;
+NvmlResult answer(std::string_view call, NvmlHandle gpu_handle, Value* to, Value value) {
+    if (gpu_handle != handle()) return not_found;
     if (refuses(call)) return not_supported;
     *to = value;
     return 0;
@@ -45,7 +45,7 @@ NvmlResult find(std::string_view call, std::string_view name, std::string_view k
     return 0;
 }
 
-NvmlResult processes(std::string_view call, NvmlHandle asked, unsigned* count, NvmlProcess* list) {
+NvmlResult processes(std::string_view call, NvmlHandle gpu_handle, unsigned* count, NvmlProcess* list) {
     const auto existing = number("STUB_PROCESSES", 1);
     if (const auto capacity = *count; capacity < existing) {
         *count = existing;
@@ -54,7 +54,7 @@ NvmlResult processes(std::string_view call, NvmlHandle asked, unsigned* count, N
     // Each process is listed twice, as if it had contexts in two instances of the GPU.
     const auto rows = 2 * existing <= *count ? 2 * existing : existing;
     for (unsigned i = 0; i < rows; ++i) list[i] = {.id = 1000 + i % existing};
-    return answer(call, asked, count, rows);
+    return answer(call, gpu_handle, count, rows);
 }
 
 } // namespace
@@ -72,35 +72,37 @@ NvmlResult nvmlDeviceGetHandleByUUID(const char* uuid, NvmlHandle* found) {
 NvmlResult nvmlDeviceGetHandleByPciBusId_v2(const char* address, NvmlHandle* found) {
     return find(__func__, address, "00000000:5A:00.0", found);
 }
-NvmlResult nvmlDeviceGetClockInfo(NvmlHandle asked, NvmlClock clock, unsigned* mhz) {
-    return answer(__func__, asked, mhz,
+NvmlResult nvmlDeviceGetClockInfo(NvmlHandle gpu_handle, NvmlClock clock, unsigned* mhz) {
+    return answer(__func__, gpu_handle, mhz,
                   clock == nvml_clock_sm ? number("STUB_SM", 1980) : number("STUB_MEMORY_CLOCK", 3201));
 }
-NvmlResult nvmlDeviceGetMaxClockInfo(NvmlHandle asked, NvmlClock clock, unsigned* mhz) {
-    return answer(__func__, asked, mhz, clock == nvml_clock_sm ? 1981u : 3202u);
+NvmlResult nvmlDeviceGetMaxClockInfo(NvmlHandle gpu_handle, NvmlClock clock, unsigned* mhz) {
+    return answer(__func__, gpu_handle, mhz, clock == nvml_clock_sm ? 1981u : 3202u);
 }
-NvmlResult nvmlDeviceGetTemperature(NvmlHandle asked, NvmlTemperature, unsigned* celsius) {
-    return answer(__func__, asked, celsius, number("STUB_TEMPERATURE", 34));
+NvmlResult nvmlDeviceGetTemperature(NvmlHandle gpu_handle, NvmlTemperature, unsigned* celsius) {
+    return answer(__func__, gpu_handle, celsius, number("STUB_TEMPERATURE", 34));
 }
-NvmlResult nvmlDeviceGetPowerUsage(NvmlHandle asked, unsigned* milliwatts) {
-    return answer(__func__, asked, milliwatts, number("STUB_POWER", 76400));
+NvmlResult nvmlDeviceGetPowerUsage(NvmlHandle gpu_handle, unsigned* milliwatts) {
+    return answer(__func__, gpu_handle, milliwatts, number("STUB_POWER", 76400));
 }
-NvmlResult nvmlDeviceGetEnforcedPowerLimit(NvmlHandle asked, unsigned* milliwatts) {
-    return answer(__func__, asked, milliwatts, number("STUB_POWER_LIMIT", 700000));
+NvmlResult nvmlDeviceGetEnforcedPowerLimit(NvmlHandle gpu_handle, unsigned* milliwatts) {
+    return answer(__func__, gpu_handle, milliwatts, number("STUB_POWER_LIMIT", 700000));
 }
-NvmlResult nvmlDeviceGetUtilizationRates(NvmlHandle asked, NvmlUtilization* use) {
-    return answer(__func__, asked, use, NvmlUtilization{number("STUB_BUSY", 0), 0});
+NvmlResult nvmlDeviceGetUtilizationRates(NvmlHandle gpu_handle, NvmlUtilization* use) {
+    return answer(__func__, gpu_handle, use, NvmlUtilization{number("STUB_BUSY", 0), 0});
 }
 #ifdef STUB_OLD
-NvmlResult nvmlDeviceGetComputeRunningProcesses_v2(NvmlHandle asked, unsigned* count, NvmlProcess* list) {
-    return processes(__func__, asked, count, list);
+NvmlResult nvmlDeviceGetComputeRunningProcesses_v2(NvmlHandle gpu_handle, unsigned* count,
+                                                   NvmlProcess* list) {
+    return processes(__func__, gpu_handle, count, list);
 }
 #else
-NvmlResult nvmlDeviceGetComputeRunningProcesses_v3(NvmlHandle asked, unsigned* count, NvmlProcess* list) {
-    return processes(__func__, asked, count, list);
+NvmlResult nvmlDeviceGetComputeRunningProcesses_v3(NvmlHandle gpu_handle, unsigned* count,
+                                                   NvmlProcess* list) {
+    return processes(__func__, gpu_handle, count, list);
 }
-NvmlResult nvmlDeviceGetCurrentClocksThrottleReasons(NvmlHandle asked, unsigned long long* bits) {
-    return answer(__func__, asked, bits, 0ull + number("STUB_THROTTLE", 1));
+NvmlResult nvmlDeviceGetCurrentClocksThrottleReasons(NvmlHandle gpu_handle, unsigned long long* bits) {
+    return answer(__func__, gpu_handle, bits, 0ull + number("STUB_THROTTLE", 1));
 }
 #endif
 }

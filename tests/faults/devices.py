@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""devices.py PROGRAM SOURCE: every call to OpenCL, or to the CUDA driver and NVRTC, that can fail does, one a run: once, or with all that follow,
-as on a device that is gone. The program has to end with a documented code and say why in a line, what was recorded before stays whole, and
-where it goes on its answers are right.
-  OPENCL_SHIM  the library before OpenCL's loader, which keeps what is enqueued in flight
+"""devices.py PROGRAM SOURCE: every call to OpenCL, or to the CUDA driver and NVRTC, fails in turn, one per run:
+once, or with all later calls, as on a lost device. The program must end with a documented code and one line that
+gives the reason. Earlier records stay complete, and if it continues its answers are right.
+  OPENCL_SHIM  the library before OpenCL's loader, which keeps enqueued commands in flight
   CUDA_SHIM    the library before driver and NVRTC
   CUDA_STUBS   a folder with stubs of both; without it the real ones are called"""
 import collections
@@ -18,26 +18,26 @@ import unittest
 
 from program import LONG, PROGRAM, Case, sets, tandem, tried
 
-SHORT = {"opencl": 6, "cuda": 9}  # runs a command and kind of failure in the short form
-FIRST = {"opencl": 1, "cuda": 7}  # call of the short form: one that opens a device, which is not to be tried again
-MOST = 700  # calls: past them a sample of a short frame repeats itself
-LAST = 30  # calls in which a device closes: it waits, and nobody is there any more to be told
-HANGS = 100  # seconds
+SHORT = {"opencl": 6, "cuda": 9}  # runs per command and kind of failure in the short form
+FIRST = {"opencl": 1, "cuda": 7}  # first call of the short form: one that opens a device, which must not be tried twice
+MOST = 700  # maximum number of calls: later calls repeat those of a short frame
+LAST = 30  # the last calls close a device and cannot report errors
+HANGS = 100  # seconds until a run counts as hung
 SMALL = {name: 4096 for name in ("pair_capacity", "contact_capacity")}
 SCENE = "pile:bodies=2,frames=1"
-# Calls of CUDA without which the program may go on: they free, put back, or tell what it can do without; anything where memory
-# is short, since frames are done in batches then.
-# A time or a version that is not told is unknown in a record.
+# CUDA calls whose failure the program may ignore: they free or restore something, or query optional values.
+# Out-of-memory errors are always allowed because frames are then run in batches. A missing time or version is null in a
+# record.
 CAN_DO_WITHOUT = r"Destroy|Free|Unload|Release|Occupancy|GetAttribute|MemGetInfo|GetUuid|CtxGetCurrent|CtxSetCurrent|cuInit|MemHostAlloc|GetError|ElapsedTime|DriverGetVersion"
 LIBRARYS_WORDS = r"std::|::at\b|basic_string|bad_alloc|json\.exception|vector::"
-Kind = collections.namedtuple("Kind", "name code stays")
+Kind = collections.namedtuple("Kind", "name code keeps_failing")
 NO_MEMORY = 2  # CUDA_ERROR_OUT_OF_MEMORY
 KINDS = {"opencl": (Kind("once", -5, False),), "cuda": (Kind("once", 999, False), Kind("without memory", NO_MEMORY, False), Kind("for good", 700, True))}
 Outcome = collections.namedtuple("Outcome", "code errors hung")
 
 
 def stubs():
-    """What leads to the stubs, and away from NVML and CUPTI, which are measured with and not for."""
+    """Environment that selects the stubs, and disables NVML and CUPTI, which are not under test."""
     folder = os.environ.get("CUDA_STUBS")
     found = {"LD_LIBRARY_PATH": f"{folder}/driver", "TANDEM_NVRTC": f"{folder}/nvrtc/libnvrtc.so"} if folder else {}
     return {**found, "TANDEM_NVML": "/nonexistent", "TANDEM_CUPTI": "/nonexistent"}
@@ -46,7 +46,7 @@ def stubs():
 class Sweep(Case):
     backend, device, shim = "", "", ""
     environment = {}
-    checks = ()  # words without which commands compare answers: kernels of a stub do nothing
+    checks = ()  # arguments that disable comparisons: kernels of a stub do nothing
     counts, went_on, clear = collections.Counter(), collections.Counter(), set()
 
     @classmethod
@@ -67,7 +67,7 @@ class Sweep(Case):
         super().tearDownClass()
 
     def commands(self, folder):
-        """Name: words. Everything is written to the folder, records behind those of old.jsonl."""
+        """Words by name of the command. Everything is written to the folder; records are appended to old.jsonl."""
         cell = ("--device", self.device, "--set", "k=8", *sets(SMALL))
         out = ("--out", folder / "old.jsonl")
         return {"run": ("run", SCENE, "--algorithm", "chunked,tiled", *cell, "--repeat", 1, "--truth", "none", *self.checks, *out, "--dump-pairs", folder / "pairs.csv", "--quiet"),
@@ -78,13 +78,13 @@ class Sweep(Case):
                 "export": ("export", SCENE, "--frames", 0, "--vtu", folder, "--contacts", "--device", self.device)}
 
     def fault(self, command, kind, call):
-        """One run in a folder of its own, in which a call fails; 0: none does, and they are counted."""
+        """One run in a separate folder in which call `call` fails; 0: no call fails, and calls are counted."""
         folder = self.work / f"{self.backend}-{command}-{kind.name}-{call}"
         folder.mkdir()
         shutil.copy(self.old, folder)
         environment = {**os.environ, **self.environment, "LD_PRELOAD": self.shim, "SHIM_CALL": str(call), "SHIM_CODE": str(kind.code), "SHIM_FAILED": str(folder / "failed"),
                        "TANDEM_KERNEL_CACHE": str(folder / "cache"), "POCL_EXTRA_BUILD_FLAGS": "-cl-opt-disable"}
-        environment |= {"SHIM_STAYS": "1"} if kind.stays else {}
+        environment |= {"SHIM_STAYS": "1"} if kind.keeps_failing else {}
         environment |= {"SHIM_COUNT": str(folder / "count")} if call == 0 else {}
         running = subprocess.Popen([str(PROGRAM), *map(str, self.commands(folder)[command])], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment)
         try:
@@ -93,11 +93,11 @@ class Sweep(Case):
             running.kill()
             running.communicate()
             return folder, Outcome(0, [], True)
-        # A compiler below PoCL may have words of its own.
+        # PoCL's compiler may print its own messages.
         return folder, Outcome(running.returncode, [line for line in errors if line.strip() and not line.rstrip().endswith("generated.")], False)
 
     def files(self, folder):
-        """What a run without a failure leaves that does not depend on time."""
+        """The files of a run without a failure that do not depend on time."""
         return {path.name: path.read_bytes() for path in sorted(folder.rglob("*")) if path.suffix in (".csv", ".frames", ".vtu", ".pvd", ".vtp")}
 
     def judge(self, command, kind, call, folder, outcome, well, at_the_end):
@@ -112,7 +112,7 @@ class Sweep(Case):
             self.went_on[command] += 1
             self.assertEqual((outcome.errors, self.files(folder)), ([], well[1]), where)
             if self.backend == "cuda" and kind.code != NO_MEMORY:
-                self.assertRegex((folder / "failed").read_text(), CAN_DO_WITHOUT + ("|StreamSynchronize" if kind.stays or at_the_end else ""), where)
+                self.assertRegex((folder / "failed").read_text(), CAN_DO_WITHOUT + ("|StreamSynchronize" if kind.keeps_failing or at_the_end else ""), where)
             return
         self.assertIn(outcome.code, (2, 3), where)
         self.assertIn(len(outcome.errors), (1, 2) if command in ("run", "check", "accuracy") else (1,), where)
@@ -168,7 +168,7 @@ class Cuda(Sweep):
     checks = ("--no-check",) if "CUDA_STUBS" in os.environ else ()
 
 
-del Sweep  # by itself it has no backend
+del Sweep  # the base class has no backend
 
 if __name__ == "__main__":
     unittest.main(argv=[os.path.basename(__file__)], verbosity=1)

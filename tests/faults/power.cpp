@@ -85,9 +85,9 @@ std::string content(const std::string& path) {
     return hexadecimal(text.data(), text.size());
 }
 
-void log_operation(const std::string& what, const std::string& path, const std::string& more = "") {
+void log_operation(const std::string& operation, const std::string& path, const std::string& more = "") {
     if (path.empty() || log_file() < 0) return;
-    const auto line = what + "\t" + path + (more.empty() ? "" : "\t" + more) + "\n";
+    const auto line = operation + "\t" + path + (more.empty() ? "" : "\t" + more) + "\n";
     syscall(SYS_write, log_file(), line.data(), line.size());
 }
 

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""power.py PROGRAM SOURCE: power is lost after every call that changes a file: of what was not synced by then all is on the disk, nothing,
-all but one, one alone, or the last write by half or as zeros. Every such disk is made and the command gone on with: what was promised before
-is there, and in the end all is as without the loss. PRELOAD names the library that writes the calls down (power.cpp)."""
+"""power.py PROGRAM SOURCE: loss of power after every call that changes a file. Changes that are not yet synced are
+on the disk completely, not at all, all but one, only one, or with half of the last write or zeros in its place.
+The command is resumed on every such disk: everything promised before is there, and the final result equals that
+without the loss. PRELOAD names the library that logs the calls (power.cpp)."""
 import collections
 import json
 import os
@@ -16,9 +17,9 @@ import unittest
 
 from program import LONG, PROGRAM, Case, sets, tandem, tried
 
-PRELOAD = str(pathlib.Path(os.environ["PRELOAD"]).resolve())  # children work in folders of their own
-SHORT = 24  # disks a command in the short form, drawn from all
-ROOM = sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")})
+PRELOAD = str(pathlib.Path(os.environ["PRELOAD"]).resolve())  # children run in other folders
+SHORT = 24  # disks per command in the short form, a random selection
+CAPACITIES = sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")})
 Change = collections.namedtuple("Change", "of what")  # `of`: a file's number or a folder; what: a function of the disk
 State = collections.namedtuple("State", "names files")  # path: number of a file, None for a folder; number: bytes
 
@@ -32,8 +33,9 @@ def folder_of(path):
 
 
 class Disk:
-    """What is on it for certain, and in their order the changes that are not. A synced file keeps its content, a synced folder its names:
-    a file has a name for certain only when its folder is synced, which POSIX leaves open and file systems differ in."""
+    """The certain content, and the pending changes in order. Syncing a file makes its content certain, syncing a
+    folder its names. A file's name is certain only after its folder is synced: POSIX leaves this open, and file
+    systems differ."""
 
     def __init__(self, folder):
         self.certain, self.pending, self.names = State({}, {}), [], {}
@@ -71,7 +73,8 @@ class Disk:
         self.change(folder_of(target), lambda state: (state.names.pop(source, None), state.names.__setitem__(target, number)))
 
     def call(self, kind, path, *rest):
-        if path not in self.names and kind in ("sync", "write", "size"):  # made by no call of a program: where a child's output goes
+        # created without a call of a program: output of a child
+        if path not in self.names and kind in ("sync", "write", "size"):
             self.names[path] = self.certain.names[path] = self.new_file()
         number = self.names.get(path)
         if kind == "make":
@@ -103,7 +106,7 @@ class Disk:
         return {path: None if number is None else state.files[number] for path, number in state.names.items() if path not in gone}
 
     def possible(self):
-        """Every disk that a loss of power now may leave."""
+        """Every disk that a loss of power at this point may leave."""
         every = self.pending
         yield from (self.after(every), self.after([]))
         for i, change in enumerate(every):
@@ -133,7 +136,7 @@ class Power(Case):
         super().tearDownClass()
 
     def words(self, command, folder):
-        cells = ("--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked,tiled", "--set", "k=6", *ROOM, "--repeat", 2, "--truth", "none", "--quiet")
+        cells = ("--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked,tiled", "--set", "k=6", *CAPACITIES, "--repeat", 2, "--truth", "none", "--quiet")
         return {"run": ("run", *cells, "--out", folder / "new.jsonl"), "append": ("run", *cells, "--out", folder / "old.jsonl"),
                 "simulate": ("simulate", "arch:segments=2", "--steps", 5, "--checkpoint", 2, "--dynamics", "absolute_tolerance=1", "--device", "host", "-o", folder / "a.frames",
                              "--record", folder / "s.jsonl", "--quiet"),
@@ -144,7 +147,7 @@ class Power(Case):
         return tandem(*self.words(command, folder), *(["--resume"] if has_any else []), environment={"TANDEM_KERNEL_CACHE": str(self.work / "cache")})
 
     def watched(self, command, folder):
-        """Lines of what the command does to a folder, by its calls."""
+        """Log lines of the command's changes to a folder."""
         log = self.work / f"{command}.log"
         environment = {"LD_PRELOAD": PRELOAD, "POWER_FOLDER": str(folder.resolve()), "POWER_LOG": str(log), "TANDEM_KERNEL_CACHE": str(self.work / "cache")}
         self.assertEqual(tandem(*self.words(command, folder), environment=environment)[0], 0)
@@ -153,7 +156,7 @@ class Power(Case):
         return calls
 
     def promises(self, command, calls, folder):
-        """After each call: lines of records that are synced, by path, and steps behind a checkpoint that is."""
+        """After each call: synced lines of records by path, and the steps of a synced checkpoint."""
         lines, steps, disk = {}, 0, Disk(folder)
         for call in calls:
             disk.call(*call)
@@ -164,7 +167,7 @@ class Power(Case):
             yield lines, steps
 
     def disks(self, command, before):
-        """(promised, {path: bytes}) of every disk, each once; drawn from them in the short form."""
+        """(promised, {path: bytes}) of every distinct disk; a random selection in the short form."""
         calls = self.watched(command, before)
         begin = self.work / f"{command}-begin"
         disk, found = Disk(begin), {}
@@ -184,18 +187,18 @@ class Power(Case):
     def judge(self, command, folder, promised, whole):
         lines, steps = promised
         code, text, errors = self.goes_on(command, folder)
-        said = [line for line in errors if line.startswith("tandem: ") and not re.search(r"the last line was torn", line)]
-        self.assertEqual((code, said), (0, []), text)
+        messages = [line for line in errors if line.startswith("tandem: ") and not re.search(r"the last line was torn", line)]
+        self.assertEqual((code, messages), (0, []), text)
         for path, kept in lines.items():
             self.assertTrue(set(kept) <= set(whole_lines((folder / path).read_bytes())), f"{path}: a promised record is gone")
-        if steps and (said := re.search(r"continues after step (\d+)", text)):
-            self.assertGreaterEqual(int(said[1]), steps)
+        if steps and (step := re.search(r"continues after step (\d+)", text)):
+            self.assertGreaterEqual(int(step[1]), steps)
         for path, content in whole.items():
             self.assertEqual(self.lasting(path, (folder / path).read_bytes()), content, path)
 
     @staticmethod
     def lasting(path, content):
-        """Of a file, what is the same in every run: of records which there are."""
+        """The part of a file's content that is the same in every run: for records, which ones exist."""
         if not path.endswith(".jsonl"):
             return content
         lines = [json.loads(line) for line in content.splitlines()]
@@ -213,7 +216,7 @@ class Power(Case):
         for number, (promised, state) in enumerate(disks):
             folder = self.work / f"{command}-{number}"
             self.make(state, folder)
-            with self.subTest(command=command, number=number, there={path: content and len(content) for path, content in state.items()}):
+            with self.subTest(command=command, number=number, disk={path: content and len(content) for path, content in state.items()}):
                 self.judge(command, folder, promised, whole)
             shutil.rmtree(folder)
         self.lost[command] = len(disks)
@@ -224,11 +227,11 @@ class Power(Case):
         self.sweep("run")
 
     def test_append(self):
-        """Behind records that are there, and the torn line of a kill."""
+        """Appends to existing records and to a line torn by a kill."""
         self.sweep("append", lambda folder: (folder / "old.jsonl").write_bytes(b'{"what":"was there before"}\n{"what":"to'))
 
     def test_simulate(self):
-        """Where the checkpoint of another recording lies, too."""
+        """Also with an existing checkpoint of another recording."""
         other = self.work / "other.frames"
         self.assertEqual(tandem("simulate", "arch:segments=2", "--steps", 3, "--device", "host", "-o", other, "--quiet")[0], 0)
         self.sweep("simulate", lambda folder: shutil.copy(f"{other}.checkpoint", folder / "a.frames.checkpoint"))

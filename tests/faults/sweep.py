@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""sweep.py PROGRAM SOURCE: every call to the C library that can fail does, one a run: malloc, once or for good for what is large, open,
-write, fsync, rename, ftruncate and pthread_create, in every command that records. The program has to end with a documented code and say why in a line, and what was
-recorded before stays whole. PRELOAD names the library that makes calls fail."""
+"""sweep.py PROGRAM SOURCE: every call to the C library fails in turn, one per run: malloc (once, or all later large
+ones too), open, write, fsync, rename, ftruncate and pthread_create, in every command that records. The program
+must end with a documented code and one line that gives the reason; earlier records stay complete. PRELOAD names
+the library that makes calls fail."""
 import collections
 import concurrent.futures
 import json
@@ -20,14 +21,14 @@ PRELOAD = os.environ["PRELOAD"]
 FAMILIES = ("open", "write", "fsync", "rename", "truncate", "thread", "large", "malloc")
 CALLS = {"open": "open", "write": "write", "fsync": "fsync", "rename": "rename", "truncate": "ftruncate", "thread": "pthread_create",
          "large": "all large malloc from one on", "malloc": "malloc"}
-CELLS = ("plan", "check", "accuracy")  # several in a command
+CELLS = ("plan", "check", "accuracy")  # commands with several cells
 LIBRARYS_WORDS = r"std::|::at\b|basic_string|bad_alloc|json\.exception|vector::"
-SHORT = 8  # runs a command and family, malloc aside, of the short form
+SHORT = 8  # runs per command and family in the short form, except malloc
 SHORT_MALLOC = 16
-HANGS = 60  # seconds
+HANGS = 60  # seconds until a run counts as hung
 OURS = PROGRAM.name
-# What glibc says before it aborts by itself, where a thread's first object with a destructor finds no memory.
-NO_ROOM_FOR_THREADS = "Fatal glibc error: failed to register TLS destructor: out of memory"
+# Message of glibc before it aborts because a thread's first object with a destructor finds no memory.
+NO_MEMORY_FOR_THREADS = "Fatal glibc error: failed to register TLS destructor: out of memory"
 Outcome = collections.namedtuple("Outcome", "code signal errors owner hung stack")
 
 
@@ -36,8 +37,8 @@ def functions(stack):
     places = [match[1] for line in stack if (match := re.search(re.escape(OURS) + r"\([^)]*\+(0x[0-9a-f]+)\)", line))]
     if not places:
         return []
-    said = subprocess.run(["addr2line", "-Cfe", str(PROGRAM), *places], capture_output=True, text=True).stdout.splitlines()[::2]
-    return [re.sub(r"nlohmann::json_abi\w+::|std::__cxx11::|\[abi:\w+\]", "", name)[:90] for name in said]
+    names = subprocess.run(["addr2line", "-Cfe", str(PROGRAM), *places], capture_output=True, text=True).stdout.splitlines()[::2]
+    return [re.sub(r"nlohmann::json_abi\w+::|std::__cxx11::|\[abi:\w+\]", "", name)[:90] for name in names]
 
 
 class Sweep(Case):
@@ -57,16 +58,17 @@ class Sweep(Case):
 
     @classmethod
     def tearDownClass(cls):
-        said = ", ".join(f"{cls.counts[family]} of {family}" for family in FAMILIES if cls.counts[family])
-        print(f"faults injected: {said}; ended by a signal in other people's libraries: {dict(sum(cls.lost_by.values(), collections.Counter())) or 'none'}")
-        # Every one of them was judged where no test has failed: a run that is red adds no line.
+        counts = ", ".join(f"{cls.counts[family]} of {family}" for family in FAMILIES if cls.counts[family])
+        print(f"faults injected: {counts}; ended by a signal in other people's libraries: {dict(sum(cls.lost_by.values(), collections.Counter())) or 'none'}")
+        # Without a failed test, all of them were checked; otherwise no line is added.
         if cls.swept == cls.wanted:
             for family in FAMILIES:
                 tried(f"calls that fail: {CALLS[family]}", cls.counts[family], "runs", others=sum(cls.lost_by[family].values()))
         super().tearDownClass()
 
     def commands(self, folder):
-        """Name: words, and the file of records that it appends to, or None. Everything is written to the folder."""
+        """By name of the command: words, and the file of records that it appends to, or None. Everything is written
+        to the folder."""
         out = folder / "old.jsonl"
         small = sets({name: 4096 for name in SMALL})
         cell = ("--mesh", self.good, "--mesh", self.good, "--device", "host", "--set", "k=8")
@@ -82,7 +84,8 @@ class Sweep(Case):
                             "--chunks", folder / "c.csv"), None)}
 
     def fault(self, command, family, at, number):
-        """One run in a folder of its own, in which call `at` of a family fails; 0: none does, and what would is listed."""
+        """One run in a separate folder in which call `number` of a family fails; 0: no call fails, and calls are
+        listed."""
         folder = self.work / f"{command}-{family}-{number}"
         folder.mkdir()
         shutil.copy(self.old, folder)
@@ -105,8 +108,8 @@ class Sweep(Case):
         return folder, lines, Outcome(running.returncode, running.returncode < 0 and not hung, errors, owner, hung, stack)
 
     def places(self, command, family):
-        """Numbers of the calls to fail: every one, of malloc the first 500 and the first of every place in the program; of a share in
-        the short form."""
+        """Numbers of the calls to fail: every one; for malloc the first 500 and the first of every site in the
+        program. In the short form a selection of them."""
         folder, lines, outcome = self.fault(command, family, 0, "list")
         self.assertEqual((outcome.code, outcome.errors), (0, []), (command, family))
         total = int(lines[-1][2])
@@ -125,14 +128,14 @@ class Sweep(Case):
         self.assertTrue(kept.startswith(old), f"{where}: a record is gone")
         for line in kept.decode().split("\n")[:-1]:
             json.loads(line)
-        owner = "glibc" if outcome.errors[:1] == [NO_ROOM_FOR_THREADS] else outcome.owner
+        owner = "glibc" if outcome.errors[:1] == [NO_MEMORY_FOR_THREADS] else outcome.owner
         if outcome.signal and owner != OURS:
             self.lost_by[family][owner] += 1
             return
         self.assertFalse(outcome.signal, f"{where}: signal {-outcome.code}")
         self.assertIn(outcome.code, (0, 2, 3), where)
         if outcome.code != 0:
-            # A line for each cell that failed, of two at most, or one for the command.
+            # One line for each failed cell, at most two, or one for the command.
             self.assertIn(len(outcome.errors), (1, 2) if command in CELLS else (1,), where)
             self.assertEqual(len(set(outcome.errors)), len(outcome.errors), where)
             for line in outcome.errors:

@@ -42,7 +42,7 @@ std::string write_file(const std::string& name, std::string_view bytes) {
 
 std::string replaced(std::string text, std::string_view from, std::string_view to) {
     const auto at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << "the test replaces what is not there: " << from;
+    EXPECT_NE(at, std::string::npos) << "the text to replace is missing: " << from;
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
@@ -57,7 +57,7 @@ void expect_example(const Mesh& mesh, bool single) {
     EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {4, 3, 2, 1}}));
 }
 
-/// Expects one line as the error for these bytes: path, `location`, ... `reason` ...; what to do.
+/// Expects one line as the error for these bytes: path, `location`, ... `reason` ...; message to do.
 void expect_failure(const std::string& name, std::string_view bytes, const std::string& location,
                     std::string_view reason) {
     const auto path = write_file(name, bytes);
@@ -66,11 +66,11 @@ void expect_failure(const std::string& name, std::string_view bytes, const std::
         read_mesh(path);
         ADD_FAILURE() << "no error";
     } catch (const InputError& error) {
-        const std::string what = error.what();
-        EXPECT_TRUE(what.starts_with(path + location)) << what;
-        EXPECT_NE(what.find(reason), std::string::npos) << what;
-        EXPECT_NE(what.find("; "), std::string::npos) << what;
-        EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+        const std::string message = error.what();
+        EXPECT_TRUE(message.starts_with(path + location)) << message;
+        EXPECT_NE(message.find(reason), std::string::npos) << message;
+        EXPECT_NE(message.find("; "), std::string::npos) << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     }
 }
 

@@ -32,9 +32,9 @@ TEST(Tetgen, FromOneWithAttributesAndMarkers) {
 
 TEST(Tetgen, BadNodes) {
     write_file("nodes.ele", ele);
-    const auto fails = [](std::string_view from, std::string_view to, const std::string& place,
+    const auto fails = [](std::string_view from, std::string_view to, const std::string& location,
                           std::string_view reason) {
-        expect_failure("nodes.node", replaced(node, from, to), place, reason);
+        expect_failure("nodes.node", replaced(node, from, to), location, reason);
     };
     fails("0 0 1.5", "0 inf 1.5", ":7", "'inf' is not finite");
     fails("6 3", "6 2", ":2", "the dimension is not 3");
@@ -47,9 +47,9 @@ TEST(Tetgen, BadNodes) {
 
 TEST(Tetgen, BadElements) {
     write_file("elements.node", node);
-    const auto fails = [](std::string_view from, std::string_view to, const std::string& place,
+    const auto fails = [](std::string_view from, std::string_view to, const std::string& location,
                           std::string_view reason) {
-        expect_failure("elements.ele", replaced(ele, from, to), place, reason);
+        expect_failure("elements.ele", replaced(ele, from, to), location, reason);
     };
     fails("2 4 0", "2 10 0", ":1", "second-order tetrahedron");
     fails("2 4 0", "2 8 0", ":1", "cells of 8 vertices");

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""opening.py PROGRAM STUBS TRAP: which backends a command opens, with drivers that break whoever loads them: TRAP in place of
-an OpenCL driver, of CUDA's and of NVML. STUBS has a driver of CUDA that works."""
+"""opening.py PROGRAM STUBS TRAP: the backends that a command opens, with drivers that abort any process that loads
+them: TRAP replaces an OpenCL driver, CUDA's and NVML. STUBS has a working driver of CUDA."""
 import os
 import pathlib
 import subprocess
@@ -28,7 +28,8 @@ class Opening(unittest.TestCase):
         (self.work / "icd/trap.icd").write_text(f"{TRAP}\n")
 
     def tandem(self, *arguments, opencl=True, cuda=True):
-        """With traps for what is true: exit code, negative for a signal, standard output and error."""
+        """Runs the program with traps for the arguments that are true: exit code (negative for a signal), standard
+        output and error."""
         environment = {**os.environ, "LD_LIBRARY_PATH": str(self.work / "cuda" if cuda else STUBS / "driver")}
         for name in ("TANDEM_CUPTI", "TANDEM_NVML", "TANDEM_NVRTC"):
             environment.pop(name, None)
@@ -58,17 +59,17 @@ class Opening(unittest.TestCase):
             self.assertEqual(status, 0, (arguments, out, errors))
 
     def test_cuda_alone(self):
-        """The stub runs no kernels: what counts is that it was reached, and nothing else."""
+        """The stub runs no kernels: the test checks that only the stub was loaded."""
         status, out, errors = self.tandem(*RUN, "--device", "cuda:0", "--dry-run", cuda=False)
         self.assertEqual((status, errors), (0, ""), out)
         self.assertIn("on cuda:0", out)
         self.assertEqual(self.tandem(*RUN, "--device", "host", "--require", "cuda", "--dry-run", cuda=False)[0], 0)
 
-    def test_what_is_required_is_opened(self):
+    def test_required_devices_are_opened(self):
         for required in ("opencl", "opencl:0", "cuda"):
             self.assertLess(self.tandem(*RUN, "--device", "host", "--require", required)[0], 0, required)
 
-    def test_what_is_unknown_is_looked_for_everywhere(self):
+    def test_unknown_devices_are_searched_in_every_backend(self):
         for arguments in (("--device", "nix"), ("--device", "host:1"), ("--device", "host", "--require", "nix")):
             self.assertLess(self.tandem(*RUN, *arguments)[0], 0, arguments)
         status, _, errors = self.tandem(*RUN, "--device", "cuda:7", cuda=False, opencl=False)

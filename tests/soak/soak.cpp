@@ -121,7 +121,7 @@ private:
         return given;
     }
 
-    /// Runs a session for `length` frames, with a second session beside it half of the time.
+    /// Runs a session for `length` frames, with a second session second it half of the time.
     void run_session(std::uint64_t length) {
         const auto& traversal = *algorithms()[below(algorithms().size())];
         const auto scene = below(scenes_.size());
@@ -130,11 +130,11 @@ private:
         given["pair_capacity"] = given["contact_capacity"] = fmt::format("{}", capacity);
         const auto settings = resolve(traversal.parameters(), {}, given, traversal.name());
         const std::array devices{&device_};
-        std::unique_ptr<Session> session, beside;
+        std::unique_ptr<Session> session, second;
         try {
             session = traversal.prepare(devices, scenes_[scene], settings);
             if (below(2) == 0)
-                beside = traversal.prepare(devices, scenes_[(scene + 1) % scenes_.size()], settings);
+                second = traversal.prepare(devices, scenes_[(scene + 1) % scenes_.size()], settings);
         } catch (const InputError&) { // incompatible settings
             return;
         }
@@ -144,7 +144,7 @@ private:
             const auto chance = below(200);
             if (chance == 0) session->reset();
             if (chance % 50 == 1) run_limited_session();
-            if (chance == 2 && beside) beside->run(scenes_[(scene + 1) % scenes_.size()].frame(0));
+            if (chance == 2 && second) second->run(scenes_[(scene + 1) % scenes_.size()].frame(0));
             auto result = session->run(frames[i % 2]);
             ++frames_;
             batches_ += result.batches > 1;

@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: MIT
-// Nothing: a target needs a file, and that of the precompiled headers has no other.
+// Empty: a target needs a source file, and the precompiled headers have no other.

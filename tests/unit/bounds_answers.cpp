@@ -120,7 +120,7 @@ TEST(BoundsAnswers, KernelsAndReferenceUseTheSameSlabsInEveryRounding) {
                 geometry.precision = Precision::fp64;
                 EXPECT_EQ(kernel_pairs<double>(*scene, geometry), in()) << static_cast<int>(rounding);
             }
-    EXPECT_GT(counts.size(), 4u) << "roundings that do not differ here say little";
+    EXPECT_GT(counts.size(), 4u) << "equal answers of all roundings would test nothing";
 }
 
 TEST(BoundsAnswers, TheHostsBroadPhaseDropsNoBodyPairOfAnyBounds) {

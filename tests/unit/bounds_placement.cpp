@@ -204,7 +204,7 @@ TEST(Truth, DriftIsWithinItsBoundAndCloseToIt) {
             EXPECT_GT(drift.max, 0.4);
             largest = std::max(largest, drift.of_bound);
         }
-        EXPECT_GT(largest, 0.1) << "the bound is idle";
+        EXPECT_GT(largest, 0.1) << "the bound is too loose to be tested";
     }
 }
 

@@ -148,19 +148,20 @@ TEST(BoundsRounding, PublishedMissesOneSlabAlignedPairInThirteen) {
         const auto along = directions({.k = 8});
         std::vector<OraclePair> pairs;
         for (std::size_t i = 0; i < 20000; ++i) {
-            const auto place = random.direction();
-            pairs.push_back(maker.touching(along[i % along.size()], {place.x(), place.y(), place.z()}));
+            const auto direction = random.direction();
+            pairs.push_back(
+                maker.touching(along[i % along.size()], {direction.x(), direction.y(), direction.z()}));
             ASSERT_EQ(relation(pairs.back().a, pairs.back().b), Relation::touching);
         }
         const PairScene scene(pairs);
-        const auto share = [&](Rounding rounding) {
+        const auto fraction = [&](Rounding rounding) {
             return static_cast<double>(misses<float>(scene, {.k = 8, .rounding = rounding}))
                    / static_cast<double>(pairs.size());
         };
         fmt::print("offset {}: published misses {:.2f} %, nearest {:.2f} %\n", offset,
-                   100 * share(Rounding::published), 100 * share(Rounding::nearest));
-        EXPECT_NEAR(share(Rounding::published), expected, 0.008);
-        EXPECT_EQ(share(Rounding::safe), 0);
+                   100 * fraction(Rounding::published), 100 * fraction(Rounding::nearest));
+        EXPECT_NEAR(fraction(Rounding::published), expected, 0.008);
+        EXPECT_EQ(fraction(Rounding::safe), 0);
     }
 }
 

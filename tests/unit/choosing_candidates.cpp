@@ -37,7 +37,7 @@ TEST(ChoosingCandidates, EveryAlgorithmWithEveryAlternative) {
     }
     EXPECT_EQ(values_of(cells, "chunked", "leaves"), (std::set<std::string>{"0", "8", "64", "512"}));
     EXPECT_EQ(values_of(cells, "tiled", "slabs"), (std::set<std::string>{"usual", "all"}))
-        << "usual is three here";
+        << "`usual` equals `three`";
     for (const auto* traversal : algorithms())
         EXPECT_EQ(values_of(cells, traversal->name(), "builder"), (std::set<std::string>{"morton", "sah"}));
 }

@@ -28,7 +28,7 @@ struct Bench {
     SearchResult run(const SearchLimits& limits = {10, 60}) {
         SearchSteps steps;
         steps.replay = [&](std::size_t i) -> std::optional<std::int64_t> {
-            EXPECT_THAT(dropped, Not(testing::Contains(i))) << "asked for what was dropped";
+            EXPECT_THAT(dropped, Not(testing::Contains(i))) << "replays a dropped candidate";
             if (std::find(order.begin(), order.end(), i) == order.end())
                 preparing += static_cast<double>(preparing_ns) * 1e-9;
             order.push_back(i);

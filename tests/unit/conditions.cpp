@@ -41,9 +41,9 @@ GpuCondition shared_gpu(std::uint64_t throttle, unsigned processes) {
 class Conditions : public testing_support::FolderTest {
 protected:
     void write(const std::string& file, const std::string& text) const {
-        const auto place = path(file);
-        std::filesystem::create_directories(std::filesystem::path(place).parent_path());
-        testing_support::write_bytes(place, text);
+        const auto target = path(file);
+        std::filesystem::create_directories(std::filesystem::path(target).parent_path());
+        testing_support::write_bytes(target, text);
     }
 
     /// `busy` seconds of `elapsed` on each of the two cores; the other two are busy all the time.
@@ -112,7 +112,8 @@ TEST_F(Conditions, ShortPeriodsAreMerged) {
     write_stat(1001.24, 101.12);
     EXPECT_THAT(processor.read().others, Optional(DoubleNear(2, 1e-9)));
     write_stat(1001.36, 101.24);
-    EXPECT_THAT(processor.read().others, Optional(DoubleNear(2 * 0.24 / 0.36, 1e-6))) << "of all its parts";
+    EXPECT_THAT(processor.read().others, Optional(DoubleNear(2 * 0.24 / 0.36, 1e-6)))
+        << "over the whole period";
 }
 
 TEST_F(Conditions, ADifferentSetOfCoresRestartsThePeriod) {
@@ -180,7 +181,7 @@ TEST_F(Conditions, QuotaOfVersion2) {
     EXPECT_THAT(c.quota, Optional(1.5));
     EXPECT_EQ(disturbance({}, {c, {}}), "quota: throttled 3 times");
     EXPECT_EQ(disturbance({}, {c, {}}, {.throttled = 3}), std::nullopt);
-    EXPECT_THAT(processor.read().throttled, Optional(0)) << "since the reading before";
+    EXPECT_THAT(processor.read().throttled, Optional(0)) << "since the last reading";
     write("sys/fs/cgroup/user.slice/cpu.stat", "nr_throttled 2\n");
     EXPECT_THAT(processor.read().throttled, Optional(0)) << "of another group";
 }
@@ -238,7 +239,7 @@ TEST_F(Conditions, OfThisMachine) {
 
 TEST(Disturbance, OfAGpu) {
     const Condition quiet{{}, {shared_gpu(0x103, 0)}};
-    EXPECT_EQ(disturbance(quiet, quiet), std::nullopt) << "idle, and clocks that someone has set";
+    EXPECT_EQ(disturbance(quiet, quiet), std::nullopt) << "an idle GPU, and clocks set by a user";
     const Condition capped{{}, {shared_gpu(0x4, 0)}};
     EXPECT_EQ(disturbance(quiet, capped), "throttled: power cap");
     EXPECT_EQ(disturbance(capped, quiet), "throttled: power cap");

@@ -22,10 +22,10 @@ struct Errors {
     std::vector<double> depth;                  ///< |d - d*| / (u L), L the longest edge
     std::vector<double> angle;                  ///< degrees to the nearest of the best normals
 
-    static double at(std::vector<double> values, double share) {
+    static double at(std::vector<double> values, double fraction) {
         if (values.empty()) return 0;
         std::sort(values.begin(), values.end());
-        return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+        return values[static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1))];
     }
 };
 

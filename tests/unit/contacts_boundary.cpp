@@ -157,7 +157,7 @@ TYPED_TEST(ContactsBoundary, RestrictedUsesProductsOfBoundaryEdgesOnly) {
 
 TYPED_TEST(ContactsBoundary, RestrictedIsSatWhereAllFacesAreOnTheBoundary) {
     PairMaker<TypeParam> maker;
-    std::size_t seen = 0, others = 0;
+    std::size_t seen = 0, different = 0;
     for (int i = 0; i < 2000; ++i) {
         const auto pair = maker.make(PairMaker<TypeParam>::generic);
         const auto sat = this->contacts(ContactRule::sat, pair.a, pair.b);
@@ -167,11 +167,11 @@ TYPED_TEST(ContactsBoundary, RestrictedIsSatWhereAllFacesAreOnTheBoundary) {
         ASSERT_EQ(less.size(), sat.size());
         for (std::size_t k = 0; k < sat.size(); ++k) {
             EXPECT_LE(less[k].depth, sat[k].depth);
-            others += less[k].depth < sat[k].depth ? 1 : 0;
+            different += less[k].depth < sat[k].depth ? 1 : 0;
         }
     }
     EXPECT_GT(seen, 1000u);
-    EXPECT_GT(others, 500u);
+    EXPECT_GT(different, 500u);
 }
 
 /// A tetrahedron with legs of 4 along the axes and centre (1, 1, 1), and its mirror image whose first corner

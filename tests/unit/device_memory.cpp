@@ -148,8 +148,8 @@ TEST(DeviceGroups, ThatAreTooLargeAreRefused) {
         const auto kernel = test::compile(*device, "do_nothing");
         const auto words = device->allocate(64, "words");
         const std::array<Argument, 1> arguments{words};
-        const auto told = kernel.facts().max_group_size;
-        const auto most = told >= 0 ? told : std::int64_t{device->info().max_group_size};
+        const auto reported = kernel.facts().max_group_size;
+        const auto most = reported >= 0 ? reported : std::int64_t{device->info().max_group_size};
         const auto wanted = static_cast<std::uint32_t>(most + 1);
         const auto message = message_of([&] { device->launch(kernel, {1, wanted}, arguments); });
         EXPECT_THAT(message, testing::AllOf(HasSubstr(device->info().id), HasSubstr("'do_nothing'"),

@@ -26,7 +26,7 @@ struct Source {
                     delete[] memory;
                 }};
     }
-    std::size_t held() const {
+    std::size_t bytes_in_use() const {
         std::size_t sum = 0;
         for (const auto& [memory, bytes] : blocks) sum += bytes;
         return sum;
@@ -49,12 +49,12 @@ TEST(DeviceStaging, IsBoundedAndReused) {
                 ++taken;
             }
             EXPECT_EQ(taken, 14u); // seven in each of two blocks of 4 MiB
-            EXPECT_EQ(source.held(), 8 * MiB);
+            EXPECT_EQ(source.bytes_in_use(), 8 * MiB);
             EXPECT_NE(staging.take(1), nullptr); // fits into their rest
             staging.release();
         }
     }
-    EXPECT_EQ(source.held(), 0u);
+    EXPECT_EQ(source.bytes_in_use(), 0u);
 }
 
 TEST(DeviceStaging, ALargeBlockReplacesSmallOnes) {
@@ -62,10 +62,10 @@ TEST(DeviceStaging, ALargeBlockReplacesSmallOnes) {
     Staging staging(source.source(), 10 * MiB);
     EXPECT_NE(staging.take(3 * MiB), nullptr);
     EXPECT_NE(staging.take(3 * MiB), nullptr);
-    EXPECT_EQ(staging.take(9 * MiB), nullptr) << "they are in flight";
+    EXPECT_EQ(staging.take(9 * MiB), nullptr) << "the blocks are in flight";
     staging.release();
     EXPECT_NE(staging.take(10 * MiB), nullptr);
-    EXPECT_EQ(source.held(), 10 * MiB);
+    EXPECT_EQ(source.bytes_in_use(), 10 * MiB);
     EXPECT_EQ(staging.take(1), nullptr);
     staging.release();
     EXPECT_EQ(staging.take(10 * MiB + 1), nullptr) << "more than the limit";
@@ -76,13 +76,13 @@ TEST(DeviceStaging, ASystemWithoutMemoryIsNoError) {
     Source source;
     Staging staging(source.source(), 100);
     EXPECT_EQ(staging.take(101), nullptr);
-    EXPECT_EQ(staging.take(100), nullptr) << "rounded up it is more";
+    EXPECT_EQ(staging.take(100), nullptr) << "rounded up, it exceeds the limit";
     Staging larger(source.source(), MiB);
     source.empty = true;
     EXPECT_EQ(larger.take(100), nullptr);
     source.empty = false;
     EXPECT_NE(larger.take(100), nullptr);
-    EXPECT_EQ(source.held(), MiB) << "a block is no larger than the limit";
+    EXPECT_EQ(source.bytes_in_use(), MiB) << "a block is no larger than the limit";
 }
 
 } // namespace

@@ -106,11 +106,11 @@ std::size_t wrong_at_once(const First& first, const Second& second) {
         }
         return wrong;
     };
-    std::size_t there = 0;
-    std::thread other([&] { there = run(second); });
-    const auto here = run(first);
+    std::size_t wrong_second = 0;
+    std::thread other([&] { wrong_second = run(second); });
+    const auto wrong_first = run(first);
     other.join();
-    return here + there;
+    return wrong_first + wrong_second;
 }
 
 TEST(DeviceThreads, HostDevicesAreIndependent) {

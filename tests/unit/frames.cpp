@@ -77,7 +77,7 @@ TEST_F(FrameRanges, ThatDoNotFitAreRegeneratedAndReleased) {
         EXPECT_EQ(digest_of(*range.frame(i % frame_count)), expected[i % frame_count]) << i;
         EXPECT_EQ(std::ranges::count_if(all, [](const auto& frame) { return !frame.expired(); }), 1);
     }
-    EXPECT_EQ(made_, 3 * frame_count) << "the frame that was asked for last is there";
+    EXPECT_EQ(made_, 3 * frame_count) << "the last requested frame stays in memory";
 }
 
 /// Frames in use stay valid while others are requested.
@@ -178,10 +178,11 @@ TEST_F(FrameRanges, GiveTheSameAnswersInMemoryThatDoesNotGrowWithThem) {
         const auto of_a_quarter = most_;
         const auto streamed = answers(scene_, FrameRange(scene_, 0, frame_count - 1, handling, budget));
         EXPECT_LT(most_, of_a_quarter + 3 * idle_bytes) << name_of(handling);
-        const auto held = answers(scene_, FrameRange(scene_, 0, frame_count - 1, handling));
-        EXPECT_EQ(streamed, held) << name_of(handling);
-        EXPECT_GT(held.expected[0].count, 100u);
-        EXPECT_NE(held.sampled.front(), held.sampled.back()) << "frames differ, so that a stale one is seen";
+        const auto stored = answers(scene_, FrameRange(scene_, 0, frame_count - 1, handling));
+        EXPECT_EQ(streamed, stored) << name_of(handling);
+        EXPECT_GT(stored.expected[0].count, 100u);
+        EXPECT_NE(stored.sampled.front(), stored.sampled.back())
+            << "frames differ, so a stale one is detected";
     }
 }
 

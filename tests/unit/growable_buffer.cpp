@@ -52,7 +52,7 @@ TEST_F(GrowableRows, HaveOneCapacityUnderEveryLimit) {
             EXPECT_LE(buffer.capacity(), before);
         }
         on->set_memory_limit(Device::no_memory_limit);
-        if (buffer.capacity() == 0) buffer.reserve(1); // an emptied buffer can be used again
+        if (buffer.capacity() == 0) buffer.reserve(1); // a buffer without memory can be used again
     }
 }
 

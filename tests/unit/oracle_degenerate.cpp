@@ -20,10 +20,10 @@ TetraCorners square(double x, double y, double z) {
     return {{{x, y, z}, {x + 1, y + 1, z}, {x + 1, y, z}, {x, y + 1, z}}};
 }
 
-void expect(const TetraCorners& a, const TetraCorners& b, Relation relation, const char* what) {
+void expect(const TetraCorners& a, const TetraCorners& b, Relation relation, const char* name) {
     for (const auto first : {Tier::screen, Tier::filter, Tier::integers, Tier::big_integers}) {
-        EXPECT_EQ(decide(a, b, first).relation, relation) << what;
-        EXPECT_EQ(decide(b, a, first).relation, relation) << what << ", swapped";
+        EXPECT_EQ(decide(a, b, first).relation, relation) << name;
+        EXPECT_EQ(decide(b, a, first).relation, relation) << name << ", swapped";
     }
 }
 

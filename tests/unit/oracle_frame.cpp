@@ -108,10 +108,10 @@ TEST(OracleFrame, ReportsProgress) {
     double last = 0;
     std::uint64_t decided = 0;
     const auto truth =
-        frame_truth(scene, scene.frame(0), Precision::fp32, [&](double share, std::uint64_t done) {
-            EXPECT_GE(share, last);
-            EXPECT_LE(share, 1);
-            last = share;
+        frame_truth(scene, scene.frame(0), Precision::fp32, [&](double progress, std::uint64_t done) {
+            EXPECT_GE(progress, last);
+            EXPECT_LE(progress, 1);
+            last = progress;
             decided = done;
         });
     std::uint64_t sum = 0;
@@ -167,9 +167,9 @@ TEST(OracleFrame, RefusesWhatIsTooLargeForMemory) {
     const auto near = std::accumulate(expected.decisions.relations.begin(),
                                       expected.decisions.relations.end(), std::uint64_t{0});
     const auto needed = tetrahedron_count(scene) * (4 * 3 + 6) * sizeof(double) + near * 3 * sizeof(Pair);
-    const auto enough = frame_truth(scene, frame, Precision::fp32, {}, needed);
-    EXPECT_EQ(enough.overlapping, expected.overlapping);
-    EXPECT_EQ(enough.touching, expected.touching);
+    const auto sufficient = frame_truth(scene, frame, Precision::fp32, {}, needed);
+    EXPECT_EQ(sufficient.overlapping, expected.overlapping);
+    EXPECT_EQ(sufficient.touching, expected.touching);
     for (const std::uint64_t memory : {needed - 1, needed / 2, std::uint64_t{1000}, std::uint64_t{0}}) {
         try {
             frame_truth(scene, frame, Precision::fp32, {}, memory);

@@ -32,7 +32,7 @@ class OracleSlack : public testing::TestWithParam<Family> {};
 
 TEST_P(OracleSlack, CertificatesHoldForAllCornersWithinTheTolerance) {
     Random random(17);
-    unsigned disjoint = 0, overlapping = 0, facets = 0, left = 0;
+    unsigned disjoint = 0, overlapping = 0, facets = 0, undecided = 0;
     for (unsigned i = 0; i < 3000; ++i) {
         const auto [a, b] = random_pair(GetParam(), random);
         const double off = std::pow(10.0, -1.0 - i % 15);
@@ -49,7 +49,7 @@ TEST_P(OracleSlack, CertificatesHoldForAllCornersWithinTheTolerance) {
                 ASSERT_EQ(relation(p, q), Relation::disjoint) << off;
                 continue;
             }
-            left += filtered.unsure != 0;
+            undecided += filtered.unsure != 0;
             if (filtered.unsure == 0 && filtered.volume[0] && filtered.volume[1]) {
                 ++overlapping;
                 ASSERT_EQ(relation(p, q), Relation::overlapping) << off;
@@ -66,7 +66,7 @@ TEST_P(OracleSlack, CertificatesHoldForAllCornersWithinTheTolerance) {
     EXPECT_GT(disjoint, 100u);
     EXPECT_GT(overlapping, 100u);
     EXPECT_GT(facets, 1000u);
-    EXPECT_GT(left, 100u);
+    EXPECT_GT(undecided, 100u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, OracleSlack,

@@ -24,7 +24,7 @@ TEST(OracleVolume, TheLeastHeightIsOne) {
     EXPECT_FALSE(has_volume(with_apex({0.3, 0.4, 0})));
     for (const double height : {least, -least, 0x1p-60, -0x1p-60, 1e300})
         EXPECT_TRUE(has_volume(with_apex({0.3, 0.4, height}))) << height;
-    EXPECT_FALSE(has_volume({{{1, 2, 3}, {1, 2, 3}, {4, 5, 7}, {0, 0, 1}}})) << "two corners in one place";
+    EXPECT_FALSE(has_volume({{{1, 2, 3}, {1, 2, 3}, {4, 5, 7}, {0, 0, 1}}})) << "two equal corners";
     EXPECT_FALSE(has_volume({{{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {5, 5, 5}}})) << "on a line";
     EXPECT_FALSE(has_volume({{{least, 0, 0}, {0, least, 0}, {least, least, 0}, {0, 0, 0}}}));
     EXPECT_TRUE(has_volume({{{least, 0, 0}, {0, least, 0}, {0, 0, least}, {0, 0, 0}}}));

@@ -87,10 +87,10 @@ TEST_P(OriginSessions, AFarSceneGivesTheSameResultsAsANearOne) {
                                          SettingTexts{{"placement", "exact"}, {"broad", "tight"}}}) {
         auto counted = settings;
         counted.insert_or_assign("origin", "auto");
-        const auto here = prepare(near, settings), there = prepare(away, counted);
-        EXPECT_EQ(there->origin(), far_offset);
+        const auto near_session = prepare(near, settings), far_session = prepare(away, counted);
+        EXPECT_EQ(far_session->origin(), far_offset);
         for (std::size_t i = 0; i < 2; ++i) {
-            const auto expected = here->run(near.frame(i)), found = there->run(away.frame(i));
+            const auto expected = near_session->run(near.frame(i)), found = far_session->run(away.frame(i));
             EXPECT_GT(expected.contacts, 100u);
             EXPECT_EQ(found.digest(), expected.digest());
             EXPECT_EQ(found.contact_digest(), expected.contact_digest());

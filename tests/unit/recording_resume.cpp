@@ -60,7 +60,7 @@ TEST_F(RecordingResume, ContinuesFromTheCheckpointWithTheSameBytes) {
     EXPECT_EQ(resume_failure(), file_
                                     + ": has 3 frames, its checkpoint 4; restore the recording or record to "
                                       "another file");
-    EXPECT_EQ(bytes_of(file_), whole.substr(0, fourth - 1)) << "a refusal must not cost frames";
+    EXPECT_EQ(bytes_of(file_), whole.substr(0, fourth - 1)) << "an error must not lose frames";
 }
 
 TEST_F(RecordingResume, ADamagedFrameBeforeTheCheckpointIsDetected) {
@@ -81,8 +81,8 @@ TEST_F(RecordingResume, ADamagedFrameBeforeTheCheckpointIsDetected) {
 TEST_F(RecordingResume, TheNextFrameReplacesAnIncompleteTail) {
     const auto whole = bytes_of(path("whole.frames"));
     const auto second = Recording(file_).offset(2);
-    for (const std::size_t left : {0, 1, 123}) {
-        write_bytes(file_, whole.substr(0, second + left));
+    for (const std::size_t rest : {0, 1, 123}) {
+        write_bytes(file_, whole.substr(0, second + rest));
         auto writer = RecordingWriter::resume(file_, small_.header);
         EXPECT_EQ(writer.frames(), 2u);
         small_.append(writer, 2, 3);

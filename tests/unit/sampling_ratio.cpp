@@ -45,15 +45,15 @@ TEST(SamplingRatio, EqualsThePythonPackage) {
 TEST(SamplingRatio, IntervalsContainTheTruth) {
     std::mt19937_64 random(4);
     for (const std::size_t rounds : {10, 25}) {
-        int held = 0;
+        int containing = 0;
         for (int i = 0; i < 1000; ++i) {
             auto logs = noise(random, rounds, 0.03);
             for (auto& log : logs) log += std::log(1.1);
             const auto ratio = paired_ratio(logs);
-            held += ratio.low <= 1.1 && ratio.high >= 1.1 ? 1 : 0;
+            containing += ratio.low <= 1.1 && ratio.high >= 1.1 ? 1 : 0;
         }
-        EXPECT_GT(held, 940) << rounds;
-        EXPECT_LT(held, 990) << rounds;
+        EXPECT_GT(containing, 940) << rounds;
+        EXPECT_LT(containing, 990) << rounds;
     }
 }
 

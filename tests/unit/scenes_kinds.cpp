@@ -221,9 +221,9 @@ TEST(ScenesKinds, BadSpecifications) {
     EXPECT_THAT(failure("pile:seed"), HasSubstr("seed has no value"));
     for (const auto* value : {"bodies=0", "bodies=-1", "bodies=2.5", "bodies=", "bodies=3 ", "density=nan",
                               "density=0", "density=inf", "frames=0", "seed=x"}) {
-        const auto what = failure(std::string("pile:") + value);
-        EXPECT_THAT(what, HasSubstr(value));
-        EXPECT_THAT(what, testing::ContainsRegex("give a number from .* to "));
+        const auto message = failure(std::string("pile:") + value);
+        EXPECT_THAT(message, HasSubstr(value));
+        EXPECT_THAT(message, testing::ContainsRegex("give a number from .* to "));
     }
 }
 

@@ -49,7 +49,7 @@ TEST(ScenesMesh, CountsInvertedAndDegenerate) {
     EXPECT_EQ(mesh.inverted, 1u);
     EXPECT_EQ(mesh.degenerate, 2u);
     complete_mesh(mesh, "it");
-    EXPECT_EQ(mesh.inverted, 1u) << "a second call counts anew";
+    EXPECT_EQ(mesh.inverted, 1u) << "a second call counts again from zero";
 }
 
 TEST(ScenesMesh, VolumeIgnoresOrientation) {

@@ -186,7 +186,7 @@ TEST(SimulateDefaults, BounceKeepsTheSquareOfRestitution) {
         }
         before = report.kinetic;
     }
-    FAIL() << "it does not come down";
+    FAIL() << "the body does not land";
 }
 
 /// Without gravity, tolerances are relative to the initial speed.

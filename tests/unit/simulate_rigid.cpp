@@ -34,11 +34,11 @@ World tumbling() {
     world.dynamics.gravity.setZero();
     world.dynamics.stepping.post_stabilize = false; // it moves centres without an impulse
     for (int i = 0; i < 6; ++i) {
-        const Eigen::Vector3d place(i % 3 * 1.5, i / 3 * 1.5, 0.2 * i);
+        const Eigen::Vector3d position(i % 3 * 1.5, i / 3 * 1.5, 0.2 * i);
         BodyDynamics moves;
-        moves.velocity = 2 * (Eigen::Vector3d(1.5, 0.75, 0.5) - place) + random.direction();
+        moves.velocity = 2 * (Eigen::Vector3d(1.5, 0.75, 0.5) - position) + random.direction();
         moves.spin = 3 * random.direction();
-        world.add(box({1, 0.8, 0.6}, {0.3, 0, 0}), {random.rotation(), place}, false, moves);
+        world.add(box({1, 0.8, 0.6}, {0.3, 0, 0}), {random.rotation(), position}, false, moves);
     }
     return world;
 }

@@ -47,11 +47,12 @@ TEST(SimulateRows, AttachmentsInterpolateThePointOfContact) {
     ASSERT_GT(problem.rows.size(), 3u);
     for (std::size_t i = 0; i < problem.rows.size(); ++i) {
         const auto& attachment = problem.attachments[problem.rows[i].b.index];
-        Eigen::Vector3d held = Eigen::Vector3d::Zero();
+        Eigen::Vector3d interpolated = Eigen::Vector3d::Zero();
         for (std::size_t corner = 0; corner < 4; ++corner)
-            held += attachment.weights[corner] * motion.soft[1].positions[attachment.nodes[corner] - 2];
+            interpolated +=
+                attachment.weights[corner] * motion.soft[1].positions[attachment.nodes[corner] - 2];
         const auto& point = contacts[problem.sources[i]].point;
-        EXPECT_LT(length(held - Eigen::Vector3d(point[0], point[1], point[2])), 1e-9);
+        EXPECT_LT(length(interpolated - Eigen::Vector3d(point[0], point[1], point[2])), 1e-9);
     }
 }
 

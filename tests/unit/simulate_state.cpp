@@ -133,8 +133,8 @@ TEST(SimulateState, InvalidStatesAreRefused) {
     EXPECT_EQ(simulation.state(), whole); // a failed restore changes nothing
     auto digested = mixed();
     digested.scene.digest = 7;
-    Simulation stranger(digested.finish());
-    EXPECT_THROW(stranger.restore(whole), InputError);
+    Simulation other_simulation(digested.finish());
+    EXPECT_THROW(other_simulation.restore(whole), InputError);
 }
 
 TEST(SimulateState, StartIsThatOfTheScene) {

@@ -109,11 +109,11 @@ Mesh beam(const Eigen::Vector3d& size, std::array<int, 3> cells) {
         for (int z = 0; z < cells[2]; ++z)
             for (int y = 0; y < cells[1]; ++y)
                 for (int x = 0; x < cells[0]; ++x) {
-                    std::array<int, 3> place{x, y, z};
+                    std::array<int, 3> cell{x, y, z};
                     Tetrahedron t{index(x, y, z), 0, 0, 0};
                     for (std::size_t i = 0; i < 3; ++i) {
-                        ++place[static_cast<std::size_t>(order[i])];
-                        t[i + 1] = index(place[0], place[1], place[2]);
+                        ++cell[static_cast<std::size_t>(order[i])];
+                        t[i + 1] = index(cell[0], cell[1], cell[2]);
                     }
                     const auto& p = mesh.vertices;
                     const Eigen::Vector3d normal = (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]);
