@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """device_arrays.py PROGRAM SOURCE: GPU arrays as input of tandem.Collider, on the stub of CUDA's driver
-(LD_LIBRARY_PATH and TANDEM_NVRTC name it): the stream passed to the array's library, kernels that get the
+(LD_LIBRARY_PATH and TANDEM_NVRTC name it). Tests the stream passed to the array's library, kernels that get the
 original addresses, release of borrowed arrays, and errors. Kernels of the stub find no pairs; tests/conformance
 checks their results."""
 import ctypes

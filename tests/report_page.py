@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""report_page.py PROGRAM SOURCE: pages of `tandem report` and `tandem view` in Chromium: they load without errors or
+"""report_page.py PROGRAM SOURCE: pages of `tandem report` and `tandem view` in Chromium. They load without errors or
 requests, show every cell, filter, sort, rotate the scene, fit a phone, and handle bad or very large input."""
 import json
 import lzma

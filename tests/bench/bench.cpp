@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Microbenchmarks of the stages, on every available device. The host times iterations around one wait.
-// Compare times within one run only; times on a processor say nothing about a GPU.
+// Compare times within one run only; times on a processor do not predict those on a GPU.
 #include "algorithms/broad_phase/broad.h"
 #include "algorithms/broad_phase/broad_stage.h"
 #include "algorithms/narrow_phase/reference.h"

@@ -169,7 +169,7 @@ TEST_P(Batches, ContactsRunInRoundsWhenTheirListsAreShort) {
             on.set_clocks(Clocks::off);
             EXPECT_EQ(result.batches, 1u);
             EXPECT_EQ(result.retries, 0u);
-            // After the first run a GPU uses one round because it knows that few pairs remain.
+            // From the second run on, a GPU uses one round because the first run found few remaining pairs.
             if (run == 0 || !on.info().is_gpu) {
                 EXPECT_GE(std::ranges::count(trace.events, "separate_pairs", &Event::label), 4);
             }

@@ -3,9 +3,9 @@
 // context is thread-local, calls without a context fail, and a stream works only with its own context.
 // Variables select faults and attributes: STUB_INIT (code of cuInit), STUB_VERSION, STUB_MEMORY (bytes
 // available), STUB_FAULT (launches fault), STUB_LAUNCH, STUB_INSTANTIATE and STUB_GRAPH (codes of
-// cuLaunchKernel, of instantiating a graph and of launching one), STUB_UNKNOWN (an attribute that the device
-// does not report). STUB_DEVICES is the number of devices (default 1); CUDA_VISIBLE_DEVICES selects some of
-// them.
+// cuLaunchKernel, of instantiating a graph and of launching one). STUB_UNKNOWN is an attribute that the
+// device does not report. STUB_DEVICES is the number of devices (default 1); CUDA_VISIBLE_DEVICES selects
+// some of them.
 #include "backends/cuda/driver.h"
 #include "tests/cuda/stub_driver.h"
 
@@ -154,7 +154,7 @@ Result cuDeviceGetAttribute(int* value, int what, DeviceHandle) {
         {capability_minor, 0}};
     const auto found = what == number("STUB_UNKNOWN", -1) ? values.end() : values.find(what);
     if (found == values.end())
-        return 1; // CUDA_ERROR_INVALID_VALUE, as for an attribute that the driver does not know
+        return 1; // CUDA_ERROR_INVALID_VALUE, as for an attribute that the driver does not support
     *value = found->second;
     return 0;
 }

@@ -3,7 +3,8 @@
 // lengths. Several sessions exist at a time, with resets and with results that outlive them. Some have random
 // memory limits: their frames run whole, in batches or not at all. Buffers are guarded (support/cells.h).
 // Prints one line per tenth. Exit code 1 if an answer differs from that of the same cell on the host without
-// a limit, or if memory, open files or device buffers grow; 3 if a kernel writes past the end of a buffer.
+// a limit, or if memory, open files or device buffers grow. Exit code 3 if a kernel writes past the end of a
+// buffer.
 #include "harness/record/environment.h"
 #include "base/error.h"
 #include "tests/support/limited.h"

@@ -102,7 +102,7 @@ Mesh beyond_all_numbers() {
     return mesh;
 }
 
-TEST(Orders, ArePermutationsOfAnyMesh) {
+TEST(TreeOrders, ArePermutationsOfAnyMesh) {
     auto meshes = hard_meshes();
     meshes.push_back(beyond_all_numbers());
     EXPECT_TRUE(std::ranges::any_of(centroids(meshes.back()), [](const auto& c) { return c.hasNaN(); }));
@@ -115,7 +115,7 @@ TEST(Orders, ArePermutationsOfAnyMesh) {
         }
 }
 
-TEST(Orders, DifferFromEachOther) {
+TEST(TreeOrders, DifferFromEachOther) {
     Random random(4);
     const auto mesh = shuffled(shaken_box(5, random), 6);
     std::set<Order> different;
@@ -123,13 +123,13 @@ TEST(Orders, DifferFromEachOther) {
     EXPECT_EQ(different.size(), std::size(builders));
 }
 
-TEST(Orders, TiesKeepInputOrder) {
+TEST(TreeOrders, TiesKeepInputOrder) {
     const auto mesh = tetrahedra_at(Positions(3000, {5, 5, 5}));
     for (const auto builder : builders)
         EXPECT_EQ(ordered(mesh, builder).ids, counted(3000)) << static_cast<int>(builder);
 }
 
-TEST(Orders, IncludeTetrahedraThatAreNotNumbers) {
+TEST(TreeOrders, IncludeTetrahedraThatAreNotNumbers) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(morton_order(Positions{{5, 0, 0}, {none, 0, 0}, {0, 0, 0}}), (Order{1, 2, 0}));
     const AxisOrders axes({{none, 1, 0}, {1, none, 0}, {-1, 2, 0}}); // the origin replaces it
