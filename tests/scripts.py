@@ -269,10 +269,10 @@ class Scripts(Case):
             path = self.work / "older.jsonl"
             path.write_text("".join(json.dumps({**older(record), "schema": record["schema"] - 1}) + "\n" for record in records))
             self.refused("tables", "convert_records", path)
-            self.said("convert_records", path)
+            self.output_of("convert_records", path)
             self.assertEqual([json.loads(line) for line in path.read_text().splitlines()], records, name)
             once = path.read_bytes()
-            self.said("convert_records", path)
+            self.output_of("convert_records", path)
             self.assertEqual(path.read_bytes(), once)
         self.assertEqual(presets, {"grouped", "paper", "published"})
 
