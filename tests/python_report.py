@@ -78,7 +78,7 @@ class Sentences(unittest.TestCase):
     def test_one_round_is_not_enough(self):
         groups, sentences = groups_and_sentences([cell_of("a", [1.0]), cell_of("b", [2.0])])
         self.assertFalse(groups[0].ranked[1].is_distinguished)
-        self.assertIn("takes 2.000 times as long, in one round: how sure is not known", sentences)
+        self.assertIn("takes 2.000 times as long, in only one round, so that there is no interval", sentences)
 
     def test_rounds_of_one_session_are_pairs(self):
         """Rounds that rise and fall together distinguish cells of one session, but not cells of two sessions."""
@@ -103,7 +103,7 @@ class Sentences(unittest.TestCase):
 
     def test_of_many_failures_some_are_named(self):
         _, sentences = groups_and_sentences([cell_of(f"a{i}", [], status="failed", failure="x" * 150) for i in range(40)])
-        self.assertTrue(sentences.startswith("None of its cells has times that count."), sentences)
+        self.assertTrue(sentences.startswith("None of its cells has valid times."), sentences)
         self.assertTrue(sentences.endswith(" There are more."), sentences)
         self.assertLess(len(sentences), 1300)
 
@@ -113,7 +113,7 @@ class Sentences(unittest.TestCase):
     def test_different_answers_have_no_fastest(self):
         cells = [cell_of("a", ONE_MS, pairs=Answer(3, "1", "2")), cell_of("b", TWO_MS, pairs=Answer(4, "1", "2"))]
         groups, sentences = groups_and_sentences(cells)
-        self.assertIn("none is said to be the fastest", sentences)
+        self.assertIn("none counts as the fastest", sentences)
         self.assertEqual(summary_sentences(groups, cells), [])
 
     def test_without_pairs_nothing_is_ranked(self):
@@ -122,7 +122,7 @@ class Sentences(unittest.TestCase):
 
     def test_processors(self):
         cells = [cell_of("a", ONE_MS, on_gpus=False)]
-        self.assertEqual(summary_sentences(groups_of(cells), cells), ["Times of processors say nothing of a GPU."])
+        self.assertEqual(summary_sentences(groups_of(cells), cells), ["Times on processors do not predict times on a GPU."])
 
 
 class Conditions(unittest.TestCase):
@@ -132,7 +132,7 @@ class Conditions(unittest.TestCase):
                     "processor": {"mhz": [2100, None, 2300], "other_cores": busy}}
         conditions = {"before": reading(1980, 41, 0, 0.5), "after": reading(1980, 52, 0, 0.25), "disturbed": [{"why": "clocks fell"}]}
         self.assertEqual(conditions_text({"conditions": conditions}), "GPU at 1980 MHz, 41 to 52 °C, processor at 2100 to 2300 MHz, "
-                         "cores busy with others: 0.25 to 0.5, 1 doubtful round, the first: clocks fell")
+                         "cores used by other processes: 0.25 to 0.5, 1 doubtful round, the first: clocks fell")
         conditions["after"] = reading(1755, 52, 2, 0.25)
         self.assertIn("GPU at 1755 to 1980 MHz", conditions_text({"conditions": conditions}))
         self.assertIn("other processes on it: 0 to 2", conditions_text({"conditions": conditions}))
@@ -140,9 +140,9 @@ class Conditions(unittest.TestCase):
 
     def test_samples(self):
         self.assertEqual(sampling_text({}), "not recorded")
-        self.assertEqual(sampling_text({"sampling": {"converged": True, "outliers": 0, "drift": None}}), "nothing speaks against it")
+        self.assertEqual(sampling_text({"sampling": {"converged": True, "outliers": 0, "drift": None}}), "no problems")
         self.assertEqual(sampling_text({"sampling": {"converged": False, "interrupted": True, "outliers": 3, "drift": 0.0123}}),
-                         "its interval stayed wider than asked for, interrupted before it was sampled enough, outliers: 3, drifted by 1.2 %")
+                         "interval wider than requested, interrupted before it had enough samples, outliers: 3, drifted by 1.2 %")
 
 
 class Data(unittest.TestCase):
@@ -227,12 +227,12 @@ class Reading(Case):
 
     def test_of_too_many_records_one_per_key_is_kept(self):
         keys = [self.of_rounds(5, f"{i}", 1 + i / 100, key=f"key {i % 4}") for i in range(8)]
-        read = self.read(*keys, most=6)
+        read = self.read(*keys, max_cells=6)
         self.assertEqual([cell.recorded.session for cell in read.cells], ["6", "7", "4", "5"])
         self.assertEqual(read.notes, ["4 older records of cells that were recorded again are left out"])
-        read = self.read(*keys, self.of_rounds(5, "w", status="wrong", key="another"), most=3)
+        read = self.read(*keys, self.of_rounds(5, "w", status="wrong", key="another"), max_cells=3)
         self.assertEqual(len(read.cells), 3)
-        self.assertRegex(read.notes[-1], "^[0-9]+ of 9 records of cells are left out, 1 of them failed or wrong: a page has room for 3; ")
+        self.assertRegex(read.notes[-1], "^[0-9]+ of 9 records of cells are left out, 1 of them failed or wrong: a page shows at most 3; ")
 
     def test_a_torn_line_is_ignored_and_reported(self):
         read = read_records([self.file(self.record, self.record, end="")])

@@ -222,7 +222,7 @@ class Pages(Case):
         packed.write_bytes(lzma.compress((json.dumps(interrupted) + "\n").encode()))
         self.opened(self.report(packed, whole))
         self.assertEqual(self.column("status"), ["ok", "ok"])
-        self.assertEqual(self.browser.run("document.getElementById('made').textContent.split('.')[0]"), "Of packed")
+        self.assertEqual(self.browser.run("document.getElementById('made').textContent.split('.')[0]"), "Files: packed")
         self.assertNotIn("recorded again", self.browser.run("document.getElementById('summary').textContent"))
 
     def test_against_equals_compare(self):

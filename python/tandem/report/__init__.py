@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Records, and a scene, as one page for a browser: what 'tandem report' and 'tandem view' write."""
+"""Writes records and a scene as one page for a browser, for 'tandem report' and 'tandem view'."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A page that needs nothing else: its own files, the libraries that it takes, and its data."""
+"""Assembles a self-contained page from its own files, the libraries that it uses, and its data."""
 import dataclasses
 import os
 import pathlib
@@ -16,7 +16,7 @@ SCENE_SCRIPTS = ("scene.js", "scene_controls.js")
 
 @dataclasses.dataclass
 class Page:
-    """title; libraries: the texts of those that it takes; has_charts, has_scene: which of its own scripts it takes; data: {id: JSON text}."""
+    """libraries: texts of the libraries of the page; has_charts, has_scene: which of its own scripts it has; data: {id: JSON text}."""
     title: str
     libraries: list = dataclasses.field(default_factory=list)
     has_charts: bool = False
@@ -25,7 +25,7 @@ class Page:
 
 
 def open_page(title, has_charts, has_scene, program, command):
-    """A Page without data. Raises BadUse where a library that it takes is missing."""
+    """A Page without data. Raises BadUse if a library that it needs is missing."""
     libraries = (CHARTS if has_charts else {}) | (SCENES if has_scene else {})
     return Page(title, scripts(libraries, program, command), has_charts, has_scene)
 
@@ -39,7 +39,7 @@ def _escaped(text):
 
 
 def _data_element(name, json):
-    """No text of a record can end its element."""
+    """An element with JSON data, escaped so that no text of a record can end it."""
     escaped = json.replace("<", "\\u003c")
     return f'<script type="application/json" id="data-{name}">{escaped}</script>\n'
 
@@ -57,14 +57,14 @@ def html_of(page):
 
 
 def write_page(path, page):
-    """Replaces the file, whole or not at all; returns its bytes. Raises OutputError."""
+    """Writes the page, atomically. Returns its size in bytes. Raises OutputError."""
     try:
         is_file = stat.S_ISREG(os.stat(path).st_mode)
     except OSError:
-        is_file = True  # what keeps it from being written is said then
+        is_file = True  # replace_whole reports the error, if there is one
     if not is_file:
-        raise OutputError(f"{path}: is no file that could be replaced; choose another with -o")
-    # Names of files, and texts of records with half a surrogate pair, need not be UTF-8.
+        raise OutputError(f"{path}: is not a regular file; choose another with -o")
+    # Names of files and texts of records need not be valid UTF-8.
     html = html_of(page).encode(errors="replace")
     replace_whole(path, html)
     return len(html)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The records of a page as JSON text that fits it."""
+"""Makes the JSON text of records for a page, within a limit of its size."""
 import dataclasses
 import json
 
@@ -8,13 +8,13 @@ from .numbers import rounded
 from .sentences import group_sentences, summary_sentences
 from .shown_cells import FIELDS
 
-LABEL_AND_GROUP_BYTES = 80  # about so many a cell
-SHARED = [place for place, is_shared in enumerate(FIELDS.values()) if is_shared]
+LABEL_AND_GROUP_BYTES = 80  # estimate per cell
+SHARED = [column for column, is_shared in enumerate(FIELDS.values()) if is_shared]
 
 
 @dataclasses.dataclass
 class PageData:
-    """The JSON text, how many cells are shown, and notes about what was left out."""
+    """The JSON text, the number of its cells, and notes on records that are left out."""
     json: str
     cells: int
     notes: list
@@ -29,7 +29,7 @@ def size_of(text):
 
 
 class _Interned:
-    """Values that occur again and again, each once: what refers to one is its number."""
+    """Repeated values, each stored once. A number refers to each."""
 
     def __init__(self):
         self.values, self.bytes, self._numbers = [], 2, {}
@@ -43,20 +43,20 @@ class _Interned:
         return self._numbers[text]
 
     def row(self, row):
-        """The row with numbers in place of what cells share; None stays None."""
-        return [self.number(value) if place in SHARED and value is not None else value for place, value in enumerate(row)]
+        """The row with numbers instead of values in SHARED columns; None stays None."""
+        return [self.number(value) if column in SHARED and value is not None else value for column, value in enumerate(row)]
 
 
-def _fitting_cells(records, room, values):
-    """How many cells there is room for, with their rows interned. The last ones are left out where there is none, and a note says how many."""
+def _fitting_cells(records, max_bytes, values):
+    """Interns the rows of cells and returns those cells that fit. The last cells are left out, with a note, if there are too many."""
     size = 0
-    for kept, cell in enumerate(records.cells):
+    for count, cell in enumerate(records.cells):
         cell.row = values.row(cell.row)
         size += size_of(dumped(cell.row)) + LABEL_AND_GROUP_BYTES
-        if size + values.bytes > room:
-            records.notes.append(f"the last {len(records.cells) - kept} of {len(records.cells)} cells are left out, so that the page stays small; "
-                                 "give fewer files, or the lines that matter")
-            return records.cells[:kept]
+        if size + values.bytes > max_bytes:
+            records.notes.append(f"the last {len(records.cells) - count} of {len(records.cells)} cells are left out, so that the page stays small; "
+                                 "give fewer files or fewer lines")
+            return records.cells[:count]
     return records.cells
 
 
@@ -66,26 +66,26 @@ def _group(group, cells):
 
 
 class _Details:
-    """What is shown of cells where there is room."""
+    """Details of cells, shown as far as they fit."""
 
-    def __init__(self, room):
-        self.room, self.missing = room, 0
+    def __init__(self, free_bytes):
+        self.free_bytes, self.missing = free_bytes, 0
 
     def fitting(self, values):
-        """The values in their order, None where one does not fit any more."""
+        """The values in their order, with None for values that do not fit."""
         return [value if self._fits(size_of(dumped(value)) + 1) else None for value in values]
 
     def _fits(self, size):
-        if size > self.room:
+        if size > self.free_bytes:
             self.missing += 1
             return False
-        self.room -= size
+        self.free_bytes -= size
         return True
 
 
-def _made_of_cells(records, values, room):
-    """All that the page has of cells."""
-    cells = records.cells = _fitting_cells(records, room, values)
+def _cell_data(records, values, max_bytes):
+    """All data of cells on the page."""
+    cells = records.cells = _fitting_cells(records, max_bytes, values)
     groups = groups_of(cells)
     for group in groups:
         for number, label in zip(group.cells, group.labels):
@@ -94,18 +94,18 @@ def _made_of_cells(records, values, room):
             "words": summary_sentences(groups, cells), "groups": [_group(group, cells) for group in groups],
             "cells": [cell.row for cell in cells], "older": [number for number, cell in enumerate(cells) if cell.is_older]}
     used = size_of(dumped(made["cells"])) + size_of(dumped(made["groups"])) + values.bytes
-    details = _Details(max(room - used, 0))
+    details = _Details(max(max_bytes - used, 0))
     made |= {"curves": details.fitting([cell.curve for cell in cells]), "rounds": details.fitting([cell.rounds for cell in cells])}
     if details.missing:
         records.notes.append(f"times by frame or by round of some cells are left out ({details.missing} lists), so that the page stays small")
     return made
 
 
-def data_of(records, most_bytes, program, date):
-    """PageData of about `most_bytes` at most: cells with their groups and sentences, profiles, ceilings, simulations. What there is no room
-    for is left out: curves and rounds first, then cells, the last ones first. `program` and `date` say what made the page, and when."""
+def data_of(records, max_bytes, program, date):
+    """PageData of at most about `max_bytes`: cells with their groups and sentences, profiles, ceilings, simulations. Larger data are cut:
+    curves and rounds are left out first, then the last cells. `program` and `date`: version of the program and time, for the page."""
     rest = {"profiles": records.profiles, "ceilings": records.ceilings, "simulations": records.simulations}
-    room = max(most_bytes - sum(size_of(dumped(part)) for part in rest.values()), 0)
-    made = {"program": program, "date": date} | _made_of_cells(records, _Interned(), room) | rest
+    cell_bytes = max(max_bytes - sum(size_of(dumped(part)) for part in rest.values()), 0)
+    made = {"program": program, "date": date} | _cell_data(records, _Interned(), cell_bytes) | rest
     made |= {"files": records.files, "cell_records": records.cell_records, "notes": records.notes}
     return PageData(dumped(made), len(records.cells), records.notes)

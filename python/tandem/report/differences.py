@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""By how much the cells of two files differ, for the page to draw: what 'tandem compare' says."""
+"""Differences of the cells of two files, as of 'tandem compare', for a chart of the page."""
 import os
 
 from ..comparison import matched_files
@@ -9,7 +9,7 @@ from ..comparison.notes import notes, summary
 from .data import dumped
 from .numbers import rounded
 
-MAX_SHOWN = 3000  # the first cells, and the page says of how many
+MAX_SHOWN = 3000  # number of cells; the page also has the total number
 LEVEL = 0.05
 
 
@@ -28,7 +28,7 @@ def _row(cell, name):
 
 
 def differences(old, new):
-    """JSON text. Raises RecordError as tandem compare does."""
+    """JSON text of the comparison. Raises RecordError as tandem compare does."""
     before, after, matched = matched_files(old, new, level=LEVEL)
     labels, common = label([cell.before for cell in matched.cells])
     return dumped({"old": os.path.basename(old), "new": os.path.basename(new), "common": common, "summary": summary(matched, LEVEL),

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""Groups of cells whose times may be divided, ranked by speed."""
+"""Groups of cells with comparable times, ranked by speed."""
 import dataclasses
 import statistics
 
 from .. import resampling
 from ..comparison.naming import label
 
-# Settings that decide which pairs are candidates, and their usual values, which titles leave out.
+# Settings that determine the candidate pairs, and their default values, which titles leave out.
 BOUNDS = {"k": "", "axes": "standard", "precision": "float", "rounding": "safe", "placement": "rounded", "origin": "world", "output": "pairs"}
 ONE = resampling.Ratio(1.0, 1.0, 1.0, 0.0)
 
 
 @dataclasses.dataclass
 class Ranked:
-    """A cell in the order of speed, held against the fastest of its group. cell: its number; ratio: its time to the fastest's;
-    has_interval: both have rounds enough for one; is_distinguished: 1 lies outside of it."""
+    """A cell, compared with the fastest of its group. cell: its number. ratio: its time over that of the fastest. has_interval: both cells
+    have enough rounds for an interval. is_distinguished: the interval does not contain 1."""
     cell: int
     ratio: resampling.Ratio = ONE
     has_interval: bool = False
@@ -26,9 +26,9 @@ class Ranked:
 
 @dataclasses.dataclass
 class Group:
-    """Cells of one scene and frames, devices, bounds and output. cells: the numbers of all, in their order; labels: what differs among
-    them; ranked: those that are right and newest, the fastest first; answers_differ: these have different answers, so that none is
-    the fastest."""
+    """Cells of one scene, frame range, devices, bounds and output. cells: their numbers, in order. labels: the values in which they differ.
+    ranked: correct cells without older records, the fastest first. answers_differ: ranked cells have different answers, so that none is the
+    fastest."""
     title: str
     cells: list = dataclasses.field(default_factory=list)
     labels: list = dataclasses.field(default_factory=list)
@@ -53,14 +53,14 @@ def _title(cell, scene):
     return f"{', '.join(parts)}, on {names['devices']} ({names['model']})"
 
 
-def _takes_part(cell):
+def _is_rankable(cell):
     recorded = cell.recorded
     has_pairs = recorded.pairs is None or recorded.pairs.count > 0
     return recorded.status == "ok" and bool(recorded.rounds) and not cell.is_older and has_pairs
 
 
 def _ranked(number, base, cell):
-    """The cell held against the fastest one: by rounds of one number where both are of one session, which took these side by side."""
+    """Compares a cell with the fastest one. Within one session, rounds of equal number are pairs, because they were measured side by side."""
     old, new = base.recorded, cell.recorded
     common = [at for at in new.rounds if at in old.rounds] if old.session and old.session == new.session else []
     if common:
@@ -70,16 +70,16 @@ def _ranked(number, base, cell):
 
 
 def _rank(group, cells):
-    taking_part = [number for number in group.cells if _takes_part(cells[number])]
-    answers = {cells[number].recorded.pairs for number in taking_part} - {None}
+    rankable = [number for number in group.cells if _is_rankable(cells[number])]
+    answers = {cells[number].recorded.pairs for number in rankable} - {None}
     group.answers_differ = len(answers) > 1
-    fastest, *rest = sorted(taking_part, key=lambda number: (statistics.median(cells[number].recorded.times()), number)) or [None]
+    fastest, *rest = sorted(rankable, key=lambda number: (statistics.median(cells[number].recorded.times()), number)) or [None]
     if fastest is not None:
         group.ranked = [Ranked(fastest), *(_ranked(number, cells[fastest], cells[number]) for number in rest)]
 
 
 def groups_of(cells):
-    """Every cell is in one group. A scene is called by its name where no other one has it, and by its key otherwise."""
+    """Groups of all cells. A title has the name of the scene if it is unique, otherwise the key."""
     groups, digests = {}, {}
     for cell in cells:
         digests.setdefault(cell.scene_name, set()).add(cell.scene_digest)

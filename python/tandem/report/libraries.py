@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The JavaScript libraries that draw charts and scenes: where they are, and what to install where they are not."""
+"""Finds the JavaScript libraries that draw charts and scenes, or names the package to install."""
 import os
 import pathlib
 
@@ -11,13 +11,13 @@ SYSTEM = "/usr/share/javascript"
 
 
 def folders(program):
-    """Where libraries are looked for: in the folder that TANDEM_JAVASCRIPT names, or else beside the program, in its build folder or its
-    installation, and where Debian has them."""
+    """Folders that are searched for libraries: the folder in TANDEM_JAVASCRIPT, or else those beside the program, in its build folder or its
+    installation, and the folder of Debian's packages."""
     named = os.environ.get("TANDEM_JAVASCRIPT")
     if named:
         return [pathlib.Path(named)]
-    beside = pathlib.Path(program).resolve().parent
-    return [*(folder / "libexec/tandem/javascript" for folder in (beside, beside.parent)), pathlib.Path(SYSTEM)]
+    own = pathlib.Path(program).resolve().parent
+    return [*(folder / "libexec/tandem/javascript" for folder in (own, own.parent)), pathlib.Path(SYSTEM)]
 
 
 def _script(name, package, program, command):
@@ -31,5 +31,5 @@ def _script(name, package, program, command):
 
 
 def scripts(libraries, program, command):
-    """The texts of libraries, in their order. Raises BadUse, one line, where one is missing."""
+    """The texts of libraries, in their order. Raises BadUse if one is missing."""
     return [_script(name, package, program, command) for name, package in libraries.items()]

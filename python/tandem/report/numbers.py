@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Numbers as the page has them, and values of records that have to be of one type: what is another raises TypeError."""
+"""Formats numbers for the page, and checks types of values of records: a wrong type raises TypeError."""
 
 
 def rounded(value):
-    """Six digits: more than any time has."""
+    """A number with six digits, which is more than the precision of times."""
     return float(f"{value:.6g}")
 
 
 def digits(value):
-    """The text of a ratio or of milliseconds: three digits after the point at most, but for what is less than 0.1."""
+    """The text of a ratio or of milliseconds, with at most three decimals for values of at least 0.1."""
     decimals = 5 if value < 0.01 else 4 if value < 0.1 else 3 if value < 10 else 1 if value < 100 else 0
     return f"{value:.{decimals}f}"
 
@@ -19,17 +19,17 @@ def is_number(value):
 
 def number(value):
     if not is_number(value):
-        raise TypeError(f"{value!r} is no number")
+        raise TypeError(f"{value!r} is not a number")
     return value
 
 
 def count(value):
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
-        raise TypeError(f"{value!r} is no count")
+        raise TypeError(f"{value!r} is not a count")
     return value
 
 
 def text(value):
     if not isinstance(value, str):
-        raise TypeError(f"{value!r} is no text")
+        raise TypeError(f"{value!r} is not a text")
     return value

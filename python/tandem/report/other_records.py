@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Profiles, ceilings and simulations as the page draws them. Each function raises one of lines.FIELD_ERRORS for a record that lacks
-fields of its schema."""
+"""Data of profiles, ceilings and simulations for the page. Each function raises one of lines.FIELD_ERRORS for a record that lacks fields
+of its schema."""
 import dataclasses
 import os
 
@@ -36,7 +36,7 @@ def _kernel(kernel):
 
 
 def shown_profile(record, path):
-    """`path`: the file of the record."""
+    """A profile for the page. `path`: the file of the record."""
     ceilings = {name: _number_at(record["ceilings"], name) for name in CEILINGS}
     return {"name": _name(record), "file": os.path.basename(path), "ceilings": ceilings, "kernels": list(map(_kernel, record["kernels"]))}
 
@@ -49,7 +49,8 @@ def shown_ceilings(record):
 
 @dataclasses.dataclass
 class _Run:
-    """Steps of one session, every so many where there are more than can be drawn. kept: [step, ms by part..., contacts found, contacts kept]."""
+    """Steps of one session; every `stride`-th step if there are more than MAX_STEPS. kept: rows [step, ms by part..., contacts found, contacts
+    kept]."""
     name: str
     status: str = "not ended"
     failure: str = ""
@@ -76,7 +77,7 @@ def _step(line):
 
 
 class Simulations:
-    """Lines of simulations become curves of bounded length, one a session."""
+    """Collects records of simulations as curves of bounded length, one per session."""
 
     def __init__(self):
         self._runs = {}

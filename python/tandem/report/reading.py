@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Files of records of any kinds, of one page."""
+"""Reads files with records of any kind for a page."""
 import dataclasses
 import json
 import os
@@ -9,15 +9,15 @@ from .other_records import Simulations, shown_ceilings, shown_profile
 from .shown_cells import shown_cell
 
 WHAT_TO_GIVE = "give files that 'tandem run --out', 'profile --out', 'simulate --record' or 'devices --measure --out' wrote"
-MAX_CELLS = 6000  # beyond so many, one a key
+MAX_CELLS = 6000  # with more, only one record per key is shown
 MAX_OTHER_RECORDS = 200  # profiles, and records of ceilings
-LISTS = {"cell": "cells", "profile": "profiles", "simulation": "simulations", "ceilings": "ceilings"}  # for each kind of record
+LISTS = {"cell": "cells", "profile": "profiles", "simulation": "simulations", "ceilings": "ceilings"}  # attribute of Records by kind
 
 
 @dataclasses.dataclass
 class Records:
-    """cells: ShownCells; cell_records: how many records of cells there were, shown or not, an interrupted one and what goes on with it as
-    one; files: {name, and how many of each kind}; notes: what a reader has to know: what was left out, lines that were cut off."""
+    """cells: ShownCells. cell_records: number of all records of cells; an interrupted record and its continuation count as one. files: the
+    name and the numbers of records of each kind for each file. notes: texts on records left out and incomplete lines."""
     cells: list = dataclasses.field(default_factory=list)
     cell_records: int = 0
     profiles: list = dataclasses.field(default_factory=list)
@@ -28,37 +28,37 @@ class Records:
 
 
 class _Cells:
-    """ShownCells in the order of their records, by number, `most` at a time: of more, one a key. A record whose rounds another one of its
-    key goes on with is left out, and so is a copy."""
+    """ShownCells by number, in the order of their records. With more than `max_cells`, keeps only one per key. Leaves out copies and records
+    that another record of the same key continues."""
 
-    def __init__(self, most):
-        self.most, self.one_a_key = most, False
-        self.cells, self.of_key = {}, {}
+    def __init__(self, max_cells):
+        self.max_cells, self.one_per_key = max_cells, False
+        self.cells, self.numbers_by_key = {}, {}
         self.records = self.added = self.older = self.left_out = self.left_out_wrong = 0
 
     def add(self, cell):
-        numbers = self.of_key.get(cell.recorded.key, [])
+        numbers = self.numbers_by_key.get(cell.recorded.key, [])
         if any(self.cells[number].continues(cell) or self.cells[number].is_copy_of(cell) for number in numbers):
             return
         interrupted = [number for number in numbers if cell.continues(self.cells[number])]
         self._remove(interrupted)
         self.records += 1 - len(interrupted)
-        if not self.one_a_key and len(self.cells) == self.most:
+        if not self.one_per_key and len(self.cells) == self.max_cells:
             self._keep_newest()
-        numbers = self.of_key.get(cell.recorded.key, [])
-        if self.one_a_key and numbers:
+        numbers = self.numbers_by_key.get(cell.recorded.key, [])
+        if self.one_per_key and numbers:
             self._replace(numbers[0], cell)
-        elif len(self.cells) == self.most:
+        elif len(self.cells) == self.max_cells:
             self.left_out += 1
             self.left_out_wrong += cell.recorded.status != "ok"
         else:
             self.added += 1
             self.cells[self.added] = cell
-            self.of_key.setdefault(cell.recorded.key, []).append(self.added)
+            self.numbers_by_key.setdefault(cell.recorded.key, []).append(self.added)
 
     def _remove(self, numbers):
         for number in numbers:
-            self.of_key[self.cells.pop(number).recorded.key].remove(number)
+            self.numbers_by_key[self.cells.pop(number).recorded.key].remove(number)
 
     def _replace(self, number, cell):
         self.older += 1
@@ -66,16 +66,16 @@ class _Cells:
             self.cells[number] = cell
 
     def mark_older(self):
-        """The last record of each key that is ok stands for it, or the last one where none is."""
-        for numbers in self.of_key.values():
+        """Marks all records of a key as older, except the last one that is ok, or the last one if none is."""
+        for numbers in self.numbers_by_key.values():
             good = [number for number in numbers if self.cells[number].recorded.status == "ok"]
             newest = (good or numbers or [None])[-1]
             for number in numbers:
                 self.cells[number].is_older = number != newest
 
     def _keep_newest(self):
-        """From now on one record a key."""
-        self.one_a_key = True
+        """Removes older records. From this call on, keeps one record per key."""
+        self.one_per_key = True
         self.mark_older()
         older = [number for number, cell in self.cells.items() if cell.is_older]
         self.older += len(older)
@@ -86,27 +86,27 @@ class _Cells:
             yield f"{self.older} older records of cells that were recorded again are left out"
         if self.left_out:
             yield (f"{self.left_out} of {self.records} records of cells are left out, {self.left_out_wrong} of them failed or wrong: a page "
-                   f"has room for {self.most}; give fewer files, or the lines that matter")
+                   f"shows at most {self.max_cells}; give fewer files or fewer lines")
 
 
 def _checked(text, location):
-    """The kind and the record of a line. Schemas of cells are checked where these are read."""
+    """The kind and the record of a line. shown_cell checks schemas of cells."""
     record = lines.parsed(text, location, WHAT_TO_GIVE)
     kind = kinds.kind_of(record)
     if kind is None:
         raise lines.RecordError(f"{location}: is no record of tandem; {WHAT_TO_GIVE}")
     known, schema = kinds.SCHEMAS[kind], record.get("schema")
     if kind != "cell" and schema != known:
-        raise lines.RecordError(f"{location}: a record of schema {json.dumps(schema)}, and this program knows {known}; bring it to that with "
+        raise lines.RecordError(f"{location}: a record of schema {json.dumps(schema)}, but this program reads {known}; convert it with "
                                 "scripts/convert_records")
     return LISTS[kind], record
 
 
 class _Reader:
-    """Reads file after file."""
+    """Reads several files into one Records."""
 
-    def __init__(self, most):
-        self.records, self.cells, self.simulations = Records(), _Cells(most), Simulations()
+    def __init__(self, max_cells):
+        self.records, self.cells, self.simulations = Records(), _Cells(max_cells), Simulations()
         self.left_out = 0
 
     def read(self, path):
@@ -129,12 +129,12 @@ class _Reader:
         elif kind == "simulations":
             self.simulations.add(record, path)
         else:
-            self._keep(kind, shown_profile(record, path) if kind == "profiles" else shown_ceilings(record))
+            self._add_other(kind, shown_profile(record, path) if kind == "profiles" else shown_ceilings(record))
 
-    def _keep(self, kind, shown):
-        kept = getattr(self.records, kind)
-        if len(kept) < MAX_OTHER_RECORDS:
-            kept.append(shown)
+    def _add_other(self, kind, shown):
+        others = getattr(self.records, kind)
+        if len(others) < MAX_OTHER_RECORDS:
+            others.append(shown)
         else:
             self.left_out += 1
 
@@ -145,15 +145,15 @@ class _Reader:
         records.simulations = self.simulations.shown()
         records.notes += cells.notes()
         if self.left_out:
-            records.notes.append(f"{self.left_out} profiles or records of ceilings are left out: there is room for {MAX_OTHER_RECORDS} of each")
+            records.notes.append(f"{self.left_out} profiles or records of ceilings are left out: a page shows at most {MAX_OTHER_RECORDS} of each")
         if self.simulations.left_out:
             records.notes.append(f"the last {self.simulations.left_out} simulations are left out")
         return records
 
 
-def read_records(files, most=MAX_CELLS):
-    """Records of files of any kinds. Raises RecordError: a file that is none, lines of other schemas."""
-    reader = _Reader(most)
+def read_records(files, max_cells=MAX_CELLS):
+    """Records of files with any kinds of records. Raises RecordError for files that cannot be read and for other schemas."""
+    reader = _Reader(max_cells)
     for file in files:
         reader.read(file)
     return reader.finish()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The geometry of a scene, which the program exports."""
+"""Gets the geometry of a scene by the program's export."""
 import dataclasses
 import json
 import pathlib
@@ -14,7 +14,7 @@ OPTIONS = ("mesh", "pose", "frames", "every", "device")
 
 
 class ExportEnded(Exception):
-    """The export has ended with an exit code other than 0, and has said why."""
+    """The export ended with an exit code other than 0, and has printed the reason."""
 
     def __init__(self, code):
         super().__init__(code)
@@ -23,19 +23,18 @@ class ExportEnded(Exception):
 
 @dataclasses.dataclass
 class ShownScene:
-    """json: the text that 'tandem export --geometry' writes (scenes/export/README.md); name and key of the scene; frames: how many there
-    are to show."""
+    """json: the output of 'tandem export --geometry' (scenes/export/README.md). name, key: those of the scene. frames: number of frames."""
     json: str
     name: str
     key: str
     frames: int
 
 
-class _HandsSignalsOn:
-    """While it lasts, a signal that asks this process to end is handed to the program that it waits for."""
+class _SignalForwarder:
+    """Context manager that forwards signals which end this process to the program that it runs."""
 
     def __init__(self):
-        self.asked, self.process = False, None
+        self.signalled, self.process = False, None
 
     def __enter__(self):
         self.before = {which: signal.getsignal(which) for which in SIGNALS}
@@ -49,22 +48,21 @@ class _HandsSignalsOn:
             signal.signal(which, handler)
 
     def _end(self, *_):
-        self.asked = True
+        self.signalled = True
         if self.process is not None:
             self.process.terminate()
 
     def run(self, words):
-        """The exit code of a program, or 128 and its signal. What it says is this program's."""
+        """Runs a program. Returns its exit code, or 128 plus its signal. Discards its standard output."""
         self.process = subprocess.Popen(words, stdout=subprocess.DEVNULL)
-        if self.asked:
+        if self.signalled:
             self.process.terminate()
         code = self.process.wait()
         return 128 - code if code < 0 else code
 
 
 def words_of(scene, options):
-    """The words of tandem export for options of a command line: mesh, pose, frames, every, device and contacts; None where one is not
-    given."""
+    """Arguments of tandem export for the options mesh, pose, frames, every, device and contacts of a command line. Absent options are None."""
     words = []
     for name in OPTIONS:
         values = getattr(options, name, None)
@@ -74,21 +72,21 @@ def words_of(scene, options):
 
 
 def _exported(program, words, path):
-    with _HandsSignalsOn() as guard:
-        code = guard.run([program, "export", f"--geometry={path}", *words])
-    if code > 128 and not guard.asked:
+    with _SignalForwarder() as forwarder:
+        code = forwarder.run([program, "export", f"--geometry={path}", *words])
+    if code > 128 and not forwarder.signalled:
         raise OutputError(f"tandem export was ended by signal {code - 128}")
-    if code != 0 or guard.asked:
+    if code != 0 or forwarder.signalled:
         raise ExportEnded(code or 128 + signal.SIGTERM)
     return path.read_text(encoding="utf-8").rstrip("\n")
 
 
 def shown_scene(program, words):
-    """ShownScene of the program's export with these words. Raises ExportEnded, BadUse and OutputError."""
+    """ShownScene of an export with the arguments `words`. Raises ExportEnded, BadUse and OutputError."""
     try:
         folder = tempfile.TemporaryDirectory(prefix="tandem-")
     except OSError as problem:
-        raise BadUse(f"there is no folder for temporary files ({problem.strerror}); set TMPDIR to one") from None
+        raise BadUse(f"no folder for temporary files ({problem.strerror}); set TMPDIR to one") from None
     with folder:
         text = _exported(program, words, pathlib.Path(folder.name) / "scene.json")
     scene = json.loads(text)

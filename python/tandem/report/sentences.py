@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""What groups say, in sentences: which cell is the fastest, by how much, how sure; which failed or were wrong."""
+"""Sentences on groups: the fastest cell, its lead and significance, and cells that failed or were wrong."""
 import dataclasses
 import statistics
 
 from ..text_lines import one_line
 from .numbers import digits
 
-MAX_LETTERS = 900  # about cells that are not ranked
+MAX_LETTERS = 900  # of sentences on cells that are not ranked
 
 
 def _label(group, cell):
@@ -14,14 +14,14 @@ def _label(group, cell):
 
 
 def _milliseconds(cell):
-    """The median of a cell's rounds, a frame."""
+    """Milliseconds per frame: the median of a cell's rounds."""
     return statistics.median(cell.recorded.times()) / cell.frames / 1e6
 
 
-def _held_against_fastest(ranked):
+def _compared_with_fastest(ranked):
     ratio = ranked.ratio
     if not ranked.has_interval:
-        return f"takes {digits(ratio.value)} times as long, in one round: how sure is not known"
+        return f"takes {digits(ratio.value)} times as long, in only one round, so that there is no interval"
     interval = f"[{digits(ratio.low)}, {digits(ratio.high)}]"
     if not ranked.is_distinguished:
         return f"is not told apart from it ({digits(ratio.value)} times its time {interval})"
@@ -34,14 +34,14 @@ def _fastest(group, cells):
     if not rest:
         return f"{name} takes {ms} ms a frame; there is nothing to compare it with."
     sentence = (f"{name} is the fastest of {len(group.ranked)} with {ms} ms a frame; the next, {_label(group, rest[0].cell)}, "
-                f"{_held_against_fastest(rest[0])}.")
+                f"{_compared_with_fastest(rest[0])}.")
     if len(rest) > 1:
-        sentence += f" The slowest, {_label(group, rest[-1].cell)}, {_held_against_fastest(rest[-1])}."
+        sentence += f" The slowest, {_label(group, rest[-1].cell)}, {_compared_with_fastest(rest[-1])}."
     return sentence
 
 
 def _not_ranked(group, cells):
-    """Sentences of what failed or was wrong, with the first of each named."""
+    """Sentences on cells that failed or were wrong, cut after about MAX_LETTERS."""
     sentences = ""
     for number in group.cells:
         cell = cells[number].recorded
@@ -57,9 +57,9 @@ def _not_ranked(group, cells):
 
 def group_sentences(group, cells):
     if not group.ranked:
-        first = "None of its cells has times that count."
+        first = "None of its cells has valid times."
     elif group.answers_differ:
-        first = "Its cells found different sets of candidate pairs, so that times are of different work: none is said to be the fastest."
+        first = "Its cells found different sets of candidate pairs, so that times are of different work: none counts as the fastest."
     else:
         first = _fastest(group, cells)
     return first + _not_ranked(group, cells)
@@ -67,21 +67,22 @@ def group_sentences(group, cells):
 
 @dataclasses.dataclass
 class _Wins:
-    """How often an algorithm is the fastest, and told apart from the next; by how much the best of another algorithm is slower."""
+    """Numbers of groups in which an algorithm is the fastest, and in which its lead is significant; the range of ratios of the best other
+    algorithm to it."""
     all: int = 0
-    sure: int = 0
-    least: float = 0
-    most: float = 0
+    significant: int = 0
+    low: float = 0
+    high: float = 0
 
     def add(self, ratio, is_distinguished):
-        self.least = ratio if self.all == 0 else min(self.least, ratio)
-        self.most = max(self.most, ratio)
+        self.low = ratio if self.all == 0 else min(self.low, ratio)
+        self.high = max(self.high, ratio)
         self.all += 1
-        self.sure += is_distinguished
+        self.significant += is_distinguished
 
 
 def _wins(groups, cells):
-    """By algorithm, those with the most first."""
+    """Pairs of an algorithm and its _Wins, the most wins first."""
     def algorithm(ranked):
         return cells[ranked.cell].recorded.names["algorithm"]
     wins = {}
@@ -98,12 +99,12 @@ def _wins(groups, cells):
 def _wins_sentence(wins):
     contested = sum(won.all for _, won in wins)
     parts = [f"{one_line(name, 100)} is the fastest in {won.all} of {contested} comparisons, told apart from the best other algorithm in "
-             f"{won.sure}, which takes {digits(won.least)}{f' to {digits(won.most)}' if won.all > 1 else ''} times as long" for name, won in wins]
+             f"{won.significant}, which takes {digits(won.low)}{f' to {digits(won.high)}' if won.all > 1 else ''} times as long" for name, won in wins]
     return f"{'; '.join(parts)}."
 
 
 def summary_sentences(groups, cells):
-    """What all groups say together: how often which algorithm is the fastest, what takes no part."""
+    """Sentences on all groups together: the numbers of wins of each algorithm, and cells that are not ranked."""
     wins = _wins(groups, cells)
     sentences = [_wins_sentence(wins)] if wins else []
     failed, wrong = (sum(cell.recorded.status == status for cell in cells) for status in ("failed", "wrong"))
@@ -113,5 +114,5 @@ def summary_sentences(groups, cells):
     if older:
         sentences.append(f"{older} were recorded again later: the last record that is ok counts.")
     if not all(cell.recorded.on_gpus for cell in cells):
-        sentences.append("Times of processors say nothing of a GPU.")
+        sentences.append("Times on processors do not predict times on a GPU.")
     return sentences

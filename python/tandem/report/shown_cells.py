@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the page has of the record of a cell."""
+"""Data of the record of a cell for the page."""
 import dataclasses
 import statistics
 
@@ -10,7 +10,7 @@ from ..text_lines import one_line
 from .conditions import conditions_text, sampling_text
 from .numbers import count, is_number, number, rounded, text
 
-# The columns of ShownCell.row, and whether cells have values in common there: the page has each of these once.
+# The columns of ShownCell.row, and whether their values repeat between cells: the page has each repeated value once.
 FIELDS = {"algorithm": True, "preset": True, "device": True, "driver": True, "scene": True, "frames": True, "status": True, "failure": True,
           "settings": True, "ms": False, "rounds": False, "samples": False, "stages": False, "launches": False, "waits": False, "pairs": False,
           "contacts": False, "error": False, "conditions": True, "sampling": True, "commit": True, "date": False, "command": True,
@@ -21,9 +21,9 @@ CONTACT_ERRORS = ("depth_relative", "normal_degrees", "point", "hausdorff", "vol
 
 @dataclasses.dataclass
 class ShownCell:
-    """scene, scene_name, scene_digest: the scene's key, name and digest. frames: how many a sample replays. is_older: a later record of
-    its key is ok and stands for it. row: by FIELDS, less the label, which says what differs among cells. curve, rounds: ms of each
-    frame, and of a frame in each round; None where there are none. samples: by round. run: what records of one run have in common."""
+    """scene, scene_name, scene_digest: the scene's key, name and digest. frames: number of frames in a sample. is_older: another record of
+    its key is shown as the newest. row: values by FIELDS without the label, which is added later. curve: ms of each frame; rounds: ms per
+    frame of each round; None if there are none. samples: by round. run: identifies the run, as of lines.run_of."""
     recorded: RecordedCell
     scene: str
     scene_name: str
@@ -37,7 +37,7 @@ class ShownCell:
     run: tuple | None = None
 
     def continues(self, other):
-        """Whether this record has all rounds of the other, and more: that one was interrupted."""
+        """Whether this record has all rounds of the other and further ones, because that one was interrupted."""
         return lines.continues(self.samples, other.samples)
 
     def is_copy_of(self, other):
@@ -45,19 +45,19 @@ class ShownCell:
 
 
 def _ms(ns, frames):
-    """Nanoseconds of a replay as milliseconds of a frame."""
+    """Milliseconds per frame from nanoseconds of a replay."""
     return rounded(ns / frames / 1e6) if is_number(ns) else None
 
 
 def _time(summary, frames):
-    """[median, low, high]; None where nothing was timed."""
+    """[median, low, high] of a summary; None if there are no times."""
     if not is_number(at(summary, "median")):
         return None
     return [_ms(at(summary, name), frames) for name in ("median", "low", "high")]
 
 
 def _shown_text(value):
-    """As long a text as anyone reads; None where the record has none."""
+    """A text of at most MAX_LETTERS; None if the record has none."""
     return one_line(value, MAX_LETTERS) if isinstance(value, str) else None
 
 
@@ -66,19 +66,19 @@ def _sum(counts):
 
 
 def _stages(record, frames):
-    """{stage: [device ms, host ms, launches, waits]}, times of a frame."""
+    """{stage: [device ms, host ms, launches, waits]} with times per frame."""
     stages = record.get("stages") or {}
     return {name: [_ms(at(stages[name], "device_ns", "median"), frames), _ms(at(stages[name], "host_ns", "median"), frames),
                    *(count(stages[name].get(what, 0)) for what in ("launches", "waits"))] for name in sorted(stages)}
 
 
 def _counts(stages):
-    """Launches and waits of a replay; None where no stages were timed."""
-    return [sum(stage[place] for stage in stages.values()) if stages else None for place in (2, 3)]
+    """Launches and waits of a replay; None if no stages were timed."""
+    return [sum(stage[column] for stage in stages.values()) if stages else None for column in (2, 3)]
 
 
 def _error(record):
-    """What the exact truth says of the answer; None where it was not asked."""
+    """Errors of the answer against the exact truth; None if the record has none."""
     truth = at(record, "error", "truth")
     if not isinstance(truth, dict):
         return None
@@ -92,7 +92,7 @@ def _error(record):
 
 
 def _curve(replays):
-    """The median of the replays, by frame; None where there is a single frame."""
+    """The median over the replays, by frame; None for a single frame."""
     if not isinstance(replays, list) or not replays or len(replays[0] or ()) < 2:
         return None
     replays = [replay for replay in replays if replay is not None]
@@ -104,8 +104,8 @@ def _device(record):
     return " + ".join(f"{text(device['id'])} ({text(device['name'])})" for device in record["devices"])
 
 
-def _row(record, read, place, frames, scene):
-    """The columns of FIELDS, less the label."""
+def _row(record, read, source, frames, scene):
+    """The columns of FIELDS without the label. `source`: numbers of file and line."""
     stages = _stages(record, frames)
     commit = f"{read.commit or 'unknown'}{', with changes' if read.dirty else ''}"
     first, last = record["frames"]["first"], record["frames"]["last"]
@@ -113,11 +113,11 @@ def _row(record, read, place, frames, scene):
             _shown_text(record.get("failure")), dict(sorted(read.settings.items())), _time(record.get("total_ns"), frames), len(read.rounds),
             read.samples, stages, *_counts(stages), _sum(at(record, "work", "candidate_pairs")), _sum(at(record, "work", "contacts")),
             _error(record), conditions_text(record), sampling_text(record), commit, _shown_text(at(record, "environment", "date")),
-            _shown_text(record.get("command")), *place, at(record, "scene", "bodies"), at(record, "scene", "tetrahedra")]
+            _shown_text(record.get("command")), *source, at(record, "scene", "bodies"), at(record, "scene", "tetrahedra")]
 
 
 def _check_types(read):
-    """Raises TypeError for a name that is no text and a digest that is none."""
+    """Raises TypeError for names and digests of a wrong type."""
     for value in (read.key, read.status, read.session, *read.names.values()):
         text(value)
     for answer in (read.pairs, read.contacts):
@@ -126,8 +126,8 @@ def _check_types(read):
 
 
 def shown_cell(record, path, line, file):
-    """The cell of a record that stands in this line; `file` is the number of its file. Raises RecordError, or one of
-    lines.FIELD_ERRORS for a record that lacks fields of its schema."""
+    """The ShownCell of the record in a line. `file`: number of its file. Raises RecordError, or one of lines.FIELD_ERRORS for a record that
+    lacks fields of its schema."""
     read = recorded_cell(lines.checked_cell(record, f"{path}:{line}"), path, line)
     _check_types(read)
     first, last = count(record["frames"]["first"]), count(record["frames"]["last"])

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// How a chart stands in the page: a title that is its message, a choice of what it shows, a canvas that is drawn when it
-// comes into view, and a table of the same numbers.
+// A chart of the page: a title with its result, a choice of its data, a canvas that is drawn when it comes into view, and a
+// table of the same numbers.
 "use strict";
 
-/** Tellable apart by the colour-blind (Okabe and Ito 2008), on light ground and on dark. */
+/** Colours that are distinct for readers with colour blindness (Okabe and Ito 2008), on light and dark backgrounds. */
 tandem.palette = dark => dark
   ? ["#e69f00", "#56b4e9", "#2bc79a", "#f0e442", "#ff7f4d", "#e59ac4", "#c9d1d9", "#8fb0ff"]
   : ["#b35c00", "#0072b2", "#007a56", "#8a7a00", "#c23b00", "#a3487a", "#444c56", "#4455c4"];
@@ -12,7 +12,7 @@ tandem.markers = ["circle", "rect", "triangle", "rectRot", "star", "crossRot", "
 tandem.colour = i => tandem.palette(tandem.darkness.matches)[i % 8];
 tandem.ofStyle = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-/** 95 % intervals as lines through their points: dataset.intervals is [low, high] or null for each. */
+/** Draws 95 % intervals as lines through their points: dataset.intervals has [low, high] or null for each point. */
 tandem.whiskers = {
   id: "whiskers",
   afterDatasetsDraw(chart) {
@@ -37,11 +37,11 @@ tandem.whiskers = {
   }
 };
 
-/** Powers of ten, and twice and five times those where there are few: a tick for each would hide the others. */
+/** A logarithmic axis with ticks at powers of ten, and also at their doubles and quintuples if there are few. More would overlap. */
 tandem.logarithmic = (text, many) => ({type: "logarithmic", title: {display: true, text: text + ", logarithmic"}, ticks: {maxRotation: 45, autoSkip: true,
   callback: value => (many ? [1] : [1, 2, 5]).includes(+value.toExponential(3).split("e")[0]) ? tandem.number(value) : ""}});
 
-/** An axis with a title; logarithmic where values differ by more than ten times and none is 0. */
+/** An axis with a title; logarithmic if values differ by a factor above ten and none is 0. */
 tandem.axis = (text, values, more) => {
   const known = values.filter(value => value !== null && value !== undefined);
   const least = Math.min(...known);
@@ -51,14 +51,14 @@ tandem.axis = (text, values, more) => {
   return {type: "linear", beginAtZero: true, title: {display: true, text}, ticks: {maxRotation: 45, callback: value => tandem.number(value)}, ...more};
 };
 
-/** How long names beside bars may be. */
-tandem.beside = () => innerWidth < 640 ? 22 : 38;
-tandem.shortened = (text, most) => text.length > most ? text.slice(0, most - 1) + "…" : text;
+/** Maximum length of names beside bars. */
+tandem.nameLength = () => innerWidth < 640 ? 22 : 38;
+tandem.shortened = (text, length) => text.length > length ? text.slice(0, length - 1) + "…" : text;
 
 tandem.Figure = class {
-  /** `choices` are {value, text}; `describe` makes {title, alt, type, data, options, table, height} of a value. */
+  /** `choices`: list of {value, text}. `describe` returns {title, alt, type, data, options, table, height} for a value. */
   constructor({id, label, choices, describe}) {
-    Object.assign(this, {id, label, choices, describe, value: choices[0].value, chart: null, seen: false});
+    Object.assign(this, {id, label, choices, describe, value: choices[0].value, chart: null, drawn: false});
   }
 
   show() {
@@ -79,22 +79,22 @@ tandem.Figure = class {
       this.draw();
     }, {rootMargin: "200px"}).observe(this.figure);
     addEventListener("beforeprint", () => this.draw());
-    tandem.darkness.addEventListener("change", () => this.seen && this.draw());
+    tandem.darkness.addEventListener("change", () => this.drawn && this.draw());
   }
 
   refresh() {
     const what = this.describe(this.value);
     this.title.textContent = what.title;
-    this.canvas.setAttribute("aria-label", `${what.title} ${what.alt} The numbers stand in the table below.`);
+    this.canvas.setAttribute("aria-label", `${what.title} ${what.alt} The numbers are in the table below.`);
     this.table.replaceChildren(tandem.table(...what.table));
     if (what.height) this.plot.style.height = what.height + "px";
     else this.plot.style.height = "";
-    if (this.seen) this.draw();
+    if (this.drawn) this.draw();
   }
 
-  /** With the colours that the page has now. */
+  /** Draws the chart with the current colours of the page. */
   draw() {
-    this.seen = true;
+    this.drawn = true;
     if (this.chart) this.chart.destroy();
     const {type, data, options} = this.describe(this.value);
     Chart.defaults.color = tandem.ofStyle("--text");

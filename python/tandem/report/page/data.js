@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What all parts of the page share: its data, elements whose text is never markup, numbers as they are read.
+// Functions for all parts of the page: reading its data, making elements whose text is never markup, formatting numbers.
 "use strict";
 const tandem = {};
 tandem.darkness = matchMedia("(prefers-color-scheme: dark)");
@@ -9,7 +9,7 @@ tandem.read = id => {
   return element ? JSON.parse(element.textContent) : null;
 };
 
-/** An element with attributes and children; strings become text. */
+/** An element with attributes and children. Strings become text nodes. */
 tandem.element = (name, attributes, ...children) => {
   const made = document.createElement(name);
   for (const [key, value] of Object.entries(attributes || {}))
@@ -20,7 +20,7 @@ tandem.element = (name, attributes, ...children) => {
   return made;
 };
 
-/** Shows a section and what it has; the links at the top get one to it. */
+/** Appends children to a section and shows it. Adds a link to it at the top of the page. */
 tandem.show = (id, ...children) => {
   const section = document.getElementById(id);
   section.append(...children);
@@ -30,7 +30,7 @@ tandem.show = (id, ...children) => {
   document.getElementById("contents").append(tandem.element("a", {href: "#" + id}, title));
 };
 
-/** Four digits. */
+/** A number as text with about four digits. */
 tandem.number = value => {
   if (value === null || value === undefined) return "";
   const size = Math.abs(value);
@@ -41,14 +41,14 @@ tandem.number = value => {
 tandem.interval = ([value, low, high]) => `${tandem.number(value)} [${tandem.number(low)}, ${tandem.number(high)}]`;
 tandem.count = (count, one, more) => `${count} ${count === 1 ? one : more}`;
 
-/** A choice among options, each {value, text}. */
+/** A selection among options, each {value, text}. */
 tandem.choice = (label, options, change) => {
   const select = tandem.element("select", {onchange: () => change(select.value)},
     ...options.map(({value, text}) => tandem.element("option", {value}, text)));
   return tandem.element("label", {class: "wide"}, label, select);
 };
 
-/** A table of texts and numbers under headings; for what a chart shows as well. */
+/** A table of texts and numbers with headings, also used for the numbers of charts. */
 tandem.table = (caption, heads, rows) => tandem.element("div", {class: "scrolls"}, tandem.element("table", {},
   tandem.element("caption", {}, caption),
   tandem.element("thead", {}, tandem.element("tr", {}, ...heads.map(head => tandem.element("th", {scope: "col"}, head)))),
@@ -56,7 +56,7 @@ tandem.table = (caption, heads, rows) => tandem.element("div", {class: "scrolls"
     tandem.element("td", {class: typeof value === "number" ? "number" : null},
       typeof value === "number" ? tandem.number(value) : String(value ?? ""))))))));
 
-/** Cells as objects by the names of their fields, from rows whose shared values stand elsewhere, once each. */
+/** Makes objects of cells by the names of their fields. In rows, shared values are numbers that refer to data.values. */
 tandem.unpack = data => {
   const shared = new Set(data.shared);
   const older = new Set(data.older);

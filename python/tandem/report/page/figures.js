@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Which charts there are, each made of the records that it needs; one without any is left out.
+// The charts of the page. A chart without records is left out.
 "use strict";
 
 tandem.groupChoices = groups => groups.map(group => ({value: group.number, text: group.title}));
-tandem.mostBars = 30;
+tandem.maxBars = 30;
 
-/** Who is the fastest: medians with intervals, the fastest on top. */
+/** Medians of cells with intervals, the fastest on top. */
 tandem.mediansFigure = data => {
   const groups = data.groups.filter(group => group.ranked.length > 1);
   return groups.length && new tandem.Figure({id: "medians", label: "comparison", choices: tandem.groupChoices(groups), describe: number => {
     const group = data.groups[number];
-    const cells = group.ranked.slice(0, tandem.mostBars).map(place => data.cells[place[0]]);
+    const cells = group.ranked.slice(0, tandem.maxBars).map(entry => data.cells[entry[0]]);
     const [second] = group.ranked.slice(1);
     const name = tandem.shortened(cells[0].label, 60);
     const left = group.ranked.length - cells.length;
@@ -18,7 +18,7 @@ tandem.mediansFigure = data => {
         ? `${name} is the fastest, ${tandem.number(second[1])} times as fast as the next` : `${name} and the next are not told apart`,
       alt: `${group.title}: milliseconds a frame of ${cells.length} cells.` + (left ? ` ${left} slower ones are in the table of every cell.` : ""),
       type: "line", height: 110 + 26 * cells.length,
-      data: {labels: cells.map(cell => tandem.shortened(cell.label, tandem.beside())), datasets: [{label: "ms a frame", data: cells.map(cell => cell.ms[0]), showLine: false,
+      data: {labels: cells.map(cell => tandem.shortened(cell.label, tandem.nameLength())), datasets: [{label: "ms a frame", data: cells.map(cell => cell.ms[0]), showLine: false,
         intervals: cells.map(cell => cell.rounds > 1 ? cell.ms.slice(1) : null), colour: 1}]},
       options: {indexAxis: "y", scales: {x: tandem.axis("milliseconds a frame, 95 % intervals", cells.flatMap(cell => cell.ms)), y: {offset: true, ticks: {autoSkip: false}}}},
       table: [group.title, ["cell", "ms a frame", "low", "high", "times the fastest's"],
@@ -26,7 +26,7 @@ tandem.mediansFigure = data => {
   }});
 };
 
-/** Cells that are alike but for one setting with numbers: {setting, of, lines}. */
+/** Cells that differ only in one numeric setting: {setting, of, lines}. */
 tandem.sweeps = data => {
   const cells = data.cells.filter(cell => cell.status === "ok" && cell.ms && !cell.older);
   const values = {};
@@ -48,7 +48,7 @@ tandem.sweeps = data => {
   });
 };
 
-/** What tells the lines of a chart apart. */
+/** Names of the lines of a chart: algorithm, preset and the settings in which they differ. */
 tandem.lineNames = lines => lines.map(({cell}, i) => {
   const others = lines.filter((_, j) => j !== i);
   const differing = Object.entries(cell.settings).filter(([name, value]) =>
@@ -75,13 +75,13 @@ tandem.sweepsFigure = data => {
     }});
 };
 
-/** Where the time goes: stages of each cell, the device's time where it has any. */
+/** Times by stage of each cell: the device's time, or the host's for stages without device time. */
 tandem.stagesFigure = data => {
-  const groups = data.groups.filter(group => group.ranked.some(place => Object.keys(data.cells[place[0]].stages).length));
+  const groups = data.groups.filter(group => group.ranked.some(entry => Object.keys(data.cells[entry[0]].stages).length));
   const timed = ([device, host]) => device > 0 ? device : host;
   return groups.length && new tandem.Figure({id: "stages", label: "comparison", choices: tandem.groupChoices(groups), describe: number => {
     const group = data.groups[number];
-    const cells = group.ranked.slice(0, 20).map(place => data.cells[place[0]]);
+    const cells = group.ranked.slice(0, 20).map(entry => data.cells[entry[0]]);
     const names = [...new Set(cells.flatMap(cell => Object.keys(cell.stages)))];
     const time = (cell, name) => cell.stages[name] ? timed(cell.stages[name]) : 0;
     const own = names.map(name => [name, time(cells[0], name)]).sort((a, b) => b[1] - a[1]);
@@ -90,14 +90,14 @@ tandem.stagesFigure = data => {
         : "The fastest has no times by stage",
       alt: `${group.title}: milliseconds a frame by stage, the device's time where a stage has any, otherwise the host's.`,
       type: "bar", height: 150 + 26 * cells.length,
-      data: {labels: cells.map(cell => tandem.shortened(cell.label, tandem.beside())), datasets: names.map((name, i) => ({label: name, data: cells.map(cell => time(cell, name)),
+      data: {labels: cells.map(cell => tandem.shortened(cell.label, tandem.nameLength())), datasets: names.map((name, i) => ({label: name, data: cells.map(cell => time(cell, name)),
         borderColor: tandem.ofStyle("--ground"), borderWidth: 1, pointStyle: "rect", colour: i}))},
       options: {indexAxis: "y", scales: {x: {stacked: true, title: {display: true, text: "milliseconds a frame, with a clock around every command"}}, y: {stacked: true, ticks: {autoSkip: false}}}},
       table: [group.title, ["cell", ...names], cells.map(cell => [cell.label, ...names.map(name => time(cell, name))])]};
   }});
 };
 
-/** Kernels against the ceilings of their device. */
+/** Roofline chart: kernels under the ceilings of their device. */
 tandem.rooflineFigure = data => data.profiles.length && new tandem.Figure({id: "roofline", label: "profile",
   choices: data.profiles.map((profile, value) => ({value, text: profile.name})), describe: number => {
     const {kernels, ceilings, name} = data.profiles[number];
@@ -107,8 +107,8 @@ tandem.rooflineFigure = data => data.profiles.length && new tandem.Figure({id: "
     const ends = [Math.min(bends, ...both.map(ofBytes)) / 3, Math.max(bends, ...both.map(ofBytes)) * 3];
     const under = x => Math.min(x * ceilings.bytes_per_s, ceilings.operations_per_s);
     const longest = kernels[0];
-    const share = kernel => Math.max(kernel.of_bytes ?? 0, kernel.of_operations ?? 0);
-    return {title: longest ? `${longest.entry} takes ${Math.round(100 * longest.share)} % of the kernels' time and reaches ${Math.round(100 * share(longest))} % of a ceiling`
+    const reached = kernel => Math.max(kernel.of_bytes ?? 0, kernel.of_operations ?? 0);
+    return {title: longest ? `${longest.entry} takes ${Math.round(100 * longest.share)} % of the kernels' time and reaches ${Math.round(100 * reached(longest))} % of a ceiling`
         : "The profile has no kernels",
       alt: `${name}: comparisons a second over comparisons per byte of ${both.length} kernels that declare both, under the ceilings of the device.`,
       type: "scatter",
@@ -125,17 +125,17 @@ tandem.errors = [["depth_relative", "error of depth, relative, median"], ["norma
   ["hausdorff", "error of the contacts' hull, median"], ["volume_relative", "error of volume, relative, median"], ["false_share", "share of candidate pairs that do not meet"],
   ["missed_share", "share of meeting pairs that are missed"]];
 
-/** Speed against error: nothing is better than what has neither less time nor less error. */
+/** Time over error, with the Pareto-optimal cells marked: no other cell is better in one and at least equal in the other. */
 tandem.errorFigure = data => {
   const cells = data.cells.filter(cell => cell.error && cell.ms && cell.status === "ok" && !cell.older);
   const of = cell => `${cell.scene}, on ${cell.device}`;
-  const choices = [...new Set(cells.map(of))].flatMap(place => tandem.errors.filter(([name]) => cells.filter(cell => of(cell) === place && cell.error[name] > 0).length > 1)
-    .map(([name, text]) => ({value: JSON.stringify([place, name]), text: `${text}: ${place}`})));
+  const choices = [...new Set(cells.map(of))].flatMap(where => tandem.errors.filter(([name]) => cells.filter(cell => of(cell) === where && cell.error[name] > 0).length > 1)
+    .map(([name, text]) => ({value: JSON.stringify([where, name]), text: `${text}: ${where}`})));
   return choices.length && new tandem.Figure({id: "error", label: "error and scene", choices, describe: value => {
-    const [place, name] = JSON.parse(value);
-    const own = cells.filter(cell => of(cell) === place && typeof cell.error[name] === "number");
+    const [where, name] = JSON.parse(value);
+    const own = cells.filter(cell => of(cell) === where && typeof cell.error[name] === "number");
     const least = Math.min(...own.map(cell => cell.error[name]).filter(error => error > 0));
-    const at = cell => Math.max(cell.error[name], least / 10);  // none at all stands at the left
+    const at = cell => Math.max(cell.error[name], least / 10);  // cells without error are at the left
     const label = cell => `${cell.algorithm} k=${cell.settings.k} ${["contact_rule", "decision", "rounding"].map(s => cell.settings[s] ?? "").join(" ")}`;
     const unbeaten = own.filter(cell => !own.some(other => other !== cell && other.ms[0] <= cell.ms[0] && other.error[name] <= cell.error[name] &&
       (other.ms[0] < cell.ms[0] || other.error[name] < cell.error[name])));
@@ -146,23 +146,23 @@ tandem.errorFigure = data => {
     const what = tandem.errors.find(entry => entry[0] === name)[1];
     return {title: fastest === best ? `${label(best)} is the fastest and has the least error`
         : `${label(best)} has the least error and takes ${tandem.number(best.ms[0] / fastest.ms[0])} times as long as the fastest, ${label(fastest)}`,
-      alt: `${place}: milliseconds a frame over ${what}, of ${own.length} cells; ${unbeaten.length} are beaten by none in both. Errors of 0 stand at the left.`,
+      alt: `${where}: milliseconds a frame over ${what}, of ${own.length} cells; ${unbeaten.length} are beaten by none in both. Errors of 0 are at the left.`,
       type: "scatter",
       data: {datasets: [{label: "beaten by none in both", data: points(unbeaten), intervals: unbeaten.map(cell => cell.ms.slice(1)), colour: 4, pointStyle: "rectRot", pointRadius: 7},
         {label: "others", data: points(others), intervals: others.map(cell => cell.ms.slice(1)), colour: 6}]},
       options: {scales: {x: tandem.logarithmic(what, true),
         y: tandem.axis("ms a frame", own.map(cell => cell.ms[0]))}},
-      table: [place, ["cell", "preset", what, "ms a frame", "low", "high", "beaten by none"], [...unbeaten, ...others].slice(0, 300).map(cell =>
+      table: [where, ["cell", "preset", what, "ms a frame", "low", "high", "beaten by none"], [...unbeaten, ...others].slice(0, 300).map(cell =>
         [label(cell), cell.preset, cell.error[name], ...cell.ms, unbeaten.includes(cell) ? "yes" : "no"])]};
   }});
 };
 
-/** Frame by frame. */
+/** Times of each frame. */
 tandem.curvesFigure = data => {
-  const groups = data.groups.filter(group => group.ranked.some(place => data.curves[place[0]]));
+  const groups = data.groups.filter(group => group.ranked.some(entry => data.curves[entry[0]]));
   return groups.length && new tandem.Figure({id: "curves", label: "comparison", choices: tandem.groupChoices(groups), describe: number => {
     const group = data.groups[number];
-    const cells = group.ranked.map(place => data.cells[place[0]]).filter(cell => data.curves[cell.index]).slice(0, 8);
+    const cells = group.ranked.map(entry => data.cells[entry[0]]).filter(cell => data.curves[cell.index]).slice(0, 8);
     const first = +group.cells[0].frames.split(":")[0];
     const curve = data.curves[cells[0].index];
     const worst = curve.indexOf(Math.max(...curve));
@@ -176,7 +176,7 @@ tandem.curvesFigure = data => {
   }});
 };
 
-/** Steps of a simulation by part. */
+/** Times of steps of a simulation by part. */
 tandem.simulationsFigure = data => {
   const runs = data.simulations.filter(run => run.kept.length);
   return runs.length && new tandem.Figure({id: "simulations", label: "simulation",
@@ -193,7 +193,7 @@ tandem.simulationsFigure = data => {
     }});
 };
 
-/** New records over old ones, as tandem compare has them. */
+/** Ratios of new to old records, as of tandem compare. */
 tandem.differencesFigure = differences => differences && new tandem.Figure({id: "differences", label: "", choices: [{value: 0, text: ""}], describe: () => {
   const timed = differences.cells.filter(cell => cell.ratio).sort((a, b) => Math.abs(Math.log(b.ratio[0])) - Math.abs(Math.log(a.ratio[0])));
   const shown = timed.slice(0, 40).sort((a, b) => b.ratio[0] - a.ratio[0]);
@@ -202,7 +202,7 @@ tandem.differencesFigure = differences => differences && new tandem.Figure({id: 
   return {title: `${differences.new} against ${differences.old}: ${differences.summary}`,
     alt: `New time over old time with 95 % intervals; 1 is no change. ${differences.common}. ${differences.notes.join(" ")}` + (left ? ` ${left} cells that changed less are in the table or left out.` : ""),
     type: "line", height: 110 + 26 * shown.length,
-    data: {labels: shown.map(cell => tandem.shortened(cell.label, tandem.beside())), datasets: [{label: "new / old", data: shown.map(cell => cell.ratio[0]), showLine: false,
+    data: {labels: shown.map(cell => tandem.shortened(cell.label, tandem.nameLength())), datasets: [{label: "new / old", data: shown.map(cell => cell.ratio[0]), showLine: false,
       intervals: shown.map(cell => cell.ratio.slice(1)), colour: 1}]},
     options: {indexAxis: "y", scales: {x: {title: {display: true, text: "new time over old time, 95 % intervals; above 1 is slower"}, suggestedMin: Math.min(0.95, ...limits), suggestedMax: Math.max(1.05, ...limits),
       grid: {lineWidth: mark => mark.tick && mark.tick.value === 1 ? 3 : 1, color: mark => tandem.ofStyle(mark.tick && mark.tick.value === 1 ? "--text" : "--grid")}},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Puts the parts together. A part that fails says so in its place and takes no other with it.
+// Builds the page from its parts. A part that fails shows an error message; the other parts are not affected.
 "use strict";
 (() => {
   const records = tandem.read("records");
@@ -14,7 +14,7 @@
   };
   if (records) {
     tandem.unpack(records);
-    document.getElementById("made").textContent = "Of " + records.files.map(file => file.name).join(", ") + ". Made " + records.date + ".";
+    document.getElementById("made").textContent = "Files: " + records.files.map(file => file.name).join(", ") + ". Made " + records.date + ".";
     document.getElementById("program").textContent = records.program;
     attempt("summary", () => tandem.summary(records));
     attempt("charts", () => tandem.charts(records, tandem.read("differences")));

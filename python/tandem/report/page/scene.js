@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The scene in three dimensions: bodies that share a mesh are instances of it, deformable ones have vertices of their own.
+// The three-dimensional view of a scene. Rigid bodies with one mesh are instances of it; deformable bodies have their own vertices.
 "use strict";
 
 tandem.bytes = text => Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
 tandem.shorts = text => new Uint16Array(tandem.bytes(text).buffer);
 
-/** Points of 16 bits in their box. */
+/** Points from 16-bit coordinates within their box. */
 tandem.points = ({lower, size, points}) => Float32Array.from(tandem.shorts(points), (value, i) => lower[i % 3] + size[i % 3] * value / 65535);
 
 tandem.bodyColours = [0xd55e00, 0x0072b2, 0x009e73, 0xe6c229, 0xcc79a7, 0x56b4e9, 0xe69f00, 0x7b5ea7];
 tandem.fixedColour = 0x8a8f98;
 
-/** Draws frames of a scene; knows no controls. */
+/** Draws frames of a scene. tandem.Player has the controls. */
 tandem.SceneView = class {
   constructor(data, canvas) {
     Object.assign(this, {data, frame: 0, colouring: "body"});
@@ -31,7 +31,7 @@ tandem.SceneView = class {
     this.lookAtAll();
   }
 
-  /** Triangles apart from each other, so that each has a normal and a colour of its own. */
+  /** A geometry whose triangles share no vertices, so that each has its own normal and colour. */
   geometry(mesh, points) {
     const corners = mesh.wide ? new Uint32Array(tandem.bytes(mesh.triangles).buffer) : tandem.shorts(mesh.triangles);
     const positions = new Float32Array(corners.length * 3);
@@ -39,11 +39,11 @@ tandem.SceneView = class {
     geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
     geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(corners.length * 3), 3));
     Object.assign(geometry.userData ??= {}, {corners, chunks: tandem.bytes(mesh.chunks)});
-    this.place(geometry, points);
+    this.setPositions(geometry, points);
     return geometry;
   }
 
-  place(geometry, points) {
+  setPositions(geometry, points) {
     const {corners} = geometry.userData;
     const positions = geometry.attributes.position;
     corners.forEach((corner, i) => {
@@ -55,7 +55,7 @@ tandem.SceneView = class {
     geometry.computeBoundingSphere();
   }
 
-  /** Instances have no colours in this version of the library: rigid bodies of one mesh and colour are one object. */
+  /** Makes one object of all rigid bodies with one mesh and colour, because instances have no colours in this version of the library. */
   makeBodies() {
     this.objects = [];
     this.deformable = [];
@@ -75,7 +75,7 @@ tandem.SceneView = class {
     this.rigid = [...groups.values()].map(({mesh, bodies, tint}) => this.add(mesh, bodies, tint));
   }
 
-  /** Objects share the buffers of a mesh, but not its geometry: the library would take them for the same instances. */
+  /** A geometry that shares the buffers of a mesh. Objects must not share the geometry itself, which the library would treat as one set of instances. */
   sharing(mesh) {
     if (!this.geometries.has(mesh)) this.geometries.set(mesh, this.geometry(this.data.meshes[mesh], tandem.points(this.data.meshes[mesh])));
     const known = this.geometries.get(mesh);
@@ -135,17 +135,17 @@ tandem.SceneView = class {
     this.frame = frame;
     const poses = tandem.shorts(this.data.poses[frame]);
     const {lower, size} = this.data;
-    const place = new THREE.Vector3(), turn = new THREE.Quaternion(), once = new THREE.Vector3(1, 1, 1), matrix = new THREE.Matrix4();
+    const position = new THREE.Vector3(), rotation = new THREE.Quaternion(), scale = new THREE.Vector3(1, 1, 1), matrix = new THREE.Matrix4();
     for (const object of this.rigid) {
       object.userData.bodies.forEach((body, i) => {
         const at = 7 * body;
-        place.set(...[0, 1, 2].map(axis => lower[axis] + size[axis] * poses[at + axis] / 65535));
-        turn.set(...[3, 4, 5, 6].map(part => (poses[at + part] - 32768) / 32767)).normalize();
-        object.setMatrixAt(i, matrix.compose(place, turn, once));
+        position.set(...[0, 1, 2].map(axis => lower[axis] + size[axis] * poses[at + axis] / 65535));
+        rotation.set(...[3, 4, 5, 6].map(part => (poses[at + part] - 32768) / 32767)).normalize();
+        object.setMatrixAt(i, matrix.compose(position, rotation, scale));
       });
       object.instanceMatrix.needsUpdate = true;
     }
-    this.deformable.forEach((object, i) => this.place(object.geometry, tandem.points(this.data.deformed[frame][i])));
+    this.deformable.forEach((object, i) => this.setPositions(object.geometry, tandem.points(this.data.deformed[frame][i])));
     if (this.data.contacts) this.showContacts(this.data.contacts[frame]);
     this.draw();
   }
@@ -164,7 +164,7 @@ tandem.SceneView = class {
     this.contactNormals.geometry.setAttribute("position", new THREE.BufferAttribute(lines, 3));
   }
 
-  /** So that what moves is in view: around the places of bodies that are not fixed, or of all. */
+  /** Sets the camera so that all bodies that are not fixed are in view, or all bodies if all are fixed. */
   lookAtAll() {
     const box = this.boxOf(body => !(this.kinds[body] & 1));
     if (box.isEmpty()) box.copy(this.boxOf(() => true));
@@ -172,7 +172,7 @@ tandem.SceneView = class {
     this.radius = sphere.radius || 1;
     this.centre = sphere.center;
     const all = this.boxOf(() => true).getBoundingSphere(new THREE.Sphere()).radius || 1;
-    this.camera.up.set(0, 1, 0);  // as gravity has it
+    this.camera.up.set(0, 1, 0);  // opposite to gravity
     this.camera.near = this.radius / 200;
     this.camera.far = this.radius * 20 + all * 10;
     this.camera.position.copy(this.centre).add(new THREE.Vector3(0.6, 0.55, 1).normalize().multiplyScalar(this.radius * 2.9));
@@ -181,15 +181,15 @@ tandem.SceneView = class {
     if (this.data.contacts) this.showContacts(this.data.contacts[this.frame]);
   }
 
-  boxOf(takesPart) {
+  boxOf(isIncluded) {
     const box = new THREE.Box3(), matrix = new THREE.Matrix4();
     for (const object of this.rigid)
       object.userData.bodies.forEach((body, i) => {
-        if (!takesPart(body)) return;
+        if (!isIncluded(body)) return;
         matrix.fromArray(object.instanceMatrix.array, 16 * i);
         box.union(object.geometry.boundingBox.clone().applyMatrix4(matrix));
       });
-    for (const object of this.deformable) if (takesPart(object.userData.bodies[0])) box.union(object.geometry.boundingBox);
+    for (const object of this.deformable) if (isIncluded(object.userData.bodies[0])) box.union(object.geometry.boundingBox);
     return box;
   }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What turns the scene and goes through its frames: pointer, keys, and buttons for the same.
+// Controls that rotate the scene and select frames: pointer, keys and buttons.
 "use strict";
 
-/** What is shown, in words. */
+/** A sentence on the current frame. */
 tandem.sceneWords = (data, frame) => {
   const time = data.times ? `, ${tandem.number(data.times[frame])} s` : "";
   const contacts = data.contacts ? `, ${tandem.count(data.contacts[frame].found, "contact", "contacts")}` : "";
@@ -19,7 +19,7 @@ tandem.view = data => {
   const stage = element("div", {class: "stage"}, canvas);
   const words = element("p", {role: "status", "aria-live": "polite", id: "scene-words"}, tandem.sceneWords(data, 0));
   tandem.show("view", facts, ...notes, stage, words);
-  // A page of records opens faster when its scene is made once somebody comes near it.
+  // The scene is made when it comes near the visible part of the page, so that a page with records loads faster.
   new IntersectionObserver((entries, observer) => {
     if (!entries.some(entry => entry.isIntersecting)) return;
     observer.disconnect();
@@ -92,7 +92,7 @@ tandem.Player = class {
     });
   }
 
-  /** Around what the camera looks at, by a twelfth of a half turn. */
+  /** Rotates the camera around its target by 15 degrees. */
   turn(right, up) {
     const from = this.view.camera.position.clone().sub(this.orbit.target);
     const top = new THREE.Vector3(0, 1, 0);
@@ -119,7 +119,7 @@ tandem.Player = class {
     this.words.textContent = tandem.sceneWords(this.view.data, frame);
   }
 
-  /** Behind the last frame comes the first. */
+  /** Goes forward or back by frames, from the last to the first. */
   step(by) {
     const count = this.view.data.frames.length;
     this.go((this.view.frame + by + count) % count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The table of every cell: sorted by its headings, filtered by text and choices, details of a cell on demand.
+// The table of every cell, which can be sorted by its headings and filtered, and shows details of a cell on demand.
 "use strict";
 
 tandem.cellColumns = [
@@ -18,7 +18,7 @@ tandem.cellColumns = [
   {name: "candidate pairs", number: true, of: cell => cell.pairs},
   {name: "contacts", number: true, of: cell => cell.contacts}];
 
-/** All that is known of a cell. */
+/** All data of a cell. */
 tandem.cellDetails = (cell, data) => {
   const {element, number} = tandem;
   const facts = [["preset", cell.preset], ["driver", cell.driver], ["failure", cell.failure],
@@ -36,28 +36,28 @@ tandem.cellDetails = (cell, data) => {
     [element("dt", {}, name), element("dd", {}, value)])));
 };
 
-/** A row; the cell's name is a button that shows what is known of it in a row below. */
+/** A row of a cell. The cell's name is a button that shows its details in a row below. */
 tandem.cellRow = (cell, data) => {
   const {element} = tandem;
   const row = element("tr", {"data-cell": cell.index});
   tandem.cellColumns.forEach((column, i) => {
     const value = column.shown ? column.shown(cell) : column.of(cell);
     const text = column.number && !column.shown ? tandem.number(value) : String(value ?? "");
-    const place = element("td", {class: column.number ? "number" : column.name === "status" ? cell.status : column.style});
-    if (i > 0) place.textContent = text;
-    else place.append(element("button", {type: "button", "aria-expanded": "false", onclick: event => {
+    const field = element("td", {class: column.number ? "number" : column.name === "status" ? cell.status : column.style});
+    if (i > 0) field.textContent = text;
+    else field.append(element("button", {type: "button", "aria-expanded": "false", onclick: event => {
       const button = event.currentTarget;
       const open = button.getAttribute("aria-expanded") === "true";
       button.setAttribute("aria-expanded", String(!open));
       if (open) row.nextSibling.remove();
       else row.after(element("tr", {class: "more"}, element("td", {colspan: tandem.cellColumns.length}, tandem.cellDetails(cell, data))));
     }}, text));
-    row.append(place);
+    row.append(field);
   });
   return row;
 };
 
-/** Numbers by size, texts by their numbers and letters; what is missing comes last either way. */
+/** Cells sorted by a column: numbers by value, texts alphabetically with numbers in them by value. Missing values always come last. */
 tandem.sorted = (cells, column, direction) => {
   const order = new Intl.Collator("en", {numeric: true}).compare;
   const missing = value => value === null || value === undefined || value === "";
@@ -132,7 +132,7 @@ tandem.CellTable = class {
     return this.rows.get(cell);
   }
 
-  /** The first rows at once, the others in pieces, so that thousands do not hold up the page. */
+  /** Adds the first rows at once and the rest in pieces, so that thousands of rows do not block the page. */
   update() {
     const cells = this.column ? tandem.sorted(this.matching(), this.column, this.direction) : this.matching();
     this.count.textContent = `${cells.length} of ${tandem.count(this.data.cells.length, "cell", "cells")}`;
