@@ -16,13 +16,13 @@ namespace {
 constexpr std::array gathered_kinds{cupti_kernel, cupti_memcpy, cupti_memset, cupti_driver,
                                     cupti_external_correlation};
 
-/// Some three thousand commands.
+/// Enough for about three thousand commands.
 constexpr std::size_t bytes_of_records = std::size_t{1} << 20;
 
-/// Whose CUPTI calls back; it has nothing to tell it by.
+/// The object that CUPTI's callbacks use; they have no pointer to user data.
 std::atomic<Activity*> attached = nullptr;
 
-Activity::Span hull(const std::optional<Activity::Span>& before, Activity::Span more) {
+Activity::Span merged(const std::optional<Activity::Span>& before, Activity::Span more) {
     if (!before) return more;
     return {std::min(before->begin, more.begin), std::max(before->end, more.end)};
 }
@@ -69,7 +69,7 @@ void Activity::stop() {
     if (--users_ == 0) detach();
 }
 
-/// CUPTI allows one subscriber. Being it keeps other profilers' records theirs, and ours ours.
+/// CUPTI allows one subscriber. Subscribing keeps our records apart from those of other profilers.
 bool Activity::attach() {
     const auto ignore = [](void*, int, std::uint32_t, const void*) {};
     if (!done(cupti_->cuptiSubscribe(&subscriber_, ignore, nullptr), "cuptiSubscribe")) {
@@ -138,22 +138,22 @@ void Activity::gather(const CuptiRecord& record) {
         if (known.whose == cupti_custom) gathered_[known.correlation].command = known.id;
     } else if (record.kind == cupti_kernel) {
         const auto& kernel = reinterpret_cast<const CuptiKernel&>(record);
-        ran(kernel.correlation, kernel.start, kernel.end);
+        add_span(kernel.correlation, kernel.start, kernel.end);
     } else if (record.kind == cupti_memcpy || record.kind == cupti_memset) {
         const auto& transfer = reinterpret_cast<const CuptiTransfer&>(record);
-        ran(transfer.correlation, transfer.start, transfer.end);
+        add_span(transfer.correlation, transfer.start, transfer.end);
     }
 }
 
-/// One call may have several records, as a copy that is made in parts.
-void Activity::ran(std::uint32_t correlation, std::uint64_t start, std::uint64_t end) {
-    if (start == 0 || end < start) return; // CUPTI could not tell
+/// One call may have several records, for example a copy in parts.
+void Activity::add_span(std::uint32_t correlation, std::uint64_t start, std::uint64_t end) {
+    if (start == 0 || end < start) return; // CUPTI has no valid times
     auto& span = gathered_[correlation].span;
-    span = hull(span, {static_cast<std::int64_t>(start), static_cast<std::int64_t>(end)});
+    span = merged(span, {static_cast<std::int64_t>(start), static_cast<std::int64_t>(end)});
 }
 
-/// What was gathered of others, of the application or of another profiler's commands, goes as soon as none of
-/// ours is awaited.
+/// Records of other commands, of the application or another profiler, stay until no command of ours is
+/// outstanding; take() then deletes them.
 void Activity::collect() {
     done(cupti_->cuptiActivityFlushAll(0), "cuptiActivityFlushAll");
     const std::lock_guard lock(mutex_);
@@ -161,7 +161,7 @@ void Activity::collect() {
         const auto& [command, span] = entry.second;
         if (command == 0 || !span) return false;
         const auto known = spans_.find(command);
-        spans_[command] = hull(known == spans_.end() ? std::nullopt : std::optional(known->second), *span);
+        spans_[command] = merged(known == spans_.end() ? std::nullopt : std::optional(known->second), *span);
         return true;
     });
 }
@@ -176,7 +176,7 @@ std::optional<Activity::Span> Activity::take(std::uint64_t id) {
 }
 
 Activity& activity(int driver_version) {
-    // Never destroyed: CUPTI has a thread of its own, which may call back as long as the process lives.
+    // Never destroyed: a thread of CUPTI may call back until the process ends.
     static auto* const one = new Activity(cupti_candidates(driver_version));
     return *one;
 }

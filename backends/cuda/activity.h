@@ -9,10 +9,11 @@
 
 namespace tandem::cuda {
 
-/// When GPUs did what they were told to, by CUPTI's records of it. CUPTI is one for the process, and so is
-/// this, for all devices and threads. Its library is opened at the first start(). It is attached to the
-/// driver from the first start() to the last stop() only: attached, even with nothing enabled, it makes each
-/// launch 0.5 us longer (H200, CUPTI 13.0). During that last stop() no thread may be in a call of the driver.
+/// Times of GPU commands from CUPTI's activity records. CUPTI exists once per process, so one object serves
+/// all devices and threads. The first start() loads its library.
+/// CUPTI is attached to the driver only between the first start() and the last stop(). While attached, even
+/// with nothing enabled, it makes each launch 0.5 us longer (H200, CUPTI 13.0). During the last stop() no
+/// thread may be in a driver call.
 class Activity {
 public:
     /// Nanoseconds of CUPTI's clock.
@@ -20,33 +21,33 @@ public:
         std::int64_t begin = 0, end = 0;
     };
 
-    /// Of the first of these libraries that there is.
+    /// Uses the first of these libraries that loads.
     explicit Activity(std::vector<std::string> names) : names_(std::move(names)) {}
     Activity(const Activity&) = delete;
     Activity& operator=(const Activity&) = delete;
 
-    /// Records are made from here on, until as many calls of stop(). False where there is no CUPTI, where it
-    /// refuses, as it does when another profiler is there, and where it has failed before.
+    /// Starts recording; each successful start() needs one stop(). False when there is no CUPTI, when it
+    /// refuses, as with another profiler attached, and when it has failed before.
     bool start();
     void stop();
 
-    /// What this thread tells the driver until end_command() is one command: its id; 0 when it will have no
-    /// record.
+    /// Begins a command: all driver calls of this thread until end_command(). Returns its id; 0 when it gets
+    /// no record.
     std::uint64_t begin_command();
     void end_command(std::uint64_t id);
-    /// Fetches the records of all that has run.
+    /// Fetches the records of all completed commands.
     void collect();
-    /// When a command of whom records were fetched ran; unknown when one got lost. Forgets it.
+    /// Returns and forgets the times of a command whose records are fetched; no value when a record is lost.
     std::optional<Span> take(std::uint64_t id);
 
-    /// "CUPTI 13.0 activity records", once it has been started.
+    /// "CUPTI 13.0 activity records"; requires that start() has succeeded.
     std::string name() const;
-    /// Why it is of no use any more; empty while it may be.
+    /// Why it is no longer usable; empty while it may be.
     std::string failure() const;
     void fail(std::string why);
 
 private:
-    /// What is known of one call of the driver: which command made it, and when that ran.
+    /// The records of one driver call: its command, and its times.
     struct Gathered {
         std::uint64_t command = 0;
         std::optional<Span> span;
@@ -59,23 +60,23 @@ private:
     void detach();
     bool done(CuptiResult code, std::string_view call);
     void gather(const CuptiRecord& record);
-    void ran(std::uint32_t correlation, std::uint64_t start, std::uint64_t end);
+    void add_span(std::uint32_t correlation, std::uint64_t start, std::uint64_t end);
 
     const std::vector<std::string> names_;
-    std::mutex attaching_; ///< for the next four; never taken by what CUPTI calls
+    std::mutex attaching_; ///< guards the next four; CUPTI's callbacks never lock it
     bool opened_ = false;
     std::unique_ptr<const Cupti> cupti_;
     CuptiSubscriber subscriber_ = nullptr; ///< while attached
     std::size_t users_ = 0;
-    mutable std::mutex mutex_; ///< for the rest; never held while CUPTI is called
+    mutable std::mutex mutex_; ///< guards the rest; never held during a call of CUPTI
     std::string failure_;
     std::uint64_t last_id_ = 0;
     std::size_t outstanding_ = 0;                ///< commands not yet taken
-    std::map<std::uint32_t, Gathered> gathered_; ///< by CUPTI's number of the call
+    std::map<std::uint32_t, Gathered> gathered_; ///< by CUPTI's id of the call
     std::map<std::uint64_t, Span> spans_;        ///< by command
 };
 
-/// That of this process, with a driver for that CUDA.
+/// The only instance of this process, for a driver of that CUDA version (13000 is 13.0).
 Activity& activity(int driver_version);
 
 } // namespace tandem::cuda

@@ -35,7 +35,7 @@ void ActivityClock::drop() {
     ids_.pop_back();
 }
 
-/// Where CUPTI says that it works and makes no record of anything, events have to do.
+/// When CUPTI reports success but makes no record at all, CUDA events must replace it.
 void ActivityClock::collect() {
     const auto from = static_cast<std::ptrdiff_t>(spans_.size());
     if (spans_.size() == ids_.size()) return;
@@ -47,7 +47,7 @@ void ActivityClock::collect() {
 
 std::pair<std::int64_t, std::int64_t> ActivityClock::interval(std::uint64_t ticket) {
     const auto span = spans_.at(ticket - 1);
-    // Commands run in order.
+    // Commands run in order, so the first known span is the origin.
     const auto first =
         std::find_if(spans_.begin(), spans_.end(), [](const auto& s) { return s.has_value(); });
     const auto origin = first != spans_.end() ? (*first)->begin : 0;

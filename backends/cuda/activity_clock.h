@@ -8,10 +8,10 @@
 
 namespace tandem::cuda {
 
-/// By the process's records of what GPUs did: the times of a command have nothing else in them.
+/// Times commands by CUPTI's activity records. A command's time includes nothing else.
 class ActivityClock : public CommandClock {
 public:
-    /// `records` has to outlive it.
+    /// `records` must outlive it.
     explicit ActivityClock(Activity& records) : records_(records) {}
     ~ActivityClock() override;
 
@@ -30,7 +30,7 @@ private:
     Activity& records_;
     bool started_ = false;
     std::vector<std::uint64_t> ids_;                   ///< by ticket - 1
-    std::vector<std::optional<Activity::Span>> spans_; ///< of the first of them, as far as collected
+    std::vector<std::optional<Activity::Span>> spans_; ///< of the ids collected so far, in order
     std::size_t read_ = 0;
 };
 

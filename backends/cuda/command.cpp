@@ -17,10 +17,11 @@ Result Command::submit(const Driver& driver, Stream stream) const {
     case Kind::launch:
         break;
     }
-    // The driver copies what they point to before it returns. The last is followed by null.
-    std::array<void*, most_arguments + 1> places{};
-    for (std::size_t i = 0; i < arguments; ++i) places[i] = const_cast<std::uint64_t*>(&values[i]);
-    return driver.cuLaunchKernel(function, groups, 1, 1, group_size, 1, 1, 0, stream, places.data(), nullptr);
+    // The driver copies the values before it returns. The last pointer is followed by null.
+    std::array<void*, max_arguments + 1> pointers{};
+    for (std::size_t i = 0; i < arguments; ++i) pointers[i] = const_cast<std::uint64_t*>(&values[i]);
+    return driver.cuLaunchKernel(function, groups, 1, 1, group_size, 1, 1, 0, stream, pointers.data(),
+                                 nullptr);
 }
 
 std::string_view Command::call() const {

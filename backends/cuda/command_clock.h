@@ -10,13 +10,12 @@
 
 namespace tandem::cuda {
 
-/// Tells when the commands of one device ran, while clocks are on. Every call is made with the device's
-/// context current.
+/// Times the commands of one device while clocks are on. The device's context must be current in every call.
 class CommandClock {
 public:
-    /// What the driver refused.
+    /// An error of the driver.
     struct Refusal {
-        Result code = 0; ///< 0: nothing
+        Result code = 0; ///< 0: none
         std::string_view call;
     };
 
@@ -28,33 +27,33 @@ public:
     /// As Device::clock().
     virtual std::string name() const = 0;
 
-    /// Clocks are on from here on; false: not by this one, ever.
+    /// Starts timing. False: this clock can never be used.
     virtual bool start() = 0;
     virtual void stop() = 0;
 
-    /// Before and after a command is told to the driver.
+    /// Called before and after a command is passed to the driver.
     virtual Refusal begin() = 0;
     virtual Refusal end() = 0;
-    /// In place of end(): the command was refused.
+    /// Replaces end() when the command was refused.
     virtual void drop() = 0;
-    /// Of the command that ended last, from 1 on.
+    /// The ticket of the command that ended last, from 1 on.
     virtual std::uint64_t ticket() const = 0;
 
-    /// Every command has run.
+    /// Called after every command has run.
     virtual void collect() = 0;
-    /// As Device::do_interval(): nanoseconds, begins counted from the first command since the last time that
-    /// all tickets were released; {-1, -1} when not known.
+    /// As Device::do_interval(), in nanoseconds; {-1, -1} when unknown. Begins count from the first command
+    /// since all tickets were last released.
     virtual std::pair<std::int64_t, std::int64_t> interval(std::uint64_t ticket) = 0;
-    /// It has failed, and all its tickets are released: another one has to go on.
+    /// Whether it has failed and all its tickets are released: another clock must replace it.
     virtual bool spent() const = 0;
 };
 
-/// `clock`, or one in its place where it is none or cannot: by CUPTI's records where there is CUPTI, by
-/// events otherwise. It has been started.
+/// Starts `clock` and returns it. If it is null or cannot start, returns a started replacement: CUPTI's
+/// records if available, else CUDA events.
 std::unique_ptr<CommandClock> started_clock(std::unique_ptr<CommandClock> clock, const Driver& driver,
                                             Stream stream);
 
-/// What name() will be, as far as that is known before the first start.
+/// The name() to expect before the first start.
 std::string expected_clock(const Driver& driver);
 
 } // namespace tandem::cuda

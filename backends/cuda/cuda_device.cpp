@@ -20,8 +20,8 @@ namespace tandem::cuda {
 
 namespace {
 
-/// Additions and multiplications in float that a multiprocessor does in a clock, by compute capability (CUDA
-/// C++ Programming Guide 8 and 12, "Arithmetic Instructions"); 0: not known here.
+/// Float additions and multiplications of a multiprocessor per clock, by compute capability (CUDA C++
+/// Programming Guide 8 and 12, "Arithmetic Instructions"); 0: unknown.
 std::uint32_t float_cores(int capability) {
     if (capability < 30) return capability == 21 ? 48 : 32;
     if (capability < 50) return 192;
@@ -34,7 +34,7 @@ struct CudaBuffer : Buffer::Impl {
     Context context = nullptr;
     DevicePointer pointer = 0;
     bool owned = true;
-    std::shared_ptr<std::uint64_t> frees; ///< the device's count
+    std::shared_ptr<std::uint64_t> frees; ///< the device's count of freed buffers
     CudaBuffer() = default;
     CudaBuffer(const CudaBuffer&) = delete;
     CudaBuffer& operator=(const CudaBuffer&) = delete;
@@ -44,7 +44,7 @@ struct CudaBuffer : Buffer::Impl {
         const CurrentContext current(*driver, context);
         driver->cuMemFree_v2(pointer);
     }
-    // NOLINTNEXTLINE(performance-no-int-to-ptr): the driver's number of an address
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): the driver's addresses are integers
     void* native() const override { return reinterpret_cast<void*>(pointer); }
 };
 
@@ -58,14 +58,14 @@ struct LoadedModule {
     Image image; ///< without its bytes
 };
 
-/// Bytes of an upload that is kept back for a graph. A larger one, and what comes after it, goes at once: it
-/// takes about as long as the host takes for the rest of a frame's commands.
-constexpr std::size_t most_kept_back = std::size_t{64} << 10;
+/// Largest upload that is held back for a graph. A larger one and all later commands are submitted at once:
+/// it takes about as long as the host needs for the rest of a frame's commands.
+constexpr std::size_t max_held_back = std::size_t{64} << 10;
 
-/// Page-locked memory for uploads in flight; more than that waits.
-constexpr std::size_t most_staged = std::size_t{256} << 20;
+/// Page-locked memory for uploads in flight; uploads beyond it wait.
+constexpr std::size_t max_staged = std::size_t{256} << 20;
 
-/// The context has to be current wherever it is used.
+/// The context must be current when the source is used.
 Staging::Source page_locked(const Driver& driver) {
     const auto allocate = [&driver](std::size_t bytes) -> std::byte* {
         void* memory = nullptr;
@@ -74,14 +74,14 @@ Staging::Source page_locked(const Driver& driver) {
     return {allocate, [&driver](std::byte* memory) { driver.cuMemFreeHost(memory); }};
 }
 
-/// CU_STREAM_LEGACY is another name of the default stream, which null is everywhere else.
+/// CU_STREAM_LEGACY is another name of the default stream, which is null in all other calls.
 Stream legacy_is_null(void* stream) {
     return reinterpret_cast<std::uintptr_t>(stream) == 1 ? nullptr : static_cast<Stream>(stream);
 }
 
 class CudaDevice : public Device {
 public:
-    /// In the device's primary context; on a stream of its own, or on one of others where `stream` names it.
+    /// Uses the device's primary context, on a new stream or on a given `stream` of the application.
     CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index,
                std::optional<Stream> stream = std::nullopt);
     CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, Context context, Stream stream);
@@ -122,7 +122,7 @@ private:
             fail(result, call, what);
     }
     [[noreturn]] void fail(Result result, std::string_view call, std::string_view what) const;
-    /// Every operation has one: what it calls needs the context, and the caller gets back its own.
+    /// Makes the device's context current during an operation, and restores the caller's.
     struct Scope {
         explicit Scope(const CudaDevice& device) : current(device.driver(), device.context_) {
             device.check(current.result(), "cuCtxSetCurrent", "starting a command");
@@ -132,17 +132,17 @@ private:
     template<class What>
     void wait(const What& what);
     void check_launch(std::string_view entry, Grid grid, std::size_t arguments) const;
-    /// Enqueues a command on `buffers`, or keeps both back; the ticket.
+    /// Enqueues a command on `buffers`, or holds both back. Returns the ticket.
     std::uint64_t enqueue(const Command& command, std::span<Buffer::Impl* const> buffers);
-    /// Enqueues a command after those kept back, and waits for it.
+    /// Enqueues a command after those held back, and waits for it.
     std::uint64_t enqueue_and_wait(const Command& command, bool staged);
     std::uint64_t enqueue_now(const Command& command);
     void submit_collected();
-    /// As KernelFacts has it.
+    /// As KernelFacts::occupancy.
     double occupancy(Function function, const Defines& defines) const;
     const LoadedModule& module(const KernelSource& source, const Defines& defines);
     const Driver& driver() const { return libraries_->driver; }
-    /// Runs `submit` under the clock when clocks are on; the ticket.
+    /// Runs `submit`, timed when clocks are on. Returns the ticket.
     template<class Submit>
     std::uint64_t timed(const Submit& submit);
 
@@ -153,20 +153,20 @@ private:
     Context context_ = nullptr;
     Stream stream_ = nullptr;
     bool owned_ = true;
-    EventHandle followed_ = nullptr;      ///< in the last stream that was followed; none before
-    std::unique_ptr<CommandClock> clock_; ///< since clocks were on for the first time
+    EventHandle followed_ = nullptr;      ///< in the last stream that was followed; null before
+    std::unique_ptr<CommandClock> clock_; ///< null until clocks are on for the first time
     bool timed_ = false;
     int capability_ = 0;
-    int threads_of_unit_ = 0; ///< that a multiprocessor holds at once
+    int threads_per_unit_ = 0; ///< that a multiprocessor can hold at once
     std::map<std::string, LoadedModule> modules_;
-    Staging staging_{page_locked(libraries_->driver), most_staged};
-    bool in_one_ = false;                                ///< within as_one
-    bool collects_ = false;                              ///< the same, and commands are kept back
-    std::vector<Command> collected_;                     ///< kept back
-    std::vector<std::shared_ptr<Buffer::Impl>> buffers_; ///< that these work on, whoever drops them meanwhile
+    Staging staging_{page_locked(libraries_->driver), max_staged};
+    bool in_one_ = false;                                ///< within as_one()
+    bool collects_ = false;                              ///< within as_one(), and commands are held back
+    std::vector<Command> collected_;                     ///< held back
+    std::vector<std::shared_ptr<Buffer::Impl>> buffers_; ///< of these commands, to keep them alive
     Graphs graphs_{libraries_->driver};
-    std::shared_ptr<std::uint64_t> frees_ = std::make_shared<std::uint64_t>(0); ///< of buffers, so far
-    std::uint64_t frees_seen_ = 0;                                              ///< by the graphs
+    std::shared_ptr<std::uint64_t> frees_ = std::make_shared<std::uint64_t>(0); ///< freed buffers so far
+    std::uint64_t known_frees_ = 0; ///< frees_ when the graphs were last valid
 };
 
 CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index,
@@ -205,27 +205,27 @@ CudaDevice::~CudaDevice() {
 int CudaDevice::attribute(DeviceAttribute what) const {
     int value = 0;
     check(driver().cuDeviceGetAttribute(&value, what, handle_), "cuDeviceGetAttribute",
-          "asking what the device is");
+          "querying the device's attributes");
     return value;
 }
 
 void CudaDevice::describe_peaks() {
-    // None of these is needed to work: what the driver does not tell is unknown.
-    const auto told = [&](DeviceAttribute what) {
+    // These values are optional; 0 means that the driver does not report one.
+    const auto query = [&](DeviceAttribute what) {
         int value = 0;
         return driver().cuDeviceGetAttribute(&value, what, handle_) == 0 ? std::max(value, 0) : 0;
     };
     info_.cores = float_cores(capability_) * info_.compute_units;
-    info_.clock_mhz = static_cast<std::uint32_t>(told(clock_rate_khz)) / 1000;
-    // Data on both edges of the clock.
-    info_.peak_bytes_per_s = std::uint64_t{2000} * static_cast<std::uint64_t>(told(memory_clock_rate_khz))
-                             * (static_cast<std::uint64_t>(told(memory_bus_bits)) / 8);
+    info_.clock_mhz = static_cast<std::uint32_t>(query(clock_rate_khz)) / 1000;
+    // Double data rate: two transfers per clock.
+    info_.peak_bytes_per_s = std::uint64_t{2000} * static_cast<std::uint64_t>(query(memory_clock_rate_khz))
+                             * (static_cast<std::uint64_t>(query(memory_bus_bits)) / 8);
 }
 
 void CudaDevice::describe() {
     std::array<char, 256> text{};
     check(driver().cuDeviceGetName(text.data(), static_cast<int>(text.size()), handle_), "cuDeviceGetName",
-          "asking for the device's name");
+          "querying the device's name");
     info_.name = text.data();
     std::array<unsigned char, 16> uuid{};
     if (driver().cuDeviceGetUuid_v2(uuid.data(), handle_) == 0) info_.hardware = uuid_text(uuid);
@@ -240,15 +240,14 @@ void CudaDevice::describe() {
     info_.max_group_size = static_cast<std::uint32_t>(attribute(max_threads_per_block));
     info_.local_bytes = static_cast<std::uint64_t>(attribute(max_shared_per_block));
     describe_peaks();
-    threads_of_unit_ = attribute(max_threads_per_multiprocessor);
+    threads_per_unit_ = attribute(max_threads_per_multiprocessor);
     std::size_t memory = 0;
-    check(driver().cuDeviceTotalMem_v2(&memory, handle_), "cuDeviceTotalMem",
-          "asking for the device's memory");
+    check(driver().cuDeviceTotalMem_v2(&memory, handle_), "cuDeviceTotalMem", "querying the device's memory");
     info_.global_bytes = info_.max_allocation = memory;
 }
 
 void CudaDevice::fail(Result result, std::string_view call, std::string_view what) const {
-    // Whoever catches the error may free what commands in flight still read or write.
+    // The handler of the error may free memory that commands in flight still use.
     if (context_ != nullptr && (stream_ != nullptr || !owned_)) {
         const CurrentContext current(driver(), context_);
         driver().cuStreamSynchronize(stream_);
@@ -332,7 +331,7 @@ std::uint64_t CudaDevice::enqueue(const Command& command, std::span<Buffer::Impl
     return 0;
 }
 
-/// `staged`: the host's memory is page-locked, and so has the same address in the next frame.
+/// `staged`: the host memory is page-locked, so it has the same address in the next frame.
 std::uint64_t CudaDevice::enqueue_and_wait(const Command& command, bool staged) {
     std::uint64_t ticket = 0;
     if (collects_ && !staged) {
@@ -360,10 +359,10 @@ void CudaDevice::do_end_collecting() {
 void CudaDevice::submit_collected() {
     if (collected_.empty()) return;
     const Scope scope(*this);
-    // An address may have come back with other memory behind it, which a graph knows nothing of.
-    if (std::exchange(frees_seen_, *frees_) != *frees_) {
+    // An address may be reused for other memory, so graphs that use it become invalid.
+    if (std::exchange(known_frees_, *frees_) != *frees_) {
         check(driver().cuStreamSynchronize(stream_), "cuStreamSynchronize",
-              "waiting for graphs that are to go");
+              "waiting before graphs are destroyed");
         graphs_.drop();
     }
     std::uint64_t submissions = 0;
@@ -371,7 +370,7 @@ void CudaDevice::submit_collected() {
     count_submissions(submissions);
     collected_.clear();
     if (failure.code != 0) {
-        const auto buffers = std::exchange(buffers_, {}); // until check() has waited
+        const auto buffers = std::exchange(buffers_, {}); // kept alive until check() has waited
         check(failure.code, failure.call, failure.what);
     }
     buffers_.clear();
@@ -380,7 +379,7 @@ void CudaDevice::submit_collected() {
 std::uint64_t CudaDevice::do_upload(Buffer::Impl& to, std::span<const std::byte> from, std::size_t offset,
                                     bool blocking) {
     const Scope scope(*this);
-    if (collects_ && from.size() > most_kept_back) {
+    if (collects_ && from.size() > max_held_back) {
         submit_collected();
         collects_ = false;
     }
@@ -460,21 +459,21 @@ std::shared_ptr<Kernel::Impl> CudaDevice::do_compile(const KernelSource& source,
     return kernel;
 }
 
-/// A group is held as whole warps.
+/// A group occupies whole warps.
 double CudaDevice::occupancy(Function function, const Defines& defines) const {
     const auto group_size = defines.find("GROUP_SIZE");
     if (driver().cuOccupancyMaxActiveBlocksPerMultiprocessor == nullptr || group_size == defines.end()
-        || threads_of_unit_ <= 0)
+        || threads_per_unit_ <= 0)
         return -1;
     constexpr int warp = 32;
     const int threads = std::stoi(group_size->second);
     int groups = 0;
     if (driver().cuOccupancyMaxActiveBlocksPerMultiprocessor(&groups, function, threads, 0) != 0) return -1;
     const int held = (threads + warp - 1) / warp * warp;
-    return static_cast<double>(groups) * held / threads_of_unit_;
+    return static_cast<double>(groups) * held / threads_per_unit_;
 }
 
-/// What was submitted before is finished first, so that a profiler counts what comes between the two calls.
+/// Earlier commands finish first, so that a profiler counts only commands between the two calls.
 void CudaDevice::do_profile(bool on) {
     const auto call = on ? driver().cuProfilerStart : driver().cuProfilerStop;
     if (call == nullptr) return;
@@ -491,7 +490,7 @@ std::uint64_t CudaDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span<c
                     .group_size = grid.group_size,
                     .arguments = arguments.size(),
                     .label = kernel.facts.entry};
-    std::array<Buffer::Impl*, Command::most_arguments> buffers;
+    std::array<Buffer::Impl*, Command::max_arguments> buffers;
     std::size_t count = 0;
     for (std::size_t i = 0; i < arguments.size(); ++i) {
         const auto& value = arguments[i].value();
@@ -508,9 +507,9 @@ std::uint64_t CudaDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span<c
 }
 
 void CudaDevice::check_launch(std::string_view entry, Grid grid, std::size_t arguments) const {
-    if (arguments > Command::most_arguments)
+    if (arguments > Command::max_arguments)
         throw DeviceError(fmt::format("{}: '{}' with {} arguments; a launch takes at most {}", info_.id,
-                                      entry, arguments, Command::most_arguments));
+                                      entry, arguments, Command::max_arguments));
     if (grid.groups > 0x7fffffffu)
         throw DeviceError(fmt::format("{}: '{}' with {} groups; a launch takes at most 2147483647", info_.id,
                                       entry, grid.groups));
@@ -569,7 +568,7 @@ Found discover() {
                 found.reason = error.what();
             }
         }
-        if (count == 0) found.reason = "cuda: the driver is there, but no device";
+        if (count == 0) found.reason = "cuda: the driver is installed, but it finds no device";
     } catch (const DeviceError& error) {
         found.reason = error.what();
     }

@@ -5,7 +5,7 @@
 
 namespace tandem::cuda {
 
-/// Every device of the driver, in its order, or the sentence why there is none.
+/// Every device of the driver, in its order, or one sentence on why there is none.
 struct Found {
     std::vector<std::unique_ptr<Device>> devices;
     std::string reason;
@@ -16,9 +16,9 @@ Found discover();
 /// A device over a host application's CUcontext and CUstream, which must outlive it. Throws DeviceError.
 std::unique_ptr<Device> adopt(void* context, void* stream);
 
-/// A device by its number over a host application's CUstream of its primary context, which is what the CUDA
-/// runtime works in; null and CU_STREAM_LEGACY: the default stream. The stream must outlive it. Throws
-/// DeviceError.
+/// A device, given by its number, over a host application's CUstream of its primary context, which the CUDA
+/// runtime uses. Null and CU_STREAM_LEGACY mean the default stream. The stream must outlive the device.
+/// Throws DeviceError.
 std::unique_ptr<Device> on_stream(std::size_t index, void* stream);
 
 } // namespace tandem::cuda

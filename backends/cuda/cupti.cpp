@@ -12,11 +12,11 @@ namespace tandem::cuda {
 
 namespace {
 
-/// That of CUDA 12.6. Before it, CUPTI that had been detached made graphs fail that were launched afterwards
+/// The version of CUDA 12.6. With earlier versions, graphs launched after CUPTI was detached fail
 /// (pytorch/kineto, pull request 1264), and tandem's frames are graphs.
 constexpr std::uint32_t first_usable = 24;
 
-/// Since 13.0 a version is 130001 for the second release of 13.0; before it counted on by one.
+/// Versions from 13.0 on have the form 130001 (second release of 13.0); earlier ones are consecutive numbers.
 std::string cupti_version_text(std::uint32_t version) {
     return version < 100000 ? fmt::format("API {}", version)
                             : fmt::format("{}.{}", version / 10000, version % 10000 / 100);
@@ -52,7 +52,7 @@ std::vector<std::string> cupti_candidates(int driver_version) {
         if (major > driver_version / 1000) continue;
         const auto name = fmt::format("libcupti.so.{}", major);
         names.push_back(name);
-        // A toolkit's own folders need not be among those of the loader.
+        // The loader may not search a toolkit's own folders.
         names.push_back("/usr/local/cuda/lib64/" + name);
         names.push_back("/usr/local/cuda/extras/CUPTI/lib64/" + name);
     }

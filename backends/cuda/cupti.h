@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The entry points and records of NVIDIA's profiling library that are used, declared here so that no toolkit
-// is needed to build; a test compares them with <cupti.h> where there is one. Names and values: CUPTI API
-// reference, 13.0. Of a record only its first fields, which have kept their places since CUDA 11.2.
+// The entry points and records of NVIDIA's profiling library that tandem uses, declared in this file so that
+// a build needs no toolkit. A test compares them with <cupti.h> when it is installed. Names and values: CUPTI
+// API reference, 13.0. Only the first fields of a record are declared; their offsets are the same since CUDA
+// 11.2.
 #pragma once
 
 #include "backends/library.h"
@@ -21,22 +22,22 @@ namespace tandem::cuda {
 using CuptiResult = int; ///< CUptiResult; 0 is success
 using CuptiSubscriber = CUpti_Subscriber_st*;
 
-/// CUpti_ActivityKind, as far as they are gathered.
+/// The values of CUpti_ActivityKind that are recorded.
 enum CuptiKind : int {
     cupti_memcpy = 1,
     cupti_memset = 2,
-    cupti_driver = 4, ///< calls of the driver, without which there is no external correlation
+    cupti_driver = 4, ///< driver calls; external correlation needs them
     cupti_kernel = 10,
     cupti_external_correlation = 39
 };
 enum CuptiExternal : int { cupti_custom = 3 }; ///< CUPTI_EXTERNAL_CORRELATION_KIND_CUSTOM0
 
-/// What every record begins with.
+/// The first field of every record.
 struct alignas(8) CuptiRecord {
     CuptiKind kind = {};
 };
 
-/// A kernel that has run. Times in nanoseconds, 0 when not known.
+/// A completed kernel. Times in nanoseconds, 0 when unknown.
 struct CuptiKernel {
     CuptiKind kind = cupti_kernel;
     unsigned char configuration[12] = {};
@@ -45,10 +46,10 @@ struct CuptiKernel {
     std::int32_t grid[3] = {}, block[3] = {};
     std::int32_t static_shared = 0, dynamic_shared = 0;
     std::uint32_t local = 0, local_total = 0;
-    std::uint32_t correlation = 0; ///< with the call of the driver
+    std::uint32_t correlation = 0; ///< id of the driver call
 };
 
-/// A copy or a clear that has run, whose records have these fields in the same places.
+/// A completed copy or clear; the records of both have these fields at the same offsets.
 struct CuptiTransfer {
     CuptiKind kind = cupti_memcpy;
     std::uint32_t what = 0; ///< kinds of copy and memory; value of a clear
@@ -58,7 +59,7 @@ struct CuptiTransfer {
     std::uint32_t correlation = 0;
 };
 
-/// Which call of the driver was made under which id of the caller's own.
+/// Maps a driver call to the caller's own id.
 struct CuptiCorrelation {
     CuptiKind kind = cupti_external_correlation;
     CuptiExternal whose = cupti_custom;
@@ -71,7 +72,7 @@ using CuptiRequested = void (*)(unsigned char** buffer, std::size_t* bytes, std:
 using CuptiCompleted = void (*)(CUctx_st*, std::uint32_t stream, unsigned char* buffer, std::size_t bytes,
                                 std::size_t valid);
 
-// ENTRY(symbol in the library, arguments): every one returns CuptiResult.
+// ENTRY(symbol in the library, arguments); each returns CuptiResult.
 #define TANDEM_CUPTI_ENTRIES(ENTRY)                                                                          \
     ENTRY(cuptiGetVersion, (std::uint32_t*))                                                                 \
     ENTRY(cuptiSubscribe, (CuptiSubscriber*, CuptiCallback, void*))                                          \
@@ -92,15 +93,15 @@ struct Cupti {
     TANDEM_CUPTI_ENTRIES(TANDEM_DECLARE)
 #undef TANDEM_DECLARE
 
-    std::string version; ///< "13.0", or "API 26" of one from before 13.0
+    std::string version; ///< "13.0", or "API 26" for versions before 13.0
 };
 
-/// The first of `names` that there is; null where there is none. Throws DeviceError where it cannot be used:
-/// the reason in a few words.
+/// Opens the first of `names` that loads; null when none does. Throws DeviceError with a short reason when
+/// the library cannot be used.
 std::unique_ptr<const Cupti> open_cupti(std::span<const std::string> names);
 
-/// What to try with a driver for that CUDA (13000 is 13.0): $TANDEM_CUPTI, which may name none, or the
-/// libraries of no newer major version.
+/// The libraries to try with a driver for that CUDA (13000 is 13.0): $TANDEM_CUPTI, or none if it is empty.
+/// By default those of no newer major version.
 std::vector<std::string> cupti_candidates(int driver_version);
 
 } // namespace tandem::cuda

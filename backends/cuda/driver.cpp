@@ -40,7 +40,7 @@ Driver::Driver() : library(open_driver()) {
 #undef TANDEM_FIND
     if (const auto code = cuInit(0); code != 0)
         throw DeviceError(
-            fmt::format("cuda: the driver is there, but cuInit failed with {}", describe(code)));
+            fmt::format("cuda: the driver is installed, but cuInit failed with {}", describe(code)));
     cuDriverGetVersion(&version);
 }
 

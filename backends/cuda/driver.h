@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The entry points of NVIDIA's driver that the adaptor uses, declared here so that no toolkit is needed to
-// build; a test compares them with <cuda.h> where there is one. Names and values: CUDA Driver API
+// The entry points of NVIDIA's driver that tandem uses, declared in this file so that a build needs no
+// toolkit. A test compares them with <cuda.h> when it is installed. Names and values: CUDA Driver API
 // reference, 13.0.
 #pragma once
 
@@ -31,7 +31,7 @@ using EventHandle = CUevent_st*;
 using Graph = CUgraph_st*;
 using GraphExec = CUgraphExec_st*;
 
-/// CUdevice_attribute and CUfunction_attribute, as far as they are asked for.
+/// The values of CUdevice_attribute and CUfunction_attribute that are queried.
 enum DeviceAttribute : int {
     max_threads_per_block = 1,
     max_shared_per_block = 8,
@@ -45,7 +45,7 @@ enum DeviceAttribute : int {
 };
 enum FunctionAttribute : int { function_max_threads = 0, function_shared_bytes = 1, function_registers = 4 };
 
-// ENTRY(symbol in the library, arguments): every one returns Result.
+// ENTRY(symbol in the library, arguments); each returns Result.
 #define TANDEM_CUDA_ENTRIES(ENTRY)                                                                           \
     ENTRY(cuInit, (unsigned))                                                                                \
     ENTRY(cuDriverGetVersion, (int*))                                                                        \
@@ -91,7 +91,7 @@ enum FunctionAttribute : int { function_max_threads = 0, function_shared_bytes =
     ENTRY(cuLaunchKernel, (Function, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned,   \
                            Stream, void**, void**))
 
-// Entry points that the adaptor does without where a driver has none of them.
+// Optional entry points; null when the driver lacks them.
 #define TANDEM_CUDA_OPTIONAL_ENTRIES(ENTRY)                                                                  \
     ENTRY(cuOccupancyMaxActiveBlocksPerMultiprocessor, (int*, Function, int, std::size_t))                   \
     ENTRY(cuProfilerStart, ())                                                                               \
@@ -99,23 +99,23 @@ enum FunctionAttribute : int { function_max_threads = 0, function_shared_bytes =
 
 /// The driver's entry points.
 struct Driver {
-    /// Loads libcuda.so.1 and starts it. Throws DeviceError: one sentence on what is missing.
+    /// Loads and initialises libcuda.so.1. Throws DeviceError: one sentence on what is missing.
     Driver();
 
 // NOLINTNEXTLINE(bugprone-macro-parentheses): a declaration
 #define TANDEM_DECLARE(name, arguments) Result(*name) arguments = nullptr;
     TANDEM_CUDA_ENTRIES(TANDEM_DECLARE)
-    TANDEM_CUDA_OPTIONAL_ENTRIES(TANDEM_DECLARE) ///< null where the driver has none
+    TANDEM_CUDA_OPTIONAL_ENTRIES(TANDEM_DECLARE) ///< null when the driver has none
 #undef TANDEM_DECLARE
 
     Library library;
-    int version = 0; ///< of the CUDA it supports: 13000 is 13.0
+    int version = 0; ///< of the CUDA that it supports: 13000 is 13.0
 
     /// "CUDA_ERROR_OUT_OF_MEMORY (out of memory)"
     std::string describe(Result result) const;
 };
 
-/// "13.0" of 13000.
+/// "13.0" for 13000.
 std::string version_text(int version);
 
 } // namespace tandem::cuda

@@ -14,7 +14,7 @@ std::string EventClock::name() const {
 }
 
 CommandClock::Refusal EventClock::begin() {
-    before_ = used_;
+    used_at_begin_ = used_;
     return record();
 }
 

@@ -7,11 +7,11 @@
 
 namespace tandem::cuda {
 
-/// By an event before and one after each command. What the two take is in the time of the command, 2 to 4 us
-/// of a short one.
+/// Times each command by an event before and one after it. The cost of the events is part of the time: 2 to 4
+/// us of a short command.
 class EventClock : public CommandClock {
 public:
-    /// `why` not by CUPTI; empty where there is none.
+    /// `why`: the reason why CUPTI is not used; empty when there is no CUPTI.
     EventClock(const Driver& driver, Stream stream, std::string why)
         : driver_(driver), stream_(stream), why_(std::move(why)) {}
     ~EventClock() override;
@@ -21,7 +21,7 @@ public:
     void stop() override {}
     Refusal begin() override;
     Refusal end() override { return record(); }
-    void drop() override { used_ = before_; }
+    void drop() override { used_ = used_at_begin_; }
     std::uint64_t ticket() const override { return used_ / 2; }
     void collect() override {}
     std::pair<std::int64_t, std::int64_t> interval(std::uint64_t ticket) override;
@@ -34,10 +34,10 @@ private:
     Stream stream_;
     std::string why_;
     std::vector<EventHandle>
-        events_; ///< begin and end of each command since the last reading, then spare ones
+        events_; ///< begin and end of each command since the last reading, then spare events
     std::size_t used_ = 0;
-    std::size_t before_ = 0; ///< used, before the last begin: events come in pairs
-    std::size_t read_ = 0;   ///< pairs
+    std::size_t used_at_begin_ = 0; ///< used_ at the last begin(), to drop half a pair
+    std::size_t read_ = 0;          ///< pairs read
 };
 
 } // namespace tandem::cuda

@@ -8,7 +8,7 @@ namespace tandem::cuda {
 
 namespace {
 
-/// CU_STREAM_CAPTURE_MODE_RELAXED: other threads may do with their contexts what they like meanwhile.
+/// CU_STREAM_CAPTURE_MODE_RELAXED: other threads may use their contexts freely during a capture.
 constexpr int relaxed = 2;
 
 Graphs::Failure enqueue(const Driver& driver, std::span<const Command> commands, Stream stream) {
@@ -26,9 +26,9 @@ Graphs::Known* Graphs::find(std::span<const Command> commands) {
     return found != known_.end() ? &*found : nullptr;
 }
 
-/// In the place of what has not come for the longest time, when there are too many.
+/// Replaces the least recently used sequence when there are too many.
 Graphs::Failure Graphs::remember(std::span<const Command> commands, Stream stream) {
-    if (known_.size() < most) {
+    if (known_.size() < max_sequences) {
         known_.emplace_back();
     } else {
         const auto oldest = std::ranges::min_element(known_, {}, &Known::used);
@@ -37,7 +37,7 @@ Graphs::Failure Graphs::remember(std::span<const Command> commands, Stream strea
     auto& known = known_.back();
     if (known.graph != nullptr) {
         if (const auto code = driver_.cuStreamSynchronize(stream); code != 0)
-            return {code, "cuStreamSynchronize", "waiting for a graph that is to go"};
+            return {code, "cuStreamSynchronize", "waiting before a graph is destroyed"};
         driver_.cuGraphExecDestroy(std::exchange(known.graph, nullptr));
     }
     known.commands.assign(commands.begin(), commands.end());
@@ -50,7 +50,7 @@ Graphs::Failure Graphs::capture(Known& known, Stream stream) {
     if (const auto code = driver_.cuStreamBeginCapture_v2(stream, relaxed); code != 0)
         return {code, "cuStreamBeginCapture", what()};
     auto failure = enqueue(driver_, known.commands, stream);
-    Graph graph = nullptr; // ended in any case, or the stream would stay useless
+    Graph graph = nullptr; // always ended, or the stream stays unusable
     const auto ended = driver_.cuStreamEndCapture(stream, &graph);
     if (failure.code == 0 && ended != 0) failure = {ended, "cuStreamEndCapture", what()};
     if (failure.code == 0)
@@ -61,7 +61,7 @@ Graphs::Failure Graphs::capture(Known& known, Stream stream) {
 }
 
 Graphs::Failure Graphs::submit(std::span<const Command> commands, Stream stream, std::uint64_t& submissions) {
-    if (commands.size() == 1) { // nothing to gain
+    if (commands.size() == 1) { // a graph gains nothing
         ++submissions;
         return enqueue(driver_, commands, stream);
     }
@@ -74,7 +74,7 @@ Graphs::Failure Graphs::submit(std::span<const Command> commands, Stream stream,
     }
     known->used = now_;
     if (known->graph == nullptr) {
-        // Its labels may have gone since; those of the same commands are the same.
+        // The stored labels may be invalid; equal commands have equal labels.
         known->commands.assign(commands.begin(), commands.end());
         if (auto failure = capture(*known, stream); failure.code != 0) return failure;
     }

@@ -8,35 +8,35 @@
 
 namespace tandem::cuda {
 
-/// Sequences of commands that go to the driver as one, once they have come before: a graph is captured when
-/// the same commands, with the same arguments, come a second time. What never comes again costs no graph.
+/// Submits repeated sequences of commands as one. A graph is captured when the same commands, with the same
+/// arguments, come a second time. A sequence that never repeats needs no graph.
 class Graphs {
 public:
-    /// What the driver refused.
+    /// An error of the driver.
     struct Failure {
-        Result code = 0; ///< 0: nothing
+        Result code = 0; ///< 0: none
         std::string_view call;
-        std::string what; ///< made of failures only
+        std::string what; ///< set on failure only
     };
 
-    /// So many sequences are remembered: a frame with every set of buffers that answers lie in, twice over.
-    static constexpr std::size_t most = 16;
+    /// Sequences that are remembered: a frame with each set of buffers that results use, twice over.
+    static constexpr std::size_t max_sequences = 16;
 
-    /// `driver` has to outlive it. Before it dies drop() has to have been called.
+    /// `driver` must outlive it. Call drop() before it is destroyed.
     explicit Graphs(const Driver& driver) : driver_(driver) {}
 
-    /// Enqueues commands on a stream that can be captured, which the default stream cannot. `submissions`
-    /// becomes larger by the number of calls that hand work over.
+    /// Enqueues commands on a stream that can be captured; the default stream cannot. Adds the number of
+    /// calls that submit work to `submissions`.
     Failure submit(std::span<const Command> commands, Stream stream, std::uint64_t& submissions);
-    /// Forgets everything and destroys all graphs, none of which is running. Memory that commands name must
-    /// not be freed, or stop being what it was, without this.
+    /// Forgets all sequences and destroys their graphs; none may be running. Required before memory that
+    /// commands use is freed or reused.
     void drop();
 
 private:
     struct Known {
         std::vector<Command> commands;
-        GraphExec graph = nullptr; ///< none yet: seen once
-        std::uint64_t used = 0;    ///< when, in submissions of sequences
+        GraphExec graph = nullptr; ///< null until the sequence repeats
+        std::uint64_t used = 0;    ///< time of the last use, in submissions
     };
 
     Known* find(std::span<const Command> commands);

@@ -31,7 +31,7 @@ void append(std::string& to, T value) {
     to.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// Takes a number off the front; nothing when too little is left.
+/// Removes a number from the front; no value when too few bytes are left.
 template<class T>
 std::optional<T> taken(std::string_view& from) {
     if (from.size() < sizeof(T)) return std::nullopt;
@@ -41,7 +41,7 @@ std::optional<T> taken(std::string_view& from) {
     return value;
 }
 
-/// The magic, then of each part its size, its bytes and their checksum.
+/// The magic, then the size, the bytes and the checksum of each part.
 std::string packed(const Parts& parts) {
     std::string text(magic);
     for (const auto& part : parts) {
@@ -78,7 +78,7 @@ ImageCache::ImageCache(std::filesystem::path folder) : folder_(std::move(folder)
 }
 
 std::filesystem::path ImageCache::file_of(const std::string& key) const {
-    // FNV-1a; the key itself stands in the file.
+    // FNV-1a. The file contains the key itself, which find() compares.
     std::uint64_t hash = 0xcbf29ce484222325u;
     for (const char c : key) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
     return folder_ / fmt::format("{:016x}.image", hash);
@@ -95,18 +95,18 @@ std::optional<Image> ImageCache::find(const std::string& key) const {
 
 void ImageCache::keep(const std::string& key, const Image& image) const {
     if (folder_.empty()) return;
-    // Written beside and then renamed: whoever reads sees all of it or nothing.
+    // Written to a temporary file and renamed, so that readers see the whole file or none.
     static std::atomic<unsigned> number = 0;
     const auto file = file_of(key);
-    auto beside = file;
-    beside += fmt::format(".{}.{}", ::getpid(), number++);
+    auto temporary = file;
+    temporary += fmt::format(".{}.{}", ::getpid(), number++);
     const auto text = packed({key, image.target, image.log, image.bytes});
-    std::ofstream out(beside, std::ios::binary);
+    std::ofstream out(temporary, std::ios::binary);
     out.write(text.data(), static_cast<std::streamsize>(text.size()));
     out.close();
     std::error_code code;
-    if (out) std::filesystem::rename(beside, file, code);
-    if (!out || code) std::filesystem::remove(beside, code);
+    if (out) std::filesystem::rename(temporary, file, code);
+    if (!out || code) std::filesystem::remove(temporary, code);
 }
 
 } // namespace tandem::cuda

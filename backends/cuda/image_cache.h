@@ -7,7 +7,7 @@
 
 namespace tandem::cuda {
 
-/// What a compilation gave.
+/// The result of a compilation.
 struct Image {
     std::string bytes;  ///< CUBIN or PTX, ready to be loaded as a module
     std::string target; ///< "sm_90 cubin" or "compute_90 ptx"
@@ -16,17 +16,18 @@ struct Image {
     bool operator==(const Image&) const = default;
 };
 
-/// Images kept in files, one each, from one process to the next. Processes may share a folder. A file that is
-/// damaged or of another format counts as none.
+/// Stores images in files, one each, for later processes. Processes may share a folder. Files that are
+/// damaged or of another format are ignored.
 class ImageCache {
 public:
-    /// An empty path keeps nothing. Makes the folder; throws DeviceError when it cannot.
+    /// Creates the folder; an empty path stores nothing. Throws DeviceError when it cannot create it, or when
+    /// other users may have written to it.
     explicit ImageCache(std::filesystem::path folder);
 
-    /// `key`: all that the image depends on, in full: an image of another key is never given.
+    /// `key` contains everything that the image depends on. An image of another key is never returned.
     std::optional<Image> find(const std::string& key) const;
 
-    /// Where the file cannot be written nothing is kept.
+    /// Does nothing when the file cannot be written.
     void keep(const std::string& key, const Image& image) const;
 
 private:

@@ -9,8 +9,8 @@
 
 namespace tandem::cuda {
 
-/// What every device of the process shares. Throws DeviceError, one sentence on what is missing and, without
-/// a compiler, which devices there would be.
+/// The libraries that every device of the process shares. Throws DeviceError: one sentence on what is missing
+/// and, without a compiler, the devices of the driver.
 struct Libraries {
     Libraries();
 
@@ -21,7 +21,7 @@ struct Libraries {
 /// The driver and its compiler, loaded once.
 std::shared_ptr<Libraries> libraries();
 
-/// ", " and the version of the kernel driver, where Linux or NVML tells; nothing elsewhere.
+/// ", " and the version of the kernel driver, from Linux or NVML; empty when neither reports it.
 std::string kernel_driver();
 
 } // namespace tandem::cuda

@@ -10,7 +10,7 @@ namespace tandem::cuda {
 
 namespace {
 
-/// What the call with a last argument of its own answers; unknown when the library has no such call or fails.
+/// The value that `call` writes to its last argument; empty when the library lacks the call or it fails.
 template<class Value, class... Parameters, class... Arguments>
 std::optional<Value> answer(NvmlResult (*call)(Parameters...), Arguments... arguments) {
     Value value{};
@@ -63,8 +63,8 @@ GpuCondition Nvml::read(NvmlHandle gpu) const {
     return c;
 }
 
-/// One of those listed is this process, whose context makes it one; in a container its number there need not
-/// be its own, so that it is not looked for.
+/// Does not count this process, which is listed because of its context. Its id is not compared: in a
+/// container the listed id may be another.
 std::optional<unsigned> Nvml::other_processes(NvmlHandle gpu) const {
     auto* const call = nvmlDeviceGetComputeRunningProcesses_v3 != nullptr
                            ? nvmlDeviceGetComputeRunningProcesses_v3
@@ -72,7 +72,7 @@ std::optional<unsigned> Nvml::other_processes(NvmlHandle gpu) const {
     std::array<NvmlProcess, 64> list;
     auto count = static_cast<unsigned>(list.size());
     const auto code = call == nullptr ? -1 : call(gpu, &count, list.data());
-    if (code == nvml_insufficient_size) return count - 1; // more than fit, some perhaps listed twice
+    if (code == nvml_insufficient_size) return count - 1; // more than fit; some may be listed twice
     if (code != 0) return std::nullopt;
     const auto by_id = [](const NvmlProcess& a, const NvmlProcess& b) { return a.id < b.id; };
     const auto same = [](const NvmlProcess& a, const NvmlProcess& b) { return a.id == b.id; };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The entry points of NVIDIA's management library that are used, declared here so that no toolkit is needed
-// to build; a test compares them with <nvml.h> where there is one. Names and values: NVML API reference,
-// R550.
+// The entry points of NVIDIA's management library that tandem uses, declared in this file so that a build
+// needs no toolkit. A test compares them with <nvml.h> when it is installed. Names and values: NVML API
+// reference, R550.
 #pragma once
 
 #include "backends/gpu_condition.h"
@@ -34,8 +34,8 @@ struct NvmlProcess {
     unsigned compute_instance = 0;
 };
 
-// ENTRY(symbol in the library, arguments): every one returns NvmlResult. Newer drivers call throttle reasons
-// event reasons, and have the third version of the list of processes with the structure of the second.
+// ENTRY(symbol in the library, arguments); each returns NvmlResult. Newer drivers name throttle reasons event
+// reasons. The third version of the process list has the structure of the second.
 #define TANDEM_NVML_ENTRIES(ENTRY)                                                                           \
     ENTRY(nvmlInit_v2, ())                                                                                   \
     ENTRY(nvmlSystemGetDriverVersion, (char*, unsigned))                                                     \
@@ -52,17 +52,17 @@ struct NvmlProcess {
     ENTRY(nvmlDeviceGetComputeRunningProcesses_v3, (NvmlHandle, unsigned*, NvmlProcess*))                    \
     ENTRY(nvmlDeviceGetComputeRunningProcesses_v2, (NvmlHandle, unsigned*, NvmlProcess*))
 
-/// The library, or its absence: nothing here throws, and what it lacks, refuses or does not support is
-/// unknown. Never shut down: the driver ends that with the process.
+/// The NVML library, if any. No function throws; values that it lacks, refuses or does not support are empty.
+/// It is never shut down: the driver does that when the process ends.
 class Nvml {
 public:
-    /// Opens the first of `names` that there is, and starts it.
+    /// Opens the first of `names` that loads, and initialises NVML.
     explicit Nvml(std::span<const std::string> names);
 
-    /// The GPU of that UUID ("GPU-...") or PCI address; null when NVML has none.
+    /// The GPU with this UUID ("GPU-...") or PCI address; null when NVML lists none.
     NvmlHandle find(const std::string& hardware) const;
     GpuCondition read(NvmlHandle gpu) const;
-    /// "550.54.15"; unknown without NVML.
+    /// "550.54.15"; empty without NVML.
     std::optional<std::string> driver() const;
 
 // NOLINTNEXTLINE(bugprone-macro-parentheses): a declaration

@@ -12,7 +12,8 @@ namespace tandem::cuda {
 
 namespace {
 
-/// The libraries to try. A compiler of a newer major version than the driver makes code that does not load.
+/// The libraries to try. A compiler of a newer major version than the driver produces code that does not
+/// load.
 std::vector<std::string> candidates(int driver_version) {
     if (const auto* chosen = std::getenv("TANDEM_NVRTC")) return {chosen};
     static const std::vector<std::pair<int, std::string>> known{
@@ -22,7 +23,7 @@ std::vector<std::string> candidates(int driver_version) {
     for (const auto& [version, name] : known) {
         if (version > major) continue;
         names.push_back(name);
-        // A toolkit's own folder need not be among those of the loader.
+        // The loader may not search a toolkit's own folder.
         names.push_back("/usr/local/cuda/lib64/" + name);
     }
     return names;
@@ -32,7 +33,7 @@ Library open_nvrtc(int driver_version) {
     const auto names = candidates(driver_version);
     if (names.empty())
         throw DeviceError(
-            fmt::format("no NVRTC goes with a driver for CUDA {}", version_text(driver_version)));
+            fmt::format("no known NVRTC works with a driver for CUDA {}", version_text(driver_version)));
     try {
         return Library(names);
     } catch (const DeviceError& error) {
@@ -45,7 +46,7 @@ std::filesystem::path cache_folder() {
     return folder == nullptr ? "" : folder;
 }
 
-/// The code of the first call that failed: what is kept of a program must be all of it.
+/// Reads all bytes of one output of a program; returns the code of the first call that failed.
 template<class Bytes, class Size, class Get>
 NvrtcResult take(Bytes& bytes, Program program, Size size_of, Get get) {
     std::size_t size = 0;
@@ -70,7 +71,7 @@ Nvrtc::Nvrtc(int driver_version, std::optional<std::filesystem::path> cache)
     int major = 0;
     int minor = 0;
     if (const auto code = nvrtcVersion(&major, &minor); code != 0)
-        throw DeviceError(fmt::format("{} does not tell its version (code {})", library_.name(), code));
+        throw DeviceError(fmt::format("{} does not report its version (code {})", library_.name(), code));
     version_ = major * 1000 + minor * 10;
     if (driver_version != 0 && major > driver_version / 1000)
         throw DeviceError(
@@ -83,14 +84,14 @@ Nvrtc::Nvrtc(int driver_version, std::optional<std::filesystem::path> cache)
     if (code == 0) code = nvrtcGetSupportedArchs(architectures_.data());
     if (code != 0)
         throw DeviceError(
-            fmt::format("{} does not tell what it compiles for (code {})", library_.name(), code));
+            fmt::format("{} does not report its target architectures (code {})", library_.name(), code));
     std::sort(architectures_.begin(), architectures_.end());
 }
 
 Image Nvrtc::compile(const KernelSource& source, const Defines& defines, int architecture, bool ptx) const {
     const auto above = std::upper_bound(architectures_.begin(), architectures_.end(), architecture);
     if (above == architectures_.begin())
-        throw DeviceError(fmt::format("NVRTC {} has nothing for compute capability {}.{}; use an older one",
+        throw DeviceError(fmt::format("NVRTC {} does not support compute capability {}.{}; use an older one",
                                       version_text(version_), architecture / 10, architecture % 10));
     const int target = *(above - 1);
     const bool machine_code = target == architecture && !ptx;
@@ -101,22 +102,22 @@ Image Nvrtc::compile(const KernelSource& source, const Defines& defines, int arc
         "-prec-div=true",
         "-prec-sqrt=true",
         "-ftz=false",
-        "-lineinfo", // for profilers: the same code, with sections beside it that name files and lines
+        "-lineinfo",           // for profilers: adds files and lines, leaves the code unchanged
         "-diag-suppress=177"}; // a kernel file has more functions than each entry needs
     if (machine_code) options.emplace_back("--ptxas-options=-v");
     for (const auto& [name, value] : defines) options.push_back(fmt::format("-D{}={}", name, value));
     const auto key = fmt::format("NVRTC {} {}\n{}\n{}\n{}", version_, library_.name(),
                                  fmt::join(options, " "), source.name, source.text);
     if (auto known = cache_.find(key)) return *known;
-    auto image = compile_anew(
+    auto image = compile_uncached(
         source, options, machine_code,
         fmt::format("{}_{} {}", machine_code ? "sm" : "compute", target, machine_code ? "cubin" : "ptx"));
     cache_.keep(key, image);
     return image;
 }
 
-Image Nvrtc::compile_anew(const KernelSource& source, const std::vector<std::string>& options,
-                          bool machine_code, std::string target) const {
+Image Nvrtc::compile_uncached(const KernelSource& source, const std::vector<std::string>& options,
+                              bool machine_code, std::string target) const {
     std::vector<const char*> texts;
     std::transform(options.begin(), options.end(), std::back_inserter(texts),
                    [](auto& o) { return o.c_str(); });
@@ -130,14 +131,14 @@ Image Nvrtc::compile_anew(const KernelSource& source, const std::vector<std::str
     if (code == 0) {
         code = nvrtcCompileProgram(program, static_cast<int>(texts.size()), texts.data());
         const auto log = take(image.log, program, nvrtcGetProgramLogSize, nvrtcGetProgramLog);
-        if (code == 0) code = log; // it says what spills
+        if (code == 0) code = log; // the log reports spills
         if (code == 0)
             code = machine_code ? take(image.bytes, program, nvrtcGetCUBINSize, nvrtcGetCUBIN)
                                 : take(image.bytes, program, nvrtcGetPTXSize, nvrtcGetPTX);
         nvrtcDestroyProgram(&program);
     }
     if (code == 0 && !image.bytes.empty()) return image;
-    image.log = image.log.substr(0, image.log.find('\0')); // its end counts as a byte of it
+    image.log = image.log.substr(0, image.log.find('\0')); // the log's size includes its zero byte
     std::replace(image.log.begin(), image.log.end(), '\n', ' ');
     throw DeviceError(fmt::format("{} does not compile with NVRTC {} for {} and {}: {}", source.name,
                                   version_text(version_), image.target, fmt::join(options, " "),

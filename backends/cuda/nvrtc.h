@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// NVRTC, the compiler of CUDA at run time; it needs no driver and no GPU. Names: NVRTC documentation, 13.0.
+// NVRTC, CUDA's compiler at run time. It needs no driver and no GPU. Names: NVRTC documentation, 13.0.
 #pragma once
 
 #include "backends/cuda/image_cache.h"
@@ -15,7 +15,7 @@ namespace tandem::cuda {
 using NvrtcResult = int; ///< nvrtcResult; 0 is success
 using Program = _nvrtcProgram*;
 
-// ENTRY(symbol in the library, arguments): every one returns NvrtcResult.
+// ENTRY(symbol in the library, arguments); each returns NvrtcResult.
 #define TANDEM_NVRTC_ENTRIES(ENTRY)                                                                          \
     ENTRY(nvrtcVersion, (int*, int*))                                                                        \
     ENTRY(nvrtcGetNumSupportedArchs, (int*))                                                                 \
@@ -33,18 +33,18 @@ using Program = _nvrtcProgram*;
 
 class Nvrtc {
 public:
-    /// Loads $TANDEM_NVRTC or the newest NVRTC whose major version is at most that of `driver_version` (0:
-    /// any). Throws DeviceError that says what was looked for. `cache`: where images are kept;
-    /// $TANDEM_KERNEL_CACHE unless said otherwise, empty: nowhere.
+    /// Loads $TANDEM_NVRTC, or the newest NVRTC whose major version is at most that of `driver_version` (0:
+    /// any). Throws DeviceError that names the libraries it looked for. `cache`: the folder for images, by
+    /// default $TANDEM_KERNEL_CACHE; empty: none.
     explicit Nvrtc(int driver_version = 0, std::optional<std::filesystem::path> cache = std::nullopt);
 
     int version() const { return version_; } ///< 13000 is 13.0
     const std::string& library() const { return library_.name(); }
-    /// Compute capabilities it knows, as 90 for 9.0, ascending.
+    /// Compute capabilities that it supports, as 90 for 9.0, ascending.
     const std::vector<int>& architectures() const { return architectures_; }
 
-    /// Compiles for compute capability `architecture`: machine code where NVRTC knows it, else PTX of the
-    /// newest lower one. An image in the cache is taken as it is. Throws DeviceError with the log.
+    /// Compiles for compute capability `architecture`: machine code if NVRTC supports it, else PTX of the
+    /// newest lower one. An image in the cache is returned unchanged. Throws DeviceError with the log.
     Image compile(const KernelSource& source, const Defines& defines, int architecture,
                   bool ptx = false) const;
 
@@ -54,8 +54,8 @@ private:
     TANDEM_NVRTC_ENTRIES(TANDEM_DECLARE)
 #undef TANDEM_DECLARE
 
-    Image compile_anew(const KernelSource& source, const std::vector<std::string>& options, bool machine_code,
-                       std::string target) const;
+    Image compile_uncached(const KernelSource& source, const std::vector<std::string>& options,
+                           bool machine_code, std::string target) const;
 
     Library library_;
     ImageCache cache_;

@@ -36,8 +36,8 @@ std::string error_name(cl_int code) {
                                 : fmt::format("code {}, {}", code, found->second);
 }
 
-/// Of clCreateBuffer: a size beyond the device's is refused as invalid.
-bool says_out_of_memory(cl_int code) {
+/// For clCreateBuffer, which reports a size beyond the device's as invalid.
+bool is_out_of_memory(cl_int code) {
     return code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES
            || code == CL_OUT_OF_HOST_MEMORY || code == CL_INVALID_BUFFER_SIZE;
 }
@@ -58,7 +58,7 @@ std::string device_text(cl_device_id device, cl_device_info what) {
     return text;
 }
 
-/// The UUID of the hardware (cl_khr_device_uuid), so that one GPU seen twice is recognised.
+/// The UUID of the hardware (cl_khr_device_uuid), to recognise a GPU that two backends list.
 std::string hardware_id(cl_device_id device) {
     constexpr cl_device_info uuid = 0x106A; // CL_DEVICE_UUID_KHR
     if (device_text(device, CL_DEVICE_EXTENSIONS).find("cl_khr_device_uuid") == std::string::npos) return {};
@@ -81,7 +81,7 @@ DeviceInfo describe(cl_device_id device, std::size_t index) {
     info.global_bytes = device_value<cl_ulong>(device, CL_DEVICE_GLOBAL_MEM_SIZE);
     info.max_allocation = device_value<cl_ulong>(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
     info.local_bytes = device_value<cl_ulong>(device, CL_DEVICE_LOCAL_MEM_SIZE);
-    info.allocates_late = true; // the standard lets drivers, and those of GPUs do
+    info.allocates_late = true; // the standard allows it, and GPU drivers do
     info.has_double = device_value<cl_device_fp_config>(device, CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
     return info;
 }
@@ -116,8 +116,8 @@ struct OpenclKernel : Kernel::Impl {
     }
 };
 
-/// Copies of uploads in flight; more than that waits.
-constexpr std::size_t most_staged = std::size_t{64} << 20;
+/// Memory for copies of uploads in flight; uploads beyond it wait.
+constexpr std::size_t max_staged = std::size_t{64} << 20;
 
 Staging::Source host_memory() {
     return {[](std::size_t bytes) { return new (std::nothrow) std::byte[bytes]; },
@@ -161,7 +161,7 @@ private:
             fail(code, call, what);
     }
     [[noreturn]] void fail(cl_int code, std::string_view call, std::string_view what);
-    /// Enqueues by `call`, which is handed the place for the command's event or null; the ticket.
+    /// Enqueues by `call`, which receives a pointer for the command's event, or null. Returns the ticket.
     template<class Call, class What>
     std::uint64_t submit(std::string_view name, const Call& call, const What& what);
     cl_command_queue make_queue(cl_command_queue_properties properties);
@@ -180,7 +180,7 @@ private:
     bool owned_ = true;
     std::map<std::string, cl_program> programs_;
     std::vector<cl_event> events_;
-    Staging staged_{host_memory(), most_staged}; ///< copies of uploads in flight
+    Staging staged_{host_memory(), max_staged}; ///< copies of uploads in flight
 };
 
 OpenclDevice::OpenclDevice(cl_device_id device, std::size_t index)
@@ -203,7 +203,7 @@ OpenclDevice::OpenclDevice(cl_context context, cl_device_id device, cl_command_q
 }
 
 OpenclDevice::~OpenclDevice() {
-    // Commands in flight read what is staged; memory that may still be read is better lost than freed.
+    // Commands in flight read staged memory. If the wait fails, the memory is leaked, not freed.
     if (!settle()) staged_.abandon();
     for (auto* event : events_)
         if (event) clReleaseEvent(event);
@@ -214,7 +214,7 @@ OpenclDevice::~OpenclDevice() {
     if (context_) clReleaseContext(context_);
 }
 
-/// Waits until nothing is in flight; false when the driver cannot tell.
+/// Waits until nothing is in flight; false when the wait fails.
 bool OpenclDevice::settle() {
     if (active_ == nullptr) return true;
     if (clFinish(active_) != CL_SUCCESS) return false;
@@ -223,7 +223,7 @@ bool OpenclDevice::settle() {
 }
 
 void OpenclDevice::fail(cl_int code, std::string_view call, std::string_view what) {
-    // Whoever catches the error may free what commands in flight still read or write.
+    // The handler of the error may free memory that commands in flight still use.
     settle();
     const auto text = fmt::format("{} ({}): {} failed with {} while {}", info_.id, info_.name, call,
                                   error_name(code), what);
@@ -263,7 +263,7 @@ std::shared_ptr<Buffer::Impl> OpenclDevice::do_allocate(std::size_t bytes) {
     try {
         check(code, "clCreateBuffer", what);
     } catch (const DeviceError& error) {
-        if (says_out_of_memory(code)) throw OutOfMemory(error.what());
+        if (is_out_of_memory(code)) throw OutOfMemory(error.what());
         throw;
     }
     return buffer;
@@ -291,7 +291,7 @@ std::uint64_t OpenclDevice::do_upload(Buffer::Impl& to, std::span<const std::byt
         [&] { return fmt::format("uploading '{}'", to.label); });
     if (copy != nullptr) return ticket;
     host_waited();
-    staged_.release(); // the queue is in order: what came before has been read as well
+    staged_.release(); // the queue is in order: earlier uploads are complete
     return ticket;
 }
 
@@ -309,7 +309,7 @@ std::uint64_t OpenclDevice::do_download(const Buffer::Impl& from, std::span<std:
 }
 
 std::uint64_t OpenclDevice::do_clear(Buffer::Impl& buffer, std::size_t bytes, std::size_t offset) {
-    // Small clears are writes: Oclgrind 21.10 takes what clEnqueueFillBuffer fills for uninitialised.
+    // Small clears are writes: Oclgrind 21.10 treats memory that clEnqueueFillBuffer fills as uninitialised.
     static const std::array<std::byte, 65536> zeros{};
     const cl_uchar zero = 0;
     auto* memory = static_cast<OpenclBuffer&>(buffer).memory;
@@ -375,7 +375,8 @@ std::shared_ptr<Kernel::Impl> OpenclDevice::do_compile(const KernelSource& sourc
         kernel->facts.spill_bytes = use.spill_bytes;
     }
     kernel->facts.local_bytes = static_cast<std::int64_t>(local);
-    // What it was compiled for it runs in: NVIDIA's driver says 256 of kernels that run in groups of 992.
+    // A kernel runs at the size that it is compiled for: NVIDIA's driver reports 256 for kernels that run in
+    // groups of 992.
     std::array<std::size_t, 3> compiled{};
     clGetKernelWorkGroupInfo(kernel->kernel, device_, CL_KERNEL_COMPILE_WORK_GROUP_SIZE, sizeof(compiled),
                              compiled.data(), nullptr);
@@ -435,7 +436,7 @@ std::pair<std::int64_t, std::int64_t> OpenclDevice::do_interval(std::uint64_t ti
     return {static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end - begin)};
 }
 
-/// Where the loader looks and the vendor files it finds there, for the sentence that explains an empty list.
+/// The loader's folder and its vendor files, for the message that explains an empty list.
 std::string vendor_files() {
     const auto* chosen = std::getenv("OCL_ICD_VENDORS");
     const std::string folder = chosen != nullptr ? chosen : "/etc/OpenCL/vendors";

@@ -5,7 +5,7 @@
 
 namespace tandem::opencl {
 
-/// Every device of every platform, in the loader's order, or the sentence why there is none.
+/// Every device of every platform, in the loader's order, or one sentence on why there is none.
 struct Found {
     std::vector<std::unique_ptr<Device>> devices;
     std::string reason;
@@ -14,7 +14,7 @@ struct Found {
 Found discover();
 
 /// A device over a host application's cl_context, cl_device_id and in-order cl_command_queue, which must
-/// outlive it. Timestamps work only if that queue was made with profiling.
+/// outlive it. Timestamps work only if that queue was created with profiling.
 std::unique_ptr<Device> adopt(void* context, void* device, void* queue);
 
 } // namespace tandem::opencl

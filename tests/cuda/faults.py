@@ -103,7 +103,7 @@ class Faults(unittest.TestCase):
 
     def test_driver_older_than_the_compiler(self):
         self.assertIn("NVRTC 13.0 is newer than the driver, which is for CUDA 12.4", reason(STUB_VERSION=12040))
-        self.assertIn("no NVRTC goes with a driver for CUDA 10.2", reason(nvrtc=None, STUB_VERSION=10020))
+        self.assertIn("no known NVRTC works with a driver for CUDA 10.2", reason(nvrtc=None, STUB_VERSION=10020))
 
     def failed(self, **options):
         """The single line on standard error, and the record of a failing cell on the stub, after a cell that
