@@ -19,7 +19,7 @@ constexpr std::array<Edge, 6> edges{
 /// Corners of the face opposite corner i, ascending.
 constexpr std::array<std::array<unsigned, 3>, 4> faces{{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
 
-/// A set of candidate facets. Bit i is face i of A, bit 4 + i is face i of B, and bit 8 + 6 i + j is the
+/// A set of candidate facets. Bit i is face i of A, and bit 4 + i is face i of B. Bit 8 + 6 i + j is the
 /// product of edge i of A and edge j of B.
 using FacetSet = std::uint64_t;
 /// 8 faces and 36 products of edges.
