@@ -64,7 +64,7 @@ int allocate_in_a_small_process() {
     try {
         device->allocate(std::size_t{1} << 30, "what does not fit");
     } catch (const OutOfMemory& error) {
-        return std::string_view(error.what()).find("1073741824 bytes asked for") != std::string_view::npos
+        return std::string_view(error.what()).find("1073741824 bytes requested") != std::string_view::npos
                    ? 0
                    : 2;
     } catch (const std::exception&) {
