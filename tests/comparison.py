@@ -122,7 +122,7 @@ class Reading(Files):
         def refused(words, **change):
             self.refused(words, self.write(record("8", [1, 2], session="s") | change))
         refused("scripts/convert_records", schema=1)
-        refused("a record of schema 4", schema=4)
+        refused("a record of schema 5", schema=5)
         for change in ({"schema": "2"}, {"devices": 3}, {"environment": None}, {"settings": {"k": 8}}, {"scene": {}}, {"frames": []}, {"work": {"digest": 3}},
                        {"error": {"inputs": 7}}, {"sampling": 3}, {"session": 5}, {"algorithm": 5}, {"preset": None}, {"frames": {"first": "0", "last": 9}}, {"frames": {"first": True, "last": 9}},
                        {"scene": {"key": 3, "digest": ""}}, {"scene": {"key": "pile", "digest": 3}}, {"work": {"digest": {"count": "3", "a": "", "b": ""}}},

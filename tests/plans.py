@@ -121,7 +121,7 @@ class Plans(PlanCase):
     def test_bad_plans(self):
         self.refused("unknown name 'algoritms'; the nearest is 'algorithms'", algoritms=["tiled"])
         self.refused(["/include/0", "unknown name 'scene'; the nearest is 'scenes'"], include=[{"scene": SMALL}])
-        self.refused(["/settings/k", "is empty"], settings={"k": []})
+        self.refused(["/settings/k", "is an empty list"], settings={"k": []})
         self.refused(["/scenes", "is empty"], scenes=[])
         self.refused("has no scenes", scenes=None, schema_agrees=False)
         self.refused(["/exclude/0", "matches no cell"], exclude=[{"settings": {"k": 24}}], schema_agrees=False)

@@ -44,11 +44,12 @@ constexpr Setting<bool> full_exit{"full_exit",
                                   {{"yes", true}, {"no", false}},
                                   "FULL_EXIT",
                                   "end a group's launch when its local queue is full"};
-constexpr Setting<Balance> balance{"balance",
-                                   Balance::parallel,
-                                   {{"parallel", Balance::parallel}, {"serial", Balance::serial}},
-                                   "",
-                                   "parallel: one item per work-item; serial: one group, queue by queue"};
+constexpr Setting<BalanceMethod> balance{
+    "balance",
+    BalanceMethod::parallel,
+    {{"parallel", BalanceMethod::parallel}, {"serial", BalanceMethod::serial}},
+    "",
+    "parallel: one item per work-item; serial: one group, queue by queue"};
 constexpr Setting<std::int64_t> balance_group_size{"balance_group_size", 256, ValueRange{1, 1024}, "",
                                                    "work-items of the balancing group"};
 
@@ -71,7 +72,7 @@ std::vector<Assignment> published(int group_count, int local_size, int local_ite
             upload(QueueUpload::queues),
             refill(false),
             full_exit(true),
-            balance(Balance::serial),
+            balance(BalanceMethod::serial),
             balance_group_size(balancing)};
 }
 
@@ -88,7 +89,7 @@ const std::vector<Preset> presets{
     {"unc2010",
      "the original's numbers: 128 x 64 work-items, queues of 50,000",
      {groups(128), parameters::group_size(64), local_queue(600), initial_items(192), queue_capacity(50000),
-      idle_limit(86), batch(128), refill(false), full_exit(true), balance(Balance::serial),
+      idle_limit(86), batch(128), refill(false), full_exit(true), balance(BalanceMethod::serial),
       balance_group_size(512)}},
 };
 

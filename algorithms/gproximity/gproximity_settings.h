@@ -15,7 +15,7 @@ std::span<const Preset> gproximity_presets();
 /// Data that is uploaded to the queues at the start of a batch.
 enum class QueueUpload { seeds, queues };
 /// How the queues are balanced.
-enum class Balance { parallel, serial };
+enum class BalanceMethod { parallel, serial };
 
 /// Sizes of a gproximity session. The device determines those whose setting is 0.
 struct QueueSizes {
@@ -29,7 +29,7 @@ struct QueueSizes {
     bool refill = true;     ///< load more items from the own queue inside a launch
     bool full_exit = false; ///< end a group's launch when its local queue is full
     QueueUpload upload = QueueUpload::seeds;
-    Balance balance = Balance::parallel;
+    BalanceMethod balance = BalanceMethod::parallel;
 };
 
 /// `settings` must be fitted. Throws InputError when the local queue does not fit the device or a queue would

@@ -47,7 +47,7 @@ void QueueWalker::do_compile(const WalkBuild& build) {
     auto defines = trees_.defines(shape_.group_size);
     build.add_to(defines);
     add_defines(sizes_, defines);
-    const bool serial = sizes_.balance == Balance::serial;
+    const bool serial = sizes_.balance == BalanceMethod::serial;
     scatter_ = device().compile(source, "scatter_roots", defines);
     traverse_ = device().compile(source, "traverse_queues", defines);
     if (!serial) move_ = device().compile(source, "move_balance", defines);
@@ -149,7 +149,7 @@ void QueueWalker::plan_and_move() {
     device().launch(plan_, {1, sizes_.balance_group_size}, plan);
     const std::array<Argument, 7> move{items(),          target_items(), counts_, sizes_.groups,
                                        queue_capacity(), starts_,        totals_};
-    if (sizes_.balance == Balance::serial)
+    if (sizes_.balance == BalanceMethod::serial)
         device().launch(move_, {1, sizes_.balance_group_size}, move);
     else
         device().launch(move_, {shape_.groups, shape_.group_size}, move);

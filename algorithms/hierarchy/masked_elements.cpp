@@ -9,7 +9,7 @@ namespace tandem {
 
 namespace {
 
-constexpr std::uint32_t no_children = 0xffffffffu; ///< HOLDS_NOTHING of refit.cl
+constexpr std::uint32_t no_children = 0xffffffffu; ///< NO_CHILDREN of refit.cl
 
 void make_unique(std::vector<std::uint32_t>& values) {
     std::sort(values.begin(), values.end());

@@ -312,13 +312,13 @@ KERNEL void refit_tops(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const ui
     }
 }
 
-// Rows of three slots: a node and its two children. Both children are HOLDS_NOTHING for a skipped
+// Rows of three slots: a node and its two children. Both children are NO_CHILDREN for a skipped
 // tetrahedron.
 #define MASKED_WORDS 3
-#define HOLDS_NOTHING 0xffffffffu
+#define NO_CHILDREN 0xffffffffu
 
 DEVICE real masked_word(GLOBAL const real* nodes, uint a, uint b, uint word) {
-    if (a == HOLDS_NOTHING) return word < DIRECTIONS ? REAL_INFINITY : -REAL_INFINITY;
+    if (a == NO_CHILDREN) return word < DIRECTIONS ? REAL_INFINITY : -REAL_INFINITY;
     return MERGED(word, node_at(nodes, a)[word], node_at(nodes, b)[word]);
 }
 

@@ -46,7 +46,7 @@ DEVICE void write_together(const ContactBatch* batch, uint index, const BatchSto
     const uint rows = group[ROWS];
     const ulong slot = group[FIRST_ROW];
     write_staged(storage, rows, slot, sink);
-    if (unstored != 0u) write_others(batch, staged, index, slot + rows + before_unstored, sink);
+    if (unstored != 0u) write_unstored(batch, staged, index, slot + rows + before_unstored, sink);
     BARRIER;
 }
 

@@ -29,9 +29,9 @@ void add_reason(std::string& reasons, const std::string& reason) {
 }
 
 void add_processor(std::string& reasons, const ProcessorCondition& after, const Thresholds& thresholds) {
-    if (after.others && *after.others > thresholds.others * after.cores)
-        add_reason(reasons,
-                   fmt::format("busy: other processes use {:.1f} of {} cores", *after.others, after.cores));
+    if (after.other_processes && *after.other_processes > thresholds.other_processes * after.cores)
+        add_reason(reasons, fmt::format("busy: other processes use {:.1f} of {} cores",
+                                        *after.other_processes, after.cores));
     if (after.throttled && *after.throttled > thresholds.throttled)
         add_reason(reasons, *after.throttled == 1
                                 ? "quota: throttled once"
@@ -52,7 +52,7 @@ nlohmann::ordered_json processor_json(const ProcessorCondition& p) {
     return {{"cores", p.cores == 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(p.cores)},
             {"quota_cores", number_or_null(p.quota)},
             {"own_cores", number_or_null(p.own)},
-            {"other_cores", number_or_null(p.others)},
+            {"other_cores", number_or_null(p.other_processes)},
             {"governor", value_or_null(p.governor)},
             {"mhz", number_or_null(p.mhz)},
             {"throttled_periods", value_or_null(p.throttled)},

@@ -41,7 +41,7 @@ private:
 struct Thresholds {
     /// Fraction of the cores that other processes use. Services of an idle machine use under 1 %, and
     /// counting in ticks has an error of up to 4 % in ProcessorReader's shortest period.
-    double others = 0.10;
+    double other_processes = 0.10;
     std::uint64_t throttled = 0; ///< periods with an exhausted quota
     unsigned processes = 0;      ///< other processes that compute on a GPU
 };

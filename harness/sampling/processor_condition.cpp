@@ -149,14 +149,14 @@ std::optional<ProcessorReader::Load> ProcessorReader::load(const OwnUse& use) co
 void ProcessorReader::update_load(const OwnUse& use) {
     auto now = load(use);
     if (!now || !base_ || now->cores != base_->cores || now->elapsed < base_->elapsed) {
-        own_ = others_ = std::nullopt;
+        own_ = other_processes_ = std::nullopt;
         base_ = std::move(now);
         return;
     }
     const auto period = now->elapsed - base_->elapsed;
     if (period < shortest_period) return;
     own_ = (now->own - base_->own) / period;
-    others_ = std::max(0.0, (now->busy - base_->busy) / period - *own_);
+    other_processes_ = std::max(0.0, (now->busy - base_->busy) / period - *own_);
     base_ = std::move(now);
 }
 
@@ -176,7 +176,7 @@ ProcessorCondition ProcessorReader::read() {
     return {.cores = static_cast<unsigned>(use.cores.size()),
             .quota = group.cores,
             .own = own_,
-            .others = others_,
+            .other_processes = other_processes_,
             .governor = governor_of(root_, sampled),
             .mhz = mhz_of(root_, sampled),
             .throttled = update_throttled(group.throttled),

@@ -14,7 +14,7 @@ struct ProcessorCondition {
     unsigned cores = 0;                     ///< cores that this process may run on
     std::optional<double> quota;            ///< cores of its control group's quota; empty without a limit
     std::optional<double> own;              ///< mean number of these cores busy with this process
-    std::optional<double> others;           ///< mean number busy with other processes or virtual machines
+    std::optional<double> other_processes;  ///< mean number busy with other processes or virtual machines
     std::optional<std::string> governor;    ///< frequency governor of these cores; "mixed" when they differ
     std::optional<double> mhz;              ///< mean clock of these cores
     std::optional<std::uint64_t> throttled; ///< periods since the previous reading with an exhausted quota
@@ -62,7 +62,7 @@ private:
     std::string root_;
     std::function<OwnUse()> own_use_;
     std::optional<Load> base_; ///< at the beginning of the current period
-    std::optional<double> own_, others_;
+    std::optional<double> own_, other_processes_;
     std::optional<std::uint64_t> throttled_;
 };
 

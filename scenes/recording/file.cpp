@@ -28,7 +28,7 @@ int flags_of(File::Mode mode) {
     case File::Mode::replace:
         break;
     }
-    return O_RDWR | O_CREAT | O_CLOEXEC; // emptied after the lock is taken
+    return O_RDWR | O_CREAT | O_CLOEXEC; // truncated after the lock is taken
 }
 
 /// Users who can create files in the folder must not redirect the output by a link.

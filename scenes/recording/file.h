@@ -12,7 +12,7 @@ namespace tandem::recording {
 class File {
 public:
     /// read: an existing file. create: a new file, which must not exist. update: an existing file, to read
-    /// and write. replace: an existing or new file, which is emptied. All but read lock the file until the
+    /// and write. replace: an existing or new file, which is truncated. All but read lock the file until the
     /// process ends.
     enum class Mode { read, create, update, replace };
 

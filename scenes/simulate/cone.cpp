@@ -86,7 +86,7 @@ double outside(Rays one, Rays other, const Eigen::Vector3d& direction) {
     return farthest;
 }
 
-Eigen::Vector3d brought_into(Rays one, Rays other, const Eigen::Vector3d& direction) {
+Eigen::Vector3d moved_into_cones(Rays one, Rays other, const Eigen::Vector3d& direction) {
     auto nearest = project_alternately(one, other, direction);
     const double distance = outside(one, other, nearest);
     const auto middle = sum_of(one, other);

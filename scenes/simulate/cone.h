@@ -16,7 +16,7 @@ double outside(std::span<const Eigen::Vector3d> one, std::span<const Eigen::Vect
 
 /// A direction of length 1 in both cones near `direction`, or one near both when the cones are disjoint. Uses
 /// alternating projections (von Neumann 1950).
-Eigen::Vector3d brought_into(std::span<const Eigen::Vector3d> one, std::span<const Eigen::Vector3d> other,
-                             const Eigen::Vector3d& direction);
+Eigen::Vector3d moved_into_cones(std::span<const Eigen::Vector3d> one, std::span<const Eigen::Vector3d> other,
+                                 const Eigen::Vector3d& direction);
 
 } // namespace tandem::simulate

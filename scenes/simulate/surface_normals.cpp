@@ -86,7 +86,7 @@ struct NormalCorrector {
         b.find(model, frame, pair.body_b, pair.tet_b, point, slack, -1);
         const double deviation = outside(a.rays, b.rays, original);
         if (deviation <= normal_rounding) return;
-        auto normal = brought_into(a.rays, b.rays, original);
+        auto normal = moved_into_cones(a.rays, b.rays, original);
         const double remaining = outside(a.rays, b.rays, normal);
         // Penetrating bodies that are tilted or curved have no common direction. With a small deviation, the
         // face defines the normal for the corner or edge inside it, as for bodies that just touch. Otherwise

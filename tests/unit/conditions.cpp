@@ -76,7 +76,7 @@ TEST_F(Conditions, OwnWorkDoesNotCountAsOthers) {
     const auto c = processor.read();
     EXPECT_EQ(c.cores, 2u);
     EXPECT_THAT(c.own, Optional(DoubleNear(0.8, 1e-9)));
-    EXPECT_THAT(c.others, Optional(DoubleNear(0, 1e-9)));
+    EXPECT_THAT(c.other_processes, Optional(DoubleNear(0, 1e-9)));
     EXPECT_EQ(disturbance({c, {}}, {c, {}}), std::nullopt);
 }
 
@@ -87,32 +87,33 @@ TEST_F(Conditions, OthersAreCountedOnTheCoresOfThisProcess) {
     own = 4;
     write_stat(1010, 106);
     const Condition after{processor.read(), {}};
-    EXPECT_EQ(before.processor.others, std::nullopt) << "no time has passed";
-    EXPECT_THAT(after.processor.others, Optional(DoubleNear(0.8, 1e-9)));
+    EXPECT_EQ(before.processor.other_processes, std::nullopt) << "no time has passed";
+    EXPECT_THAT(after.processor.other_processes, Optional(DoubleNear(0.8, 1e-9)));
     EXPECT_EQ(disturbance(before, after), "busy: other processes use 0.8 of 2 cores");
-    EXPECT_EQ(disturbance(before, after, {.others = 0.5}), std::nullopt);
+    EXPECT_EQ(disturbance(before, after, {.other_processes = 0.5}), std::nullopt);
 }
 
 TEST_F(Conditions, EachReadingStartsANewPeriod) {
     write_stat(1000, 100);
     auto processor = reader();
     write_stat(1010, 110);
-    EXPECT_THAT(processor.read().others, Optional(DoubleNear(2, 1e-9)));
+    EXPECT_THAT(processor.read().other_processes, Optional(DoubleNear(2, 1e-9)));
     write_stat(1020, 110);
-    EXPECT_THAT(processor.read().others, Optional(DoubleNear(0, 1e-9)));
+    EXPECT_THAT(processor.read().other_processes, Optional(DoubleNear(0, 1e-9)));
 }
 
 TEST_F(Conditions, ShortPeriodsAreMerged) {
     write_stat(1000, 100);
     auto processor = reader();
     write_stat(1001, 101);
-    EXPECT_THAT(processor.read().others, Optional(DoubleNear(2, 1e-9)));
+    EXPECT_THAT(processor.read().other_processes, Optional(DoubleNear(2, 1e-9)));
     write_stat(1001.12, 101);
-    EXPECT_THAT(processor.read().others, Optional(DoubleNear(2, 1e-9))) << "the period has not ended";
+    EXPECT_THAT(processor.read().other_processes, Optional(DoubleNear(2, 1e-9)))
+        << "the period has not ended";
     write_stat(1001.24, 101.12);
-    EXPECT_THAT(processor.read().others, Optional(DoubleNear(2, 1e-9)));
+    EXPECT_THAT(processor.read().other_processes, Optional(DoubleNear(2, 1e-9)));
     write_stat(1001.36, 101.24);
-    EXPECT_THAT(processor.read().others, Optional(DoubleNear(2 * 0.24 / 0.36, 1e-6)))
+    EXPECT_THAT(processor.read().other_processes, Optional(DoubleNear(2 * 0.24 / 0.36, 1e-6)))
         << "over the whole period";
 }
 
@@ -121,11 +122,11 @@ TEST_F(Conditions, ADifferentSetOfCoresRestartsThePeriod) {
     auto processor = reader();
     cores = {0};
     write_stat(1010, 101);
-    EXPECT_EQ(processor.read().others, std::nullopt);
+    EXPECT_EQ(processor.read().other_processes, std::nullopt);
     write_stat(1020, 102);
-    EXPECT_THAT(processor.read().others, Optional(DoubleNear(0.1, 1e-9)));
+    EXPECT_THAT(processor.read().other_processes, Optional(DoubleNear(0.1, 1e-9)));
     write_stat(900, 0); // another machine, as after the migration of a container
-    EXPECT_EQ(processor.read().others, std::nullopt);
+    EXPECT_EQ(processor.read().other_processes, std::nullopt);
 }
 
 TEST_F(Conditions, ClocksOfItsCores) {
@@ -244,11 +245,11 @@ TEST(Disturbance, OfAGpu) {
     EXPECT_EQ(disturbance(quiet, capped), "throttled: power cap");
     EXPECT_EQ(disturbance(capped, quiet), "throttled: power cap");
     Condition shared{processor_of_cores(4), {shared_gpu(0x4, 2)}};
-    shared.processor.others = 0.5;
+    shared.processor.other_processes = 0.5;
     shared.processor.throttled = 1;
     EXPECT_EQ(disturbance(quiet, shared), "busy: other processes use 0.5 of 4 cores; quota: throttled once; "
                                           "throttled: power cap; other processes on the GPU: 2");
-    EXPECT_EQ(disturbance(quiet, shared, {.others = 1, .throttled = 1, .processes = 2}),
+    EXPECT_EQ(disturbance(quiet, shared, {.other_processes = 1, .throttled = 1, .processes = 2}),
               "throttled: power cap");
 }
 
@@ -265,7 +266,7 @@ TEST(Disturbance, InJson) {
     const ProcessorCondition processor{.cores = 2,
                                        .quota = 1.5,
                                        .own = 0.98765,
-                                       .others = 0.0,
+                                       .other_processes = 0.0,
                                        .governor = "performance",
                                        .mhz = 2596.126,
                                        .throttled = 3,

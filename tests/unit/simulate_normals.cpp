@@ -51,7 +51,7 @@ TEST(SimulateCone, CrossingEdgesHaveOneCommonDirection) {
     const std::vector<Eigen::Vector3d> one{{r, r, 0}, {-r, r, 0}}, other{{0, r, r}, {0, r, -r}};
     Random random(2);
     for (int i = 0; i < 50; ++i) {
-        const auto x = brought_into(one, other, any_direction(random));
+        const auto x = moved_into_cones(one, other, any_direction(random));
         EXPECT_LT(length(x - Eigen::Vector3d::UnitY()), 1e-6);
     }
     EXPECT_LT(outside(one, other, Eigen::Vector3d::UnitY()), 1e-15);
