@@ -44,7 +44,7 @@ def tandem(*arguments, environment=None, timeout=300, address_space=None):
     return done.returncode, done.stdout, lines
 
 
-def tried(what, count, unit, where="host", lost=0, crashes=0, hangs=0, others=0):
+def tried(what, count, unit, where="host", lost=0, crashes=0, hangs=0, rest=0):
     """Appends a line to the file that TANDEM_TRIED names, if it is set, for scripts/tried (tests/support/tried.h has
     the same function). `count` units were tried; `lost` counts answers or records, `crashes` and `hangs` the
     program, and `others` ended in other people's libraries."""
@@ -53,7 +53,7 @@ def tried(what, count, unit, where="host", lost=0, crashes=0, hangs=0, others=0)
     commit = re.search(r"commit (\w+)", subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True, check=True).stdout)[1]
     with open(os.environ["TANDEM_TRIED"], "a", encoding="utf-8") as out:
         out.write(json.dumps({"what": what, "count": count, "unit": unit, "where": where, "lost": lost, "crashes": crashes, "hangs": hangs,
-                              "others": others, "commit": commit}) + "\n")
+                              "others": rest, "commit": commit}) + "\n")
 
 
 def bar(cells, offset):

@@ -17,7 +17,7 @@ _tandem() {
     line=${behind#"$word"}
   done
   mapfile -t COMPREPLY < <("${COMP_WORDS[0]}" completion --words "${words[@]}" 2>/dev/null)
-  # Of a word that bash has taken apart it replaces the last part only.
+  # bash splits a word at its breaks and replaces the last part only.
   local breaks=${COMP_WORDBREAKS//[^=:]/} current=${words[-1]}
   if [[ -n $breaks && $current == *[$breaks]* ]]; then
     local before=${current%"${current##*["$breaks"]}"}

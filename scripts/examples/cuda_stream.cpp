@@ -2,7 +2,7 @@
 // A program that owns a CUDA context and stream, by the driver's API, and has tandem find candidate pairs in
 // them: on its stream, after its own commands, beside its own memory, and with the thread's current context
 // left as it was. Prints how many pairs there are. Built without a toolkit: it finds the driver's few entry
-// points itself. On the stub of the driver, which runs no kernels, it looks at where the calls arrived
+// points itself. On the stub of the driver, which runs no kernels, it checks where the calls arrived
 // instead of the count.
 #include "find_pairs.h"
 
@@ -85,9 +85,9 @@ bool run(Handle context, Handle stream, Handle current) {
 bool arrived(Handle context, Handle stream) {
     auto* const all = entry<unsigned long()>("stub_all_calls");
     if (all == nullptr) return true;
-    const auto here = entry<unsigned long(Handle, Handle)>("stub_calls")(stream, context);
-    std::printf("%lu calls on a stream, %lu of them on the application's\n", all(), here);
-    return here > 50 && here == all();
+    const auto on_stream = entry<unsigned long(Handle, Handle)>("stub_calls")(stream, context);
+    std::printf("%lu calls on a stream, %lu of them on the application's\n", all(), on_stream);
+    return on_stream > 50 && on_stream == all();
 }
 
 /// A context that is not current: the driver makes a new one current, on top of those before.

@@ -31,7 +31,7 @@ void run(tandem::Ranks& ranks) {
         tandem::resolve(tiled.parameters(), tiled.presets().front().values, {{"k", "18"}}, tiled.name());
     const auto session = tiled.prepare(*device, scene, settings, ranks);
     for (std::size_t i = 0; i < scene.frame_count; ++i) {
-        // owned() is asked anew: a run may have dealt bodies to others (FrameResult::deals).
+        // owned() is called for every frame: a run may repartition the bodies (FrameResult::repartitions).
         const auto result = session->run(own_part(scene, *session, i));
         if (!ranks.is_first()) continue;
         std::uint64_t all = 0;

@@ -63,7 +63,7 @@ class Sweep(Case):
         # Without a failed test, all of them were checked; otherwise no line is added.
         if cls.swept == cls.wanted:
             for family in FAMILIES:
-                tried(f"calls that fail: {CALLS[family]}", cls.counts[family], "runs", others=sum(cls.lost_by[family].values()))
+                tried(f"calls that fail: {CALLS[family]}", cls.counts[family], "runs", rest=sum(cls.lost_by[family].values()))
         super().tearDownClass()
 
     def commands(self, folder):

@@ -8,9 +8,9 @@ import statistics
 import scipy.stats
 
 from .figures import device_seconds, fit
-from .folder import SCENES, Way
+from .folder import SCENES, MeasuredCells
 from .pictures import chunks_of
-from .tables import data_path, pick, ratio, scene_factors, shares
+from .tables import data_path, pick, ratio, scene_factors, percentages
 
 AGREES, DIFFERS, UNTESTED = "agrees", "differs", "cannot be tested here"
 
@@ -48,13 +48,13 @@ def narrow_claims(folder):
     places = " ".join(row["records"] for row in published)
     whole = [row for row in published if row["against"].endswith("estimated")]
     published = [row for row in published if row not in whole]
-    said = lambda rows: ", ".join(f"{scene} {span(row['narrow'] for row in rows if row['scene'] == scene)}" for scene in dict.fromkeys(row["scene"] for row in rows))
+    spans = lambda rows: ", ".join(f"{scene} {span(row['narrow'] for row in rows if row['scene'] == scene)}" for scene in dict.fromkeys(row["scene"] for row in rows))
     claims = []
     if whole:
         claims.append(Claim("Table 4", says + ", with the queue array that its release uploads for every batch", judged(min(row["narrow"] for row in whole) >= 6),
-                            said(whole) + "; estimated: batches times the upload of one array, a quarter of this device's memory, which was measured on plates",
+                            spans(whole) + "; estimated: batches times the upload of one array, a quarter of this device's memory, which was measured on plates",
                             " ".join(row["records"] for row in whole)))
-    claims.append(Claim("Table 4", says + ", as published but with a small queue array", judged(min(row["narrow"] for row in published) >= 6), said(published), places))
+    claims.append(Claim("Table 4", says + ", as published but with a small queue array", judged(min(row["narrow"] for row in published) >= 6), spans(published), places))
     if resident:
         claims.append(Claim("Table 4", "the same with everything resident, which neither the paper nor its release does",
                             judged(min(row["frame"] for row in resident) >= 6), "whole frames: " + "; ".join(f"{row['scene']} {row['frame']:.3g}" for row in resident),
@@ -94,7 +94,7 @@ def kernel_claim(folder):
 
 
 def digest_of(record):
-    """Of all its pairs, as text; None where they were not compared."""
+    """The digest of all pairs as text; None without a comparison."""
     digest = (record.get("agreement") or {}).get("digest")
     return json.dumps(digest) if digest else None
 
@@ -123,7 +123,7 @@ def share_claims(folder):
     claims = []
     for scenes, says, good in ((("funnel", "glasses"), "collision detection takes 70 to 80 % of complex scenes", lambda own: own >= 60),
                                (("colosseum",), "and less than the solver for the colosseum", lambda own: own < 50)):
-        own = {scene: sum(shares(runs[scene]).values()) - shares(runs[scene])["solver_percent"] for scene in scenes if scene in runs}
+        own = {scene: sum(percentages(runs[scene]).values()) - percentages(runs[scene])["solver_percent"] for scene in scenes if scene in runs}
         if not own:
             claims.append(Claim("Table 3", says, UNTESTED, "no such simulation has ended well"))
             continue
@@ -136,7 +136,7 @@ def share_claims(folder):
 def simulation_claims(folder):
     runs = [*folder.simulations("sim-")]
     if not runs:
-        return [Claim("Section 4", "what is said of whole simulations", UNTESTED, "no simulation has ended well")]
+        return [Claim("Section 4", "the claims on whole simulations", UNTESTED, "no simulation has ended well")]
     places = " ".join(run.place for run in runs)
     moved = {run.scene: 100 * (run.stage("read", "device_ns") + run.stage("write", "device_ns")) / run.host("step") for run in runs}
     claims = [Claim("Table 6", "transfers are never more than 5 to 7 % of the time", judged(max(moved.values()) <= 7),
@@ -233,7 +233,7 @@ def backlog_claim(folder):
     alike = [record for record in whole.records if record["frames"] in frames]
     if not alike:
         return Claim(where, says, UNTESTED, "the cells with and without a limit of memory are of other frames")
-    launches = [way.theirs for way in (Way(alike, whole.places), short[0])]
+    launches = [way.theirs for way in (MeasuredCells(alike, whole.places), short[0])]
     limit = re.search(r"--memory (\S+)", short[0].records[0]["command"])[1]
     return Claim(where, says, judged(launches[1] > launches[0]),
                  f"with {limit} of memory {ratio(launches[1], launches[0]):.3g} times the launches, in {sum(r['work']['batches'] for r in short[0].records)} batches for "

@@ -15,23 +15,23 @@ def published_gproximity(folder):
 
 
 def figure7(folder):
-    """gProximity's six largest costs as shares, and its launches."""
+    """gProximity's six largest costs in percent, and its launches."""
     ways = published_gproximity(folder)
     if not ways:
         return missing(folder.path, 7, "gProximity's bottlenecks", "no cell of gProximity published has ended well")
     plot = Plot(7, 2, 2.6)
     sums = {stage: sum(way.stage(stage) / way.total() for way in ways) for stage in STAGES}
     costs = sorted(sums, key=sums.get, reverse=True)[:MAX_COSTS]
-    shares, launches = plot.axes
+    percent_axis, launches = plot.axes
     left = numpy.zeros(len(ways))
     for stage in costs:
         part = numpy.array([100 * way.stage(stage) / sum(way.stage(name) for name in STAGES) for way in ways])
-        shares.barh(range(len(ways)), part, left=left, color=COLOUR_OF[stage], label=stage, height=0.65)
+        percent_axis.barh(range(len(ways)), part, left=left, color=COLOUR_OF[stage], label=stage, height=0.65)
         left += part
-    shares.set_yticks(range(len(ways)), [way.scene for way in ways])
-    shares.set_xlabel("percent of a frame's stages")
-    shares.invert_yaxis()
-    shares.legend(ncols=6, loc="lower left", bbox_to_anchor=(0, 1), fontsize=8, handlelength=1)
+    percent_axis.set_yticks(range(len(ways)), [way.scene for way in ways])
+    percent_axis.set_xlabel("percent of a frame's stages")
+    percent_axis.invert_yaxis()
+    percent_axis.legend(ncols=6, loc="lower left", bbox_to_anchor=(0, 1), fontsize=8, handlelength=1)
     for row, way in enumerate(ways):
         counts = {stage: way.stage(stage, "launches") / way.frames for stage in ("refit", "traverse", "balance", "contact")}
         start = 0
@@ -97,7 +97,7 @@ def fit(x, y):
 
 
 def device_seconds(simulation):
-    """Of a step: traverse and contact."""
+    """The device time of traverse and contact by step."""
     return [t + c for t, c in zip(simulation.curve("stage:traverse"), simulation.curve("stage:contact"))]
 
 
@@ -128,8 +128,8 @@ def figure9(folder):
     milliseconds(scaling)
     scaling.set_ylabel("traverse and contact, ms")
     scaling.legend(fontsize=8)
-    said = ", ".join(f"{scene} {values[0]:.2f}" for scene, values in exponents.items())
-    return plot.save(folder.path, f"Time of traversal and contacts over a step's contacts: exponents {said}" if said else "Contacts of a step, and the time of traversal and contacts: they change too little for a fit")
+    notes = ", ".join(f"{scene} {values[0]:.2f}" for scene, values in exponents.items())
+    return plot.save(folder.path, f"Time of traversal and contacts over a step's contacts: exponents {notes}" if notes else "Contacts of a step, and the time of traversal and contacts: they change too little for a fit")
 
 
 def costs_of(simulation):
@@ -213,8 +213,8 @@ def figure12(folder):
     bars.set_yscale("log")
     bars.legend(fontsize=8, ncols=2, loc="lower left", bbox_to_anchor=(0, 1))
     most = max(ways, key=lambda way: way.theirs / way.frames) if ways else None
-    said = f"; {most.name} takes up to {most.theirs / most.frames:.0f}, on {most.scene}" if most else ""
-    return plot.save(folder.path, f"Launches: chunked takes a few a step, however many contacts there are{said}")
+    notes = f"; {most.name} takes up to {most.theirs / most.frames:.0f}, on {most.scene}" if most else ""
+    return plot.save(folder.path, f"Launches: chunked takes a few a step, however many contacts there are{notes}")
 
 
 def figure13(folder):
@@ -222,7 +222,7 @@ def figure13(folder):
     if not ways:
         return missing(folder.path, 13, "Seed thresholds", "no cell of the sweep has ended well")
     plot = Plot(13, 2, 2.5)
-    said = []
+    notes = []
     for ax, preset in zip(plot.axes, ("published", "grouped")):
         own = sorted((int(way.settings["seed_threshold"]), way) for way in ways if way.preset == preset)
         x = [value for value, _ in own]
@@ -240,13 +240,13 @@ def figure13(folder):
         if own:
             best = int((totals / frames).argmin())
             ax.plot(x[best], totals[best] / frames[best], "o", color=WINNER, markersize=8, fillstyle="none")
-            said.append(f"{preset} is fastest at {x[best]:.0e}".replace("e+0", "e"))
+            notes.append(f"{preset} is fastest at {x[best]:.0e}".replace("e+0", "e"))
         plot.rows += [{"preset": preset, "seed_threshold": value, "traverse_ms": 1e3 * way.stage("traverse") / way.frames,
                        "whole_ms": 1e3 * way.total() / way.frames, "low_ms": 1e3 * way.total("low") / way.frames,
                        "high_ms": 1e3 * way.total("high") / way.frames, "seeds": sum(r["work"]["counters"].get("seeds", 0) for r in way.records
                                                                                       if (r["work"] or {}).get("counters")) / way.frames,
                        "records": way.places[0]} for value, way in own]
-    return plot.save(folder.path, f"Seed thresholds on {ways[0].scene}: {'; '.join(said)}")
+    return plot.save(folder.path, f"Seed thresholds on {ways[0].scene}: {'; '.join(notes)}")
 
 
 def figure14(folder):
@@ -257,7 +257,7 @@ def figure14(folder):
     values = sorted({way.settings["k"] for way in ways}, key=int)
     plot = Plot(14, len(values), 2.8)
     orders = list(dict.fromkeys(way.settings["builder"] for way in ways))
-    said = []
+    notes = []
     for ax, k in zip(plot.axes, values):
         for colour, order in zip(COLOURS, orders):
             own = sorted((way for way in ways if way.settings["k"] == k and way.settings["builder"] == order), key=lambda way: int(way.settings["chunk_bytes"]))
@@ -273,8 +273,8 @@ def figure14(folder):
         ax.legend(ncols=4, fontsize=8)
         best = min((way for way in ways if way.settings["k"] == k), key=lambda way: way.total() / way.frames)
         ax.plot(int(best.settings["chunk_bytes"]), 1e3 * best.total() / best.frames, "o", color=WINNER, markersize=9, fillstyle="none")
-        said.append(f"{best.settings['builder']}, {int(best.settings['chunk_bytes']):,} bytes at k = {k}")
-    return plot.save(folder.path, f"Beyond the paper, chunk bytes and orders on {ways[0].scene}: fastest {'; '.join(said)}")
+        notes.append(f"{best.settings['builder']}, {int(best.settings['chunk_bytes']):,} bytes at k = {k}")
+    return plot.save(folder.path, f"Beyond the paper, chunk bytes and orders on {ways[0].scene}: fastest {'; '.join(notes)}")
 
 
 def all_curves(folder):

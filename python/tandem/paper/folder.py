@@ -24,11 +24,11 @@ def paper_table(number):
 
 
 def number(text):
-    """Of a table of the paper; None for a dash."""
+    """A number of a table of the paper; None for a dash."""
     return float(text) if text else None
 
 
-class Way:
+class MeasuredCells:
     """The cells of one scene, algorithm, preset and settings, over one or several ranges of frames: sums over their frames.
     Times are seconds: medians of the replays, on the device, or on the host where a stage has none there."""
 
@@ -80,7 +80,7 @@ class Way:
 
     @property
     def batches(self):
-        """Of gProximity: body pairs are dealt to its queues so many at a time (setting batch)."""
+        """The batches of gProximity: its queues get at most this many body pairs at a time (setting batch)."""
         most = int(self.settings.get("batch") or 0)
         return sum(-(-pairs // most) for r in self.records for pairs in (r["work"] or {}).get("body_pairs") or []) if most else None
 
@@ -151,7 +151,7 @@ class Folder:
         return [name for name, step in self.steps.items() if name.startswith(beginning) and step["exit"] == 0]
 
     def ways(self, step):
-        """Of the last record of each cell of a step, also of one that did not end. Frames of one scene, algorithm, preset and settings
+        """The last record of each cell of a step, also of an unfinished step. Frames of one scene, algorithm, preset and settings
         are one way."""
         path = self.path / "records" / f"{step}.jsonl"
         if not path.exists() or path.stat().st_size == 0:
@@ -164,7 +164,7 @@ class Folder:
             settings = {**record["settings"], **record.get("asked", {})}
             key = (record["scene"]["key"], record["algorithm"], record["preset"], record["devices"][0]["id"], tuple(sorted(settings.items())))
             groups.setdefault(key, []).append((record, place))
-        ways = [Way([r for r, _ in group], [p for _, p in group]) for group in groups.values()
+        ways = [MeasuredCells([r for r, _ in group], [p for _, p in group]) for group in groups.values()
                 if all(r["status"] == "failed" or r["total_ns"] for r, _ in group)]
         return [way for way in ways if way.status == "ok"]
 

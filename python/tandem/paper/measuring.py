@@ -74,7 +74,7 @@ def numbered(text, count):
     return first, last
 
 
-def told(seconds):
+def duration_text(seconds):
     """"40 s", "7 min"."""
     return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
 
@@ -143,7 +143,7 @@ class Journal:
 
 
 class MeasuredFolder:
-    """steps.jsonl says which steps have ended and how; records/, plans/ and logs/ have a file a step. Of one size and one device."""
+    """steps.jsonl says which steps have ended and how; records/, plans/ and logs/ have a file a step. A folder has one size and one device."""
 
     def __init__(self, path, size, device, program):
         self.path, self.size, self.device, self.program = pathlib.Path(path), size, device, program
@@ -225,9 +225,9 @@ def environment_of(program):
 
 def list_steps(folder, steps):
     for number, step in enumerate(steps, 1):
-        print(f"{number:>3}  {step.name:<18} {'done' if folder.is_done(step) else told(step.seconds):>6}  {step.says}")
+        print(f"{number:>3}  {step.name:<18} {'done' if folder.is_done(step) else duration_text(step.seconds):>6}  {step.says}")
     left = sum(step.seconds for step in steps if not folder.is_done(step))
-    print(f"about {told(left)} left, as long as it took where the committed results were measured")
+    print(f"about {duration_text(left)} left, as long as it took where the committed results were measured")
 
 
 def run_steps(folder, steps, first, last):
@@ -245,7 +245,7 @@ def run_steps(folder, steps, first, last):
         if folder.is_done(step):
             continue
         pace = real / expected if expected > 0 else 1.0  # of this machine, against that of the committed results
-        tell(f"{number}/{len(steps)} {step.name}: {step.says} (about {told(step.seconds * pace)}; all about {told(left * pace)})")
+        tell(f"{number}/{len(steps)} {step.name}: {step.says} (about {duration_text(step.seconds * pace)}; all about {duration_text(left * pace)})")
         begin = time.monotonic()
         code = folder.run(step, environment)
         real, expected, left = real + time.monotonic() - begin, expected + step.seconds, left - step.seconds

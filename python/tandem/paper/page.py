@@ -41,9 +41,9 @@ def claim_row(claim):
 
 def gaps(folder):
     """What is not there, and why."""
-    said = [f"Step {name} ended with {folder.steps[name]['exit']}: {folder.steps[name]['says']}." for name in folder.failed]
-    said += [f"{place}: {what}." for place, what in folder.wrong()]
-    return "".join(f"<li>{escape(text)}</li>" for text in said)
+    messages = [f"Step {name} ended with {folder.steps[name]['exit']}: {folder.steps[name]['says']}." for name in folder.failed]
+    messages += [f"{place}: {what}." for place, what in folder.wrong()]
+    return "".join(f"<li>{escape(text)}</li>" for text in messages)
 
 
 def steps_html(folder):

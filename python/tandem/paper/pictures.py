@@ -24,16 +24,16 @@ def render_script():
     return None
 
 
-def rendered(folder, scene, share):
+def rendered(folder, scene, fraction):
     """Pixels of the scene at a share of its animation, kept as pictures/SCENE-PERCENT.png; nothing where it cannot be drawn.
 
     Where its export is not there (recordings and exports are large: results are kept without them), an earlier drawing's."""
     import matplotlib.image
     glb, script = folder.path / f"{scene}.glb", render_script()
-    kept = folder.path / "pictures" / f"{scene}-{share:.0%}.png".replace("%", "")
+    kept = folder.path / "pictures" / f"{scene}-{fraction:.0%}.png".replace("%", "")
     if glb.exists() and script is not None:
         with tempfile.TemporaryDirectory() as work:
-            done = subprocess.run([sys.executable, str(script), str(glb), f"{work}/picture", "--at", str(share), "--size", "640x480"],
+            done = subprocess.run([sys.executable, str(script), str(glb), f"{work}/picture", "--at", str(fraction), "--size", "640x480"],
                                   capture_output=True, text=True)
             if done.returncode == 0:
                 kept.parent.mkdir(exist_ok=True)
@@ -43,15 +43,15 @@ def rendered(folder, scene, share):
 
 def scenes(folder, number, wanted, says):
     """One picture a (scene, share)."""
-    pictures = [(scene, share, image) for scene, share in wanted for image in rendered(folder, scene, share)]
+    pictures = [(scene, fraction, image) for scene, fraction in wanted for image in rendered(folder, scene, fraction)]
     if not pictures:
         return missing(folder.path, number, says, "no scene has been exported, or there is no python3-pil to draw it with")
     plot = Plot(number, len(pictures), 2.5, min(len(pictures), 2))
-    for ax, (scene, share, image) in zip(plot.axes, pictures):
+    for ax, (scene, fraction, image) in zip(plot.axes, pictures):
         ax.imshow(image)
         ax.axis("off")
-        ax.set_title(f"{TITLES[scene]}, at {share:.0%} of its steps", fontsize=9, loc="left", color=INK)
-        plot.rows.append({"scene": scene, "share": share, "file": f"pictures/{scene}-{share:.0%}.png".replace("%", "")})
+        ax.set_title(f"{TITLES[scene]}, at {fraction:.0%} of its steps", fontsize=9, loc="left", color=INK)
+        plot.rows.append({"scene": scene, "share": fraction, "file": f"pictures/{scene}-{fraction:.0%}.png".replace("%", "")})
     return plot.save(folder.path, says)
 
 

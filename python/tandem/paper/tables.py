@@ -72,12 +72,12 @@ def table2(folder):
              "bandwidth_gb_s": number(row["bandwidth_gb_s"]), "single_gflops": number(row["single_gflops"])} for row in paper_table(2)]
     ceilings = folder.ceilings()
     if ceilings:
-        device, told = ceilings["device"], ceilings.get("told", {})
-        rows.append({"source": "ours", "device": device["name"], "compute_units": device["compute_units"], "cores": told.get("cores"),
-                     "clock_mhz": told.get("clock_mhz"),
-                     "memory_gb": device["memory_bytes"] / 1e9, "local_memory_kib": ratio(told.get("local_bytes"), 1024),
-                     "bandwidth_gb_s": ratio(told.get("peak_bytes_per_s"), 1e9),
-                     "single_gflops": ratio(told.get("peak_flops"), 1e9),
+        device, reported = ceilings["device"], ceilings.get("told", {})
+        rows.append({"source": "ours", "device": device["name"], "compute_units": device["compute_units"], "cores": reported.get("cores"),
+                     "clock_mhz": reported.get("clock_mhz"),
+                     "memory_gb": device["memory_bytes"] / 1e9, "local_memory_kib": ratio(reported.get("local_bytes"), 1024),
+                     "bandwidth_gb_s": ratio(reported.get("peak_bytes_per_s"), 1e9),
+                     "single_gflops": ratio(reported.get("peak_flops"), 1e9),
                      "measured_read_gb_s": ceilings["read_bytes_per_s"]["median"] / 1e9, "measured_copy_gb_s": ceilings["copy_bytes_per_s"]["median"] / 1e9,
                      "measured_upload_gb_s": ceilings["upload_pageable_bytes_per_s"]["median"] / 1e9,
                      "measured_launch_us": ceilings["launch_s"]["median"] * 1e6, "records": "records/ceilings.jsonl"})
@@ -85,7 +85,7 @@ def table2(folder):
                                       "tells them; measured ones beside it. An empty field is unknown.",))
 
 
-def shares(simulation):
+def percentages(simulation):
     """Percent of the total, as the paper's Table 3: of sums over all steps, and the mean of the steps' own shares."""
     total = simulation.host("step")
     start = simulation.stage("transform") + simulation.stage("refit")
@@ -98,7 +98,7 @@ def table3(folder):
     columns = ("solver_percent", "initialization_percent", "broad_percent", "narrow_percent", "contact_reduction_percent")
     rows = theirs(paper_table(3), {"total_min": "total_min", **{name: name for name in columns}})
     for simulation in [*folder.simulations("sim-"), *folder.simulations("host-"), *folder.simulations("serial-"), *folder.simulations("parallel-")]:
-        own = shares(simulation)
+        own = percentages(simulation)
         rows.append({"scene": simulation.scene, "source": "ours", "device": simulation.run["devices"][0]["id"], "total_min": simulation.host("step") / 60,
                      **own, "collision_percent": sum(own[name] for name in columns[1:]), "steps": len(simulation.steps),
                      "data_path": data_path(simulation), "records": simulation.place})
@@ -131,9 +131,9 @@ def scene_factors(folder, scene):
     ways = folder.ways(f"cells-{scene}")
     rows = []
     published, resident = pick(ways, "chunked", "published"), pick(ways, "chunked", "grouped")
-    others = [way for way in ways if way.algorithm == "gproximity" and way.preset == "published"]
-    others += folder.ways(f"gpus-{scene}")
-    for other in others if published else ():
+    rest = [way for way in ways if way.algorithm == "gproximity" and way.preset == "published"]
+    rest += folder.ways(f"gpus-{scene}")
+    for other in rest if published else ():
         if other.frames == published.frames:
             rows.append(factors(published, other, "published", f"gproximity {other.preset}"))
         else:  # geometries of the paper's GPUs are measured on fewer frames: a frame against a frame
@@ -164,8 +164,8 @@ def a_frame(own, other):
     means = lambda way: {"frame": way.total() / way.frames, "narrow": way.narrow / way.frames, "read": way.stage("read") / way.frames,
                          "write": way.stage("write") / way.frames, "launches": way.sum("launches") / way.frames,
                          "launches_as_theirs": way.theirs / way.frames}
-    ours, others = means(own), means(other)
-    return {**{name: ratio(others[name], ours[name]) for name in ours}, "frames": f"{own.frames} against {other.frames}"}
+    ours, rest = means(own), means(other)
+    return {**{name: ratio(rest[name], ours[name]) for name in ours}, "frames": f"{own.frames} against {other.frames}"}
 
 
 def table4(folder):

@@ -132,9 +132,9 @@ class _Reader:
             self._add_other(kind, shown_profile(record, path) if kind == "profiles" else shown_ceilings(record))
 
     def _add_other(self, kind, shown):
-        others = getattr(self.records, kind)
-        if len(others) < MAX_OTHER_RECORDS:
-            others.append(shown)
+        other_records = getattr(self.records, kind)
+        if len(other_records) < MAX_OTHER_RECORDS:
+            other_records.append(shown)
         else:
             self.left_out += 1
 
