@@ -140,7 +140,7 @@ class Compare(Case):
         del less["devices"]
         ceilings = SOURCE / "results/h200/ceilings.jsonl"
         for path, words in ((self.work / "none.jsonl", "cannot be read"), (folder, "is a folder"), (empty, "is empty"),
-                            (noise, f"{noise}:2: is not JSON"), (self.write(record(), newer), ":2: a record of schema 4"),
+                            (noise, f"{noise}:2: is not JSON"), (self.write(record(), newer), ":2: a record of schema 5"),
                             (self.write(older), "scripts/convert_records"), (self.write(less), ":1: is no record of a cell"),
                             (ceilings, f"{ceilings}:1: is no record of a cell")):
             self.bad(words, "compare", good, path)

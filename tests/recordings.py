@@ -103,7 +103,7 @@ class Recordings(Case):
                                  ("itself", recording("x.frames", self.digest, [0] * 4, self.frames), "is a recording itself"),
                                  ("elsewhere", recording("/dev/zero.json", self.digest, [0] * 4, self.frames), "opens only files in its own folder"),
                                  ("above", recording("../x.json", self.digest, [0] * 4, self.frames), "opens only files in its own folder"),
-                                 ("mesh", recording("pile:bodies=4,mesh=/dev/zero", self.digest, [0] * 4, self.frames), "is of the file /dev/zero"),
+                                 ("mesh", recording("pile:bodies=4,mesh=/dev/zero", self.digest, [0] * 4, self.frames), "its scene needs the file /dev/zero"),
                                  ("large", recording("pile:bodies=10000000", self.digest, [0] * 4, self.frames), "has 4 bodies, but its scene has 10000000"),
                                  ("none", recording(self.key, self.digest, [0] * 4, []), "no frame is whole"),
                                  ("header", self.whole[:50], "is cut off in its header"),
