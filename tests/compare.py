@@ -135,7 +135,7 @@ class Compare(Case):
         empty.write_text("")
         noise.write_text(good.read_text() + "no record\n")
         newer, older = record(), record()
-        newer["schema"], older["schema"] = 4, 1
+        newer["schema"], older["schema"] = 5, 1
         less = record()
         del less["devices"]
         ceilings = SOURCE / "results/h200/ceilings.jsonl"
