@@ -47,7 +47,7 @@ def tandem(*arguments, environment=None, timeout=300, address_space=None):
 def tried(what, count, unit, where="host", lost=0, crashes=0, hangs=0, rest=0):
     """Appends a line to the file that TANDEM_TRIED names, if it is set, for scripts/tried (tests/support/tried.h has
     the same function). `count` units were tried; `lost` counts answers or records, `crashes` and `hangs` the
-    program, and `others` ended in other people's libraries."""
+    program, and `rest` ended in other people's libraries."""
     if "TANDEM_TRIED" not in os.environ:
         return
     commit = re.search(r"commit (\w+)", subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True, check=True).stdout)[1]

@@ -15,7 +15,7 @@ import subprocess
 import sys
 import unittest
 
-from program import LONG, PROGRAM, SOURCE, SMALL, Case, sets, tandem, tried
+from program import LONG, PROGRAM, SOURCE, Case, sets, tandem, tried
 
 PRELOAD = os.environ["PRELOAD"]
 FAMILIES = ("open", "write", "fsync", "rename", "truncate", "thread", "large", "malloc")
@@ -70,7 +70,6 @@ class Sweep(Case):
         """By name of the command: words, and the file of records that it appends to, or None. Everything is written
         to the folder."""
         out = folder / "old.jsonl"
-        small = sets({name: 4096 for name in SMALL})
         cell = ("--mesh", self.good, "--mesh", self.good, "--device", "host", "--set", "k=8")
         tiled = ("--algorithm", "tiled", *sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")}))
         return {"run": (("run", *cell, *tiled, "--repeat", 1, "--truth", "contacts", "--out", out, "--dump-pairs", folder / "pairs.csv", "--trace", folder / "trace.json"), out),
