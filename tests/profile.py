@@ -98,7 +98,7 @@ class Profile(Case):
             bad = self.work / "profile-changed.jsonl"
             bad.write_text(json.dumps(changed) + "\n")
             self.assertEqual(self.valid(bad)[0], 1)
-        self.assertEqual(record["schema"], 1)
+        self.assertEqual(record["schema"], 2)
 
     def test_ceilings_of_a_file(self):
         ceilings, out = self.work / "ceilings.jsonl", self.work / "profile-ceilings.jsonl"
@@ -135,7 +135,7 @@ class Profile(Case):
     def test_bad_use(self):
         out = self.work / "same.json"
         self.bad("named for two outputs", "profile", *self.cell("--device", "host", "--out", out, "--trace", out))
-        self.bad("of one device", "profile", *self.cell("--device", "host+opencl:0"))
+        self.bad("a profile needs one device", "profile", *self.cell("--device", "host+opencl:0"))
         self.bad("--truth", "profile", *self.cell("--truth", "none"))
         self.bad("no scene", "profile")
         self.bad("--trace", "run", *self.cell("--device", "host", "--profile", 1, "--trace", out))

@@ -248,12 +248,12 @@ class Pages(Case):
     def test_bad_files(self):
         empty, other, text, cut = (self.work / name for name in ("empty.jsonl", "other.jsonl", "text.jsonl", "cut.jsonl.xz"))
         empty.write_text("")
-        self.write("other.jsonl", [{**self.plan[0], "schema": 4}])
+        self.write("other.jsonl", [{**self.plan[0], "schema": 5}])
         text.write_text("no record\n")
         cut.write_bytes(lzma.compress((RECORDS / "plan.jsonl").read_bytes())[:1000])
         page = self.work / "none.html"
         self.bad("empty.jsonl: is empty", "report", empty, "-o", page)
-        self.bad(["other.jsonl:1:", "schema 4"], "report", other, "-o", page)
+        self.bad(["other.jsonl:1:", "schema 5"], "report", other, "-o", page)
         self.bad("text.jsonl:1: is not JSON", "report", text, "-o", page)
         self.bad("cut.jsonl.xz: cannot be read", "report", cut, "-o", page)
         self.bad("cannot be read", "report", self.work / "nowhere.jsonl", "-o", page)
