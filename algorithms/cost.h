@@ -13,13 +13,15 @@
 
 namespace tandem {
 
-/// Averages over the frames of a replay.
+/// Averages over the frames of a replay. Without downloaded pairs the three touched numbers are 0; the bounds
+/// are then lower but valid.
 struct FrameFacts {
-    double body_pairs = 0, candidate_pairs = 0, contacts = 0;
-    /// Numbers of distinct tetrahedra in candidate pairs, of their rows in the table of vertex numbers, and
-    /// of the rows of their vertices. Bodies with the same mesh share rows. 0 if the pairs were not
-    /// downloaded; the bounds are then lower but valid.
-    double touched = 0, touched_rows = 0, touched_vertices = 0;
+    double body_pairs = 0,    ///< passed to run(), or found
+        candidate_pairs = 0,  ///< found
+        contacts = 0;         ///< contact points
+    double touched = 0,       ///< distinct tetrahedra in candidate pairs
+        touched_rows = 0,     ///< their rows in the table of vertex numbers; bodies with one mesh share rows
+        touched_vertices = 0; ///< rows of their vertices; rigid bodies with one mesh share rows
     std::map<std::string_view, double> work{}; ///< by counter of the algorithm; empty if not counted
 
     /// The value of a counter; 0 if it is unknown.
@@ -31,9 +33,10 @@ struct FrameFacts {
 /// overlap test of two k-DOPs needs k of them; test_overlaps in bounds/ceilings.cl measures their peak rate.
 /// A null function means that the value is not modelled; negligible values are 0.
 struct KernelCost {
-    std::string_view entry;
-    std::function<double(const FrameFacts&)> bytes, operations;
-    std::string_view how; ///< one line: what is counted, or why nothing is
+    std::string_view entry;                         ///< name of the kernel's entry point
+    std::function<double(const FrameFacts&)> bytes, ///< moved in a frame; null: not modelled
+        operations;                                 ///< in a frame; null: not modelled
+    std::string_view how;                           ///< one line: what is counted, or why nothing is
 };
 
 /// Operations of a kernel that only moves data.
@@ -41,12 +44,16 @@ inline double no_operations(const FrameFacts&) { return 0; }
 
 /// Sizes of scene and settings that cost models use. Rows are those of the device.
 struct SceneFacts {
+    /// Sizes with fitted settings of an algorithm. Throws InputError as geometry_of.
     SceneFacts(const Scene& scene, const Settings& settings);
 
-    double bodies = 0, moving = 0;              ///< all bodies, and those refitted in every frame
+    double bodies = 0,                          ///< number of all bodies
+        moving = 0;                             ///< number of bodies that are refitted in every frame
     double tetrahedron_rows = 0;                ///< of moving bodies, with 4 vertex numbers each
     double vertex_rows = 0;                     ///< of moving bodies, with 4 reals each
-    double pose_bytes = 0, real = 4, k = 18;    ///< bytes of a pose and of a real; ends of a k-DOP
+    double pose_bytes = 0,                      ///< of a pose
+        real = 4,                               ///< bytes of a real
+        k = 18;                                 ///< ends of a k-DOP
     double pair_bytes = 0;                      ///< of a candidate pair in the answer; 0: not stored
     double row_bytes = 0;                       ///< of a row of pairs
     std::vector<std::uint32_t> tetrahedra;      ///< by moving body

@@ -21,9 +21,10 @@ struct AlgorithmStages;
 
 /// Two bodies whose volumes may overlap; a < b.
 struct BodyPair {
-    std::uint32_t a = 0;
-    std::uint32_t b = 0;
+    std::uint32_t a = 0; ///< index into Scene::bodies
+    std::uint32_t b = 0; ///< index into Scene::bodies
 
+    /// Orders by a, then b.
     auto operator<=>(const BodyPair&) const = default;
 };
 
@@ -47,9 +48,11 @@ public:
     /// pass check_range or a rotation has zero length. Throws InputError also if the host needs the numbers:
     /// with several devices, residency=published, placement=exact, or a device without double.
     FrameResult run(const DeviceFrame& frame);
+    /// The same for these body pairs, at most 2^32 - 1.
     FrameResult run(const DeviceFrame& frame, std::span<const BodyPair> body_pairs);
     /// Switches to kernels that count their work and make no contacts, or back. Such runs are never timed.
     void count_work(bool on) { do_count_work(on); }
+    /// The devices of this process; valid as long as the session.
     std::span<Device* const> devices() const { return do_devices(); }
     /// The bodies whose states frames need in this process, in any order; nullopt: all bodies. On ranks of a
     /// job these are the rank's own bodies, which change when FrameResult::repartitions is 1.
@@ -84,12 +87,13 @@ private:
 
 /// A named counter of an algorithm's work.
 struct Counter {
-    enum class Total { sum, last }; ///< over frames
+    /// How the values of several frames make one: their sum, or the value of the last.
+    enum class Total { sum, last };
 
-    std::string_view name;
+    std::string_view name;    ///< key in FrameResult::work and in records
     std::string_view unit;    ///< "bytes", or the things that are counted
     std::string_view meaning; ///< one line
-    Total total = Total::sum;
+    Total total = Total::sum; ///< over frames
 };
 
 /// Work-groups of launches.
@@ -103,8 +107,9 @@ class Traversal {
 public:
     virtual ~Traversal() = default;
 
-    virtual std::string_view name() const = 0;
-    virtual std::string_view summary() const = 0;
+    virtual std::string_view name() const = 0;    ///< in options and records; unique
+    virtual std::string_view summary() const = 0; ///< short description for listings
+    /// The settings that it has, its own and common ones; valid as long as the algorithm.
     virtual std::span<const Parameter* const> parameters() const = 0;
     /// At least one preset. Tests and tables use the first if none is named.
     virtual std::span<const Preset> presets() const = 0;

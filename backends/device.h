@@ -37,12 +37,12 @@ struct OutOfMemory : DeviceError {
 
 /// Properties of a device; sizes in bytes.
 struct DeviceInfo {
-    std::string id;       ///< "host", "opencl:0", "cuda:0"
-    std::string name;     ///< the vendor's name
-    std::string driver;   ///< driver or runtime version
-    std::string compiler; ///< the compiler of kernels
-    std::string hardware; ///< PCI address or UUID; empty when unknown
-    bool is_gpu = false;
+    std::string id;                     ///< "host", "opencl:0", "cuda:0"
+    std::string name;                   ///< the vendor's name
+    std::string driver;                 ///< driver or runtime version
+    std::string compiler;               ///< the compiler of kernels
+    std::string hardware;               ///< PCI address or UUID; empty when unknown
+    bool is_gpu = false;                ///< false for CPUs and other kinds of accelerators
     std::uint32_t compute_units = 1;    ///< units that run work-groups in parallel: multiprocessors, cores
     std::uint32_t max_group_size = 1;   ///< work-items; a kernel's own limit may be lower
     std::uint32_t cores = 0;            ///< for float additions and multiplications, in total; 0: unknown
@@ -52,7 +52,7 @@ struct DeviceInfo {
     std::uint64_t max_allocation = 0;   ///< largest size of one buffer
     std::uint64_t local_bytes = 0;      ///< local memory of a work-group
     bool allocates_late = false;        ///< memory is taken at first use, so allocate() counts it
-    bool has_double = true;
+    bool has_double = true;             ///< kernels can use double
     bool has_directed_rounding = false; ///< kernels can add with rounding down and up
     bool stages_pinned = false;         ///< non-blocking uploads use page-locked memory
 };
@@ -63,7 +63,7 @@ using Defines = std::map<std::string, std::string>;
 /// A kernel file with its headers, flattened into one text.
 struct KernelSource {
     std::string_view name; ///< "algorithms/chunked/chunked.cl"
-    std::string_view text;
+    std::string_view text; ///< complete, with the text of its headers
 };
 
 /// A handle of device memory. The last copy frees the memory and must be destroyed before the device. Freeing
@@ -80,9 +80,11 @@ public:
     };
 
     Buffer() = default;
+    /// A handle of an adaptor's buffer; null makes an empty handle.
     explicit Buffer(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-    explicit operator bool() const { return impl_ != nullptr; }
+    explicit operator bool() const { return impl_ != nullptr; } ///< false for an empty handle
+    /// Size in bytes, at least the requested one; 0 for an empty handle.
     std::size_t bytes() const { return impl_ ? impl_->bytes : 0; }
     Impl& impl() const { return *impl_; } ///< requires a non-empty handle
     /// The vendor's handle, valid as long as this one: a host or CUDA pointer, or a cl_mem; null for an empty
@@ -95,8 +97,8 @@ private:
 
 /// Cost and resources of a compiled kernel; -1: the backend does not report the value.
 struct KernelFacts {
-    std::string entry;
-    Defines defines;
+    std::string entry;                ///< name of the entry point
+    Defines defines;                  ///< those given to Device::compile
     double compile_ms = 0;            ///< 0 when it was compiled before
     std::int64_t registers = -1;      ///< of a work-item
     std::int64_t local_bytes = -1;    ///< of a work-group
@@ -110,18 +112,21 @@ struct KernelFacts {
 /// A compiled entry point of one device. Copies are cheap.
 class Kernel {
 public:
+    /// Base class of an adaptor's kernel, which adds the vendor's handle.
     struct Impl {
         virtual ~Impl() = default;
-        KernelFacts facts;
+        KernelFacts facts; ///< complete when Device::compile returns
     };
 
     Kernel() = default;
+    /// A handle of an adaptor's kernel; null makes an empty handle.
     explicit Kernel(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-    explicit operator bool() const { return impl_ != nullptr; }
+    explicit operator bool() const { return impl_ != nullptr; } ///< false for an empty handle
 
+    /// Requires a non-empty handle; valid as long as the device.
     const KernelFacts& facts() const { return impl_->facts; }
-    Impl& impl() const { return *impl_; }
+    Impl& impl() const { return *impl_; } ///< requires a non-empty handle
 
 private:
     std::shared_ptr<Impl> impl_;
@@ -131,12 +136,15 @@ private:
 /// type must have the size of the kernel's parameter.
 class Argument {
 public:
+    /// The bytes of a scalar.
     struct Scalar {
-        std::array<std::byte, 8> bytes{};
-        std::size_t size = 0;
+        std::array<std::byte, 8> bytes{}; ///< the value, in the first `size` bytes
+        std::size_t size = 0;             ///< size of the type, at most 8
     };
 
+    /// Refers to a buffer; requires a non-empty handle.
     Argument(const Buffer& buffer) : value_(&buffer.impl()) {}
+    /// Copies a scalar.
     template<class T>
     requires(std::is_arithmetic_v<T> && sizeof(T) <= 8) Argument(T scalar) {
         Scalar copy;
@@ -145,6 +153,7 @@ public:
         value_ = copy;
     }
 
+    /// For adaptors: the buffer or the scalar.
     const std::variant<Buffer::Impl*, Scalar>& value() const { return value_; }
 
 private:
@@ -153,8 +162,8 @@ private:
 
 /// One-dimensional grid: groups x group_size work-items. `group_size` is the define GROUP_SIZE of the kernel.
 struct Grid {
-    std::uint64_t groups = 1;
-    std::uint32_t group_size = 1;
+    std::uint64_t groups = 1;     ///< number of work-groups; 0: the launch does nothing
+    std::uint32_t group_size = 1; ///< work-items of a group; launch() refuses 0
 };
 
 /// Whether commands are recorded, with device timestamps. When off, the default, no clock is read, no event
@@ -173,6 +182,7 @@ public:
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
 
+    /// Properties of the device; valid as long as the device.
     virtual const DeviceInfo& info() const = 0;
     /// The source of device times: "CUPTI 13.0 activity records", or "CUDA events" and why nothing better is
     /// used. It is certain only once clocks have been on, because they load a library of their own. A failure
@@ -241,7 +251,7 @@ public:
     /// device to switch them off detaches a profiling library from the driver. No other thread may be in a
     /// driver call then (cuda/activity.h).
     void set_clocks(Clocks clocks);
-    Clocks clocks() const { return clocks_; }
+    Clocks clocks() const { return clocks_; } ///< off in a new device
 
     /// Sets the number of threads that run the work-groups of a launch on the host; 0, the default: one per
     /// core. Results do not depend on it. Other devices ignore it.
@@ -261,6 +271,7 @@ public:
     void set_memory_limit(std::size_t bytes) { memory_limit_ = bytes; }
     /// no_memory_limit unless set.
     std::size_t memory_limit() const { return memory_limit_; }
+    /// The value of memory_limit() when there is no limit.
     static constexpr std::size_t no_memory_limit = std::numeric_limits<std::size_t>::max();
 
     /// For tests. Writes a byte pattern (buffer_guards.h) behind each new buffer, which check_guards()
@@ -343,6 +354,7 @@ private:
 /// before its device does. A profiler shows it as a range of that name.
 class StageScope {
 public:
+    /// Makes `stage` the current stage of `device` until the destructor restores the previous one.
     StageScope(Device& device, Stage stage);
     ~StageScope();
     StageScope(const StageScope&) = delete;
@@ -357,6 +369,7 @@ private:
 /// clocks are off. `label` must outlive it.
 class HostWork {
 public:
+    /// Starts the clock. The destructor stops it and adds an Event to the trace of `device`.
     HostWork(Device& device, Stage stage, std::string_view label);
     ~HostWork();
     HostWork(const HostWork&) = delete;

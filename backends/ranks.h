@@ -20,19 +20,19 @@ struct RanksError : std::runtime_error {
 /// memory. Every function except rank() and size() may throw RanksError. One thread at a time may use it.
 class Ranks {
 public:
-    using Bytes = std::vector<std::byte>;
+    using Bytes = std::vector<std::byte>; ///< content of a message
 
     /// Device or host memory to send to a rank or to receive from it.
     struct Piece {
-        int rank = 0;
-        void* memory = nullptr;
-        std::size_t bytes = 0;
+        int rank = 0;           ///< the other rank
+        void* memory = nullptr; ///< host or device pointer; not owned
+        std::size_t bytes = 0;  ///< size of the memory
     };
 
     /// A message and its sender.
     struct Received {
-        int from = 0;
-        Bytes bytes;
+        int from = 0; ///< rank of the sender
+        Bytes bytes;  ///< content
     };
 
     virtual ~Ranks() = default;
@@ -40,9 +40,9 @@ public:
     Ranks(const Ranks&) = delete;
     Ranks& operator=(const Ranks&) = delete;
 
-    virtual int rank() const = 0; ///< of this process, from 0
-    virtual int size() const = 0; ///< number of ranks
-    bool is_first() const { return rank() == 0; }
+    virtual int rank() const = 0;                 ///< of this process, from 0
+    virtual int size() const = 0;                 ///< number of ranks
+    bool is_first() const { return rank() == 0; } ///< whether this is rank 0
 
     // Collective: all ranks call these in the same order.
 
@@ -61,6 +61,7 @@ public:
 
     // Point to point.
 
+    /// Sends one message to rank `to`, for its receive(). May wait until that rank receives it.
     virtual void send(int to, std::span<const std::byte> bytes) = 0;
     /// Waits for the next message of send() from any rank.
     virtual Received receive() = 0;

@@ -9,9 +9,9 @@ namespace tandem {
 
 /// The devices of one backend, or one sentence on why it has none.
 struct BackendReport {
-    std::string name;
-    std::vector<std::unique_ptr<Device>> devices;
-    std::string reason;
+    std::string name;                             ///< "host", "opencl" or "cuda"
+    std::vector<std::unique_ptr<Device>> devices; ///< in the backend's order; never null
+    std::string reason; ///< why a device or the whole backend is missing; empty if none is
 };
 
 /// Finds the devices of every backend. Never throws.

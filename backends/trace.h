@@ -36,12 +36,12 @@ enum class Command { launch, upload, download, clear, wait, host_work };
 
 /// One executed command, or one span of host work. Times in nanoseconds.
 struct Event {
-    Command command = Command::launch;
-    Stage stage = Stage::write;
-    std::string label = {};   ///< kernel entry, buffer label or name of the host work
-    std::uint64_t bytes = 0;  ///< moved by transfers and clears
-    std::uint64_t groups = 0; ///< launches: work-groups
-    std::uint32_t group_size = 0;
+    Command command = Command::launch;   ///< kind of the event
+    Stage stage = Stage::write;          ///< its times belong to it; waits: that of the last command
+    std::string label = {};              ///< kernel entry, buffer label or name of the host work
+    std::uint64_t bytes = 0;             ///< moved by transfers and clears
+    std::uint64_t groups = 0;            ///< launches: work-groups
+    std::uint32_t group_size = 0;        ///< launches: work-items of a group
     std::int64_t host_begin_ns = -1;     ///< the host's steady clock at the start of the call
     std::int64_t host_ns = 0;            ///< host time inside the call
     std::int64_t device_ns = -1;         ///< from the API's events; -1 when not measured
@@ -53,7 +53,7 @@ struct Event {
 
 /// The events since the last finish(), in order of submission.
 struct Trace {
-    std::vector<Event> events;
+    std::vector<Event> events; ///< empty when clocks are off
 };
 
 } // namespace tandem

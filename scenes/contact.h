@@ -9,17 +9,22 @@ namespace tandem {
 
 /// Two tetrahedra whose leaf k-DOPs overlap, numbered in input order; body_a < body_b.
 struct Pair {
-    std::uint32_t body_a = 0, tet_a = 0, body_b = 0, tet_b = 0;
+    std::uint32_t body_a = 0, ///< number in the whole scene, from 0
+        tet_a = 0,            ///< index into the tetrahedra of its mesh
+        body_b = 0,           ///< number in the whole scene, from 0
+        tet_b = 0;            ///< index into the tetrahedra of its mesh
 
+    /// Orders by body_a, tet_a, body_b, tet_b.
     auto operator<=>(const Pair&) const = default;
 };
 
 /// A contact between a pair: point and normal (out of body a) in world coordinates, depth < 0 inside.
 struct ContactPoint {
-    Pair pair;
-    std::uint32_t feature = 0; ///< number defined by algorithms/narrow_phase
-    std::array<double, 3> point{}, normal{};
-    double depth = 0;
+    Pair pair;                     ///< the two tetrahedra
+    std::uint32_t feature = 0;     ///< number defined by algorithms/narrow_phase
+    std::array<double, 3> point{}, ///< x, y, z, in the scene's unit of length
+        normal{};                  ///< x, y, z; of length 1, within rounding
+    double depth = 0;              ///< in the scene's unit of length
 };
 
 } // namespace tandem

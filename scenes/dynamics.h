@@ -22,19 +22,22 @@ struct Surface {
 
 /// An unordered pair of materials.
 struct MaterialPair {
+    /// The pair of two indices into Materials::names, in either order; they may be equal.
     MaterialPair(std::uint32_t one, std::uint32_t other)
         : first(std::min(one, other)), second(std::max(one, other)) {}
+    /// Orders by first, then second.
     auto operator<=>(const MaterialPair&) const = default;
 
-    std::uint32_t first, second;
+    std::uint32_t first, ///< the smaller index
+        second;          ///< the larger index
 };
 
 /// Densities by material and surfaces by pair of materials. Only pairs whose bodies can touch need a surface,
 /// which are few even with thousands of materials.
 struct Materials {
-    std::vector<std::string> names;
-    std::vector<double> densities; ///< kg/m^3
-    std::map<MaterialPair, Surface> surfaces;
+    std::vector<std::string> names;           ///< one a material
+    std::vector<double> densities;            ///< kg/m^3, one a material
+    std::map<MaterialPair, Surface> surfaces; ///< by pair of indices into `names`
 
     /// The surface of two materials, which must have one.
     const Surface& surface(std::uint32_t a, std::uint32_t b) const { return surfaces.at({a, b}); }
@@ -42,11 +45,12 @@ struct Materials {
 
 /// Elasticity of a deformable body.
 struct Elastic {
+    /// Relation of strain and stress (scenes/simulate/elastic.h has the formulas).
     enum class Law { corotational, saint_venant_kirchhoff };
 
-    Law law = Law::corotational;
-    double young = 0;   ///< Pa
-    double poisson = 0; ///< below 0.5
+    Law law = Law::corotational; ///< of all elements
+    double young = 0;            ///< Pa, above 0
+    double poisson = 0;          ///< above -1 and below 0.5
     /// Damping force per unit of velocity and volume (kg/(s m^3)), in an element's consistent matrix.
     double damping = 0;
     std::vector<std::uint32_t> pinned; ///< vertices that do not move
@@ -54,7 +58,7 @@ struct Elastic {
 
 /// Material and initial velocities of one body.
 struct BodyDynamics {
-    std::uint32_t material = 0;
+    std::uint32_t material = 0;                         ///< index into Materials::names
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero(); ///< m/s, of the centre of mass
     Eigen::Vector3d spin = Eigen::Vector3d::Zero();     ///< rad/s, in world axes
     std::int32_t elastic = -1; ///< index into Dynamics::elastics of a deformable body
@@ -71,13 +75,14 @@ std::optional<MaterialPair> missing_surface(const Materials& materials, std::spa
 /// The proximal contact solver (Erleben 2017). With the defaults, single bodies and short stacks of any mass
 /// are within 2 % of closed forms (tests/unit/simulate_defaults.cpp).
 struct SolverSettings {
+    /// Updates contact after contact in one thread, or all contacts at once on all cores.
     enum class Method { gauss_seidel, jacobi };
 
-    Method method = Method::gauss_seidel;
-    std::size_t iterations = 1000;
-    double absolute_tolerance = 0; ///< N s; 0: 1e-5 of the lightest body's weight times the step
-    double relative_tolerance = 0; ///< 0: only the absolute tolerance
-    bool warm_start = true;        ///< start from the last step's forces at the same features
+    Method method = Method::gauss_seidel; ///< serial by default
+    std::size_t iterations = 1000;        ///< maximum number of one solution
+    double absolute_tolerance = 0;        ///< N s; 0: 1e-5 of the lightest body's weight times the step
+    double relative_tolerance = 0;        ///< 0: only the absolute tolerance
+    bool warm_start = true;               ///< start from the last step's forces at the same features
 };
 
 /// Parts of a time step other than the solution for contact forces.
@@ -112,14 +117,14 @@ struct ReductionSettings {
 
 /// Physical model of a scene; frame 0 of the scene is the initial state.
 struct Dynamics {
-    Materials materials;
-    std::vector<Elastic> elastics;
-    std::vector<BodyDynamics> bodies; ///< one a body of the scene
-    Eigen::Vector3d gravity = {0, -9.82, 0};
-    StepSettings stepping;
-    SolverSettings solver;
-    ReductionSettings reduction;
-    std::size_t steps = 500; ///< number of steps in a complete run
+    Materials materials;                     ///< of all bodies
+    std::vector<Elastic> elastics;           ///< of deformable bodies, by BodyDynamics::elastic
+    std::vector<BodyDynamics> bodies;        ///< one a body of the scene
+    Eigen::Vector3d gravity = {0, -9.82, 0}; ///< m/s^2, in world axes
+    StepSettings stepping;                   ///< of time steps
+    SolverSettings solver;                   ///< of contact forces
+    ReductionSettings reduction;             ///< of contacts
+    std::size_t steps = 500;                 ///< number of steps in a complete run
 };
 
 } // namespace tandem

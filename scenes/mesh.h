@@ -14,9 +14,9 @@ using Tetrahedron = std::array<std::uint32_t, 4>;
 /// Vertices and tetrahedra in mesh coordinates. Tetrahedra keep the order of their source, which numbers them
 /// in dumps. After complete_mesh every index is in range and every coordinate is finite.
 struct Mesh {
-    std::string name;
-    std::vector<Eigen::Vector3d> vertices;
-    std::vector<Tetrahedron> tetrahedra;
+    std::string name;                      ///< for messages; from read_mesh: the file's name without suffix
+    std::vector<Eigen::Vector3d> vertices; ///< x, y, z, in the scene's unit of length
+    std::vector<Tetrahedron> tetrahedra;   ///< four indices into `vertices` each
     /// Bit i of boundary[t]: the face of tetrahedron t opposite its corner i belongs to no other tetrahedron.
     std::vector<std::uint8_t> boundary;
     std::size_t inverted = 0;   ///< number of tetrahedra with negative volume; they are kept

@@ -14,16 +14,16 @@ namespace tandem {
 
 /// x_world = rotation * x_mesh + translation; the rotation is a unit quaternion.
 struct Pose {
-    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
-    Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity(); ///< from mesh to world axes; of length 1
+    Eigen::Vector3d translation = Eigen::Vector3d::Zero();        ///< world position of the mesh's origin
 };
 
 /// An instance of a mesh. A fixed body has the same pose in every frame. A deformable body has its own world
 /// vertices in every frame, and its pose is the identity.
 struct Body {
-    std::uint32_t mesh = 0;
-    bool fixed = false;
-    bool deformable = false;
+    std::uint32_t mesh = 0;  ///< index into Scene::meshes
+    bool fixed = false;      ///< has the same pose in every frame
+    bool deformable = false; ///< has its own vertices in Frame::deformed
 };
 
 /// The state of all bodies at one time step.
@@ -37,13 +37,13 @@ struct Frame {
 
 /// Meshes, bodies and their motion. Immutable once made. A scene with dynamics has one frame, its start.
 struct Scene {
-    std::string name; ///< "plates"
-    std::string key;  ///< name and every parameter: "pile:bodies=64,density=0.2,..."
-    std::string units = "m";
-    std::vector<Mesh> meshes;
-    std::vector<Body> bodies;
-    std::size_t frame_count = 1;
-    std::function<Frame(std::size_t)> frame;  ///< frame(i) for i < frame_count; pure
+    std::string name;                        ///< "plates"
+    std::string key;                         ///< name and every parameter: "pile:bodies=64,density=0.2,..."
+    std::string units = "m";                 ///< unit of length, for records and exports; it changes no value
+    std::vector<Mesh> meshes;                ///< bodies may share them
+    std::vector<Body> bodies;                ///< in the order of Frame::poses
+    std::size_t frame_count = 1;             ///< number of frames
+    std::function<Frame(std::size_t)> frame; ///< frame(i) for i < frame_count; pure
     std::shared_ptr<const Dynamics> dynamics; ///< null: the motion is scripted, all frames are defined
     std::function<double(std::size_t)> time;  ///< time of frame i in s; null: frames have no times
     std::string end;          ///< message for frames after the last of a recording; empty in other scenes
@@ -59,14 +59,16 @@ inline std::uint32_t number_of(const Scene& scene, std::size_t body) {
 
 /// A named parameter of a scene with its value; in a SceneKind, its default.
 struct SceneParameter {
-    std::string name, value, help;
+    std::string name, ///< in a scene's specification
+        value,        ///< number or word, as text
+        help;         ///< one line for listings
 };
 
 /// A kind of scene that the project generates.
 struct SceneKind {
-    std::string name;
-    std::string models; ///< what the scene models and what it leaves out, one line
-    std::vector<SceneParameter> parameters;
+    std::string name;                       ///< "plates", in a scene's specification
+    std::string models;                     ///< what the scene models and what it leaves out, one line
+    std::vector<SceneParameter> parameters; ///< all of the kind, with their defaults
     std::function<Scene(std::span<const SceneParameter>)> make; ///< all parameters, with their values
 };
 

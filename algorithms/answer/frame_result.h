@@ -17,9 +17,13 @@ namespace tandem {
 
 /// Order-free digest of a set: its 64-bit count and two wrapping sums of a fixed mix of its elements.
 struct Digest {
-    std::uint64_t count = 0, a = 0, b = 0;
+    std::uint64_t count = 0, ///< elements
+        a = 0,               ///< sum of a 64-bit term of each element, modulo 2^64
+        b = 0;               ///< the same of another term
 
+    /// Adds the digest of a disjoint set; the result is the digest of the union.
     Digest& operator+=(const Digest& other);
+    /// Equal sets have equal digests. Different sets may have equal digests, which is improbable.
     bool operator==(const Digest&) const = default;
 };
 
@@ -27,10 +31,10 @@ struct Digest {
 /// of the two tetrahedra. PairLayout::items has rows of 4 words: body a, body b, and the positions of the
 /// tetrahedra in the orders of their bodies.
 struct PairBuffer {
-    Buffer rows; ///< empty when the pairs are not on a device
-    PairLayout layout = PairLayout::slots;
-    std::uint64_t count = 0;
-    std::uint64_t capacity = 0; ///< in rows
+    Buffer rows;                           ///< empty when the pairs are not on a device
+    PairLayout layout = PairLayout::slots; ///< format of a row
+    std::uint64_t count = 0;               ///< pairs, one a row
+    std::uint64_t capacity = 0;            ///< in rows
 };
 
 /// The part of a frame's answer from one device, in the memory of the device or of the host.
@@ -45,10 +49,13 @@ public:
     /// tetrahedron a, body b, tetrahedron b, with the scene's numbers. Throws DeviceError for pairs that are
     /// not on a device.
     virtual void expand(std::uint64_t first, std::uint64_t count, const Buffer& expanded) const = 0;
+    /// Digest of its pairs. Computes it where the pairs are, and waits.
     virtual Digest digest() const = 0;
+    /// Digest of its contacts, of their pairs, features and values. Computes it where they are, and waits.
     virtual Digest contact_digest() const = 0;
-    /// Appends pairs and contacts, in any order.
+    /// Appends its pairs, in any order.
     virtual void append_pairs(std::vector<Pair>& pairs) const = 0;
+    /// Appends its contacts, in any order. Their points are relative to FrameResult::origin.
     virtual void append_contacts(std::vector<ContactPoint>& contacts) const = 0;
     /// Adds for each body the number of pairs that contain it.
     virtual void count_by_body(std::vector<std::uint64_t>& counts) const = 0;
@@ -67,9 +74,9 @@ struct DeviceWork {
 
 /// Counts of a frame, which are summed over devices, ranks and batches.
 struct FrameCounts {
-    std::uint64_t count = 0;      ///< candidate pairs
-    std::uint64_t body_pairs = 0; ///< passed to run(), or found
-    std::uint64_t contacts = 0;
+    std::uint64_t count = 0;               ///< candidate pairs
+    std::uint64_t body_pairs = 0;          ///< passed to run(), or found
+    std::uint64_t contacts = 0;            ///< contact points; 0 unless output=pairs
     std::uint64_t degenerate = 0;          ///< pairs without contacts because a tetrahedron has no volume
     std::uint64_t rejected = 0;            ///< pairs with a separating axis
     std::uint64_t undecided_by_filter = 0; ///< by the certified filter (decision=recheck, exact)
@@ -77,6 +84,7 @@ struct FrameCounts {
     std::uint64_t retries = 0;             ///< repetitions of a walk because a buffer was too small
     std::uint64_t batches = 0;             ///< number of batches; 1: the frame fitted into memory
 
+    /// Adds every count of `other`.
     FrameCounts& operator+=(const FrameCounts& other);
 };
 
@@ -97,12 +105,15 @@ struct FrameResult : FrameCounts {
     void add(const FrameCounts& counts, const std::optional<Digest>& digest);
     /// Contacts per candidate pair; 1 without candidate pairs.
     double contacts_a_pair() const;
-    /// Digests of pairs and contacts, computed in the memory where they are. Not part of a measured frame.
-    /// The sums are 0 with output=count.
+    /// Digest of the pairs, computed in the memory where they are. Not part of a measured frame. The sums are
+    /// 0 with output=count.
     Digest digest() const;
+    /// Digest of the contacts, computed in the memory where they are. Not part of a measured frame. All zero
+    /// unless output=pairs.
     Digest contact_digest() const;
-    /// Sorted pairs and contacts, in world coordinates; empty unless output=pairs.
+    /// Sorted pairs; empty unless output=pairs.
     std::vector<Pair> download() const;
+    /// Contacts in world coordinates, sorted by pair and feature; empty unless output=pairs.
     std::vector<ContactPoint> download_contacts() const;
 };
 

@@ -11,13 +11,14 @@ namespace tandem {
 /// The settings that determine the set of candidate pairs of a frame. Cells with equal geometry must give the
 /// same set. Cells with different geometry, such as published and safe rounding, are never compared.
 struct Geometry {
-    int k = 18;
+    int k = 18;                   ///< planes of a k-DOP: 6, 8, 12, 14, 16, 18, 20, 24 or 26
     bool coordinate_axes = false; ///< k = 8 only: x, y, z and one diagonal instead of the four cube diagonals
-    Precision precision = Precision::fp32;
-    Rounding rounding = Rounding::safe;
-    Placement placement = Placement::rounded;
-    Origin origin = Origin::world;
+    Precision precision = Precision::fp32;    ///< of vertices, slabs and contacts
+    Rounding rounding = Rounding::safe;       ///< of the ends of slabs
+    Placement placement = Placement::rounded; ///< exact only with safe or directed rounding
+    Origin origin = Origin::world;            ///< of coordinates on devices
 
+    /// Whether all members are equal.
     bool operator==(const Geometry&) const = default;
 };
 

@@ -18,21 +18,23 @@ namespace tandem {
 struct Parameter {
     /// A word that is a value of a setting, and its number in code and kernels.
     struct Word {
-        std::string_view text;
-        std::int64_t value = 0;
+        std::string_view text;  ///< in --set and in records
+        std::int64_t value = 0; ///< in code and in kernels
     };
 
-    std::string_view name;   ///< in --set and in records
-    std::string_view define; ///< name in kernels; empty: kernels do not use it
-    std::string_view help;
-    std::int64_t initial = 0;
-    std::int64_t least = 0, most = 0; ///< range of an integer, both ends included
-    std::array<Word, 12> words{};
-    std::size_t word_count = 0; ///< 0: any integer from least to most
-    std::array<std::int64_t, 4> alternative_values{};
-    std::size_t alternative_count = 0;
-    std::string_view alternative_setting; ///< another setting with the same effect; empty: none
+    std::string_view name;                            ///< in --set and in records
+    std::string_view define;                          ///< name in kernels; empty: kernels do not use it
+    std::string_view help;                            ///< explanation for listings, not empty
+    std::int64_t initial = 0;                         ///< default value
+    std::int64_t least = 0,                           ///< lowest value of an integer
+        most = 0;                                     ///< highest value of an integer
+    std::array<Word, 12> words{};                     ///< the first word_count are in use
+    std::size_t word_count = 0;                       ///< 0: any integer from least to most
+    std::array<std::int64_t, 4> alternative_values{}; ///< the first alternative_count are in use
+    std::size_t alternative_count = 0;                ///< at most 4
+    std::string_view alternative_setting;             ///< another setting with the same effect; empty: none
 
+    /// The words that are values; empty for an integer.
     constexpr std::span<const Word> choices() const { return std::span(words).first(word_count); }
     /// Values that `--algorithm auto` tries for speed when neither this nor alternative_setting is given.
     /// They do not change an answer. Empty: only the user sets it.
@@ -48,21 +50,24 @@ struct Parameter {
 
 /// A setting with a value, as listed in presets.
 struct Assignment {
-    const Parameter* parameter = nullptr;
-    std::int64_t value = 0;
+    const Parameter* parameter = nullptr; ///< must outlive the assignment
+    std::int64_t value = 0;               ///< a word's number, or an integer
 };
 
 /// The least and the greatest value of an integer setting.
 struct ValueRange {
-    std::int64_t least = 0, most = 0;
+    std::int64_t least = 0, ///< included
+        most = 0;           ///< included
 };
 
 /// A parameter with values of type T: an enumeration, an integer or bool. Rows are constants. A default that
 /// is not a choice, or a duplicate word or value, is a compile error.
 template<class T>
 struct Setting : Parameter {
+    /// Words with their values, in the order of listings; at most 12.
     using Choices = std::initializer_list<std::pair<std::string_view, T>>;
 
+    /// A setting whose values are words. Name and help must not be empty.
     consteval Setting(std::string_view name_, T initial_, Choices choices_, std::string_view define_,
                       std::string_view help_) {
         set(name_, initial_, define_, help_);
@@ -77,6 +82,7 @@ struct Setting : Parameter {
         throw "a setting's default is none of its choices";
     }
 
+    /// An integer setting. Name and help must not be empty.
     consteval Setting(std::string_view name_, T initial_, ValueRange range, std::string_view define_,
                       std::string_view help_) {
         set(name_, initial_, define_, help_);
@@ -100,6 +106,7 @@ struct Setting : Parameter {
         return row;
     }
 
+    /// The setting with this value, which is not checked. The setting must outlive the result.
     Assignment operator()(T value) const { return {this, static_cast<std::int64_t>(value)}; }
 
 private:
@@ -119,6 +126,7 @@ using SettingTexts = std::map<std::string, std::string>;
 class Settings {
 public:
     Settings() = default;
+    /// The defaults of these parameters, which must outlive the settings.
     explicit Settings(std::span<const Parameter* const> parameters);
 
     /// The value of a setting. Throws std::out_of_range if the algorithm does not have the setting.
@@ -126,13 +134,18 @@ public:
     T operator[](const Setting<T>& setting) const {
         return static_cast<T>(values_.at(setting.name).value);
     }
+    /// Whether the algorithm has the setting.
     bool has(const Parameter& parameter) const { return values_.contains(parameter.name); }
+    /// Changes a value, which is not checked. Throws std::out_of_range if the algorithm does not have the
+    /// setting.
     void set(const Assignment& assignment) { values_.at(assignment.parameter->name) = assignment; }
 
     /// The value of a setting in the form that --set accepts. Throws std::out_of_range for an unknown name.
     std::string text(std::string_view name) const;
+    /// All settings, with their values in the form that --set accepts.
     SettingTexts texts() const;
-    bool empty() const { return values_.empty(); }
+    bool empty() const { return values_.empty(); } ///< true without settings, as by default
+    /// Whether both have the same settings with the same values.
     bool operator==(const Settings& other) const { return texts() == other.texts(); }
 
 private:
@@ -141,11 +154,12 @@ private:
 
 /// A named set of values. Settings given by the user override it.
 struct Preset {
-    std::string_view name;
-    std::string_view help;
-    std::vector<Assignment> values;
+    std::string_view name;             ///< in options and records; unique within an algorithm
+    std::string_view help;             ///< explanation for listings
+    std::vector<Assignment> values;    ///< of the settings that it changes
     std::string_view former_name = {}; ///< before record schema 4; empty: the same
 
+    /// `values` in the form that --set accepts.
     SettingTexts texts() const;
 };
 

@@ -7,8 +7,8 @@ namespace tandem::opencl {
 
 /// Every device of every platform, in the loader's order, or one sentence on why there is none.
 struct Found {
-    std::vector<std::unique_ptr<Device>> devices;
-    std::string reason;
+    std::vector<std::unique_ptr<Device>> devices; ///< those that could be opened; never null
+    std::string reason; ///< why there is none, or the error of the last that failed; empty without errors
 };
 
 Found discover();
