@@ -74,7 +74,7 @@ class Sweep(Case):
         tiled = ("--algorithm", "tiled", *sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")}))
         return {"run": (("run", *cell, *tiled, "--repeat", 1, "--truth", "contacts", "--out", out, "--dump-pairs", folder / "pairs.csv", "--trace", folder / "trace.json"), out),
                 "plan": (("run", self.plan, "--out", out), out),
-                "check": (("check", *cell, "--algorithm", "chunked", *sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "seed_capacity")})), None),
+                "check": (("check", *cell, "--algorithm", "chunked", "--preset", "grouped,published", *sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "seed_capacity")})), None),
                 "accuracy": (("accuracy", "pile:bodies=2,frames=1", "--device", "host", "--set", "k=8", "--set", "contact_rule=sat", "--set", "decision=fp32",
                               "--set", "precision=float", "--set", "rounding=safe", *tiled, "--repeat", 1, "--out", out), out),
                 "simulate": (("simulate", "arch:segments=2", "--steps", 2, "--device", "host", "-o", folder / "a.frames", "--record", out, "--quiet",
