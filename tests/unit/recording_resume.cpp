@@ -126,7 +126,7 @@ TEST_F(RecordingResume, NothingIsOverwritten) {
     auto writer = RecordingWriter::resume(file_, small_.header);
     EXPECT_THAT(resume_failure(), HasSubstr("another process writes it"));
     std::filesystem::remove(checkpoint_path(file_));
-    EXPECT_THAT(failure_of([&] { writer.restore(); }), HasSubstr("small.frames.checkpoint: is not there"));
+    EXPECT_THAT(failure_of([&] { writer.restore(); }), HasSubstr("small.frames.checkpoint: does not exist"));
     EXPECT_EQ(bytes_of(file_), before);
     EXPECT_THAT(failure_of([&] { RecordingWriter::resume(path("none.frames"), small_.header); }),
                 HasSubstr("none.frames: cannot be written"));
