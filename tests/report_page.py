@@ -261,7 +261,7 @@ class Pages(Case):
         self.bad("schema 7", "report", self.work / "profile.jsonl", "-o", page)
         self.assertFalse(page.exists())
         self.bad("nowhere", "report", RECORDS / "plan.jsonl", "-o", self.work / "nowhere/page.html", code=3)
-        self.bad("no file that could be replaced", "report", RECORDS / "plan.jsonl", "-o", self.work, code=3)
+        self.bad("is not a regular file", "report", RECORDS / "plan.jsonl", "-o", self.work, code=3)
         self.bad("unknown scene", "view", "plate", "-o", page)
 
     def test_a_hundred_thousand_lines(self):
