@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the figures share: size, colours, titles that are messages, and the CSV beside each."""
+"""Common parts of the figures: size, colours, titles that state results, and the CSV file beside each."""
 import csv
 import dataclasses
 import textwrap
@@ -14,22 +14,22 @@ import matplotlib.pyplot as plt
 from ..plots import COLOURS, INK, PALE, WINNER
 from .tables import short
 
-WIDTH = 6.6  # inches: a column of a phone held upright at 100 %, two thirds of a printed page
+WIDTH = 6.6  # inches: readable on a phone in portrait format, two thirds of a printed page
 STAGES = ("transform", "refit", "broad", "seed", "traverse", "balance", "contact", "preprocess", "postprocess", "read", "write")
 COLOUR_OF = dict(zip(STAGES, ("#777777", "#56b4e9", "#999999", "#bbbbbb", "#0072b2", "#f0e442", "#009e73", "#cc79a7", "#66507a", "#e69f00", "#d55e00")))
 COLOUR_OF |= {"solve": "#333333", "assemble": "#aaaaaa", "reduce": "#8c6d31", "move": "#dddddd"}
 
 
 @dataclasses.dataclass
-class Drawn:
+class Figure:
     number: int
     title: str
     rows: list  # of the CSV
-    missing: str = ""  # why there is no picture
+    missing: str = ""  # the reason if it could not be drawn
 
 
 class Plot:
-    """A figure of so many panels: its message above, its data beside it."""
+    """A figure with several panels under construction, with the rows of its CSV file."""
 
     def __init__(self, number, panels=1, height=3.2, columns=1):
         self.number = number
@@ -45,7 +45,7 @@ class Plot:
         self.figure.savefig(folder / f"figure{self.number}.svg", metadata={"Date": None, "Title": title})
         plt.close(self.figure)
         write_rows(folder, self.number, self.rows)
-        return Drawn(self.number, title, self.rows)
+        return Figure(self.number, title, self.rows)
 
 
 def write_rows(folder, number, rows):
@@ -57,17 +57,16 @@ def write_rows(folder, number, rows):
 
 
 def missing(folder, number, title, why):
-    """A figure that cannot be drawn is there all the same and says why."""
+    """Draws a figure that has only the reason why it cannot be drawn."""
     plot = Plot(number, height=1.4)
     plot.axes[0].axis("off")
     plot.axes[0].text(0, 0.5, "\n".join(textwrap.wrap(why, 90)), color=INK, va="center")
     plot.rows = [{"missing": why}]
-    drawn = plot.save(folder, title)
-    return dataclasses.replace(drawn, missing=why)
+    return dataclasses.replace(plot.save(folder, title), missing=why)
 
 
 def name_end(ax, x, y, text, colour):
-    """The name of a curve at its last point, instead of a legend."""
+    """Writes the name of a curve at its last point, instead of a legend."""
     ax.annotate(text, (x, y), xytext=(4, 0), textcoords="offset points", va="center", color=colour, fontsize=8)
 
 

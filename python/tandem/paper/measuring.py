@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The steps of 'tandem paper': what each runs, which have ended and how. Standard library only, so that a machine with a GPU
-needs nothing else to measure."""
+"""Runs the steps of 'tandem paper' and keeps track of them. Uses only the standard library, so that a machine with a GPU needs nothing
+else for measurements."""
 import ctypes
 import dataclasses
 import datetime
@@ -20,51 +20,51 @@ PLANS = pathlib.Path(__file__).parent / "plans"
 
 @dataclasses.dataclass(frozen=True)
 class Step:
-    """A command of the program, or a plan of cells for `tandem run`. Files are in the folder of results."""
+    """A command of the program, or a plan of cells for `tandem run`. Paths are relative to the folder of results."""
     name: str
-    says: str
-    seconds: float  # it took on the machine of the committed results
-    command: tuple  # words behind "tandem"
-    plan: object  # None, or written to plans/NAME.json before the command runs it
+    says: str  # description
+    seconds: float  # duration on the machine of the committed results
+    command: tuple  # arguments of "tandem"
+    plan: object  # None, or the plan that is written to plans/NAME.json before the command runs
 
     @property
     def key(self):
-        """With the plan: a step is done again when that has changed."""
+        """Identifies the step. It contains the plan, so that a changed plan is measured again."""
         plan = "" if self.plan is None else json.dumps(self.plan, separators=(",", ":"), ensure_ascii=False)
         return f"{' '.join(self.command)} {plan}"
 
 
-def _placed(value, names):
-    """The value with {NAME} replaced in every text of it."""
+def _expanded(value, names):
+    """A JSON value with {NAME} replaced in all its texts."""
     if isinstance(value, str):
         for name, text in names.items():
             value = value.replace("{" + name + "}", text)
         return value
     if isinstance(value, list):
-        return [_placed(one, names) for one in value]
+        return [_expanded(one, names) for one in value]
     if isinstance(value, dict):
-        return {key: _placed(one, names) for key, one in value.items()}
+        return {key: _expanded(one, names) for key, one in value.items()}
     return value
 
 
 def steps_of(size, device, queue_bytes):
-    """The steps of a size, "small" or "full", in their order. queue_bytes: what the paper's release allocates for queues on the
-    device, a quarter of its memory, or what one buffer holds."""
+    """The steps of a size, "small" or "full", in their order. queue_bytes: size of the queue array of the paper's release on the device, a
+    quarter of its memory, or the largest buffer."""
     path = PLANS / f"{size}.json"
     if size not in ("small", "full"):
         raise BadUse(f"--size {size}: give small or full")
     names = {"device": device, "quarter": str(queue_bytes)}
     steps = []
     for one in json.loads(path.read_text())["steps"]:
-        plan = _placed(one["plan"], names) if "plan" in one else None
+        plan = _expanded(one["plan"], names) if "plan" in one else None
         name = one["name"]
         command = one.get("command") or ["run", f"plans/{name}.json", "--resume", "--out", f"records/{name}.jsonl"]
-        steps.append(Step(name, one["says"], one["seconds"], tuple(_placed(word, names) for word in command), plan))
+        steps.append(Step(name, one["says"], one["seconds"], tuple(_expanded(word, names) for word in command), plan))
     return steps
 
 
 def numbered(text, count):
-    """(first, last) of "N" or "FIRST:LAST", from 1; all where the text is empty."""
+    """(first, last) from "N" or "FIRST:LAST", numbered from 1; all steps for an empty text."""
     if not text:
         return 1, count
     found = re.fullmatch(r"(\d+)(?::(\d+))?", text)
@@ -88,7 +88,7 @@ def _sync_folder(path):
 
 
 def _sync_file_system(path):
-    """Makes what any process has written there last."""
+    """Syncs the file system of a folder, so that the output of all processes there survives a loss of power."""
     descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY)
     try:
         ctypes.CDLL(None).syncfs(descriptor)
@@ -97,8 +97,8 @@ def _sync_file_system(path):
 
 
 class Journal:
-    """A file of JSON lines that only grows; a line that append() has returned from outlasts a loss of power. A last line without an
-    end, which a kill has left, goes to FILE.torn."""
+    """An append-only file of JSON lines. A line survives a loss of power once append() has returned. An incomplete last line, which a kill
+    leaves, is moved to FILE.torn."""
 
     def __init__(self, path):
         self.path = path
@@ -143,7 +143,8 @@ class Journal:
 
 
 class MeasuredFolder:
-    """steps.jsonl says which steps have ended and how; records/, plans/ and logs/ have a file a step. A folder has one size and one device."""
+    """A folder of results of one size and one device. steps.jsonl has the steps that ended, with their exit codes. records/, plans/ and logs/
+    have one file per step."""
 
     def __init__(self, path, size, device, program):
         self.path, self.size, self.device, self.program = pathlib.Path(path), size, device, program
@@ -152,7 +153,7 @@ class MeasuredFolder:
             try:
                 (self.path / part).mkdir(parents=True, exist_ok=True)
             except OSError as error:
-                raise BadUse(f"-o {path}: cannot be made a folder ({error.strerror}); name another") from None
+                raise BadUse(f"-o {path}: no folder can be created there ({error.strerror}); name another") from None
         self.journal = Journal(self.path / "steps.jsonl")
         self.done = set()
         for line in self.journal.lines():
@@ -175,7 +176,7 @@ class MeasuredFolder:
         return lines[-1] if lines else ""
 
     def forget(self, step):
-        """The step and its records."""
+        """Deletes the records of a step, so that it runs again."""
         self.done.discard(step.key)
         for word in step.command:
             if word.endswith((".jsonl", ".frames")):
@@ -191,7 +192,7 @@ class MeasuredFolder:
         return words
 
     def run(self, step, environment):
-        """Runs the step in a process of its own and says in steps.jsonl how it ended; its exit code, or 128 and the signal."""
+        """Runs the step in its own process and appends the result to steps.jsonl. Returns its exit code, or 128 plus the signal."""
         if step.plan is not None:
             (self.path / "plans" / f"{step.name}.json").write_text(json.dumps(step.plan, indent=2, ensure_ascii=False) + "\n")
         self.log(step).unlink(missing_ok=True)
@@ -201,7 +202,7 @@ class MeasuredFolder:
             code = self.running.wait()
         self.running = None
         code = 128 - code if code < 0 else code
-        _sync_file_system(self.path)  # the line says for good that the step is done: what its programs have written has to last
+        _sync_file_system(self.path)  # the step's output must be durable before the line that marks it as done
         now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
         self.journal.append({"step": step.name, "size": self.size, "device": self.device, "exit": code, "seconds": time.monotonic() - begin,
                              "says": step.says, "command": f"tandem {' '.join(step.command)}", "key": step.key, **environment, "date": now})
@@ -210,14 +211,14 @@ class MeasuredFolder:
         return code
 
     def interrupt(self, *_):
-        """A signal that asks to end is handed to the step that runs; no other is begun."""
+        """Signal handler: ends the running step, and starts no further one."""
         self.interrupted = True
         if self.running is not None:
             self.running.send_signal(signal.SIGTERM)
 
 
 def environment_of(program):
-    """Which build measures, by what the program says of itself."""
+    """Commit and state of the program's build, from its --version."""
     text = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
     commit = re.search(r"commit (\w+)", text)[1]
     return {"commit": "" if commit == "unknown" else commit, "dirty": ", dirty" in text}
@@ -227,12 +228,12 @@ def list_steps(folder, steps):
     for number, step in enumerate(steps, 1):
         print(f"{number:>3}  {step.name:<18} {'done' if folder.is_done(step) else duration_text(step.seconds):>6}  {step.says}")
     left = sum(step.seconds for step in steps if not folder.is_done(step))
-    print(f"about {duration_text(left)} left, as long as it took where the committed results were measured")
+    print(f"about {duration_text(left)} left, with the durations of the committed results")
 
 
 def run_steps(folder, steps, first, last):
-    """Runs what is left of the steps; the worst exit code. One that fails stops none that follows."""
-    tell = lambda text: print(text, file=sys.stderr, flush=True)
+    """Runs those steps that are not done. Returns the worst exit code. Later steps run also if one fails."""
+    print_message = lambda text: print(text, file=sys.stderr, flush=True)
     environment = environment_of(folder.program)
     left = sum(step.seconds for step in steps[first - 1:last] if not folder.is_done(step))
     expected = real = 0.0
@@ -244,15 +245,16 @@ def run_steps(folder, steps, first, last):
             break
         if folder.is_done(step):
             continue
-        pace = real / expected if expected > 0 else 1.0  # of this machine, against that of the committed results
-        tell(f"{number}/{len(steps)} {step.name}: {step.says} (about {duration_text(step.seconds * pace)}; all about {duration_text(left * pace)})")
+        pace = real / expected if expected > 0 else 1.0  # time on this machine over that of the committed results
+        print_message(f"{number}/{len(steps)} {step.name}: {step.says} (about {duration_text(step.seconds * pace)}; "
+                      f"all about {duration_text(left * pace)})")
         begin = time.monotonic()
         code = folder.run(step, environment)
         real, expected, left = real + time.monotonic() - begin, expected + step.seconds, left - step.seconds
         if code != 0 and not folder.interrupted:
-            tell(f"tandem: step {step.name} ended with {code}: {folder.last_line(step)}; its output is in {folder.path}/logs")
+            print_message(f"tandem: step {step.name} ended with {code}: {folder.last_line(step)}; its output is in {folder.path}/logs")
             worst = max(worst, 1 if code == 1 else 3)
     if folder.interrupted:
-        tell("tandem: interrupted; the same command goes on")
+        print_message("tandem: interrupted; the same command continues")
         worst = max(worst, 3)
     return worst

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""index.html: verdicts, figures and tables of a folder."""
+"""Writes index.html with the verdicts, figures and tables of a folder."""
 from html import escape
 
 from .tables import short
@@ -40,14 +40,14 @@ def claim_row(claim):
 
 
 def gaps(folder):
-    """What is not there, and why."""
-    messages = [f"Step {name} ended with {folder.steps[name]['exit']}: {folder.steps[name]['says']}." for name in folder.failed]
-    messages += [f"{place}: {what}." for place, what in folder.wrong()]
-    return "".join(f"<li>{escape(text)}</li>" for text in messages)
+    """List items for failed steps and for records that failed or are wrong."""
+    texts = [f"Step {name} ended with {folder.steps[name]['exit']}: {folder.steps[name]['says']}." for name in folder.failed]
+    texts += [f"{location}: {message}." for location, message in folder.wrong()]
+    return "".join(f"<li>{escape(text)}</li>" for text in texts)
 
 
 def steps_html(folder):
-    rows = "".join(f"<tr><td>{escape(name)}</td><td class=number>{step['seconds']:.0f} s</td><td>{escape(step['commit'])}{' and changes' if step['dirty'] else ''}</td>"
+    rows = "".join(f"<tr><td>{escape(name)}</td><td class=number>{step['seconds']:.0f} s</td><td>{escape(step['commit'])}{' with changes' if step['dirty'] else ''}</td>"
                    f"<td>{escape(step['date'][:10])}</td><td><code>{escape(step['command'])}</code></td></tr>" for name, step in folder.steps.items())
     return ('<section id=steps><h2>What was run</h2><div class=wide tabindex=0><table><thead><tr><th>step</th><th>took</th><th>commit</th><th>day</th><th>command, in this folder</th></tr>'
             f"</thead><tbody>{rows}</tbody></table></div></section>")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Figures 1 to 6: rendered scenes, and our own chunks."""
+"""Figures 1 to 6: rendered scenes and our chunks."""
 import csv
 import math
 import pathlib
@@ -17,7 +17,7 @@ TITLES = {"funnel": "funnel", "glasses": "falling glasses", "colosseum": "coloss
 
 
 def render_script():
-    """scripts/render, part of the package."""
+    """Path of scripts/render, which is part of the package; None if it is missing."""
     for path in (pathlib.Path(__file__).parent / "render.py", pathlib.Path(__file__).parents[3] / "scripts" / "render"):
         if path.exists():
             return path
@@ -25,41 +25,41 @@ def render_script():
 
 
 def rendered(folder, scene, fraction):
-    """Pixels of the scene at a share of its animation, kept as pictures/SCENE-PERCENT.png; nothing where it cannot be drawn.
+    """A list with the image of the scene at a fraction of its animation, stored as pictures/SCENE-PERCENT.png; empty if there is none.
 
-    Where its export is not there (recordings and exports are large: results are kept without them), an earlier drawing's."""
+    Without the export of the scene, takes the stored image: results are committed without recordings and exports, which are large."""
     import matplotlib.image
     glb, script = folder.path / f"{scene}.glb", render_script()
-    kept = folder.path / "pictures" / f"{scene}-{fraction:.0%}.png".replace("%", "")
+    stored = folder.path / "pictures" / f"{scene}-{fraction:.0%}.png".replace("%", "")
     if glb.exists() and script is not None:
         with tempfile.TemporaryDirectory() as work:
             done = subprocess.run([sys.executable, str(script), str(glb), f"{work}/picture", "--at", str(fraction), "--size", "640x480"],
                                   capture_output=True, text=True)
             if done.returncode == 0:
-                kept.parent.mkdir(exist_ok=True)
-                shutil.copyfile(f"{work}/picture-0.png", kept)
-    return [matplotlib.image.imread(kept)] if kept.exists() else []
+                stored.parent.mkdir(exist_ok=True)
+                shutil.copyfile(f"{work}/picture-0.png", stored)
+    return [matplotlib.image.imread(stored)] if stored.exists() else []
 
 
-def scenes(folder, number, wanted, says):
-    """One picture a (scene, share)."""
-    pictures = [(scene, fraction, image) for scene, fraction in wanted for image in rendered(folder, scene, fraction)]
+def scenes(folder, number, selected, title):
+    """A figure with one image for each selected (scene, fraction)."""
+    pictures = [(scene, fraction, image) for scene, fraction in selected for image in rendered(folder, scene, fraction)]
     if not pictures:
-        return missing(folder.path, number, says, "no scene has been exported, or there is no python3-pil to draw it with")
+        return missing(folder.path, number, title, "no scene has been exported, or python3-pil is missing")
     plot = Plot(number, len(pictures), 2.5, min(len(pictures), 2))
     for ax, (scene, fraction, image) in zip(plot.axes, pictures):
         ax.imshow(image)
         ax.axis("off")
         ax.set_title(f"{TITLES[scene]}, at {fraction:.0%} of its steps", fontsize=9, loc="left", color=INK)
         plot.rows.append({"scene": scene, "share": fraction, "file": f"pictures/{scene}-{fraction:.0%}.png".replace("%", "")})
-    return plot.save(folder.path, says)
+    return plot.save(folder.path, title)
 
 
 def figure1(folder):
     simulation = folder.simulation("sim-funnel")
-    kept = f", {max(simulation.curve('contacts_found')):,} contacts at most" if simulation else ""
+    contacts = f", {max(simulation.curve('contacts_found')):,} contacts at most" if simulation else ""
     bodies = f"{simulation.run['scene']['bodies']:,} bodies in a funnel" if simulation else "The funnel"
-    return scenes(folder, 1, [("funnel", 1.0)], f"{bodies}{kept}")
+    return scenes(folder, 1, [("funnel", 1.0)], f"{bodies}{contacts}")
 
 
 def figure2(folder):
@@ -72,7 +72,7 @@ def figure6(folder):
 
 
 class Chunks:
-    """The chunks of one mesh of a file of 'tandem export --chunks'."""
+    """The chunks of the largest mesh in a file of 'tandem export --chunks'."""
 
     def __init__(self, path):
         with open(path, newline="") as file:
@@ -80,20 +80,20 @@ class Chunks:
         counts = {}
         for row in rows:
             counts[row["mesh"]] = counts.get(row["mesh"], 0) + 1
-        mesh = max(counts, key=counts.get)  # the largest: the one that has most chunks
+        mesh = max(counts, key=counts.get)  # the mesh with the most rows
         rows = [row for row in rows if row["mesh"] == mesh]
         self.chunk = numpy.array([int(row["chunk"]) for row in rows])
         self.super_chunk = numpy.array([int(row["super_chunk"]) for row in rows])
         self.corners = numpy.array([[[float(row[f"{axis}{i}"]) for axis in "xyz"] for i in range(4)] for row in rows])
 
     def boxes(self, numbers=None):
-        """(least, most) corners of the tetrahedra of each chunk."""
+        """Lower and upper corners of the box of each chunk's tetrahedra."""
         numbers = self.chunk if numbers is None else numbers
         parts = [self.corners[numbers == i].reshape(-1, 3) for i in range(numbers.max() + 1)]
         return numpy.array([[part.min(0), part.max(0)] for part in parts])
 
     def overlap(self):
-        """Volume of the boxes of all pairs of chunks that is in both, over the volume of the mesh's box."""
+        """Volume of the intersections of boxes of all pairs of chunks, over the volume of the mesh's box."""
         boxes = self.boxes()
         low, high = boxes[:, 0], boxes[:, 1]
         inside = numpy.clip(numpy.minimum(high[:, None], high[None]) - numpy.maximum(low[:, None], low[None]), 0, None).prod(-1)
@@ -101,7 +101,7 @@ class Chunks:
         return pairs / (high.max(0) - low.min(0)).prod()
 
     def fatness(self):
-        """Median over chunks of the shortest over the longest side of a box."""
+        """Median over chunks of the ratio of the shortest to the longest side of a box."""
         sides = self.boxes()[:, 1] - self.boxes()[:, 0]
         return float(numpy.median(sides.min(1) / sides.max(1)))
 
@@ -112,7 +112,7 @@ def chunks_of(folder, order):
 
 
 def show(ax, chunks, numbers, boxes=True):
-    """Tetrahedra from the front, coloured by chunk, and the boxes of the chunks."""
+    """Draws tetrahedra in front view, coloured by chunk, and the boxes of the chunks."""
     depth = chunks.corners[:, :, 2].mean(1).argsort()
     centres = chunks.corners.mean(1)[depth]
     size = min(12.0, 3e4 / len(depth))
@@ -153,8 +153,8 @@ def figure4(folder):
         show(ax, chunks, numbers, boxes)
         ax.set_title(f"{count:,} {name}", fontsize=9, color=INK)
         plot.rows.append({"level": name, "count": int(count)})
-    most = -(-len(chunks.chunk) // (chunks.chunk.max() + 1))
-    return plot.save(folder.path, f"{len(chunks.chunk):,} tetrahedra, {chunks.chunk.max() + 1} chunks of up to {2 ** math.ceil(math.log2(most))}, {chunks.super_chunk.max() + 1} super chunk"
+    chunk_size = -(-len(chunks.chunk) // (chunks.chunk.max() + 1))
+    return plot.save(folder.path, f"{len(chunks.chunk):,} tetrahedra, {chunks.chunk.max() + 1} chunks of up to {2 ** math.ceil(math.log2(chunk_size))}, {chunks.super_chunk.max() + 1} super chunk"
                      + ("s" if chunks.super_chunk.max() else "") + ": two levels reach the root")
 
 
