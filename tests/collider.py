@@ -513,8 +513,8 @@ class Example(ColliderCase):
 
     def test_the_cost_of_a_call_is_printed(self):
         text = self.example("plates:count=2", "--frames", "60:61", "--rounds", 1, "--arrays", "all", script="call_cost.py")
-        self.assertRegex(text, r"arrays of numpy, 2 frames, 1 rounds: call [\d.]+ us, library's frame [\d.]+ us, the call beside it [\d.]+ us; pairs handed out")
-        self.assertRegex(text, r"3 arrays, asked from Python: __dlpack_device__ [\d.]+ us, __dlpack__ [\d.]+ us; without DLPack's table")
+        self.assertRegex(text, r"arrays of numpy, 2 frames, 1 rounds: call [\d.]+ us, library's frame [\d.]+ us, overhead [\d.]+ us; conversion of pairs")
+        self.assertRegex(text, r"3 arrays, called from Python: __dlpack_device__ [\d.]+ us, __dlpack__ [\d.]+ us; without DLPack's table")
         self.assertTrue(self.example("plates", "--frames", "60", code=2, script="call_cost.py").startswith("call_cost.py: "))
 
 

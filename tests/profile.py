@@ -210,7 +210,7 @@ class Profile(Case):
         self.assertRegex(table[1], r"^long +2 +90% +- +3 +4 +65 .*long_scoreboard +bandwidth$")
         with self.assertRaises(ValueError):
             script.launches_of("==ERROR== ERR_NVGPUCTRPERM\n")
-        self.assertEqual(script.without(["plates", "--all", "--repeat", "3", "--noise=1%", "--set", "k=8"], script.OF_PROFILE),
+        self.assertEqual(script.without(["plates", "--all", "--repeat", "3", "--noise=1%", "--set", "k=8"], script.PROFILE_OPTIONS),
                          ["plates", "--set", "k=8"])
 
     def counted(self, ncu, *more):
@@ -256,7 +256,7 @@ cp {self.work}/raw.csv "$2"
         if pathlib.Path("/usr/local/cuda/bin/ncu").exists():
             self.skipTest("this machine has one")
         self.assertEqual((done.returncode, done.stderr.strip().splitlines()), (0, [
-            "profile: no ncu; the record is without counters (install Nsight Compute, or name it with --ncu)"]))
+            "profile: ncu is missing, so that the record has no counters; install Nsight Compute, or name it with --ncu"]))
         self.assertIsNone(json.loads(out.read_text())["counters"])
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# Completion of tandem for bash: the program says what may come next, and where it knows nothing there are file names.
+# Completion of tandem for bash. The program lists possible words. If it has none, file names are completed.
 # shellcheck shell=bash
 _tandem() {
-  # Bash takes words apart at '=' and ':' too; what no blank parts in the line is one word.
+  # Bash also splits words at '=' and ':'. This loop joins them again: words are separated only by blanks in the line.
   local line=${COMP_LINE-"${COMP_WORDS[*]:0:COMP_CWORD+1}"} words=() behind word i
   line=${line:0:${COMP_POINT:-${#line}}}
   for ((i = 0; i <= COMP_CWORD; i++)); do
@@ -17,7 +17,7 @@ _tandem() {
     line=${behind#"$word"}
   done
   mapfile -t COMPREPLY < <("${COMP_WORDS[0]}" completion --words "${words[@]}" 2>/dev/null)
-  # bash splits a word at its breaks and replaces the last part only.
+  # Bash replaces only the last part of a split word, so that the parts before it are removed from the replies.
   local breaks=${COMP_WORDBREAKS//[^=:]/} current=${words[-1]}
   if [[ -n $breaks && $current == *[$breaks]* ]]; then
     local before=${current%"${current##*["$breaks"]}"}

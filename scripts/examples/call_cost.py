@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What a call from Python costs beside the library's own frame, in microseconds: medians of all frames and rounds, and the median of the
-difference call by call. The library's time is taken within the call, around Session::run of C++. Then what the pairs take on their way to
-the arrays' library (NumPy: to the host, sorted), and what that library's own protocols take for the arrays of a frame when they are asked
-from Python: Collider uses the one that takes least. Scripted scenes only."""
+"""Measures the overhead of calls from Python in microseconds: medians over all frames and rounds of the call, of the library's own frame
+(Session::run of C++), and of their difference. Also measures the conversion of pairs to arrays of a library (NumPy: in host memory and sorted),
+and the protocols of that library for the arrays of a frame, called from Python. Collider uses the fastest one. Only for scripted scenes."""
 import argparse
 import importlib
 import importlib.util
@@ -17,18 +16,18 @@ LIBRARIES = ("numpy", "cupy", "torch", "jax")
 
 
 def spent(call):
-    """(seconds, what it returned)."""
+    """(seconds, result) of a call."""
     begin = time.perf_counter()
     value = call()
     return time.perf_counter() - begin, value
 
 
-def replay(collider, frames, hand_out):
-    """(whole, within, out) of each frame in seconds."""
+def replay(collider, frames, convert_pairs):
+    """Seconds of each frame: (whole call, library's frame, conversion of pairs)."""
     times = []
     for frame in frames:
         whole, answer = spent(lambda: collider.run(*frame))
-        times.append((whole, answer.seconds, spent(lambda: hand_out(answer))[0]))
+        times.append((whole, answer.seconds, spent(lambda: convert_pairs(answer))[0]))
     return times
 
 
@@ -36,48 +35,48 @@ def microseconds(values):
     return 1e6 * statistics.median(values)
 
 
-def measure(collider, frames, hand_out, rounds):
-    """Lines of figures; the first replay, in which kernels compile and rooms grow, is not in them."""
-    replay(collider, frames, hand_out)
-    times = [line for _ in range(rounds) for line in replay(collider, frames, hand_out)]
-    whole, within, out = (microseconds(column) for column in zip(*times))
-    beside = microseconds(all_of - part for all_of, part, _ in times)
-    return f"call {whole:.1f} us, library's frame {within:.1f} us, the call beside it {beside:.1f} us; pairs handed out {out:.1f} us"
+def measure(collider, frames, convert_pairs, rounds):
+    """A line of medians, without the first replay, in which kernels compile and buffers grow."""
+    replay(collider, frames, convert_pairs)
+    times = [line for _ in range(rounds) for line in replay(collider, frames, convert_pairs)]
+    whole, within, conversion = (microseconds(column) for column in zip(*times))
+    overhead = microseconds(call - frame for call, frame, _ in times)
+    return f"call {whole:.1f} us, library's frame {within:.1f} us, overhead {overhead:.1f} us; conversion of pairs {conversion:.1f} us"
 
 
-def asked(frames, rounds, protocol):
-    """What a protocol takes for the arrays of a frame."""
+def protocol_time(frames, rounds, protocol):
+    """Microseconds of a protocol for the arrays of a frame."""
     return microseconds([spent(lambda: [protocol(array) for array in arrays])[0] for _ in range(rounds) for arrays in frames])
 
 
 def protocols(frames, rounds, stream):
-    """A line of what the arrays' own protocols take, those that they have; `stream` is what DLPack is told."""
+    """A line of times of the protocols that the arrays support. `stream`: the argument of __dlpack__."""
     frames = [[poses, *(vertices or {}).values()] for poses, vertices in frames]
     kinds = {"__dlpack_device__": lambda array: array.__dlpack_device__(), "__dlpack__": lambda array: array.__dlpack__(stream=stream),
              "__cuda_array_interface__": lambda array: array.__cuda_array_interface__}
-    taken = [f"{name} {asked(frames, rounds, ask):.1f} us" for name, ask in kinds.items() if hasattr(frames[0][0], name)]
+    times = [f"{name} {protocol_time(frames, rounds, protocol):.1f} us" for name, protocol in kinds.items() if hasattr(frames[0][0], name)]
     table = "with" if hasattr(type(frames[0][0]), "__dlpack_c_exchange_api__") else "without"
-    return f"  {len(frames[0])} arrays, asked from Python: {', '.join(taken)}; {table} DLPack's table of C functions"
+    return f"  {len(frames[0])} arrays, called from Python: {', '.join(times)}; {table} DLPack's table of C functions"
 
 
-def moved_by(library, on_gpu):
-    """What makes an array of NumPy's one of the library's, and what takes an answer's pairs."""
+def converters(library, on_gpu):
+    """Two functions: one converts a NumPy array to an array of the library, one converts the pairs of an answer."""
     if library == "numpy":
         return lambda array: array, lambda answer: answer.pairs()
     module = importlib.import_module(library)
-    moved, taken = {"cupy": lambda: (module.asarray, module.from_dlpack),
+    to_library, from_dlpack = {"cupy": lambda: (module.asarray, module.from_dlpack),
                     "torch": lambda: (lambda array: module.tensor(array, device="cuda" if on_gpu else "cpu"), module.from_dlpack),
                     "jax": lambda: (lambda array: module.block_until_ready(module.numpy.asarray(array)), module.dlpack.from_dlpack)}[library]()
     if library == "jax":
         module.config.update("jax_enable_x64", True)
-    return moved, lambda answer: taken(answer.pairs(on_device=True))
+    return to_library, lambda answer: from_dlpack(answer.pairs(on_device=True))
 
 
-def frames_of(scene, numbers, moved):
+def frames_of(scene, numbers, to_library):
     frames = []
     for i in numbers:
-        vertices = {body: moved(rows) for body, rows in scene.vertices(i).items()}
-        frames.append((moved(scene.poses(i)), vertices or None))
+        vertices = {body: to_library(rows) for body, rows in scene.vertices(i).items()}
+        frames.append((to_library(scene.poses(i)), vertices or None))
     return frames
 
 
@@ -88,7 +87,7 @@ def main():
     parser.add_argument("--algorithm", default="tiled")
     parser.add_argument("--frames", default="60:79", help="FIRST:LAST")
     parser.add_argument("--rounds", type=int, default=10)
-    parser.add_argument("--arrays", default="numpy", choices=(*LIBRARIES, "all"), help="whose; on a CUDA device all but NumPy's lie there")
+    parser.add_argument("--arrays", default="numpy", choices=(*LIBRARIES, "all"), help="library of the arrays; on a CUDA device all except NumPy's are in its memory")
     arguments = parser.parse_args()
     on_gpu = arguments.device.startswith("cuda")
     libraries = [library for library in LIBRARIES if importlib.util.find_spec(library)] if arguments.arrays == "all" else [arguments.arrays]
@@ -98,10 +97,10 @@ def main():
         collider = tandem.Collider(scene.meshes, arguments.algorithm, arguments.device, bodies=scene.bodies, deformable=scene.deformable)
         for library in libraries:
             if library == "cupy" and not on_gpu:
-                continue  # whose arrays are never in the host's memory
-            moved, hand_out = moved_by(library, on_gpu)
-            frames = frames_of(scene, range(first, min(last + 1, scene.frame_count)), moved)
-            figures = measure(collider, frames, hand_out, arguments.rounds)
+                continue  # arrays of CuPy are never in host memory
+            to_library, convert_pairs = converters(library, on_gpu)
+            frames = frames_of(scene, range(first, min(last + 1, scene.frame_count)), to_library)
+            figures = measure(collider, frames, convert_pairs, arguments.rounds)
             print(f"{arguments.scene} on {arguments.device}, arrays of {library}, {len(frames)} frames, {arguments.rounds} rounds: {figures}")
             stream = (collider._core.queue or 1) if on_gpu and library != "numpy" else None
             print(protocols(frames, arguments.rounds, stream), flush=True)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """collide.py [MESH MESH] [--shift X,Y,Z] [--device D] [-o PICTURE]: collides two meshes and draws their contacts.
 
-Meshes are read by meshio, any of its formats with tetrahedra, or by tandem's own readers where meshio is not installed; without
-meshes two jacks of tandem's pile are taken. Writes collide.png unless -o names another picture. Exit code 2: bad use or bad input."""
+Reads meshes with tetrahedra in any format of meshio, or by tandem's own readers if meshio is not installed. Without meshes it uses two
+jacks of tandem's pile. Writes collide.png unless -o names another picture. Exit code 2: bad use or bad input."""
 import argparse
 import sys
 
@@ -21,11 +21,11 @@ try:
 except ImportError as error:
     fail(f"{error}; run `pip install .` in tandem's checkout")
 matplotlib.use("agg")
-from matplotlib import pyplot  # noqa: E402 (after the choice of how to draw)
+from matplotlib import pyplot  # noqa: E402 (after the choice of the backend)
 
 
 def read(path):
-    """(vertices, tetrahedra) of a file, or tandem's mesh."""
+    """(vertices, tetrahedra) of a file, or a tandem.Mesh."""
     try:
         import meshio
     except ImportError:
@@ -37,7 +37,7 @@ def read(path):
 
 
 def draw(contacts, picture):
-    """Points coloured by depth, and their normals."""
+    """Draws contact points coloured by depth, and their normals."""
     axes = pyplot.figure(figsize=(7, 6)).add_subplot(projection="3d")
     points = axes.scatter(*contacts.points.T, c=contacts.depths, s=6, cmap="viridis")
     span = numpy.ptp(contacts.points, axis=0).max() or 1.0
@@ -50,7 +50,7 @@ def draw(contacts, picture):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.partition(":")[2].partition("\n")[0])
     parser.add_argument("mesh", nargs="*", help="two mesh files")
-    parser.add_argument("--shift", help="where the second is put, x,y,z in the meshes' unit; a fifth of the first's length along x unless given")
+    parser.add_argument("--shift", help="translation of the second mesh, x,y,z in the meshes' unit; default: a fifth of the first mesh's length along x")
     parser.add_argument("--device", default="host", help="as tandem.devices() lists them")
     parser.add_argument("-o", "--output", default="collide.png", help="the picture")
     given = parser.parse_args()
@@ -62,7 +62,7 @@ def main():
         shift = [float(text) for text in given.shift.split(",")] if given.shift else [0.2 * numpy.ptp(meshes[0].vertices[:, 0]), 0, 0]
         collider = tandem.Collider(meshes, algorithm="tiled", device=given.device)
         answer = collider.run([[0, 0, 0, 1, 0, 0, 0], [*shift, 1, 0, 0, 0]])
-    except (Exception, SystemExit) as error:  # meshio ends the program where it cannot read
+    except (Exception, SystemExit) as error:  # meshio ends the program if it cannot read a file
         fail(error)
     contacts = answer.contacts()
     print(f"{answer.count} candidate pairs, {len(contacts.points)} contacts, {1e3 * answer.seconds:.2f} ms on {given.device}")

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A program that owns a CUDA context and stream, by the driver's API, and has tandem find candidate pairs in
-// them: on its stream, after its own commands, beside its own memory, and with the thread's current context
-// left as it was. Prints how many pairs there are. Built without a toolkit: it finds the driver's few entry
-// points itself. On the stub of the driver, which runs no kernels, it checks where the calls arrived
-// instead of the count.
+// A program that owns a CUDA context and stream, made with the driver API, and lets tandem find candidate
+// pairs in them. tandem works on that stream, after the program's own commands, and does not change the
+// thread's current context. Prints the number of pairs. Needs no toolkit, because it loads the entry points
+// of the driver itself. With the stub of the driver, which runs no kernels, it checks the streams of the
+// calls instead of the count.
 #include "find_pairs.h"
 
 #include <tandem/backends/cuda/cuda_device.h>
@@ -47,7 +47,7 @@ bool is_current(Handle context) {
     return call("cuCtxGetCurrent", &current) && current == context;
 }
 
-/// What tandem reads of the application's memory right after the application's own command.
+/// Whether tandem reads the application's memory only after the application's own command on the stream.
 bool follows(tandem::Device& device, Handle context, Handle stream) {
     Handle before = nullptr;
     Pointer memory = 0;
@@ -64,7 +64,7 @@ bool follows(tandem::Device& device, Handle context, Handle stream) {
            & call("cuCtxSetCurrent", before);
 }
 
-/// The whole of it while `current` is the thread's current context, or none is.
+/// Runs all checks while `current` is the thread's current context; null: none is.
 bool run(Handle context, Handle stream, Handle current) {
     if (!call("cuCtxSetCurrent", current)) return false;
     auto device = tandem::cuda::adopt(context, stream);
@@ -81,7 +81,7 @@ bool run(Handle context, Handle stream, Handle current) {
     return good & check(is_current(current), "the device's end changed the current context");
 }
 
-/// On the stub: whether everything arrived on the application's stream with its context current.
+/// With the stub: whether all calls used the application's stream with its context current.
 bool arrived(Handle context, Handle stream) {
     auto* const all = entry<unsigned long()>("stub_all_calls");
     if (all == nullptr) return true;
@@ -90,13 +90,13 @@ bool arrived(Handle context, Handle stream) {
     return on_stream > 50 && on_stream == all();
 }
 
-/// A context that is not current: the driver makes a new one current, on top of those before.
+/// Makes a context that is not current. The driver makes a new context current, so that it is popped.
 bool create(Handle& context) {
     Handle popped = nullptr;
     return call("cuCtxCreate_v2", &context, 0u, 0) && call("cuCtxPopCurrent_v2", &popped);
 }
 
-/// A stream of the context's own.
+/// Makes a stream of a context.
 bool create_stream(Handle context, Handle& stream) {
     return call("cuCtxSetCurrent", context) && call("cuStreamCreate", &stream, 1u)
            && call("cuCtxSetCurrent", Handle{});
@@ -113,8 +113,8 @@ int main() {
         return 1;
     bool good = true;
     for (auto* current : {context, other, Handle{}}) good &= run(context, stream, current);
-    good &= check(arrived(context, stream), "calls went elsewhere than to the application's stream");
-    // What is the application's outlives the device that borrowed it.
+    good &= check(arrived(context, stream), "some calls were not on the application's stream");
+    // Objects of the application must remain valid after the device that adopted them.
     good &= call("cuCtxSetCurrent", context) && call("cuStreamSynchronize", stream);
     good &= call("cuStreamDestroy_v2", stream) && call("cuCtxDestroy_v2", context)
             && call("cuCtxDestroy_v2", other);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// All that these programs ask of tandem: two glasses, and how many pairs of their tetrahedra may meet.
+// The part of tandem that these programs use: counts the candidate pairs of two glasses.
 #pragma once
 
 #include <tandem/algorithms/traversal.h>

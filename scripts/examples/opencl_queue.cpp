@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A program that owns an OpenCL context and queue, and has tandem find candidate pairs in them: on its queue,
-// after its own commands, and beside its own memory. Prints how many pairs there are.
+// A program that owns an OpenCL context and queue, and lets tandem find candidate pairs in them. tandem works
+// on that queue, after the program's own commands. Prints the number of pairs.
 #define CL_TARGET_OPENCL_VERSION 120
 #include "find_pairs.h"
 
@@ -19,7 +19,7 @@ bool check(bool good, const char* what) {
     return good;
 }
 
-/// What tandem reads of the application's memory right after the application's own command.
+/// Whether tandem reads the application's memory only after the application's own command on the queue.
 bool follows(tandem::Device& device, cl_command_queue queue, cl_mem memory) {
     const cl_uchar value = 0x5a;
     if (clEnqueueFillBuffer(queue, memory, &value, 1, 0, bytes, 0, nullptr, nullptr) != CL_SUCCESS)
@@ -40,7 +40,7 @@ bool run(cl_context context, cl_device_id id, cl_command_queue queue, cl_mem mem
     std::printf("%llu candidate pairs\n", static_cast<unsigned long long>(count));
     good &= check(count > 0, "no pairs");
     good &= check(device->bytes_allocated() == 0, "the session left memory behind");
-    return good & check(device->finish().events.empty(), "commands were recorded that nobody asked for");
+    return good & check(device->finish().events.empty(), "commands were recorded without a request");
 }
 
 } // namespace
@@ -55,7 +55,7 @@ int main() {
     auto* queue = clCreateCommandQueue(context, id, 0, &code);
     auto* memory = clCreateBuffer(context, CL_MEM_READ_WRITE, bytes, nullptr, &code);
     bool good = run(context, id, queue, memory);
-    // What is the application's outlives the device that borrowed it.
+    // Objects of the application must remain valid after the device that adopted them.
     good &= check(clFinish(queue) == CL_SUCCESS, "the queue is gone");
     good &= check(clReleaseMemObject(memory) == CL_SUCCESS, "the memory is gone");
     good &= check(clReleaseCommandQueue(queue) == CL_SUCCESS, "the queue is gone");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// mpirun -n 2 ranks: a program of several processes that has tandem share its frames between them. Each owns
-// some of the bodies and knows the poses of these alone; each finds some of the pairs. Prints what every rank
-// found, and how many pairs there are in all: as many on any number of ranks.
+// mpirun -n 2 ranks: a program of several processes that lets tandem divide its frames between them. Each
+// process owns some of the bodies, has only their poses, and finds some of the pairs. Prints the pairs of
+// every rank and their sum, which does not depend on the number of ranks.
 #include <tandem/algorithms/traversal.h>
 #include <tandem/backends/host/host_device.h>
 #include <tandem/backends/mpi/mpi_ranks.h>
@@ -11,9 +11,9 @@
 
 namespace {
 
-/// The frame as this rank knows it: what it owns. The rest may be anything.
+/// The frame with the poses of this rank's own bodies. The other poses are not read.
 tandem::Frame own_part(const tandem::Scene& scene, const tandem::Session& session, std::size_t number) {
-    const auto whole = scene.frame(number); // here a scene moves them; elsewhere a simulation
+    const auto whole = scene.frame(number); // in an application, a simulation computes the poses
     tandem::Frame frame;
     frame.poses.resize(scene.bodies.size());
     frame.deformed.resize(scene.bodies.size());
@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
         const auto ranks = tandem::mpi_ranks(MPI_COMM_WORLD);
         try {
             run(*ranks);
-        } catch (const std::exception& error) { // on all ranks alike
+        } catch (const std::exception& error) { // thrown on all ranks
             if (ranks->is_first()) std::fprintf(stderr, "ranks: %s\n", error.what());
             code = 1;
         }
