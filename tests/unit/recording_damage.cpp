@@ -102,7 +102,7 @@ TEST_F(RecordingDamage, OtherFilesAndVersions) {
               file_ + ": has version 7 of the format, this program reads version 1; record it again");
     EXPECT_THAT(failure_of([&] { Recording(path("none.frames")); }),
                 HasSubstr("none.frames: cannot be read"));
-    EXPECT_THAT(failure_of([&] { Recording(path("")); }), HasSubstr("is no file"));
+    EXPECT_THAT(failure_of([&] { Recording(path("")); }), HasSubstr("is not a regular file"));
 }
 
 /// Replaces bytes of the header and recomputes its checksum, as an attacker would.
@@ -116,7 +116,7 @@ TEST_F(RecordingDamage, InvalidValuesWithAValidChecksumAreRefused) {
         return failure(with_header(whole_, header_size_, at, change));
     };
     EXPECT_EQ(changed(40, "pile:bodies=4"), "no error");
-    EXPECT_THAT(changed(24, std::string_view("\0\0\0\0\0\0\xf8\x7f", 8)), HasSubstr("no time"));
+    EXPECT_THAT(changed(24, std::string_view("\0\0\0\0\0\0\xf8\x7f", 8)), HasSubstr("not a valid time"));
     EXPECT_THAT(changed(32, "\xff\xff\xff\xff"), HasSubstr("do not fill the header"));
     EXPECT_THAT(changed(36, "\xff\xff\xff\xff"), HasSubstr("do not fill the header"));
     EXPECT_THAT(changed(53, "\x03"), HasSubstr("3 is not a kind of body"));

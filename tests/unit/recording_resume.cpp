@@ -182,7 +182,7 @@ TEST_F(RecordingResume, DamagedCheckpointsAreRefused) {
     EXPECT_THAT(resume_failure(), HasSubstr("resume with the scene it was begun with"));
     std::filesystem::remove(checkpoint_path(file_));
     std::filesystem::create_directory(checkpoint_path(file_));
-    EXPECT_THAT(resume_failure(), HasSubstr("is no file"));
+    EXPECT_THAT(resume_failure(), HasSubstr("is not a regular file"));
 }
 
 } // namespace
