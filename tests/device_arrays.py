@@ -204,7 +204,7 @@ class Arrays(Case):
         self.assertNotEqual(soft._core.addresses[2], rows[1].address)
         for words, array in (("is in CUDA's memory of GPU 1, and the collider works on cuda:0", OnGpu(second, device=(2, 1))), ("shape (1, 3, 3)", OnGpu([second[:3]])),
                              ("vertices of body 1: its rows are not contiguous", OnGpu(second))):
-            if "beside" in words:
+            if "contiguous" in words:
                 array.array = numpy.repeat(second, 2, axis=1)[:, ::2]
             with self.assertRaisesRegex(ValueError, words.replace("(", "\\(").replace(")", "\\)")):
                 soft.run(vertices=[OnGpu(first), array])
@@ -381,7 +381,7 @@ class Arrays(Case):
         for device in ("host", "host+cuda:0"):
             for array_on_gpu in (OnGpu(array), with_table()(array)):
                 self.expect(ValueError, f"poses: is in CUDA's memory, and the collider works on {device}", self.collider(device=device).run, array_on_gpu)
-        self.expect(ValueError, "stream: device host is not one of CUDA's", self.collider, "host", stream=0)
+        self.expect(ValueError, "stream: device host is not a CUDA device", self.collider, "host", stream=0)
         self.expect(TypeError, "stream: type str; expected a CUDA stream or its address", self.collider, stream="main")
         self.expect(tandem.DeviceError, "cuda:4: the driver has 1 devices", self.collider, "cuda:4", stream=0)
         collider.run(OnGpu(array))

@@ -80,7 +80,7 @@ class RankScenes(Case):
         scene = ["pile:bodies=160,density=0.001,frames=1", "--repeat", 1, "--truth", "none", *CELL]
         status, _, errors = tandem("run", *scene, "--memory", 1 << 20)
         self.assertEqual(status, 3, errors)
-        needed = int(re.search(r"take (\d+) bytes", errors[0])[1])
+        needed = int(re.search(r"need (\d+) bytes", errors[0])[1])
         self.assertEqual(tandem("run", *scene, "--memory", needed // 2)[0], 3)
         status, text, errors = launch(of(4)("run", *scene, "--memory", needed // 2, "--out", self.work / "four.jsonl"))
         self.assertEqual((status, errors), (0, []), text)

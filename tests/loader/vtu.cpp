@@ -198,7 +198,7 @@ TEST(Vtu, BadData) {
     expect_failure("parts.vtu", parts, ":10", "the data end before");
     auto whole = packed;
     whole[head + 7] = 1;
-    expect_failure("whole.vtu", whole, ":10", "cannot hold");
+    expect_failure("whole.vtu", whole, ":10", "cannot contain");
     packed[head + 12 + 12 + 5] ^= 0x55;
     expect_failure("broken.vtu", packed, ":10", "part 0 does not decompress");
     auto letters = Example().file({});
