@@ -122,7 +122,7 @@ class Plans(PlanCase):
         self.refused("unknown name 'algoritms'; the nearest is 'algorithms'", algoritms=["tiled"])
         self.refused(["/include/0", "unknown name 'scene'; the nearest is 'scenes'"], include=[{"scene": SMALL}])
         self.refused(["/settings/k", "is an empty list"], settings={"k": []})
-        self.refused(["/scenes", "is empty"], scenes=[])
+        self.refused(["/scenes", "is an empty list"], scenes=[])
         self.refused("has no scenes", scenes=None, schema_agrees=False)
         self.refused(["/exclude/0", "matches no cell"], exclude=[{"settings": {"k": 24}}], schema_agrees=False)
         self.refused(["/exclude/0", "matches every cell"], exclude=[{}])
