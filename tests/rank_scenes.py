@@ -138,7 +138,7 @@ class RankScenes(Case):
         words = of(2)("run", PILE, "plates", *CELL, "--seconds", 60, "--noise", 1e-9, "--truth", "none", "--out", out)
         process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
         wait_for(lambda: len(ranks_of(process.pid)) == 2)
-        time.sleep(2)
+        wait_for(pathlib.Path(f"{out}.unfinished").exists)  # measuring has begun: mpirun knows all of its processes
         begin = time.monotonic()
         os.kill(ranks_of(process.pid)[1], signal.SIGKILL)
         text = process.communicate(timeout=10)[1]
