@@ -182,6 +182,11 @@ class CommandLine(Case):
         self.bad("the nearest is 'seed_threshold'", "run", "plates", "--set", "seed_treshold=1")
         self.bad("the nearest is 'opencl:0'", "run", "plates", "--device", "opencl:7")
         self.bad("the nearest is 'fair'", "run", "plates", "--preset", "fairr")
+        renamed = "preset 'resident' of chunked is now called 'grouped'"
+        for names in ("resident", "resident,fair"):  # without a preset of chunked by its own name
+            self.bad(renamed, "run", "plates", "--preset", names, "--dry-run")
+        self.bad(renamed, "run", "plates", "--algorithm", "chunked", "--preset", "resident", "--dry-run")
+        self.assertEqual(tandem("run", "plates", "--device", "host", "--preset", "grouped,resident,fair", "--dry-run")[0], 0)
         self.bad("the nearest is 'opencl:0'", "check", "plates", "--device", "opencl:7")
         self.bad("the nearest is 'chunked'", "check", "plates", "--algorithm", "chunkd")
         for setting in ("k=10", "group_size=0", "leaves=3", "precision=half", "pair_capacity=-1", "pair_capacity=4294967296",

@@ -10,7 +10,7 @@ import time
 import unittest
 import sys
 
-from program import PROGRAM, Case, tandem
+from program import PROGRAM, SOURCE, Case, tandem
 
 SCENES = ("plates:count=2", "pile:bodies=2,frames=1")
 CELLS = (*SCENES, "--frames", 0, "--device", "host", "--algorithm", "chunked,tiled", "--truth", "none")
@@ -23,6 +23,25 @@ class Running(Case):
     def cells(self, path):
         """Scene, algorithm and k of each record."""
         return sorted((r["scene"]["name"], r["algorithm"], r["settings"]["k"]) for r in self.records(path))
+
+    def test_committed_cells_have_the_keys_that_a_run_lists(self):
+        """Scene with digest, frames and every recorded setting; settings that are newer than the record are listed too."""
+        committed = self.records(SOURCE / "results/cpu/walks.jsonl") + self.records(SOURCE / "results/cpu/chunk-study.jsonl")[::24]
+        self.assertEqual(len(committed), 20)
+        for record in committed:
+            settings = {**record["settings"], **record["asked"]}
+            sets = [word for name, value in settings.items() for word in ("--set", f"{name}={value}")]
+            frames = f"{record['frames']['first']}:{record['frames']['last']}"
+            status, out, errors = tandem("run", record["scene"]["key"], "--frames", frames, "--algorithm", record["algorithm"], "--preset", record["preset"],
+                                         "--device", record["devices"][0]["id"], *sets, "--dry-run")
+            self.assertEqual((status, errors), (0, []), out)
+            key, = re.findall(rf"(?m)^ +({record['algorithm']}\|.*)$", out)
+            listed, recorded = key.split("|"), record["key"].split("|")
+            self.assertEqual(listed[2:-1], recorded[2:-1])
+            listed, recorded = (dict(part.split("=") for part in parts[-1].split(",")) for parts in (listed, recorded))
+            asked = {name: record["asked"].get(name, value) for name, value in recorded.items()}
+            self.assertEqual({name: listed.get(name) for name in recorded}, asked)
+            self.assertLessEqual(set(listed) - set(recorded), {"builder", "convert", "most_seeds", "origin", "pair_layout", "submission"})
 
     def test_ranges(self):
         for text, values in (("6..8:2", "6 8"), ("6..26*2", "6 12 24"), ("6,8..12*1.5", "6 8 12"), ("18", "18")):

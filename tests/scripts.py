@@ -484,14 +484,6 @@ class Scripts(Case):
         text = re.sub(r"<!-- answer: [a-z ]+ -->.*?<!-- end -->|^    .*?$", "", (SOURCE / "README.md").read_text(), flags=re.DOTALL | re.MULTILINE)
         self.assertEqual(re.findall(r"\d[\d.,]* ?(?:%|ms|us|ns|s|GB|GiB|MB|times|minutes|seconds)(?![A-Za-z])", text), [])
 
-    def test_links_of_pages_resolve(self):
-        pages = [p for p in SOURCE.rglob("*.md") if not p.relative_to(SOURCE).parts[0].startswith(("build", "."))]
-        self.assertGreater(len(pages), 15)
-        for page in pages:
-            for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", re.sub(r"`[^`]*`", "", page.read_text())):
-                if not re.match(r"[a-z]+:", target):
-                    self.assertTrue((page.parent / target).exists(), f"{page.relative_to(SOURCE)}: {target}")
-
     def test_quotes_equal_the_examples(self):
         """The user guide quotes every example, and every quote is in its file."""
         quoted, folder = collections.Counter(), SOURCE / "scripts/examples"
