@@ -252,18 +252,20 @@ class Scripts(Case):
 
     def test_older_records_are_converted_to_the_newest_schema(self):
         """What schema 3 of cells (2 of simulations, 1 of profiles) called otherwise, and nothing else, changes; converting again changes nothing."""
+        former = {"partition": "shares", "repartitions": "deals", "partition bodies": "deal bodies"}
+
         def older(record):
             if isinstance(record, list):
                 return [older(one) for one in record]
             if not isinstance(record, dict):
                 return record
-            record = {"shares" if name == "partition" else "deals" if name == "repartitions" else name: older(value) for name, value in record.items()}
+            record = {former.get(name, name): older(value) for name, value in record.items()}
             if record.get("algorithm") == "chunked" and record.get("preset") in ("grouped", "paper"):
                 record["preset"] = "resident"
             return record
 
         presets = set()
-        for name in ("h200/plan.jsonl", "h200/auto.jsonl", "h100x2/shares.jsonl", "h200/profile.jsonl", "h200/simulation-funnel.jsonl"):
+        for name in ("h200/plan.jsonl", "h200/auto.jsonl", "h100x2/shares.jsonl", "h100x2/passage/hosts.jsonl", "h200/profile.jsonl", "h200/simulation-funnel.jsonl"):
             records = committed(name)
             presets.update(record["preset"] for record in records if record.get("algorithm") == "chunked")
             path = self.work / "older.jsonl"
