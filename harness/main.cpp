@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/options/command_line.h"
-#include "harness/commands/memory_reserve.h"
+#include "base/memory_reserve.h"
 #include "harness/sampling/ranks/mpi_environment.h"
 #include "harness/sampling/ranks/run_on_ranks.h"
-#include "harness/commands/standard_streams.h"
-#include "harness/commands/text_lines.h"
+#include "base/standard_streams.h"
+#include "base/text_lines.h"
 #include "base/error.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 // tandem algorithms: lists all algorithms in short, or explains the named ones at length.
 #include "algorithms/traversal.h"
 #include "harness/commands/commands.h"
-#include "harness/commands/standard_streams.h"
-#include "harness/commands/text_lines.h"
+#include "base/standard_streams.h"
+#include "base/text_lines.h"
 
 #include <algorithm>
 #include <fmt/format.h>

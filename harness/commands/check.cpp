@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // tandem check: compares every algorithm on every device with the reference, and counts the pairs of the
 // exact truth that it misses.
+#include "harness/commands/commands.h"
 #include "harness/plans/inputs.h"
 #include "harness/plans/job.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 #include "base/error.h"
 #include "scenes/hard/hard.h"
 

@@ -1,54 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/verify/accuracy/truths.h"
-#include "harness/verify/flaws.h"
-#include "harness/plans/plan_file.h"
-#include "harness/plans/shard.h"
+#include "harness/plans/run_options.h"
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace tandem {
-
-/// Options of `tandem run` and `tandem check`, as given.
-struct RunOptions {
-    std::string scene;
-    std::vector<std::string> scenes; ///< `tandem run` only: measured one after another
-    std::optional<PlanFile>
-        plan; ///< `tandem run` only: replaces `scenes`; `request` and `frames` override its fields
-    std::vector<std::string> meshes; ///< --mesh: replaces the scene
-    std::vector<std::string> poses;  ///< --pose "tx ty tz qw qx qy qz", in the order of the meshes
-    Request request;
-    std::string frames;                     ///< "FIRST:LAST" or "N"; empty: all frames of the scene
-    double choose_seconds = 10;             ///< limit on the replays that auto makes to choose for a cell
-    bool choose_afresh = false;             ///< auto: ignore the stored choice
-    std::optional<std::size_t> repeat;      ///< samples of each cell; none: the stopping criterion decides
-    std::optional<double> noise;            ///< stop at this relative width of the median's interval
-    double seconds = 10;                    ///< stop after this time of a cell's rounds
-    std::optional<std::uint64_t> seed;      ///< seed of the order of cells in a round; none: random
-    std::size_t profile = 0;                ///< number of plain replays for a profiler; 0: measure instead
-    bool dry_run = false;                   ///< list the cells and measure none
-    bool resume = false;                    ///< skip the cells that `out` already has
-    bool isolate = false;                   ///< run each check and each round of a cell in its own process
-    Shard shard;                            ///< which groups of the plan are measured
-    double timeout = 0;                     ///< seconds that such a process may take; 0: no limit
-    std::string out;                        ///< append records to this file; empty: none are written
-    std::string dump_pairs, dump_contacts;  ///< CSV files of the first finished cell; empty: none
-    std::string trace;                      ///< timeline of one frame of the first finished cell; empty: none
-    std::vector<std::string> require;       ///< devices or backends whose absence is a failure
-    bool check = true;                      ///< compare answers with the reference
-    bool check_afresh = false;              ///< compute references and truths again, ignore stored ones
-    bool count = true;                      ///< replay once more with kernels that count their work
-    TruthAmount truth = TruthAmount::pairs; ///< compare answers with the exact truth
-    std::size_t truth_contacts = 0;         ///< exact contacts of at most this many pairs a frame; 0: all
-    Degenerate degenerate = Degenerate::flat; ///< how flawed tetrahedra are handled
-    std::optional<std::size_t> threads;       ///< threads of device host, as setting threads
-    std::size_t memory = 0;                   ///< memory limit of each device in bytes; 0: none
-    bool quiet = false;
-};
 
 /// Options of `tandem accuracy`, as given: the options of `tandem run`, applied to each scene.
 struct AccuracyOptions {

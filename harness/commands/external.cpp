@@ -3,7 +3,7 @@
 
 #include "harness/sampling/interrupt.h"
 #include "harness/commands/programs.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 #include "base/error.h"
 
 #include <cstdlib>

@@ -4,7 +4,7 @@
 #include "harness/sampling/conditions.h"
 #include "harness/plans/inputs.h"
 #include "harness/record/journal.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 #include "scenes/dynamics_settings.h"
 #include "scenes/hard/hard.h"
 

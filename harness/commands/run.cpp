@@ -10,13 +10,13 @@
 #include "harness/plans/job.h"
 #include "harness/plans/key.h"
 #include "harness/plans/cell_groups.h"
-#include "harness/commands/progress.h"
+#include "base/progress.h"
 #include "harness/sampling/ranks/mpi_environment.h"
 #include "harness/sampling/ranks/run_on_ranks.h"
 #include "harness/sampling/ranks/rank_team.h"
 #include "harness/commands/run_parts.h"
 #include "harness/sampling/replays.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 #include "harness/profile/timeline/trace_frame.h"
 
 #include <algorithm>

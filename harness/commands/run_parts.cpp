@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/commands/run_parts.h"
 
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 #include "harness/record/table/table.h"
 #include "harness/record/verdict.h"
 
@@ -9,21 +9,6 @@
 #include <random>
 
 namespace tandem {
-
-PlanFile plan_of(const RunOptions& options) {
-    Product given{options.scenes, {}, options.request};
-    if (!options.frames.empty()) given.frames = {options.frames};
-    // An empty name stands for --mesh; without it open_scene() reports that there is no scene.
-    if (given.scenes.empty()) given.scenes.emplace_back();
-    PlanFile plan;
-    if (options.plan) {
-        plan = *options.plan;
-        replace(plan, given);
-    } else {
-        plan.products = {given};
-    }
-    return plan;
-}
 
 void print_left_out(const CellGroups& all) {
     if (all.repeated > 0)

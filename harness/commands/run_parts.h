@@ -7,9 +7,6 @@
 
 namespace tandem {
 
-/// The plan of the options, or one of a single product.
-PlanFile plan_of(const RunOptions& options);
-
 /// How cells are measured according to the options. The caller sets the truths.
 Measuring measuring_of(const RunOptions& options);
 

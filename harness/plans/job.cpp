@@ -9,7 +9,7 @@
 #include "harness/sampling/ranks/rank_team.h"
 #include "harness/record/record.h"
 #include "harness/sampling/local_sampler.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 #include "base/error.h"
 
 #include <fmt/format.h>

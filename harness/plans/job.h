@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/commands/commands.h"
+#include "harness/plans/run_options.h"
 #include "harness/record/journal.h"
-#include "harness/commands/progress.h"
+#include "base/progress.h"
 #include "harness/record/record.h"
 #include "harness/sampling/rounds.h"
 #include "harness/record/unfinished.h"

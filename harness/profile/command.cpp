@@ -7,7 +7,7 @@
 #include "harness/plans/job.h"
 #include "harness/profile/output.h"
 #include "harness/sampling/local_sampler.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 #include "harness/profile/timeline/trace_frame.h"
 #include "base/error.h"
 

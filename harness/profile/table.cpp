@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/profile/output.h"
 #include "harness/record/table/columns.h"
-#include "harness/commands/text_lines.h"
+#include "base/text_lines.h"
 
 #include <algorithm>
 #include <fmt/format.h>

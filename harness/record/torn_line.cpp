@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/torn_line.h"
 
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 #include "base/durable.h"
 #include "base/error.h"
 

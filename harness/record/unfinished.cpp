@@ -2,7 +2,7 @@
 #include "harness/record/unfinished.h"
 
 #include "harness/record/environment.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 #include "base/error.h"
 
 #include <filesystem>

@@ -2,7 +2,7 @@
 #include "harness/sampling/local_sampler.h"
 
 #include "algorithms/bounds/geometry.h"
-#include "harness/commands/memory_reserve.h"
+#include "base/memory_reserve.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/simulate/simulate.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 
 namespace tandem {
 

@@ -4,7 +4,7 @@
 #include "harness/commands/external.h"
 #include "base/temporary_directory.h"
 #include "harness/commands/programs.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 #include "base/error.h"
 #include "scenes/export/glb.h"
 #include "scenes/recording/recording.h"

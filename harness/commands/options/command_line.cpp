@@ -6,7 +6,7 @@
 #include "harness/commands/options/unknown_words.h"
 #include "harness/record/environment.h"
 #include "harness/sampling/ranks/run_on_ranks.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 #include "base/error.h"
 
 #include <CLI/CLI.hpp>

@@ -3,7 +3,7 @@
 
 #include "harness/commands/options/actions.h"
 #include "harness/commands/options/offers.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -7,6 +7,7 @@
 #include "harness/commands/commands.h"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <memory>
 
 namespace tandem {

@@ -2,7 +2,7 @@
 #include "harness/plans/choosing/choose.h"
 
 #include "harness/plans/choosing/trials.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 #include "harness/sampling/statistics.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/commands/commands.h"
+#include "harness/plans/run_options.h"
 #include "harness/sampling/cell_sampler.h"
 
 #include <span>

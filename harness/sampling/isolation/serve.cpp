@@ -6,7 +6,7 @@
 #include "harness/sampling/isolation/request.h"
 #include "harness/plans/job.h"
 #include "harness/sampling/local_sampler.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 #include "base/error.h"
 
 #include <array>

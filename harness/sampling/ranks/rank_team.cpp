@@ -4,8 +4,8 @@
 #include "algorithms/parameters/table.h"
 #include "algorithms/distributed/job_session.h"
 #include "harness/plans/device_models.h"
+#include "harness/plans/cell_groups.h"
 #include "harness/plans/cells.h"
-#include "harness/commands/run_parts.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,7 +3,7 @@
 
 #include "algorithms/distributed/agreement.h"
 #include "backends/device.h"
-#include "harness/commands/commands.h"
+#include "harness/plans/run_options.h"
 #include "harness/sampling/ranks/own_device.h"
 
 #include <memory>

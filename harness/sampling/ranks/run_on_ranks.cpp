@@ -6,7 +6,7 @@
 #include "harness/sampling/interrupt.h"
 #include "harness/sampling/ranks/environment.h"
 #include "harness/sampling/ranks/mpi_environment.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 
 #include <cstdlib>
 #include <fmt/format.h>

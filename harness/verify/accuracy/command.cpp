@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // tandem accuracy: error and speed over the settings that affect either.
+#include "harness/commands/commands.h"
 #include "harness/verify/accuracy/figures.h"
 #include "harness/verify/adversarial.h"
 #include "harness/plans/inputs.h"
 #include "harness/plans/job.h"
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 #include "harness/sampling/statistics.h"
 #include "base/error.h"
 #include "scenes/hard/hard.h"

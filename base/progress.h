@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 
 #include <string_view>
 #include <unistd.h>

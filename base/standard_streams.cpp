@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/commands/standard_streams.h"
+#include "base/standard_streams.h"
 
 #include <cerrno>
 #include <csignal>

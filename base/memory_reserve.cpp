@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/commands/memory_reserve.h"
+#include "base/memory_reserve.h"
 
 #include <atomic>
 #include <cstdlib>

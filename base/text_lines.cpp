@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/commands/text_lines.h"
+#include "base/text_lines.h"
 
 #include <algorithm>
 #include <fmt/format.h>
