@@ -13,11 +13,11 @@ if("${changes}" STREQUAL "" AND clean STREQUAL COMMIT)
 else()
   set(dirty true)
 endif()
-# Digest of the files that determine times and answers, in the order of their paths. It is equal on every machine and
+# Digest of the files that determine times, answers and stored references, in the order of their paths. It is equal on every machine and
 # needs no git.
 set(sources)
-file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/backends/*.cpp ${SOURCE}/backends/*.h ${SOURCE}/algorithms/*.c* ${SOURCE}/algorithms/*.h
-     ${SOURCE}/scenes/*.cpp ${SOURCE}/scenes/*.h ${SOURCE}/harness/sampling/* ${SOURCE}/cmake/embed_kernels.py)
+file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/base/*.cpp ${SOURCE}/base/*.h ${SOURCE}/geometry/*.cpp ${SOURCE}/geometry/*.h ${SOURCE}/backends/*.cpp ${SOURCE}/backends/*.h ${SOURCE}/algorithms/*.c* ${SOURCE}/algorithms/*.h
+     ${SOURCE}/scenes/*.cpp ${SOURCE}/scenes/*.h ${SOURCE}/harness/sampling/* ${SOURCE}/harness/verify/* ${SOURCE}/cmake/embed_kernels.py)
 foreach(file ${files})
   file(SHA256 ${SOURCE}/${file} digest)
   string(APPEND sources "${file} ${digest}\n")

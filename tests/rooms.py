@@ -97,6 +97,14 @@ class Rooms(unittest.TestCase):
         print(f"{count} includes")
         self.assertEqual(errors, [])
 
+    def test_lists_of_rooms_elsewhere_are_complete(self):
+        """What formats, analyses, compiles or digests sources names every room of the library and the program."""
+        rooms = set(Rules((SOURCE / PAGE).read_text(encoding="utf-8")).rooms) - {"python/core", "tests", "scripts"}
+        self.assertGreater(len(rooms), 5)
+        for name in ("scripts/check_format", "scripts/check_tidy", ".clang-tidy", "cmake/commit.cmake", "CMakeLists.txt"):
+            words = set(re.findall(r"[a-z_]+", (SOURCE / name).read_text(encoding="utf-8")))
+            self.assertLessEqual(rooms, words, name)
+
     def test_the_page_names_rooms_that_exist(self):
         rules = Rules((SOURCE / PAGE).read_text(encoding="utf-8"))
         for room, allowed in rules.rooms.items():
