@@ -7,10 +7,12 @@ import copy
 import json
 import lzma
 import os
+import pathlib
 import random
 import signal
 import subprocess
 import sys
+import tempfile
 import unittest
 import unittest.mock
 
@@ -21,7 +23,7 @@ from tandem import lines
 from tandem.comparison.cells import Answer, RecordedCell
 from tandem.errors import BadUse, OutputError
 from tandem.files import replace_whole
-from tandem.report import assembly, libraries
+from tandem.report import assembly, libraries, scene
 from tandem.report.conditions import conditions_text, sampling_text
 from tandem.report.data import data_of
 from tandem.report.groups import groups_of
@@ -409,6 +411,20 @@ class Commands(Case):
         self.assertEqual((process.returncode, errors), (143, ""))
         self.assertEqual(list(folder.iterdir()), [])
         self.assertFalse((self.work / "ended.html").exists())
+
+    def test_a_signal_before_the_export_starts(self):
+        late = []
+        self.addCleanup(signal.signal, signal.SIGTERM, signal.signal(signal.SIGTERM, lambda *_: late.append("a handler of the test")))
+        made = []
+
+        def signalled(**options):
+            made.append(tempfile.TemporaryDirectory(**options))
+            os.kill(os.getpid(), signal.SIGTERM)
+            return made[-1]
+
+        with unittest.mock.patch.object(scene, "tempfile", unittest.mock.Mock(TemporaryDirectory=signalled)), self.assertRaises(scene.ExportEnded) as ended:
+            scene.shown_scene(PROGRAM, ["plates", "--frames=0"])
+        self.assertEqual((ended.exception.code, late, pathlib.Path(made[0].name).exists()), (143, [], False))
 
 
 if __name__ == "__main__":

@@ -71,23 +71,28 @@ def words_of(scene, options):
     return [*words, *(["--contacts"] if options.contacts else []), *(["--", scene] if scene else [])]
 
 
-def _exported(program, words, path):
-    with _SignalForwarder() as forwarder:
-        code = forwarder.run([program, "export", f"--geometry={path}", *words])
+def _exported(forwarder, program, words, path):
+    code = forwarder.run([program, "export", f"--geometry={path}", *words])
     if code > 128 and not forwarder.signalled:
         raise OutputError(f"tandem export was ended by signal {code - 128}")
-    if code != 0 or forwarder.signalled:
-        raise ExportEnded(code or 128 + signal.SIGTERM)
+    if code != 0:
+        raise ExportEnded(code)
     return path.read_text(encoding="utf-8").rstrip("\n")
+
+
+def _temporary_folder():
+    try:
+        return tempfile.TemporaryDirectory(prefix="tandem-")
+    except OSError as problem:
+        raise BadUse(f"no folder for temporary files ({problem.strerror}); set TMPDIR to one") from None
 
 
 def shown_scene(program, words):
     """ShownScene of an export with the arguments `words`. Raises ExportEnded, BadUse and OutputError."""
-    try:
-        folder = tempfile.TemporaryDirectory(prefix="tandem-")
-    except OSError as problem:
-        raise BadUse(f"no folder for temporary files ({problem.strerror}); set TMPDIR to one") from None
-    with folder:
-        text = _exported(program, words, pathlib.Path(folder.name) / "scene.json")
+    with _SignalForwarder() as forwarder: # for as long as the folder exists: a signal never leaves it behind
+        with _temporary_folder() as folder:
+            text = _exported(forwarder, program, words, pathlib.Path(folder) / "scene.json")
+        if forwarder.signalled:
+            raise ExportEnded(128 + signal.SIGTERM)
     scene = json.loads(text)
     return ShownScene(text, scene["name"], scene["key"], scene["of_frames"])
