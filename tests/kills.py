@@ -78,7 +78,7 @@ class Kills(Case):
         """Values that every run must record equally, with their counts."""
         lines = [json.loads(line) for line in whole_lines(path)]
         return collections.Counter(json.dumps([line.get(name) for name in ("key", "kind", "step", "exit", "status", "asked", "agreement")]
-                                              + [line["work"]["candidate_pairs"] if "work" in line else None]) for line in lines if line.get("kind") != "run")
+                                              + [line["work"]["candidate_pairs"] if "work" in line else None]) for line in lines if line.get("kind") not in ("run", "verdict"))
 
     def undisturbed(self, command):
         """(folder, seconds) of a run without a kill."""

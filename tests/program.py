@@ -25,6 +25,11 @@ LONG = "TANDEM_LONG_FORM" in os.environ
 SMALL = {name: 65536 for name in ("pair_capacity", "contact_capacity", "queue_bytes", "seed_capacity", "tile_pair_capacity")}
 
 
+def cells_of(text):
+    """The records of cells among lines of JSON, without verdicts."""
+    return [record for record in map(json.loads, text.splitlines()) if record.get("kind") != "verdict"]
+
+
 def sets(settings):
     return [word for name, value in settings.items() for word in ("--set", f"{name}={value}")]
 
@@ -98,7 +103,8 @@ class Case(unittest.TestCase):
         cls.folder.cleanup()
 
     def records(self, path):
-        records = [json.loads(line) for line in path.read_text().splitlines()]
+        """The records of cells in a file, checked against their schema, without verdicts."""
+        records = cells_of(path.read_text())
         for record in records:
             problems = ["/".join(map(str, e.absolute_path)) + ": " + e.message for e in self.validator.iter_errors(record)]
             self.assertEqual(problems, [])

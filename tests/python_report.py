@@ -74,13 +74,13 @@ class Sentences(unittest.TestCase):
     def test_indistinguishable_cells(self):
         nearly = [ONE_MS[4], ONE_MS[1] + 0.002, *ONE_MS[2:4], ONE_MS[0], *ONE_MS[5:]]
         groups, sentences = groups_and_sentences([cell_of("a", ONE_MS), cell_of("b", nearly)])
-        self.assertFalse(groups[0].ranked[1].is_distinguished)
+        self.assertFalse(groups[0].ranked[1].is_told_apart)
         self.assertIn("is not told apart from it (1.000 times its time [", sentences)
 
     def test_one_round_is_not_enough(self):
         groups, sentences = groups_and_sentences([cell_of("a", [1.0]), cell_of("b", [2.0])])
-        self.assertFalse(groups[0].ranked[1].is_distinguished)
-        self.assertIn("takes 2.000 times as long, in only one round, so that there is no interval", sentences)
+        self.assertFalse(groups[0].ranked[1].is_told_apart)
+        self.assertIn("takes 2.000 times as long (one round: no interval)", sentences)
 
     def test_rounds_of_one_session_are_pairs(self):
         """Rounds that rise and fall together distinguish cells of one session, but not cells of two sessions."""
@@ -88,7 +88,7 @@ class Sentences(unittest.TestCase):
         for sessions, is_distinguished in ((("s", "s"), True), (("s", "t"), False)):
             cells = [cell_of(name, [factor * ms for ms in tide], session=session)
                      for name, factor, session in zip("ab", (1, 1.05), sessions)]
-            self.assertEqual(groups_of(cells)[0].ranked[1].is_distinguished, is_distinguished)
+            self.assertEqual(groups_of(cells)[0].ranked[1].is_told_apart, is_distinguished)
 
     def test_failed_wrong_and_older_are_never_ranked(self):
         cells = [cell_of("a", TWO_MS), cell_of("b", ONE_MS, status="wrong"), cell_of("c", ONE_MS, status="failed", failure="no memory"),

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import unittest
 
-from program import LONG, PROGRAM, SOURCE, Case, tandem
+from program import LONG, PROGRAM, SOURCE, Case, cells_of, tandem
 
 
 def paths(value, path=()):
@@ -37,7 +37,7 @@ class Records(Case):
         status, text, errors = tandem("devices", "--measure", "--device", "opencl:0", "--out", out)
         self.assertEqual((status, errors), (0, []), text)
         self.assertIn("read of device memory", text)
-        records = [json.loads(line) for line in out.read_text().splitlines()]
+        records = cells_of(out.read_text())
         self.assertEqual([r["device"]["id"] for r in records], ["opencl:0"])
         for name in ("copy_bytes_per_s", "launch_s", "overlap_tests_k8_per_s"):
             self.assertGreater(records[0][name]["median"], 0)
@@ -223,7 +223,7 @@ class Records(Case):
         status, text, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "tiled,chunked", "--device", "host",
                                       "--set", "k=8,18", "--repeat", 3, "--out", out)
         self.assertEqual(status, 0, (text, errors))
-        records = [json.loads(line) for line in out.read_text().splitlines()]
+        records = cells_of(out.read_text())
         failed = json.loads(json.dumps(records[0]))
         failed.update(status="failed", failure='out of "memory",\nby 3 bytes', work=None, total_ns=None, preparation=None, error=None)
         with open(out, "a") as file:
@@ -265,7 +265,7 @@ class Records(Case):
         status, text, errors = tandem("export", out, "--csv")
         self.assertEqual((status, text), (0, table.read_text()))
         self.assertEqual(len(errors), 1)
-        self.assertIn(f"{out}:6: the last line has no end", errors[0])
+        self.assertIn(f"{out}:{len(out.read_text().splitlines())}: the last line has no end", errors[0])
 
     def test_files_that_are_not_records_give_no_table(self):
         other, empty = self.work / "other.jsonl", self.work / "empty.jsonl"

@@ -10,7 +10,7 @@ import time
 import unittest
 import sys
 
-from program import PROGRAM, SOURCE, Case, tandem
+from program import PROGRAM, SOURCE, Case, cells_of, tandem
 
 SCENES = ("plates:count=2", "pile:bodies=2,frames=1")
 CELLS = (*SCENES, "--frames", 0, "--device", "host", "--algorithm", "chunked,tiled", "--truth", "none")
@@ -18,7 +18,7 @@ CELLS = (*SCENES, "--frames", 0, "--device", "host", "--algorithm", "chunked,til
 
 class Running(Case):
     def records(self, path):
-        return [json.loads(line) for line in path.read_text().splitlines()]
+        return cells_of(path.read_text())
 
     def cells(self, path):
         """Scene, algorithm and k of each record."""
@@ -85,7 +85,7 @@ class Running(Case):
         self.assertEqual(tandem(*arguments)[0], 0)
         whole = self.cells(out)
         self.assertEqual(len(set(whole)), 8)
-        lines = out.read_text().splitlines(keepends=True)
+        lines = [json.dumps(record) + "\n" for record in cells_of(out.read_text())]
         # Records of another program version, and failed or interrupted ones, do not count as finished.
         other = json.loads(lines[3])
         other["environment"]["sources"] = "0" * 16
@@ -104,7 +104,7 @@ class Running(Case):
         self.assertIn("8 cells are already in ", text)
         self.assertEqual((status, len(self.records(out))), (0, 11))
         self.bad("--resume requires --out", "run", *CELLS, "--resume")
-        out.write_text(lines[0].replace('"schema":4', '"schema":2', 1))
+        out.write_text(json.dumps({**json.loads(lines[0]), "schema": 2}) + "\n")
         self.bad("has records of schema 2", *arguments, "--resume")
 
     def test_an_interrupt_keeps_finished_measurements(self):

@@ -3,7 +3,7 @@
 """validate_records.py [FILE.jsonl|FILE.jsonl.xz ...]: checks records against results/record.schema.json. Files with
 other names have other schemas of results/: ceilings*.jsonl (ceilings), simulation*.jsonl, sim-*, host-*, serial-*
 and parallel-*.jsonl (simulation), steps.jsonl (paper), tried*.jsonl (tried), profile*.jsonl and profile records
-in any file (profile). Without files it checks all committed ones. Exit code 1; FILE:LINE and position of the
+in any file (profile), lines of kind verdict in any file (verdict). Without files it checks all committed ones. Exit code 1; FILE:LINE and position of the
 first errors are printed."""
 import json
 import lzma
@@ -32,7 +32,7 @@ def problems_of(line, validators, kind):
         return [f"not JSON: {error}"]
     # Records of profiles and cells identify themselves, also in one file.
     if isinstance(record, dict) and kind in ("record", "profile"):
-        kind = "profile" if "profile_of" in record else "record" if "key" in record else kind
+        kind = "profile" if "profile_of" in record else "record" if "key" in record else "verdict" if record.get("kind") == "verdict" else kind
     is_valid, validator = validators[kind]
     try:
         is_valid(record)
@@ -82,7 +82,7 @@ def validator_of(name):
 
 def main(names):
     # The first validator decides, in a tenth of the other's time; the second finds all errors.
-    validators = {kind: (fastjsonschema.compile(schema_of(kind + ".schema.json")), validator_of(kind + ".schema.json")) for kind in ("record", "ceilings", "simulation", "profile", "paper", "tried")}
+    validators = {kind: (fastjsonschema.compile(schema_of(kind + ".schema.json")), validator_of(kind + ".schema.json")) for kind in ("record", "ceilings", "simulation", "profile", "paper", "tried", "verdict")}
     files = [pathlib.Path(name) for name in names] or sorted([*(ROOT / "results").glob("**/*.jsonl"), *(ROOT / "results").glob("**/*.jsonl.xz")])
     if not files:
         print("no records are committed yet")

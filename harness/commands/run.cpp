@@ -103,7 +103,7 @@ private:
     std::unique_ptr<Job> open(const CellGroup& group, const Unfit& unfit) const;
     void open_files();
     int measure(Job& job);
-    void print(const Job& job, const std::map<const Cell*, CellResult>& results) const;
+    void conclude(const Job& job, const std::map<const Cell*, CellResult>& results);
     int end(int code);
     void leave_out_finished(Job& job);
     int list_all();
@@ -122,7 +122,7 @@ private:
     FinishedCells finished_;
     Unfinished unfinished_;
     Progress progress_;
-    std::size_t listed_ = 0, unknown_ = 0, measured_ = 0, left_out_ = 0;
+    std::size_t listed_ = 0, unknown_ = 0, measured_ = 0, left_out_ = 0, verdicts_ = 0;
     double seconds_ = 0;
     bool interrupted_ = false;
 };
@@ -220,7 +220,7 @@ int Run::measure(Job& job) {
                                      results.emplace(result.cell, result);
                                  });
     measured_ += results.size();
-    print(job, results);
+    conclude(job, results);
     // Dumps come last, because a dump that cannot be written ends the run.
     for (const auto& cell : job.cells)
         if (const auto found = results.find(&cell); found != results.end() && found->second.measured) {
@@ -232,18 +232,24 @@ int Run::measure(Job& job) {
     return code;
 }
 
-void Run::print(const Job& job, const std::map<const Cell*, CellResult>& results) const {
+/// Prints the results and records the verdicts on them.
+void Run::conclude(const Job& job, const std::map<const Cell*, CellResult>& results) {
     std::vector<const CellResult*> in_order;
     for (const auto& cell : job.cells)
         if (const auto found = results.find(&cell); found != results.end())
             in_order.push_back(&found->second);
-    print_results(in_order);
+    const auto rows = rows_of(job, in_order);
+    print_results(rows, in_order);
+    if (interrupted_ || file_->failed() || !is_first(team_)) return;
+    for (const auto& verdict : verdicts_of(rows))
+        verdicts_ += file_->append_or_report(verdict_record(verdict, rows, job.scene, job.range)) ? 1 : 0;
 }
 
 /// Prints the last messages and returns the exit code.
 int Run::end(int code) {
     if (left_out_ > 0) put("{} cells are already in {}\n", left_out_, options_.out);
-    if (!options_.out.empty()) put("{} records appended to {}\n", file_->appended(), options_.out);
+    if (!options_.out.empty())
+        put("{} records appended to {}\n", file_->appended() - verdicts_, options_.out);
     if (!interrupted_ && !file_->failed()) unfinished_.remove();
     if (!interrupted_ || file_->failed()) return code;
     const bool can_resume = !options_.out.empty();

@@ -2,8 +2,9 @@
 #include "harness/commands/run_parts.h"
 
 #include "base/standard_streams.h"
+#include "harness/plans/key.h"
 #include "harness/record/table/table.h"
-#include "harness/record/verdict.h"
+#include "harness/record/answer.h"
 
 #include <fmt/format.h>
 #include <random>
@@ -28,19 +29,21 @@ Measuring measuring_of(const RunOptions& options) {
     return measuring;
 }
 
-void print_results(std::span<const CellResult* const> results) {
+std::vector<Row> rows_of(const Job& job, std::span<const CellResult* const> results) {
     std::vector<Row> rows;
-    std::vector<const CellResult*> measured;
-    for (const auto* result : results) {
-        if (!result->measured) continue;
-        measured.push_back(result);
-        rows.push_back({result->cell, &result->measurement});
-    }
+    for (const auto* result : results)
+        if (const auto& m = result->measurement; result->measured)
+            rows.push_back({result->cell, &m, key_of(*result->cell, m.settings, job.scene, job.range)});
+    return rows;
+}
+
+void print_results(std::span<const Row> rows, std::span<const CellResult* const> results) {
     if (rows.empty()) return;
     put("\n{}\n", result_tables(rows, prints_colour()));
-    for (const auto* result : measured) {
+    for (const auto* result : results) {
+        if (!result->measured) continue;
         const auto doubt = doubts(*result);
-        put("{}: {}{}\n", describe(*result->cell), verdict(result->measurement),
+        put("{}: {}{}\n", describe(*result->cell), answer_text(result->measurement),
             doubt.empty() ? "" : "\n  " + doubt);
     }
 }

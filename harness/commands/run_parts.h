@@ -4,6 +4,7 @@
 
 #include "harness/plans/job.h"
 #include "harness/plans/cell_groups.h"
+#include "harness/record/verdict.h"
 
 namespace tandem {
 
@@ -14,7 +15,10 @@ Measuring measuring_of(const RunOptions& options);
 void print_left_out(const CellGroups& all);
 void print_skipped(const InputError& error);
 
-/// Prints the tables of the measured cells and the verdict on each.
-void print_results(std::span<const CellResult* const> results);
+/// The measured cells among the results, in order.
+std::vector<Row> rows_of(const Job& job, std::span<const CellResult* const> results);
+
+/// Prints the tables of the rows, and for each measured result whether its answer is right.
+void print_results(std::span<const Row> rows, std::span<const CellResult* const> results);
 
 } // namespace tandem

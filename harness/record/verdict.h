@@ -1,14 +1,64 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "harness/plans/job.h"
+#include "harness/plans/frames.h"
+#include "harness/sampling/measurement.h"
+#include "harness/sampling/ratio.h"
+
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
 
 namespace tandem {
 
-/// The last printed line of a cell: right, or the number of wrong answers.
-std::string verdict(const Measurement& m);
+/// A measured cell among the others of its run.
+struct Row {
+    const Cell* cell;
+    const Measurement* measurement;
+    std::string key = {}; ///< of its record
+};
 
-/// Reasons to doubt a cell's times, such as disturbed rounds or drift; empty when there are none.
-std::string doubts(const CellResult& result);
+/// Whether the ratio of two cells' times has a meaning: equal devices, bounds (k, axes, precision, rounding,
+/// placement, origin) and output, and both right with at least one pair. The rows have one scene.
+bool comparable(const Row& a, const Row& b);
+
+/// A cell of a verdict, compared with the fastest.
+struct RankedCell {
+    std::size_t row = 0;    ///< index of its row
+    double median_ns = 0;   ///< of its rounds; a replay of all frames
+    std::size_t rounds = 0; ///< rounds that both have; their ratios are paired
+    Ratio ratio; ///< its time to that of the fastest; without an interval for fewer than two rounds
+
+    bool has_interval() const { return rounds > 1; }
+    /// Whether the interval excludes 1.
+    bool is_told_apart() const { return has_interval() && (ratio.low > 1 || ratio.high < 1); }
+};
+
+/// Which of several comparable cells is the fastest, and which others are told apart from it.
+/// python/tandem/verdicts.py has the same rule.
+struct Verdict {
+    std::vector<RankedCell> cells; ///< by median, then by key
+    bool answers_differ = false;   ///< unchecked cells found different pairs: none is the fastest
+
+    /// Whether no cell is told to be faster: the first, and those with an interval that contains 1.
+    bool is_leader(const RankedCell& cell) const;
+};
+
+/// Ratio of the times of two cells over the rounds that both have. Without such rounds it is the ratio of
+/// the medians.
+RankedCell compared(const Measurement& m, const Measurement& fastest);
+
+/// One verdict for each set of at least two comparable rows with samples, in the order of their first rows.
+std::vector<Verdict> verdicts_of(std::span<const Row> rows);
+
+/// "A is the fastest of 3 with 1.2 ms a frame; the next, B, takes 1.5 times as long [1.4, 1.6]." A cell that
+/// is not told apart from the next one "has the lowest median". `labels` are the names of all rows.
+std::string verdict_sentence(const Verdict& verdict, std::span<const Row> rows,
+                             std::span<const std::string> labels);
+
+/// The line of results/verdict.schema.json. `rows` have keys.
+nlohmann::ordered_json verdict_record(const Verdict& verdict, std::span<const Row> rows, const Scene& scene,
+                                      const FrameRange& range);
 
 } // namespace tandem

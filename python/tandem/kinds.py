@@ -4,7 +4,7 @@ import contextlib
 
 from . import lines
 
-SCHEMAS = {"cell": 4, "profile": 2, "simulation": 3, "ceilings": 1}
+SCHEMAS = {"cell": 4, "verdict": 4, "profile": 2, "simulation": 3, "ceilings": 1}
 _MARKS = {"profile_of": "profile", "key": "cell", "copy_bytes_per_s": "ceilings"}  # the first field present determines the kind
 
 
@@ -14,6 +14,8 @@ def kind_of(record):
         return None
     if record.get("kind") in ("step", "run"):
         return "simulation"
+    if record.get("kind") == "verdict":
+        return "verdict"
     return next((kind for field, kind in _MARKS.items() if field in record), None)
 
 

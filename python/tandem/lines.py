@@ -57,13 +57,20 @@ def checked_cell(record, location):
     return record
 
 
+def is_verdict(record):
+    """Whether a line of a file of cells is a verdict on cells before it (results/verdict.schema.json)."""
+    return isinstance(record, dict) and record.get("kind") == "verdict" and record.get("schema") == NEWEST
+
+
 def _cell(text, location):
-    return checked_cell(parsed(text, location), location)
+    record = parsed(text, location)
+    return None if is_verdict(record) else checked_cell(record, location)
 
 
 def numbered(path, torn, check=_cell):
     """Yields (line number, record) for every record of a file. Leaves out a last line without an end, and calls `torn` with a message about
-    it. `check` makes a record of the bytes of a line and "FILE:LINE"; the default accepts only cells. Raises RecordError."""
+    it. `check` makes a record of the bytes of a line and "FILE:LINE", or None for a line to skip; the default accepts cells and skips
+    verdicts. Raises RecordError."""
     number = 0
     try:
         with _open(path) as file:
@@ -71,7 +78,9 @@ def numbered(path, torn, check=_cell):
                 if not line.endswith(b"\n"):
                     torn(f"{path}:{number}: the last line has no end and is ignored; it is cut off or still being written")
                     return
-                yield number, check(line, f"{path}:{number}")
+                record = check(line, f"{path}:{number}")
+                if record is not None:
+                    yield number, record
     except (OSError, EOFError, lzma.LZMAError) as problem:
         reason = "is a folder" if isinstance(problem, IsADirectoryError) else getattr(problem, "strerror", None) or problem
         raise RecordError(f"{path}: cannot be read ({reason}); name a file of records") from None
@@ -79,9 +88,16 @@ def numbered(path, torn, check=_cell):
         raise RecordError(f"{path}: is empty; name a file of records")
 
 
-def each(path):
-    """Yields every record of a file and "FILE:LINE". Leaves out a last line without an end with a warning. Raises RecordError."""
-    for number, record in numbered(path, lambda message: warnings.warn(message, stacklevel=4)):
+def each(path, verdict=lambda line, location: None):
+    """Yields every record of a file and "FILE:LINE". Calls `verdict` with each line of kind verdict and its place. Leaves out a last line
+    without an end with a warning. Raises RecordError."""
+    def check(text, location):
+        record = parsed(text, location)
+        if not is_verdict(record):
+            return checked_cell(record, location)
+        verdict(record, location)
+        return None
+    for number, record in numbered(path, lambda message: warnings.warn(message, stacklevel=4), check):
         yield record, f"{path}:{number}"
 
 
@@ -106,10 +122,10 @@ def run_of(record):
     return session and (record["key"], session, tuple(device["id"] for device in record["devices"]), record.get("chosen") is not None)
 
 
-def merged(paths):
-    """The records of several files, each with its location and its file, and each result once. Leaves out copies and records that another
-    record of the same key continues. Raises RecordError for files that cannot be read, and for different records of one cell in one run."""
-    rows = [(record, location, path) for path in paths for record, location in each(path)]
+def merged(paths, verdict=lambda line, location: None):
+    """The records of several files, each with its location and its file, and each result once. Calls `verdict` as each() does. Leaves out
+    copies and records that another record of the same key continues. Raises RecordError for files that cannot be read, and for different records of one cell in one run."""
+    rows = [(record, location, path) for path in paths for record, location in each(path, verdict)]
     by_key = {}
     for number, (record, *_) in enumerate(rows):
         by_key.setdefault(record["key"], []).append(number)

@@ -55,11 +55,13 @@ def _figures(value):
 def plot_cells(records, ax=None):
     """Draws times of the cells of one scene, frame range and device, fastest first, with 95 % intervals. The title names the fastest cell and
     its lead, or the cells that are not told apart. Returns the axes. Raises ValueError for cells of several scenes, ranges or devices."""
-    cells = _rankable(records.cells).sort_values("ms")
-    where = _group_title(cells)
+    rankable = _rankable(records.cells)
+    where = _group_title(rankable)
+    verdict = records.of(rankable.index).verdict()
+    cells = rankable.loc[[one.cell for one in verdict.cells]]
     names = labels(cells, without=GROUP)
     ax = _axes(ax, 1.2 + 0.28 * len(cells))
-    ties = cells["ms_low"] <= cells["ms_high"].iloc[0]
+    ties = cells.index.isin(verdict.leaders())
     for row, (cell, name, tie) in enumerate(zip(cells.itertuples(), names, ties)):
         colour = WINNER if tie else PALE
         ax.plot([cell.ms_low, cell.ms_high], [row, row], color=colour, linewidth=2, solid_capstyle="butt")
@@ -79,7 +81,9 @@ def plot_cells(records, ax=None):
     if ties.sum() > 1:
         message = f"{first} are not told apart"
     elif len(cells) > 1:
-        message = f"{first} is the fastest, the next takes {_figures(cells['ms'].iloc[1] / cells['ms'].iloc[0])} times as long"
+        second = verdict.cells[1]
+        message = (f"{first} is the fastest, the next takes {_figures(second.ratio.value)} times as long"
+                   f"{'' if second.has_interval else ' (one round: no interval)'}")
     else:
         message = first
     _title(ax, f"{where}: {message}", TITLE_WIDTH_WITH_NAMES)

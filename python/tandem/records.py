@@ -8,6 +8,7 @@ import pandas
 
 from . import cell_rows, lines
 from .cell_rows import at, interval
+from .verdicts import RecordedVerdicts, TimedCell, verdict_of
 
 WHOLE = ("bodies", "tetrahedra", "first_frame", "last_frame", "samples", "rounds", "launches", "waits", "candidate_pairs",
          "contacts", "missing", "extra", "contact_frames_wrong", "pairs_missed", "device_bytes")
@@ -33,6 +34,7 @@ class Records:
     frames: one row per frame: cell, frame, ms (its median over replays), body_pairs, candidate_pairs, contacts.
     errors: one row per error of a cell that was compared with the exact truth: cell, error, median, p99, max. For false_share (fraction of
         candidates that do not meet) and missed_share (fraction of meeting pairs that are missed), the median is the fraction.
+    verdicts: the lines of kind verdict of the files, for verdict().
     """
     cells: pandas.DataFrame
     samples: pandas.DataFrame
@@ -40,11 +42,24 @@ class Records:
     kernels: pandas.DataFrame
     frames: pandas.DataFrame
     errors: pandas.DataFrame
+    verdicts: RecordedVerdicts = dataclasses.field(default_factory=RecordedVerdicts, repr=False)
+
+    def verdict(self):
+        """The Verdict on the cells of this object with a correct answer and times, which the caller has selected to be comparable: their order,
+        ratios to the fastest, and which are told apart from it. Ranked.cell is an index of `cells`. The one that `tandem run` recorded is read
+        where it is of exactly these cells."""
+        good = self.cells[(self.cells["status"] == "ok") & self.cells["ms"].notna()]
+        samples = self.samples[self.samples["cell"].isin(good.index)]
+        medians = samples.groupby(["cell", "round"], sort=True)["ms"].median()
+        timed = [TimedCell(str(cell.key), medians[number].to_dict(), str(cell.session or ""), str(cell.device))
+                 for number, cell in zip(good.index, good.itertuples())]
+        found = verdict_of(timed, self.verdicts)
+        return dataclasses.replace(found, cells=tuple(dataclasses.replace(one, cell=good.index[one.cell]) for one in found.cells))
 
     def of(self, cells):
         """The records of selected cells, given by an index of `cells` or a mask of it. Keeps the numbers of cells."""
         chosen = self.cells.loc[cells]
-        return Records(chosen, *(table[table["cell"].isin(chosen.index)] for table in (getattr(self, name) for name in PARTS)))
+        return Records(chosen, *(table[table["cell"].isin(chosen.index)] for table in (getattr(self, name) for name in PARTS)), self.verdicts)
 
 
 class _Cell:
@@ -145,7 +160,8 @@ def read(files):
     if not paths:
         raise lines.RecordError("no file is named; name files of records")
     rows = {name: [] for name in ("cells", *PARTS)}
-    for record, location, path in lines.merged(paths):
+    verdicts = RecordedVerdicts()
+    for record, location, path in lines.merged(paths, verdicts.add):
         try:
             cell = _Cell(len(rows["cells"]), record)
             rows["cells"].append(cell_rows.row(record) | {"file": os.fspath(path), "partial": bool(at(record, "sampling", "interrupted"))})
@@ -158,4 +174,4 @@ def read(files):
                    _table(rows["stages"], ("launches", "waits", "bytes"), ("stage",), (*device, "host_ms", "host_ms_low", "host_ms_high")),
                    _table(rows["kernels"], ("launches", "registers", "local_bytes", "spill_bytes"), ("kernel",), device),
                    _table(rows["frames"], ("frame", "body_pairs", "candidate_pairs", "contacts"), (), ("ms",)),
-                   _table(rows["errors"], (), ("error",), SPREADS))
+                   _table(rows["errors"], (), ("error",), SPREADS), verdicts)

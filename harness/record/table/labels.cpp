@@ -26,7 +26,6 @@ Parts parts_of(const Row& row) {
     for (const auto& [name, value] : cell.settings.texts())
         parts.push_back({name, fmt::format("{}={}", name, value), true, changed.contains(name)});
     parts.push_back({"device", "on " + name_of(cell.devices)});
-    if (!row.scene.empty()) parts.push_back({"scene", row.scene});
     return parts;
 }
 

@@ -2,15 +2,15 @@
 #include "harness/record/table/table.h"
 
 #include "harness/sampling/ranks/rank_team.h"
-#include "harness/sampling/ratio.h"
 #include "harness/sampling/statistics.h"
+#include "base/text_lines.h"
 #include "harness/record/table/columns.h"
 #include "harness/record/table/labels.h"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <numeric>
+#include <set>
 
 namespace tandem {
 
@@ -113,28 +113,29 @@ std::string half_width(const Measurement& m) {
     return fmt::format("± {}", milliseconds(per_frame_ms(m, (s.high - s.low) / 2)));
 }
 
-/// Whether no comparable cell has a lower median.
-bool is_fastest(const Row& row, std::span<const Row> rows) {
-    bool found = false;
-    for (const auto& other : rows) {
-        if (&other == &row || !comparable(row, other)) continue;
-        found = true;
-        if (median_ns(*other.measurement) < median_ns(*row.measurement)) return false;
-    }
-    return found;
-}
-
 std::string painted(const std::string& text, const char* code, bool colour) {
     return colour ? fmt::format("\033[{}m{}\033[0m", code, text) : text;
 }
 
-std::string totals_table(std::span<const Row> rows, const RowLabels& labels, bool colour) {
+/// Rows of cells that no comparable cell is told to beat.
+std::set<std::size_t> leaders_of(const std::vector<Verdict>& verdicts) {
+    std::set<std::size_t> rows;
+    for (const auto& verdict : verdicts)
+        for (const auto& cell : verdict.cells)
+            if (verdict.is_leader(cell)) rows.insert(cell.row);
+    return rows;
+}
+
+std::string totals_table(std::span<const Row> rows, const RowLabels& labels,
+                         const std::vector<Verdict>& verdicts, bool colour) {
+    const auto leaders = leaders_of(verdicts);
+    const auto number_of = [&](const Row& row) { return static_cast<std::size_t>(&row - rows.data()); };
     const std::vector<Column> columns{
         column("ms/frame", rows,
                [&](const Row& row) {
                    const auto text =
                        milliseconds(per_frame_ms(*row.measurement, median_ns(*row.measurement)));
-                   return is_fastest(row, rows) ? painted(text, "1;32", colour) : text;
+                   return leaders.contains(number_of(row)) ? painted(text, "1;32", colour) : text;
                }),
         column("95 %", rows, [](const Row& row) { return half_width(*row.measurement); }),
         column("rounds", rows, [](const Row& row) { return fmt::to_string(row.measurement->round_count()); }),
@@ -216,13 +217,14 @@ std::string devices_table(const Row& row, const std::string& label) {
     return fmt::format("devices of {}\n{}\n", label, in_columns(devices, "a frame", columns));
 }
 
-/// Paired by rounds, because cells of one group take turns in each round.
-Ratio ratio_of(const Measurement& above, const Measurement& below) {
-    const auto a = round_medians(above.totals(), above.rounds());
-    const auto b = round_medians(below.totals(), below.rounds());
-    std::vector<double> logs;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) logs.push_back(std::log(a[i] / b[i]));
-    return paired_ratio(logs);
+/// With the 95 % interval for at least two rounds. "≈" precedes the ratio when the interval contains 1; "-"
+/// without samples.
+std::string ratio_text(const Measurement& above, const Measurement& below) {
+    if (above.samples.empty() || below.samples.empty()) return "-";
+    const auto cell = compared(above, below);
+    if (!cell.has_interval()) return fmt::format("{:.2f}", cell.ratio.value);
+    return fmt::format("{}{:.3g} [{:.3g}, {:.3g}]", cell.is_told_apart() ? "" : "≈ ", cell.ratio.value,
+                       cell.ratio.low, cell.ratio.high);
 }
 
 std::string quotient(double above, double below) {
@@ -271,37 +273,17 @@ std::string ratio_tables(std::span<const Row> rows, const RowLabels& labels) {
 
 } // namespace
 
-std::string ratio_text(const Measurement& above, const Measurement& below) {
-    if (above.samples.empty() || below.samples.empty()) return "-";
-    const auto ratio = ratio_of(above, below);
-    if (std::min(above.round_count(), below.round_count()) < 2) return fmt::format("{:.2f}", ratio.value);
-    const bool is_one = ratio.low <= 1 && 1 <= ratio.high;
-    return fmt::format("{}{:.3g} [{:.3g}, {:.3g}]", is_one ? "≈ " : "", ratio.value, ratio.low, ratio.high);
-}
-
-bool comparable(const Row& a, const Row& b) {
-    const auto is_eligible = [](const Row& row) {
-        return row.measurement->agreement.ok() && total_count(row.measurement->candidate_pairs) > 0;
-    };
-    if (!is_eligible(a) || !is_eligible(b) || a.scene != b.scene || a.cell->devices != b.cell->devices)
-        return false;
-    const auto x = a.measurement->settings.texts(), y = b.measurement->settings.texts();
-    const auto same = [&](const char* name) {
-        const auto i = x.find(name), j = y.find(name);
-        return (i == x.end()) == (j == y.end()) && (i == x.end() || i->second == j->second);
-    };
-    return std::ranges::all_of(
-        std::array{"k", "axes", "precision", "rounding", "placement", "origin", "output"}, same);
-}
-
 std::string result_tables(std::span<const Row> rows, bool colour) {
     if (rows.empty()) return {};
     const auto labels = row_labels(rows);
     auto text = labels.common.empty() ? std::string() : "all: " + labels.common + "\n\n";
-    text += totals_table(rows, labels, colour) + "\n";
+    const auto verdicts = verdicts_of(rows);
+    text += totals_table(rows, labels, verdicts, colour) + "\n";
     text += stages_table(rows, labels) + "\n";
     for (std::size_t i = 0; i < rows.size(); ++i) text += devices_table(rows[i], labels.by_row[i]);
-    return text + ratio_tables(rows, labels);
+    text += ratio_tables(rows, labels);
+    for (const auto& verdict : verdicts) text += paragraph(verdict_sentence(verdict, rows, labels.by_row), 2);
+    return text;
 }
 
 } // namespace tandem

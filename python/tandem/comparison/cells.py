@@ -41,6 +41,7 @@ class RecordedCell:
     commit: str
     processor: str
     dirty: bool
+    chosen: bool = False  # by --algorithm auto
 
     def times(self):
         return list(self.rounds.values())
@@ -153,7 +154,7 @@ def _cell(record, line):
         on_gpus=bool(devices) and all(device["kind"] == "gpu" for device in devices), session=_text(record, "session"),
         seed=seed if isinstance(seed, int) else None, samples=samples, rounds=rounds, pairs=_answer(record, "digest"),
         contacts=_answer(record, "contact_digest"), commit=_text(environment, "commit"), processor=_text(environment, "processor"),
-        dirty=_needed(environment, "dirty", bool))
+        dirty=_needed(environment, "dirty", bool), chosen=record.get("chosen") is not None)
 
 
 def recorded_cell(record, path, line):
@@ -203,7 +204,7 @@ def read_cells(file, commit=""):
     torn = []
     records = [recorded_cell(record, path, line) for line, record in lines.numbered(path, torn.append)]
     if not records:
-        raise lines.RecordError(f"{path}: its only line has no end; name a file of records")
+        raise lines.RecordError(f"{path}: {'its only line has no end' if torn else 'has no record of a cell'}; name a file of records")
     if start:
         start = _whole_commit(path, start, records)
         records = [cell for cell in records if cell.commit == start]

@@ -157,8 +157,8 @@ class Folder:
         if not path.exists() or path.stat().st_size == 0:
             return []
         cells = {}
-        for row, (record, _) in enumerate(lines.each(path), 1):
-            cells[record["key"]] = (record, f"records/{path.name}:{row}")
+        for record, location in lines.each(path):
+            cells[record["key"]] = (record, f"records/{path.name}:{location.rpartition(':')[2]}")
         groups = {}
         for record, location in cells.values():
             settings = {**record["settings"], **record.get("asked", {})}

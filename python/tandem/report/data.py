@@ -61,7 +61,8 @@ def _fitting_cells(records, max_bytes, values):
 
 
 def _group(group, cells):
-    ranked = [[one.cell, rounded(one.ratio.value), rounded(one.ratio.low), rounded(one.ratio.high), one.is_distinguished] for one in group.ranked]
+    ranked = [[one.cell, rounded(one.ratio.value), rounded(one.ratio.low), rounded(one.ratio.high),
+               one.is_told_apart if one.has_interval else None] for one in group.ranked]
     return {"title": group.title, "cells": group.cells, "ranked": ranked, "differ": group.answers_differ, "words": group_sentences(group, cells)}
 
 
@@ -86,7 +87,7 @@ class _Details:
 def _cell_data(records, values, max_bytes):
     """All data of cells on the page."""
     cells = records.cells = _fitting_cells(records, max_bytes, values)
-    groups = groups_of(cells)
+    groups = groups_of(cells, records.verdicts)
     for group in groups:
         for number, label in zip(group.cells, group.labels):
             cells[number].row.append(label)

@@ -5,13 +5,15 @@ import json
 import os
 
 from .. import kinds, lines
+from ..verdicts import RecordedVerdicts
 from .other_records import Simulations, shown_ceilings, shown_profile
 from .shown_cells import shown_cell
 
 WHAT_TO_GIVE = "give files that 'tandem run --out', 'profile --out', 'simulate --record' or 'devices --measure --out' wrote"
 MAX_CELLS = 6000  # with more, only one record per key is shown
 MAX_OTHER_RECORDS = 200  # profiles, and records of ceilings
-LISTS = {"cell": "cells", "profile": "profiles", "simulation": "simulations", "ceilings": "ceilings"}  # attribute of Records by kind
+LISTS = {"cell": "cells", "profile": "profiles", "simulation": "simulations", "ceilings": "ceilings",
+         "verdict": "verdicts"}  # attribute of Records by kind
 
 
 @dataclasses.dataclass
@@ -23,6 +25,7 @@ class Records:
     profiles: list = dataclasses.field(default_factory=list)
     ceilings: list = dataclasses.field(default_factory=list)
     simulations: list = dataclasses.field(default_factory=list)
+    verdicts: RecordedVerdicts = dataclasses.field(default_factory=RecordedVerdicts)
     files: list = dataclasses.field(default_factory=list)
     notes: list = dataclasses.field(default_factory=list)
 
@@ -123,6 +126,9 @@ class _Reader:
             raise lines.RecordError(f"{path}: its only line has no end; name a file of records")
 
     def _add(self, kind, record, path, line):
+        if kind == "verdicts":
+            self.records.verdicts.add(record, f"{path}:{line}")
+            return
         self.records.files[-1][kind] += 1
         if kind == "cells":
             self.cells.add(shown_cell(record, path, line, len(self.records.files) - 1))

@@ -21,9 +21,9 @@ def _milliseconds(cell):
 def _compared_with_fastest(ranked):
     ratio = ranked.ratio
     if not ranked.has_interval:
-        return f"takes {digits(ratio.value)} times as long, in only one round, so that there is no interval"
+        return f"takes {digits(ratio.value)} times as long (one round: no interval)"
     interval = f"[{digits(ratio.low)}, {digits(ratio.high)}]"
-    if not ranked.is_distinguished:
+    if not ranked.is_told_apart:
         return f"is not told apart from it ({digits(ratio.value)} times its time {interval})"
     return f"takes {digits(ratio.value)} times as long {interval}"
 
@@ -33,7 +33,8 @@ def _fastest(group, cells):
     name, ms = _label(group, first.cell), digits(_milliseconds(cells[first.cell]))
     if not rest:
         return f"{name} takes {ms} ms a frame; there is nothing to compare it with."
-    sentence = (f"{name} is the fastest of {len(group.ranked)} with {ms} ms a frame; the next, {_label(group, rest[0].cell)}, "
+    lead = "is the fastest" if rest[0].is_told_apart else "has the lowest median"
+    sentence = (f"{name} {lead} of {len(group.ranked)} with {ms} ms a frame; the next, {_label(group, rest[0].cell)}, "
                 f"{_compared_with_fastest(rest[0])}.")
     if len(rest) > 1:
         sentence += f" The slowest, {_label(group, rest[-1].cell)}, {_compared_with_fastest(rest[-1])}."
@@ -74,11 +75,11 @@ class _Wins:
     low: float = 0
     high: float = 0
 
-    def add(self, ratio, is_distinguished):
+    def add(self, ratio, is_told_apart):
         self.low = ratio if self.all == 0 else min(self.low, ratio)
         self.high = max(self.high, ratio)
         self.all += 1
-        self.significant += is_distinguished
+        self.significant += is_told_apart
 
 
 def _wins(groups, cells):
@@ -92,7 +93,7 @@ def _wins(groups, cells):
         winner = algorithm(group.ranked[0])
         after = next((ranked for ranked in group.ranked if algorithm(ranked) != winner), None)
         if after is not None:
-            wins.setdefault(winner, _Wins()).add(after.ratio.value, after.is_distinguished)
+            wins.setdefault(winner, _Wins()).add(after.ratio.value, after.is_told_apart)
     return sorted(sorted(wins.items()), key=lambda item: -item[1].all)
 
 

@@ -27,7 +27,7 @@ def as_markdown(files):
             with kinds.fields_of(kind, location):
                 if kind == "simulation":
                     runs.add(record, file, devices)
-                else:
+                elif kind != "verdict":
                     rows[kind].append(row_types[kind](record, devices))
     return "".join([cells.text(rows["cell"], devices), profiles.text(rows["profile"], devices), runs.text(devices),
                     ceilings.text(rows["ceilings"], devices)])

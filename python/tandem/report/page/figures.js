@@ -14,8 +14,9 @@ tandem.mediansFigure = data => {
     const [second] = group.ranked.slice(1);
     const name = tandem.shortened(cells[0].label, 60);
     const left = group.ranked.length - cells.length;
-    return {title: group.differ ? "Answers differ: these times are of different work" : second[4]
-        ? `${name} is the fastest, ${tandem.number(second[1])} times as fast as the next` : `${name} and the next are not told apart`,
+    const lead = `${name} is the fastest, ${tandem.number(second[1])} times as fast as the next`;
+    return {title: group.differ ? "Answers differ: these times are of different work" : second[4] ? lead
+        : second[4] === null ? `${lead} (one round: no interval)` : `${name} and the next are not told apart`,
       alt: `${group.title}: milliseconds a frame of ${cells.length} cells.` + (left ? ` ${left} slower ones are in the table of every cell.` : ""),
       type: "line", height: 110 + 26 * cells.length,
       data: {labels: cells.map(cell => tandem.shortened(cell.label, tandem.nameLength())), datasets: [{label: "ms a frame", data: cells.map(cell => cell.ms[0]), showLine: false,

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "harness/record/answer.h"
+
+#include "harness/sampling/statistics.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <map>
+
+namespace tandem {
+
+namespace {
+
+std::string truth_of(const AnswerErrors& e) {
+    return fmt::format("truth: {} of {} meeting pairs missed, {} candidates do not meet", e.missed(),
+                       e.meeting(), e.pairs.disjoint);
+}
+
+} // namespace
+
+std::string answer_text(const Measurement& m) {
+    const auto& a = m.agreement;
+    if (a.frames == 0) return "not checked";
+    if (a.ok())
+        return fmt::format("right: {} pairs in {} frames, 0 missing, 0 extra, contacts equal{}",
+                           a.digest.count, a.frames, m.errors ? "; " + truth_of(*m.errors) : "");
+    return fmt::format("WRONG: {} missing, {} extra, contacts differ in {} of {} frames", a.missing, a.extra,
+                       a.contact_frames_wrong, a.frames);
+}
+
+std::string doubts(const CellResult& result) {
+    const auto& m = result.measurement;
+    std::vector<std::string> notes;
+    std::map<std::string, std::size_t> reasons;
+    std::size_t disturbed = 0;
+    for (const auto& round : m.conditions)
+        if (const auto reason = round.disturbed()) ++disturbed, ++reasons[*reason];
+    if (disturbed > 0) {
+        const auto most =
+            std::ranges::max_element(reasons, {}, [](const auto& entry) { return entry.second; });
+        notes.push_back(
+            fmt::format("{} of {} rounds disturbed ({})", disturbed, m.conditions.size(), most->first));
+    }
+    if (!result.converged) notes.emplace_back("interval wider than asked for");
+    const auto rounds = round_medians(m.totals(), m.rounds());
+    if (const auto outliers = count_outliers(rounds); outliers > 0)
+        notes.push_back(fmt::format("{} outlier{}", outliers, outliers == 1 ? "" : "s"));
+    if (const auto change = drift(rounds)) notes.push_back(fmt::format("drift {:+.1f} %", *change * 100));
+    return fmt::to_string(fmt::join(notes, "; "));
+}
+
+} // namespace tandem

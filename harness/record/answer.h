@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "harness/plans/job.h"
+
+namespace tandem {
+
+/// The last printed line of a cell: right, or the number of wrong answers.
+std::string answer_text(const Measurement& m);
+
+/// Reasons to doubt a cell's times, such as disturbed rounds or drift; empty when there are none.
+std::string doubts(const CellResult& result);
+
+} // namespace tandem
