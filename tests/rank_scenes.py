@@ -11,7 +11,7 @@ import time
 import unittest
 
 from program import LONG, PROGRAM, SMALL, Case, sets, tandem
-from ranks import ENVIRONMENT, job, launch, of
+from ranks import ENVIRONMENT, job, launch, of, own_lines
 
 PILE = "pile:bodies=27,mesh=grain1,frames=2"
 CAPACITIES = sets({name: SMALL[name] for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity")})
@@ -93,7 +93,6 @@ class RankScenes(Case):
         self.one_line("names 3 devices for 2 ranks", PILE, "--device", "host+opencl:0+opencl:1")
         self.one_line("--device all makes several cells", PILE, "--device", "all")
         self.one_line("--isolate runs each cell in a process of its own", PILE, "--device", "host", "--isolate")
-        self.one_line("--algorithm auto needs one process", PILE, "--device", "host", "--algorithm", "auto")
         self.one_line("choose broad=device", PILE, "--device", "host", "--algorithm", "tiled", "--set", "broad=tight", "--truth", "none", "--no-check")
         self.one_line("unknown scene 'pil'", "pil", "--device", "host")
         self.one_line("frames", PILE, "--device", "host", "--frames", "5:9")
@@ -132,6 +131,23 @@ class RankScenes(Case):
             for record in records:
                 self.assertGreaterEqual(len(set(record["total_ns"]["rounds"])), 10)
         self.assertEqual(len(digests), 1)
+
+    def test_auto_chooses_together(self):
+        cell = ["run", PILE, "--device", "host", "--algorithm", "auto", *CAPACITIES, "--repeat", 1, "--truth", "none", "--choose-seconds", 0.5]
+        (self.work / "choices").mkdir(mode=0o700)
+        for ranks, expected in ((2, r" of replays \(at most 0\.5\)"), (4, r" of replays \(at most 0\.5\)"), (2, r", stored in .*choices")):
+            with self.subTest(ranks=ranks, expected=expected):
+                out = self.work / f"auto{ranks}.jsonl"
+                skew = [f"LD_PRELOAD={SKEWED_CLOCKS}", f"SKEW_SEED={ranks}"] if SKEWED_CLOCKS else []
+                words = ["env", f"XDG_CACHE_HOME={self.work / 'choices'}", *skew]
+                done = subprocess.run(job(*([words] * ranks))(*cell, "--out", out), capture_output=True, text=True, timeout=120, env=ENVIRONMENT)
+                choices = [line for line in done.stderr.splitlines() if line.startswith("auto: ")]
+                self.assertEqual((done.returncode, own_lines(done.stderr), len(choices)), (0, [], 1), done.stderr)
+                self.assertRegex(choices[0], expected)
+                record = self.records(out)[-1]
+                self.assertEqual((record["status"], record["chosen"]["by"], record["ranks"]), ("ok", "auto", ranks))
+                self.assertEqual(record["chosen"]["from_cache"], "stored" in expected)
+                self.assertGreater(sum(one["median_ns"] is not None for one in record["chosen"]["candidates"]), 2)
 
     def test_a_killed_rank_ends_the_job_and_keeps_records_whole(self):
         out = self.work / "killed.jsonl"

@@ -85,11 +85,6 @@ void refuse_what_ranks_cannot(const RunOptions& options) {
                          "leave --isolate out");
     if (!options.trace.empty())
         throw InputError("--trace records one process; run it without the MPI launcher");
-    for (const auto& product : plan_of(options).products)
-        for (const auto& name : product.request.algorithms)
-            if (name == automatic)
-                throw InputError("--algorithm auto needs one process; run it without the MPI launcher, then "
-                                 "name the algorithm that it chose");
 }
 
 /// One run of the command: measures its groups of cells one after another.
@@ -152,7 +147,10 @@ Run::Run(const RunOptions& options, RankTeam* team)
 /// Opens the team with the one device of this rank: all cells use the same.
 void Run::open_team() {
     for (auto& group : all_.groups)
-        for (auto& cell : group.cells) cell.team = team_;
+        for (auto& cell : group.cells) {
+            cell.team = team_;
+            for (auto& candidate : cell.candidates) candidate.team = team_;
+        }
     team_->open(*all_.groups.front().cells.front().devices.front());
 }
 

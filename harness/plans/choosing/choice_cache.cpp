@@ -4,6 +4,7 @@
 #include "algorithms/sources.h"
 #include "base/private_folder.h"
 #include "harness/record/environment.h"
+#include "harness/sampling/ranks/rank_team.h"
 #include "base/digest.h"
 #include "base/error.h"
 
@@ -64,6 +65,9 @@ bool replace(const fs::path& file, const std::string& text) {
 Json question_of(const Cell& cell, const Scene& scene, std::uint64_t pairs) {
     Json devices = Json::array();
     for (const auto* device : cell.devices) devices.push_back(device_json(*device));
+    if (cell.team != nullptr) // those of the other ranks, without their limits
+        for (const auto& info : cell.team->devices())
+            devices.push_back({{"rank", info.name}, {"driver", info.driver}});
     std::string all;
     for (const auto& candidate : cell.candidates)
         all += fmt::format("{} {} {}\n", candidate.algorithm->name(), candidate.preset,

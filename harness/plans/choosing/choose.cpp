@@ -3,6 +3,7 @@
 
 #include "harness/plans/choosing/trials.h"
 #include "base/standard_streams.h"
+#include "harness/sampling/ranks/rank_team.h"
 #include "harness/sampling/statistics.h"
 
 #include <algorithm>
@@ -117,18 +118,35 @@ std::uint64_t pairs_of_a_frame(const Cell& cell, Trials& trials, std::size_t fra
     return trials.pairs() / frames;
 }
 
+/// Throws InputError unless the ranks of a job have the same candidates.
+void check_same_candidates(const Cell& cell) {
+    if (cell.team == nullptr) return;
+    std::string all;
+    for (const auto& candidate : cell.candidates) all += describe(candidate) + "\n";
+    cell.team->check_same(all);
+}
+
+/// The choice of rank 0 on all ranks.
+std::optional<Choice> choice_of_first(RankTeam* team, const std::optional<Choice>& own) {
+    if (team == nullptr) return own;
+    const auto text = team->decided(own ? choice_json(*own).dump() : std::string());
+    return text.empty() ? std::nullopt : std::optional(choice_of(nlohmann::ordered_json::parse(text)));
+}
+
 } // namespace
 
 void choose(Cell& cell, const Scene& scene, const FrameRange& range, const ChoosingOptions& options) {
     if (cell.candidates.empty()) return;
+    auto* team = cell.team;
     const auto frames = std::min(range.size(), most_choosing_frames);
-    const ChoiceCache cache(options.folder, program_version());
+    const ChoiceCache cache(is_first(team) ? options.folder : std::filesystem::path(), program_version());
     const auto undecided = cell; // a copy, because sessions refer to its candidates
+    check_same_candidates(undecided);
     options.progress(fmt::format("auto: {} candidates", undecided.candidates.size()));
     Trials trials(undecided.candidates, scene, range, frames);
     const auto question = question_of(undecided, scene, pairs_of_a_frame(undecided, trials, frames));
     std::string warning;
-    auto choice = options.afresh ? std::nullopt : cache.find(question, warning);
+    auto choice = choice_of_first(team, options.afresh ? std::nullopt : cache.find(question, warning));
     if (choice && settle(cell, *choice)) {
         auto kept = *choice;
         kept.from_cache = true;

@@ -18,9 +18,10 @@ struct ChoosingOptions {
     std::function<void(std::string_view)> progress = [](std::string_view) {}; ///< called with "" at the end
 };
 
-/// Replaces a cell with candidates by the stored choice, or else by the fastest candidate, which is then
-/// stored. Prints the choice on standard error in one line, and one line for each problem with the file. When
-/// every candidate fails, the cell stays equal to the first, and its measurement reports the failure.
+/// Collective with ranks: rank 0 reads and stores choices. Replaces a cell with candidates by the stored
+/// choice, or else by the fastest candidate, which is then stored. Prints the choice on standard error in one
+/// line, and one line for each problem with the file. When every candidate fails, the cell stays equal to the
+/// first, and its measurement reports the failure.
 void choose(Cell& cell, const Scene& scene, const FrameRange& range, const ChoosingOptions& options);
 
 } // namespace tandem

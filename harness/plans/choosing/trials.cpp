@@ -2,6 +2,7 @@
 #include "harness/plans/choosing/trials.h"
 
 #include "harness/sampling/measurement.h"
+#include "harness/sampling/ranks/rank_team.h"
 #include "base/error.h"
 
 #include <algorithm>
@@ -13,11 +14,17 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point begin) { return static_cast<double>(since(begin)) * 1e-9; }
-
 bool is_crowded(const Device& device) {
     const auto capacity = std::min<std::uint64_t>(device.info().global_bytes, device.memory_limit());
     return device.bytes_allocated() > capacity / 4;
+}
+
+/// Candidate pairs of a frame on all devices and ranks.
+std::uint64_t pairs_of(const FrameResult& result, const RankTeam* team) {
+    if (team == nullptr) return result.count;
+    std::uint64_t pairs = 0;
+    for (const auto& work : result.shared) pairs += work.pairs;
+    return pairs;
 }
 
 } // namespace
@@ -25,6 +32,7 @@ bool is_crowded(const Device& device) {
 Trials::Trials(std::span<const Cell> candidates, const Scene& scene, const FrameRange& range,
                std::size_t frames)
     : candidates_(candidates),
+      team_(candidates.front().team),
       scene_(scene),
       range_(range),
       frames_(frames),
@@ -39,15 +47,23 @@ void Trials::free_sessions() {
 
 void Trials::make_session(std::size_t candidate) {
     const auto& cell = candidates_[candidate];
-    sessions_[candidate] = cell.algorithm->prepare(cell.devices, scene_, cell.settings);
+    sessions_[candidate] = prepare_session(cell, scene_);
     run(candidate);
+}
+
+bool Trials::is_short_of_memory() const {
+    const auto& devices = candidates_.front().devices;
+    return decided(team_,
+                   std::ranges::any_of(devices, [](const auto* device) { return is_crowded(*device); }));
+}
+
+double Trials::seconds_since(Clock::time_point begin) const {
+    return decided(team_, static_cast<double>(since(begin)) * 1e-9);
 }
 
 /// Frees the other sessions first when device memory is short.
 void Trials::make_session_in_free_memory(std::size_t candidate) {
-    const auto& devices = candidates_.front().devices;
-    if (std::any_of(devices.begin(), devices.end(), [](const auto* device) { return is_crowded(*device); }))
-        free_sessions();
+    if (is_short_of_memory()) free_sessions();
     try {
         make_session(candidate);
     } catch (const OutOfMemory&) {
@@ -67,12 +83,12 @@ std::int64_t Trials::run(std::size_t candidate) {
         const auto begin = Clock::now();
         const auto result = session.run(*frame);
         sum += since(begin);
-        pairs += result.count;
+        pairs += pairs_of(result, team_);
     }
     if (pairs_.value_or(pairs) != pairs)
         throw DeviceError(fmt::format("found {} candidate pairs, the first candidate {}", pairs, *pairs_));
     pairs_ = pairs;
-    return sum;
+    return decided(team_, sum);
 }
 
 bool Trials::prepare(std::size_t candidate) {

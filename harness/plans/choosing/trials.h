@@ -4,6 +4,7 @@
 #include "harness/plans/frames.h"
 #include "harness/plans/cells.h"
 
+#include <chrono>
 #include <optional>
 #include <string>
 
@@ -11,7 +12,8 @@ namespace tandem {
 
 /// Replays frames with the candidates of a cell, timed like samples. Sessions are kept while they use at most
 /// a quarter of a device's memory, because a session that lacks memory runs in batches. Freed sessions are
-/// prepared again when needed.
+/// prepared again when needed. With ranks, calls are collective: rank 0 decides what depends on clocks or on
+/// the memory of its device.
 class Trials {
 public:
     /// Replays use the first `frames` frames of the range. All arguments must outlive this object.
@@ -36,11 +38,15 @@ public:
 private:
     void make_session(std::size_t candidate);
     void make_session_in_free_memory(std::size_t candidate);
+    bool is_short_of_memory() const;
     void free_sessions();
+    /// Seconds since `begin`, by the clock of rank 0.
+    double seconds_since(std::chrono::steady_clock::time_point begin) const;
     /// Nanoseconds of the frames only. Throws DeviceError.
     std::int64_t run(std::size_t candidate);
 
     std::span<const Cell> candidates_;
+    RankTeam* const team_; ///< null: one process
     const Scene& scene_;
     const FrameRange& range_;
     std::size_t frames_;
