@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <iterator>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace tandem {
@@ -56,13 +57,12 @@ RankSession::RankSession(const Traversal& traversal, Device& device, const Scene
       scene_(scene),
       settings_(std::move(fitted)),
       ranks_(ranks),
-      partitioner_(scene, geometry_of(settings_), static_cast<std::size_t>(ranks.size())),
-      balancer_(static_cast<std::size_t>(ranks.size())),
+      partition_(scene, settings_, static_cast<std::size_t>(ranks.size())),
       ghosts_(scene, geometry_of(settings_), ranks),
       device_exchange_(ranks, device.info(), scene, settings_),
       tracker_(scene),
       balls_(initial_balls(scene)) {
-    partitioner_.partition(balls_, balancer_.speeds());
+    partition_.repartition(balls_);
     // Compilation and allocation take place before the first frame, which is measured.
     Report own;
     exchange(scene.frame(0), own);
@@ -128,7 +128,7 @@ void RankSession::update_device() {
     if (!session_ || !std::ranges::includes(local_scene_->numbers, needed)) build_session_for(needed);
     local_subdomain_ = to_local(*local_scene_, subdomain);
     session_->set_subdomain(local_subdomain_);
-    session_->expect(std::exchange(expected_pairs_, 0), contacts_a_pair_);
+    session_->expect(std::exchange(expected_pairs_, 0), partition_.contacts_a_pair());
     std::vector<std::uint32_t> received;
     if (device_exchange_.is_enabled())
         for (const auto& bodies : ghosts_.deformed_received())
@@ -277,29 +277,31 @@ Ranks::Bytes RankSession::calibration_message(const Frame& frame, const FrameRes
     return message;
 }
 
-/// Collective: all ranks compute the same partition from the same values.
-void RankSession::repartition(const Frame& frame, FrameResult& result) {
-    std::vector<double> work;
-    for (std::size_t i = 0; i < result.shared.size(); ++i)
-        work.push_back(partitioner_.work_of(i, result.shared[i].pairs));
-    balancer_.add_sample(result.shared, work);
-    if (!balancer_.should_repartition()) return;
-    const HostWork timed(*devices_.front(), Stage::exchange, "partition bodies");
+/// Collective: takes the balls of all ranks. Returns the candidate pairs of all ranks by body.
+std::vector<std::uint64_t> RankSession::exchange_calibration(const Frame& frame, const FrameResult& result) {
     std::vector<std::uint64_t> counts(scene_.bodies.size());
     const auto all = ranks_.gather_to_all(calibration_message(frame, result));
     for (std::size_t rank = 0; rank < all.size(); ++rank) {
         MessageReader message(all[rank]);
-        for (const auto body : partitioner_.subdomains()[rank].own) message.read(std::span(&balls_[body], 1));
+        for (const auto body : partition_.subdomains()[rank].own) message.read(std::span(&balls_[body], 1));
         while (!message.is_at_end()) {
             const auto [body, count] = message.read<std::array<std::uint64_t, 2>>();
             counts[body] += count;
         }
     }
-    if (settings_[parameters::output] == Output::pairs) partitioner_.calibrate(counts);
-    partitioner_.partition(balls_, balancer_.speeds());
-    balancer_.repartitioned();
-    expected_pairs_ = partitioner_.expected_pairs(static_cast<std::size_t>(ranks_.rank()));
-    contacts_a_pair_ = result.contacts_a_pair();
+    return counts;
+}
+
+/// Collective: all ranks compute the same partition from the same values.
+void RankSession::repartition_if_needed(const Frame& frame, FrameResult& result) {
+    std::optional<HostWork> timed;
+    const bool is_unbalanced = partition_.add_sample(result, [&] {
+        timed.emplace(*devices_.front(), Stage::exchange, "partition bodies");
+        return exchange_calibration(frame, result);
+    });
+    if (!is_unbalanced) return;
+    partition_.repartition(balls_);
+    expected_pairs_ = partition_.partitioner().expected_pairs(static_cast<std::size_t>(ranks_.rank()));
     ghosts_.invalidate();
     result.repartitions = 1;
 }
@@ -322,7 +324,7 @@ FrameResult RankSession::do_run(const Frame& frame, std::optional<std::span<cons
         result.shared.push_back(report.work);
         is_representative = is_representative && report.is_representative;
     }
-    if (is_representative) repartition(frame, result);
+    if (is_representative) repartition_if_needed(frame, result);
     return result;
 }
 

@@ -4,7 +4,7 @@
 #include "algorithms/distributed/ghost_exchange.h"
 #include "algorithms/distributed/device_vertex_exchange.h"
 #include "algorithms/resident_session.h"
-#include "algorithms/distributed/load_balancer.h"
+#include "algorithms/distributed/repartition_loop.h"
 
 namespace tandem {
 
@@ -40,7 +40,7 @@ private:
     const Settings& do_settings() const override { return session_ ? session_->settings() : settings_; }
 
     const std::vector<std::uint32_t>& own_bodies() const {
-        return partitioner_.subdomains()[static_cast<std::size_t>(ranks_.rank())].own;
+        return partition_.subdomains()[static_cast<std::size_t>(ranks_.rank())].own;
     }
     void update_device();
     void build_session_for(const std::vector<std::uint32_t>& needed);
@@ -55,15 +55,15 @@ private:
     std::vector<Report> gather_reports(const Report& own);
     void throw_failure(const std::vector<Report>& all) const;
     Ranks::Bytes calibration_message(const Frame& frame, const FrameResult& result);
-    void repartition(const Frame& frame, FrameResult& result);
+    std::vector<std::uint64_t> exchange_calibration(const Frame& frame, const FrameResult& result);
+    void repartition_if_needed(const Frame& frame, FrameResult& result);
 
     const Traversal& traversal_;
     std::array<Device*, 1> devices_;
     const Scene& scene_;
     Settings settings_;
     Ranks& ranks_;
-    Partitioner partitioner_;
-    LoadBalancer balancer_;
+    RepartitionLoop partition_;
     GhostExchange ghosts_;
     DeviceVertexExchange device_exchange_;
     DisplacementTracker tracker_;
@@ -73,7 +73,6 @@ private:
     Subdomain local_subdomain_;                ///< that of ghosts_, with indices in local_scene_
     std::unique_ptr<ResidentSession> session_; ///< null when this rank owns no bodies
     std::uint64_t expected_pairs_ = 0;         ///< of this rank after a repartition; 0: unknown
-    double contacts_a_pair_ = 1;               ///< at the last repartition
     bool counts_work_ = false;
 };
 

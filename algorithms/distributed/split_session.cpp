@@ -3,8 +3,7 @@
 
 #include "algorithms/parameters/table.h"
 #include "algorithms/resident_session.h"
-#include "algorithms/distributed/load_balancer.h"
-#include "algorithms/distributed/partitioner.h"
+#include "algorithms/distributed/repartition_loop.h"
 #include "base/parallel.h"
 
 #include <chrono>
@@ -48,9 +47,7 @@ private:
     std::vector<Device*> devices_;
     std::vector<std::unique_ptr<ResidentSession>> sessions_;
     std::optional<BroadSweep> broad_; ///< where the host finds body pairs
-    Partitioner partitioner_;
-    LoadBalancer balancer_;
-    double contacts_a_pair_ = 1;                         ///< when the load was last unbalanced
+    RepartitionLoop partition_;
     std::vector<Subdomain> subdomains_;                  ///< by device
     std::vector<bool> is_applied_;                       ///< by device: its session has its subdomain
     std::vector<std::vector<Role>> roles_;               ///< by device and body, of subdomains_
@@ -61,8 +58,7 @@ SplitSession::SplitSession(const Traversal& traversal, std::span<Device* const> 
                            const std::vector<Settings>& fitted)
     : traversal_(traversal),
       devices_(devices.begin(), devices.end()),
-      partitioner_(scene, geometry_of(fitted.front()), devices.size()),
-      balancer_(devices.size()),
+      partition_(scene, fitted.front(), devices.size()),
       subdomains_(devices.size()),
       is_applied_(devices.size()),
       roles_(devices.size(), std::vector<Role>(scene.bodies.size(), Role::none)),
@@ -75,14 +71,13 @@ SplitSession::SplitSession(const Traversal& traversal, std::span<Device* const> 
 
 /// Repartitions the bodies when the partition is invalid or the load is unbalanced. Returns whether it did.
 bool SplitSession::repartition_if_needed(const Frame& frame) {
-    const bool is_new = !partitioner_.is_valid(frame) || balancer_.should_repartition();
+    const bool is_new = partition_.is_due(frame);
     if (is_new) {
         const HostWork work(*devices_.front(), Stage::broad, "partition bodies");
-        partitioner_.partition(frame, balancer_.speeds());
-        balancer_.repartitioned();
+        partition_.repartition(frame);
         for (std::size_t i = 0; i < sessions_.size(); ++i) {
-            sessions_[i]->expect(partitioner_.expected_pairs(i), contacts_a_pair_);
-            subdomains_[i] = partitioner_.subdomains()[i];
+            sessions_[i]->expect(partition_.partitioner().expected_pairs(i), partition_.contacts_a_pair());
+            subdomains_[i] = partition_.subdomains()[i];
             roles_[i] = roles_of(subdomains_[i], roles_[i].size());
             is_applied_[i] = false;
         }
@@ -106,7 +101,7 @@ void SplitSession::apply_subdomains() {
 void SplitSession::distribute_pairs(std::span<const BodyPair> body_pairs) {
     for (auto& pairs : pairs_by_device_) pairs.clear();
     for (const auto& pair : body_pairs) {
-        const auto i = std::min(partitioner_.subdomain_of(pair), sessions_.size() - 1);
+        const auto i = std::min(partition_.partitioner().subdomain_of(pair), sessions_.size() - 1);
         pairs_by_device_[i].push_back(pair);
         for (const auto body : {pair.a, pair.b}) {
             if (roles_[i][body] != Role::none) continue;
@@ -127,19 +122,15 @@ FrameResult SplitSession::run_subdomain(std::size_t i, const Frame& frame, bool 
     return result;
 }
 
-/// Updates speeds, and the estimates for the next partition.
 void SplitSession::add_sample(const FrameResult& result) {
     if (result.retries > 0 || result.batches > sessions_.size()) return; // its times are not representative
-    std::vector<double> work;
-    for (std::size_t i = 0; i < result.shared.size(); ++i)
-        work.push_back(partitioner_.work_of(i, result.shared[i].pairs));
-    balancer_.add_sample(result.shared, work);
-    if (!balancer_.should_repartition() || !result.has_pairs()) return;
-    contacts_a_pair_ = result.contacts_a_pair();
-    std::vector<std::uint64_t> counts;
-    for (const auto& part : result.parts) part->count_by_body(counts);
-    counts.resize(roles_.front().size());
-    partitioner_.calibrate(counts);
+    partition_.add_sample(result, [&] {
+        std::vector<std::uint64_t> counts;
+        if (result.has_pairs())
+            for (const auto& part : result.parts) part->count_by_body(counts);
+        counts.resize(roles_.front().size());
+        return counts;
+    });
 }
 
 FrameResult SplitSession::do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
