@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "backends/cuda/cuda_device.h"
 
+#include "backends/cuda/call_error.h"
 #include "backends/cuda/command.h"
 #include "backends/cuda/command_clock.h"
 #include "backends/cuda/current_context.h"
-#include "backends/cuda/driver.h"
+#include "backends/cuda/description.h"
 #include "backends/cuda/graphs.h"
-#include "backends/cuda/libraries.h"
 #include "backends/cuda/primary_context.h"
-#include "backends/hardware.h"
 #include "backends/ptxas_log.h"
 #include "backends/staging.h"
 
@@ -19,15 +18,6 @@
 namespace tandem::cuda {
 
 namespace {
-
-/// Float additions and multiplications of a multiprocessor per clock, by compute capability (CUDA C++
-/// Programming Guide 8 and 12, "Arithmetic Instructions"); 0: unknown.
-std::uint32_t float_cores(int capability) {
-    if (capability < 30) return capability == 21 ? 48 : 32;
-    if (capability < 50) return 192;
-    if (capability == 60 || (capability >= 70 && capability <= 80)) return 64;
-    return capability <= 129 ? 128 : 0;
-}
 
 struct CudaBuffer : Buffer::Impl {
     const Driver* driver = nullptr;
@@ -87,7 +77,7 @@ public:
     CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, Context context, Stream stream);
     ~CudaDevice() override;
 
-    const DeviceInfo& info() const override { return info_; }
+    const DeviceInfo& info() const override { return description_.info; }
     std::string clock() const override { return clock_ ? clock_->name() : expected_clock(driver()); }
     void* queue() const override { return stream_; }
 
@@ -109,9 +99,6 @@ private:
     void do_profile(bool on) override;
     std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) override;
 
-    void describe();
-    int attribute(DeviceAttribute what) const;
-    void describe_peaks();
     /// `what` is text or a callable that makes it, called on failure only.
     template<class What>
     void check(Result result, std::string_view call, const What& what) const {
@@ -148,16 +135,13 @@ private:
 
     std::shared_ptr<Libraries> libraries_;
     PrimaryContext primary_; ///< outlives everything below that frees memory in it
-    DeviceHandle handle_ = 0;
-    DeviceInfo info_;
+    Description description_;
     Context context_ = nullptr;
     Stream stream_ = nullptr;
     bool owned_ = true;
     EventHandle followed_ = nullptr;      ///< in the last stream that was followed; null before
     std::unique_ptr<CommandClock> clock_; ///< null until clocks are on for the first time
     bool timed_ = false;
-    int capability_ = 0;
-    int threads_per_unit_ = 0; ///< that a multiprocessor can hold at once
     std::map<std::string, LoadedModule> modules_;
     Staging staging_{page_locked(libraries_->driver), max_staged};
     bool in_one_ = false;                                ///< within as_one()
@@ -171,10 +155,10 @@ private:
 
 CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index,
                        std::optional<Stream> stream)
-    : libraries_(std::move(libraries)), handle_(handle), owned_(!stream) {
-    info_.id = fmt::format("cuda:{}", index);
-    describe();
-    check(primary_.retain(driver(), handle_, context_), "cuDevicePrimaryCtxRetain", "opening the device");
+    : libraries_(std::move(libraries)),
+      description_(describe(*libraries_, handle, fmt::format("cuda:{}", index))),
+      owned_(!stream) {
+    check(primary_.retain(driver(), handle, context_), "cuDevicePrimaryCtxRetain", "opening the device");
     if (stream) {
         stream_ = *stream;
         return;
@@ -186,10 +170,11 @@ CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle
 
 CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, Context context,
                        Stream stream)
-    : libraries_(std::move(libraries)), handle_(handle), context_(context), stream_(stream), owned_(false) {
-    info_.id = "cuda:adopted";
-    describe();
-}
+    : libraries_(std::move(libraries)),
+      description_(describe(*libraries_, handle, "cuda:adopted")),
+      context_(context),
+      stream_(stream),
+      owned_(false) {}
 
 CudaDevice::~CudaDevice() {
     const CurrentContext current(driver(), context_);
@@ -202,61 +187,13 @@ CudaDevice::~CudaDevice() {
     if (owned_) driver().cuStreamDestroy_v2(stream_);
 }
 
-int CudaDevice::attribute(DeviceAttribute what) const {
-    int value = 0;
-    check(driver().cuDeviceGetAttribute(&value, what, handle_), "cuDeviceGetAttribute",
-          "querying the device's attributes");
-    return value;
-}
-
-void CudaDevice::describe_peaks() {
-    // These values are optional; 0 means that the driver does not report one.
-    const auto query = [&](DeviceAttribute what) {
-        int value = 0;
-        return driver().cuDeviceGetAttribute(&value, what, handle_) == 0 ? std::max(value, 0) : 0;
-    };
-    info_.cores = float_cores(capability_) * info_.compute_units;
-    info_.clock_mhz = static_cast<std::uint32_t>(query(clock_rate_khz)) / 1000;
-    // Double data rate: two transfers per clock.
-    info_.peak_bytes_per_s = std::uint64_t{2000} * static_cast<std::uint64_t>(query(memory_clock_rate_khz))
-                             * (static_cast<std::uint64_t>(query(memory_bus_bits)) / 8);
-}
-
-void CudaDevice::describe() {
-    std::array<char, 256> text{};
-    check(driver().cuDeviceGetName(text.data(), static_cast<int>(text.size()), handle_), "cuDeviceGetName",
-          "querying the device's name");
-    info_.name = text.data();
-    std::array<unsigned char, 16> uuid{};
-    if (driver().cuDeviceGetUuid_v2(uuid.data(), handle_) == 0) info_.hardware = uuid_text(uuid);
-    capability_ = attribute(capability_major) * 10 + attribute(capability_minor);
-    info_.driver = fmt::format("CUDA {}{}", version_text(driver().version), kernel_driver());
-    info_.compiler =
-        fmt::format("NVRTC {} for sm_{}", version_text(libraries_->nvrtc.version()), capability_);
-    info_.is_gpu = true;
-    info_.has_directed_rounding = true;
-    info_.stages_pinned = true;
-    info_.compute_units = static_cast<std::uint32_t>(attribute(multiprocessor_count));
-    info_.max_group_size = static_cast<std::uint32_t>(attribute(max_threads_per_block));
-    info_.local_bytes = static_cast<std::uint64_t>(attribute(max_shared_per_block));
-    describe_peaks();
-    threads_per_unit_ = attribute(max_threads_per_multiprocessor);
-    std::size_t memory = 0;
-    check(driver().cuDeviceTotalMem_v2(&memory, handle_), "cuDeviceTotalMem", "querying the device's memory");
-    info_.global_bytes = info_.max_allocation = memory;
-}
-
 void CudaDevice::fail(Result result, std::string_view call, std::string_view what) const {
     // The handler of the error may free memory that commands in flight still use.
     if (context_ != nullptr && (stream_ != nullptr || !owned_)) {
         const CurrentContext current(driver(), context_);
         driver().cuStreamSynchronize(stream_);
     }
-    const auto text = fmt::format("{} ({}): {} failed with {} while {}; driver for CUDA {}, NVRTC {}",
-                                  info_.id, info_.name, call, driver().describe(result), what,
-                                  version_text(driver().version), version_text(libraries_->nvrtc.version()));
-    if (result == out_of_memory) throw OutOfMemory(text);
-    throw DeviceError(text);
+    throw_call_error(*libraries_, info(), result, call, what);
 }
 
 template<class Submit>
@@ -429,9 +366,9 @@ const LoadedModule& CudaDevice::module(const KernelSource& source, const Defines
     if (const auto found = modules_.find(key); found != modules_.end()) return found->second;
     LoadedModule loaded;
     try {
-        loaded.image = libraries_->nvrtc.compile(source, defines, capability_);
+        loaded.image = libraries_->nvrtc.compile(source, defines, description_.capability);
     } catch (const DeviceError& error) {
-        throw DeviceError(fmt::format("{} ({}): {}", info_.id, info_.name, error.what()));
+        throw DeviceError(fmt::format("{} ({}): {}", info().id, info().name, error.what()));
     }
     check(driver().cuModuleLoadData(&loaded.module, loaded.image.bytes.data()), "cuModuleLoadData",
           [&] { return fmt::format("loading {} ({})", source.name, loaded.image.target); });
@@ -463,14 +400,14 @@ std::shared_ptr<Kernel::Impl> CudaDevice::do_compile(const KernelSource& source,
 double CudaDevice::occupancy(Function function, const Defines& defines) const {
     const auto group_size = defines.find("GROUP_SIZE");
     if (driver().cuOccupancyMaxActiveBlocksPerMultiprocessor == nullptr || group_size == defines.end()
-        || threads_per_unit_ <= 0)
+        || description_.threads_per_unit <= 0)
         return -1;
     constexpr int warp = 32;
     const int threads = std::stoi(group_size->second);
     int groups = 0;
     if (driver().cuOccupancyMaxActiveBlocksPerMultiprocessor(&groups, function, threads, 0) != 0) return -1;
     const int held = (threads + warp - 1) / warp * warp;
-    return static_cast<double>(groups) * held / threads_per_unit_;
+    return static_cast<double>(groups) * held / description_.threads_per_unit;
 }
 
 /// Earlier commands finish first, so that a profiler counts only commands between the two calls.
@@ -508,10 +445,10 @@ std::uint64_t CudaDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span<c
 
 void CudaDevice::check_launch(std::string_view entry, Grid grid, std::size_t arguments) const {
     if (arguments > Command::max_arguments)
-        throw DeviceError(fmt::format("{}: '{}' with {} arguments; a launch takes at most {}", info_.id,
+        throw DeviceError(fmt::format("{}: '{}' with {} arguments; a launch takes at most {}", info().id,
                                       entry, arguments, Command::max_arguments));
     if (grid.groups > 0x7fffffffu)
-        throw DeviceError(fmt::format("{}: '{}' with {} groups; a launch takes at most 2147483647", info_.id,
+        throw DeviceError(fmt::format("{}: '{}' with {} groups; a launch takes at most 2147483647", info().id,
                                       entry, grid.groups));
 }
 
@@ -537,20 +474,6 @@ std::pair<std::int64_t, std::int64_t> CudaDevice::do_interval(std::uint64_t tick
     const auto interval = clock_->interval(ticket);
     if (clock_->spent()) clock_ = started_clock(std::move(clock_), driver(), stream_);
     return interval;
-}
-
-int device_count(const Driver& driver) {
-    int count = 0;
-    if (const auto code = driver.cuDeviceGetCount(&count); code != 0)
-        throw DeviceError(fmt::format("cuda: cuDeviceGetCount failed with {}", driver.describe(code)));
-    return count;
-}
-
-DeviceHandle device_handle(const Driver& driver, int index) {
-    DeviceHandle handle = 0;
-    if (const auto code = driver.cuDeviceGet(&handle, index); code != 0)
-        throw DeviceError(fmt::format("cuda:{}: cuDeviceGet failed with {}", index, driver.describe(code)));
-    return handle;
 }
 
 } // namespace
