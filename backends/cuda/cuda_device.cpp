@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "backends/cuda/cuda_device.h"
 
-#include "backends/cuda/call_error.h"
-#include "backends/cuda/command.h"
-#include "backends/cuda/command_clock.h"
-#include "backends/cuda/current_context.h"
 #include "backends/cuda/description.h"
-#include "backends/cuda/graphs.h"
 #include "backends/cuda/primary_context.h"
+#include "backends/cuda/queue.h"
 #include "backends/ptxas_log.h"
-#include "backends/staging.h"
 
 #include <array>
 #include <fmt/format.h>
-#include <type_traits>
 
 namespace tandem::cuda {
 
@@ -48,22 +42,6 @@ struct LoadedModule {
     Image image; ///< without its bytes
 };
 
-/// Largest upload that is held back for a graph. A larger one and all later commands are submitted at once:
-/// it takes about as long as the host needs for the rest of a frame's commands.
-constexpr std::size_t max_held_back = std::size_t{64} << 10;
-
-/// Page-locked memory for uploads in flight; uploads beyond it wait.
-constexpr std::size_t max_staged = std::size_t{256} << 20;
-
-/// The context must be current when the source is used.
-Staging::Source page_locked(const Driver& driver) {
-    const auto allocate = [&driver](std::size_t bytes) -> std::byte* {
-        void* memory = nullptr;
-        return driver.cuMemHostAlloc(&memory, bytes, 0) == 0 ? static_cast<std::byte*>(memory) : nullptr;
-    };
-    return {allocate, [&driver](std::byte* memory) { driver.cuMemFreeHost(memory); }};
-}
-
 /// CU_STREAM_LEGACY is another name of the default stream, which is null in all other calls.
 Stream legacy_is_null(void* stream) {
     return reinterpret_cast<std::uintptr_t>(stream) == 1 ? nullptr : static_cast<Stream>(stream);
@@ -78,8 +56,8 @@ public:
     ~CudaDevice() override;
 
     const DeviceInfo& info() const override { return description_.info; }
-    std::string clock() const override { return clock_ ? clock_->name() : expected_clock(driver()); }
-    void* queue() const override { return stream_; }
+    std::string clock() const override { return queue_.clock(); }
+    void* queue() const override { return queue_.stream(); }
 
 private:
     std::shared_ptr<Buffer::Impl> do_allocate(std::size_t bytes) override;
@@ -91,156 +69,71 @@ private:
     std::shared_ptr<Kernel::Impl> do_compile(const KernelSource& source, std::string_view entry,
                                              const Defines& defines) override;
     std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) override;
-    void do_finish() override;
-    void do_follow(void* queue) override;
-    bool do_begin_collecting() override;
-    void do_end_collecting() override;
-    void do_set_clocks(Clocks clocks) override;
+    void do_finish() override { queue_.finish(); }
+    void do_follow(void* queue) override { queue_.follow(legacy_is_null(queue)); }
+    bool do_begin_collecting() override { return queue_.begin_collecting(); }
+    void do_end_collecting() override { queue_.end_collecting(); }
+    void do_set_clocks(Clocks clocks) override { queue_.set_clocks(clocks); }
     void do_profile(bool on) override;
-    std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) override;
-
-    /// `what` is text or a callable that makes it, called on failure only.
-    template<class What>
-    void check(Result result, std::string_view call, const What& what) const {
-        if (result == 0) return;
-        if constexpr (std::is_invocable_v<What>)
-            fail(result, call, what());
-        else
-            fail(result, call, what);
+    std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) override {
+        return queue_.interval(ticket);
     }
-    [[noreturn]] void fail(Result result, std::string_view call, std::string_view what) const;
-    /// Makes the device's context current during an operation, and restores the caller's.
-    struct Scope {
-        explicit Scope(const CudaDevice& device) : current(device.driver(), device.context_) {
-            device.check(current.result(), "cuCtxSetCurrent", "starting a command");
-        }
-        CurrentContext current;
-    };
-    template<class What>
-    void wait(const What& what);
+
+    /// The primary context of a device, which it keeps alive.
+    Context primary_context(DeviceHandle handle);
     void check_launch(std::string_view entry, Grid grid, std::size_t arguments) const;
-    /// Enqueues a command on `buffers`, or holds both back. Returns the ticket.
-    std::uint64_t enqueue(const Command& command, std::span<Buffer::Impl* const> buffers);
-    /// Enqueues a command after those held back, and waits for it.
-    std::uint64_t enqueue_and_wait(const Command& command, bool staged);
-    std::uint64_t enqueue_now(const Command& command);
-    void submit_collected();
     /// As KernelFacts::occupancy.
     double occupancy(Function function, const Defines& defines) const;
     const LoadedModule& module(const KernelSource& source, const Defines& defines);
     const Driver& driver() const { return libraries_->driver; }
-    /// Runs `submit`, timed when clocks are on. Returns the ticket.
-    template<class Submit>
-    std::uint64_t timed(const Submit& submit);
+    Queue::Counter counter() {
+        return [this](std::uint64_t calls) { count_submissions(calls); };
+    }
 
     std::shared_ptr<Libraries> libraries_;
     PrimaryContext primary_; ///< outlives everything below that frees memory in it
     Description description_;
-    Context context_ = nullptr;
-    Stream stream_ = nullptr;
-    bool owned_ = true;
-    EventHandle followed_ = nullptr;      ///< in the last stream that was followed; null before
-    std::unique_ptr<CommandClock> clock_; ///< null until clocks are on for the first time
-    bool timed_ = false;
     std::map<std::string, LoadedModule> modules_;
-    Staging staging_{page_locked(libraries_->driver), max_staged};
-    bool in_one_ = false;                                ///< within as_one()
-    bool collects_ = false;                              ///< within as_one(), and commands are held back
-    std::vector<Command> collected_;                     ///< held back
-    std::vector<std::shared_ptr<Buffer::Impl>> buffers_; ///< of these commands, to keep them alive
-    Graphs graphs_{libraries_->driver};
-    std::shared_ptr<std::uint64_t> frees_ = std::make_shared<std::uint64_t>(0); ///< freed buffers so far
-    std::uint64_t known_frees_ = 0; ///< frees_ when the graphs were last valid
+    Queue queue_;
 };
 
 CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index,
                        std::optional<Stream> stream)
     : libraries_(std::move(libraries)),
       description_(describe(*libraries_, handle, fmt::format("cuda:{}", index))),
-      owned_(!stream) {
-    check(primary_.retain(driver(), handle, context_), "cuDevicePrimaryCtxRetain", "opening the device");
-    if (stream) {
-        stream_ = *stream;
-        return;
-    }
-    const Scope scope(*this);
-    constexpr unsigned non_blocking = 1; // CU_STREAM_NON_BLOCKING: no ordering with the default stream
-    check(driver().cuStreamCreate(&stream_, non_blocking), "cuStreamCreate", "opening the device");
-}
+      queue_(*libraries_, description_.info, primary_context(handle), stream, counter()) {}
 
 CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, Context context,
                        Stream stream)
     : libraries_(std::move(libraries)),
       description_(describe(*libraries_, handle, "cuda:adopted")),
-      context_(context),
-      stream_(stream),
-      owned_(false) {}
+      queue_(*libraries_, description_.info, context, stream, counter()) {}
 
 CudaDevice::~CudaDevice() {
-    const CurrentContext current(driver(), context_);
-    driver().cuStreamSynchronize(stream_);
-    graphs_.drop();
-    staging_.drop();
-    clock_.reset();
+    const CurrentContext current(driver(), queue_.context());
+    driver().cuStreamSynchronize(queue_.stream());
     for (const auto& [key, loaded] : modules_) driver().cuModuleUnload(loaded.module);
-    if (followed_ != nullptr) driver().cuEventDestroy_v2(followed_);
-    if (owned_) driver().cuStreamDestroy_v2(stream_);
 }
 
-void CudaDevice::fail(Result result, std::string_view call, std::string_view what) const {
-    // The handler of the error may free memory that commands in flight still use.
-    if (context_ != nullptr && (stream_ != nullptr || !owned_)) {
-        const CurrentContext current(driver(), context_);
-        driver().cuStreamSynchronize(stream_);
-    }
-    throw_call_error(*libraries_, info(), result, call, what);
-}
-
-template<class Submit>
-std::uint64_t CudaDevice::timed(const Submit& submit) {
-    if (!timed_) {
-        submit();
-        return 0;
-    }
-    const auto check_clock = [&](CommandClock::Refusal refusal) {
-        check(refusal.code, refusal.call, "timing a command");
-    };
-    check_clock(clock_->begin());
-    try {
-        submit();
-        check_clock(clock_->end());
-    } catch (...) {
-        clock_->drop();
-        throw;
-    }
-    return clock_->ticket();
-}
-
-void CudaDevice::do_set_clocks(Clocks clocks) {
-    const Scope scope(*this);
-    if (timed_) clock_->stop();
-    timed_ = clocks == Clocks::on;
-    if (timed_) clock_ = started_clock(std::move(clock_), driver(), stream_);
-}
-
-template<class What>
-void CudaDevice::wait(const What& what) {
-    submit_collected();
-    check(driver().cuStreamSynchronize(stream_), "cuStreamSynchronize", what);
-    staging_.release();
+Context CudaDevice::primary_context(DeviceHandle handle) {
+    Context context = nullptr;
+    if (const auto code = primary_.retain(driver(), handle, context); code != 0)
+        throw_call_error(*libraries_, description_.info, code, "cuDevicePrimaryCtxRetain",
+                         "opening the device");
+    return context;
 }
 
 std::shared_ptr<Buffer::Impl> CudaDevice::do_allocate(std::size_t bytes) {
-    const Scope scope(*this);
+    const Queue::Scope scope(queue_);
     auto buffer = std::make_shared<CudaBuffer>();
     buffer->driver = &driver();
-    buffer->context = context_;
-    buffer->frees = frees_;
+    buffer->context = queue_.context();
+    buffer->frees = queue_.frees();
     std::size_t free = 0;
     std::size_t total = 0;
     driver().cuMemGetInfo_v2(&free, &total);
-    check(driver().cuMemAlloc_v2(&buffer->pointer, bytes), "cuMemAlloc",
-          [&] { return fmt::format("allocating {} bytes with {} free of {}", bytes, free, total); });
+    queue_.check(driver().cuMemAlloc_v2(&buffer->pointer, bytes), "cuMemAlloc",
+                 [&] { return fmt::format("allocating {} bytes with {} free of {}", bytes, free, total); });
     return buffer;
 }
 
@@ -248,80 +141,16 @@ std::shared_ptr<Buffer::Impl> CudaDevice::do_adopt(void* native) {
     auto buffer = std::make_shared<CudaBuffer>();
     buffer->pointer = reinterpret_cast<DevicePointer>(native);
     buffer->owned = false;
-    buffer->frees = frees_;
+    buffer->frees = queue_.frees();
     return buffer;
-}
-
-std::uint64_t CudaDevice::enqueue_now(const Command& command) {
-    return timed([&] {
-        check(command.submit(driver(), stream_), command.call(), [&] { return command.describe(); });
-    });
-}
-
-std::uint64_t CudaDevice::enqueue(const Command& command, std::span<Buffer::Impl* const> buffers) {
-    if (!collects_) {
-        if (in_one_) count_submissions(1);
-        return enqueue_now(command);
-    }
-    collected_.push_back(command);
-    for (auto* buffer : buffers) buffers_.push_back(buffer->shared_from_this());
-    return 0;
-}
-
-/// `staged`: the host memory is page-locked, so it has the same address in the next frame.
-std::uint64_t CudaDevice::enqueue_and_wait(const Command& command, bool staged) {
-    std::uint64_t ticket = 0;
-    if (collects_ && !staged) {
-        submit_collected();
-        ticket = enqueue_now(command);
-        count_submissions(1);
-    } else {
-        ticket = enqueue(command, {});
-    }
-    wait([&] { return command.describe(); });
-    return ticket;
-}
-
-/// The default stream cannot be captured.
-bool CudaDevice::do_begin_collecting() {
-    in_one_ = collects_ = stream_ != nullptr;
-    return in_one_;
-}
-
-void CudaDevice::do_end_collecting() {
-    in_one_ = collects_ = false;
-    submit_collected();
-}
-
-void CudaDevice::submit_collected() {
-    if (collected_.empty()) return;
-    const Scope scope(*this);
-    // An address may be reused for other memory, so graphs that use it become invalid.
-    if (std::exchange(known_frees_, *frees_) != *frees_) {
-        check(driver().cuStreamSynchronize(stream_), "cuStreamSynchronize",
-              "waiting before graphs are destroyed");
-        graphs_.drop();
-    }
-    std::uint64_t submissions = 0;
-    const auto failure = graphs_.submit(collected_, stream_, submissions);
-    count_submissions(submissions);
-    collected_.clear();
-    if (failure.code != 0) {
-        const auto buffers = std::exchange(buffers_, {}); // kept alive until check() has waited
-        check(failure.code, failure.call, failure.what);
-    }
-    buffers_.clear();
 }
 
 std::uint64_t CudaDevice::do_upload(Buffer::Impl& to, std::span<const std::byte> from, std::size_t offset,
                                     bool blocking) {
-    const Scope scope(*this);
-    if (collects_ && from.size() > max_held_back) {
-        submit_collected();
-        collects_ = false;
-    }
+    const Queue::Scope scope(queue_);
+    queue_.prepare_upload(from.size());
     // A blocking upload reads the caller's pageable memory, as the paper's code did.
-    auto* staged = blocking ? nullptr : staging_.take(from.size());
+    auto* staged = blocking ? nullptr : queue_.staging().take(from.size());
     if (staged != nullptr) std::memcpy(staged, from.data(), from.size());
     const Command command{.kind = Command::Kind::upload,
                           .device = static_cast<CudaBuffer&>(to).pointer + offset,
@@ -330,34 +159,34 @@ std::uint64_t CudaDevice::do_upload(Buffer::Impl& to, std::span<const std::byte>
                           .label = to.label};
     if (staged == nullptr) {
         host_waited();
-        return enqueue_and_wait(command, false);
+        return queue_.enqueue_and_wait(command, false);
     }
     const std::array<Buffer::Impl*, 1> buffers{&to};
-    return enqueue(command, buffers);
+    return queue_.enqueue(command, buffers);
 }
 
 std::uint64_t CudaDevice::do_download(const Buffer::Impl& from, std::span<std::byte> to, std::size_t offset) {
-    const Scope scope(*this);
+    const Queue::Scope scope(queue_);
     constexpr std::size_t small = 65536;
-    auto* staged = to.size() <= small ? staging_.take(to.size()) : nullptr;
+    auto* staged = to.size() <= small ? queue_.staging().take(to.size()) : nullptr;
     const Command command{.kind = Command::Kind::download,
                           .device = static_cast<const CudaBuffer&>(from).pointer + offset,
                           .host = staged != nullptr ? staged : to.data(),
                           .bytes = to.size(),
                           .label = from.label};
-    const auto ticket = enqueue_and_wait(command, staged != nullptr);
+    const auto ticket = queue_.enqueue_and_wait(command, staged != nullptr);
     if (staged != nullptr) std::memcpy(to.data(), staged, to.size());
     return ticket;
 }
 
 std::uint64_t CudaDevice::do_clear(Buffer::Impl& buffer, std::size_t bytes, std::size_t offset) {
-    const Scope scope(*this);
+    const Queue::Scope scope(queue_);
     const std::array<Buffer::Impl*, 1> buffers{&buffer};
-    return enqueue({.kind = Command::Kind::clear,
-                    .device = static_cast<CudaBuffer&>(buffer).pointer + offset,
-                    .bytes = bytes,
-                    .label = buffer.label},
-                   buffers);
+    return queue_.enqueue({.kind = Command::Kind::clear,
+                           .device = static_cast<CudaBuffer&>(buffer).pointer + offset,
+                           .bytes = bytes,
+                           .label = buffer.label},
+                          buffers);
 }
 
 const LoadedModule& CudaDevice::module(const KernelSource& source, const Defines& defines) {
@@ -370,20 +199,21 @@ const LoadedModule& CudaDevice::module(const KernelSource& source, const Defines
     } catch (const DeviceError& error) {
         throw DeviceError(fmt::format("{} ({}): {}", info().id, info().name, error.what()));
     }
-    check(driver().cuModuleLoadData(&loaded.module, loaded.image.bytes.data()), "cuModuleLoadData",
-          [&] { return fmt::format("loading {} ({})", source.name, loaded.image.target); });
+    queue_.check(driver().cuModuleLoadData(&loaded.module, loaded.image.bytes.data()), "cuModuleLoadData",
+                 [&] { return fmt::format("loading {} ({})", source.name, loaded.image.target); });
     loaded.image.bytes.clear();
     return modules_[key] = std::move(loaded);
 }
 
 std::shared_ptr<Kernel::Impl> CudaDevice::do_compile(const KernelSource& source, std::string_view entry,
                                                      const Defines& defines) {
-    const Scope scope(*this);
+    const Queue::Scope scope(queue_);
     const auto& loaded = module(source, defines);
     auto kernel = std::make_shared<CudaKernel>();
     const std::string name(entry);
-    check(driver().cuModuleGetFunction(&kernel->function, loaded.module, name.c_str()), "cuModuleGetFunction",
-          [&] { return fmt::format("looking for '{}' in {}", entry, source.name); });
+    queue_.check(driver().cuModuleGetFunction(&kernel->function, loaded.module, name.c_str()),
+                 "cuModuleGetFunction",
+                 [&] { return fmt::format("looking for '{}' in {}", entry, source.name); });
     const auto ask = [&](FunctionAttribute what) -> std::int64_t {
         int value = -1;
         return driver().cuFuncGetAttribute(&value, what, kernel->function) == 0 ? value : -1;
@@ -415,12 +245,12 @@ void CudaDevice::do_profile(bool on) {
     const auto call = on ? driver().cuProfilerStart : driver().cuProfilerStop;
     if (call == nullptr) return;
     do_finish();
-    const Scope scope(*this);
-    check(call(), on ? "cuProfilerStart" : "cuProfilerStop", "profiling");
+    const Queue::Scope scope(queue_);
+    queue_.check(call(), on ? "cuProfilerStart" : "cuProfilerStop", "profiling");
 }
 
 std::uint64_t CudaDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) {
-    const Scope scope(*this);
+    const Queue::Scope scope(queue_);
     check_launch(kernel.facts.entry, grid, arguments.size());
     Command command{.function = static_cast<CudaKernel&>(kernel).function,
                     .groups = static_cast<unsigned>(grid.groups),
@@ -440,7 +270,7 @@ std::uint64_t CudaDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span<c
             std::memcpy(&command.values[i], scalar.bytes.data(), scalar.size);
         }
     }
-    return enqueue(command, std::span(buffers).first(count));
+    return queue_.enqueue(command, std::span(buffers).first(count));
 }
 
 void CudaDevice::check_launch(std::string_view entry, Grid grid, std::size_t arguments) const {
@@ -450,30 +280,6 @@ void CudaDevice::check_launch(std::string_view entry, Grid grid, std::size_t arg
     if (grid.groups > 0x7fffffffu)
         throw DeviceError(fmt::format("{}: '{}' with {} groups; a launch takes at most 2147483647", info().id,
                                       entry, grid.groups));
-}
-
-void CudaDevice::do_finish() {
-    const Scope scope(*this);
-    wait("waiting");
-    if (timed_) clock_->collect();
-}
-
-void CudaDevice::do_follow(void* queue) {
-    auto* const stream = legacy_is_null(queue);
-    if (stream == stream_) return;
-    const Scope scope(*this);
-    constexpr unsigned untimed = 2; // CU_EVENT_DISABLE_TIMING
-    constexpr std::string_view what = "following another stream";
-    if (followed_ == nullptr) check(driver().cuEventCreate(&followed_, untimed), "cuEventCreate", what);
-    check(driver().cuEventRecord(followed_, stream), "cuEventRecord", what);
-    check(driver().cuStreamWaitEvent(stream_, followed_, 0), "cuStreamWaitEvent", what);
-}
-
-std::pair<std::int64_t, std::int64_t> CudaDevice::do_interval(std::uint64_t ticket) {
-    const Scope scope(*this);
-    const auto interval = clock_->interval(ticket);
-    if (clock_->spent()) clock_ = started_clock(std::move(clock_), driver(), stream_);
-    return interval;
 }
 
 } // namespace
