@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "backends/cuda/cuda_device.h"
 
+#include "backends/cuda/call_error.h"
+#include "backends/cuda/current_context.h"
 #include "backends/cuda/description.h"
+#include "backends/cuda/modules.h"
 #include "backends/cuda/primary_context.h"
 #include "backends/cuda/queue.h"
-#include "backends/ptxas_log.h"
 
 #include <array>
 #include <fmt/format.h>
@@ -32,16 +34,6 @@ struct CudaBuffer : Buffer::Impl {
     void* native() const override { return reinterpret_cast<void*>(pointer); }
 };
 
-struct CudaKernel : Kernel::Impl {
-    Function function = nullptr;
-};
-
-/// A kernel file compiled with one set of defines; its entries share it.
-struct LoadedModule {
-    Module module = nullptr;
-    Image image; ///< without its bytes
-};
-
 /// CU_STREAM_LEGACY is another name of the default stream, which is null in all other calls.
 Stream legacy_is_null(void* stream) {
     return reinterpret_cast<std::uintptr_t>(stream) == 1 ? nullptr : static_cast<Stream>(stream);
@@ -53,7 +45,6 @@ public:
     CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index,
                std::optional<Stream> stream = std::nullopt);
     CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, Context context, Stream stream);
-    ~CudaDevice() override;
 
     const DeviceInfo& info() const override { return description_.info; }
     std::string clock() const override { return queue_.clock(); }
@@ -82,9 +73,6 @@ private:
     /// The primary context of a device, which it keeps alive.
     Context primary_context(DeviceHandle handle);
     void check_launch(std::string_view entry, Grid grid, std::size_t arguments) const;
-    /// As KernelFacts::occupancy.
-    double occupancy(Function function, const Defines& defines) const;
-    const LoadedModule& module(const KernelSource& source, const Defines& defines);
     const Driver& driver() const { return libraries_->driver; }
     Queue::Counter counter() {
         return [this](std::uint64_t calls) { count_submissions(calls); };
@@ -93,27 +81,26 @@ private:
     std::shared_ptr<Libraries> libraries_;
     PrimaryContext primary_; ///< outlives everything below that frees memory in it
     Description description_;
-    std::map<std::string, LoadedModule> modules_;
-    Queue queue_;
+    const Context context_;
+    Modules modules_;
+    Queue queue_; ///< its end waits, before modules are unloaded
 };
 
 CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, std::size_t index,
                        std::optional<Stream> stream)
     : libraries_(std::move(libraries)),
       description_(describe(*libraries_, handle, fmt::format("cuda:{}", index))),
-      queue_(*libraries_, description_.info, primary_context(handle), stream, counter()) {}
+      context_(primary_context(handle)),
+      modules_(*libraries_, description_, context_),
+      queue_(*libraries_, description_.info, context_, stream, counter()) {}
 
 CudaDevice::CudaDevice(std::shared_ptr<Libraries> libraries, DeviceHandle handle, Context context,
                        Stream stream)
     : libraries_(std::move(libraries)),
       description_(describe(*libraries_, handle, "cuda:adopted")),
-      queue_(*libraries_, description_.info, context, stream, counter()) {}
-
-CudaDevice::~CudaDevice() {
-    const CurrentContext current(driver(), queue_.context());
-    driver().cuStreamSynchronize(queue_.stream());
-    for (const auto& [key, loaded] : modules_) driver().cuModuleUnload(loaded.module);
-}
+      context_(context),
+      modules_(*libraries_, description_, context_),
+      queue_(*libraries_, description_.info, context_, stream, counter()) {}
 
 Context CudaDevice::primary_context(DeviceHandle handle) {
     Context context = nullptr;
@@ -127,7 +114,7 @@ std::shared_ptr<Buffer::Impl> CudaDevice::do_allocate(std::size_t bytes) {
     const Queue::Scope scope(queue_);
     auto buffer = std::make_shared<CudaBuffer>();
     buffer->driver = &driver();
-    buffer->context = queue_.context();
+    buffer->context = context_;
     buffer->frees = queue_.frees();
     std::size_t free = 0;
     std::size_t total = 0;
@@ -189,55 +176,10 @@ std::uint64_t CudaDevice::do_clear(Buffer::Impl& buffer, std::size_t bytes, std:
                           buffers);
 }
 
-const LoadedModule& CudaDevice::module(const KernelSource& source, const Defines& defines) {
-    std::string key(source.name);
-    for (const auto& [name, value] : defines) key += fmt::format("|{}={}", name, value);
-    if (const auto found = modules_.find(key); found != modules_.end()) return found->second;
-    LoadedModule loaded;
-    try {
-        loaded.image = libraries_->nvrtc.compile(source, defines, description_.capability);
-    } catch (const DeviceError& error) {
-        throw DeviceError(fmt::format("{} ({}): {}", info().id, info().name, error.what()));
-    }
-    queue_.check(driver().cuModuleLoadData(&loaded.module, loaded.image.bytes.data()), "cuModuleLoadData",
-                 [&] { return fmt::format("loading {} ({})", source.name, loaded.image.target); });
-    loaded.image.bytes.clear();
-    return modules_[key] = std::move(loaded);
-}
-
 std::shared_ptr<Kernel::Impl> CudaDevice::do_compile(const KernelSource& source, std::string_view entry,
                                                      const Defines& defines) {
     const Queue::Scope scope(queue_);
-    const auto& loaded = module(source, defines);
-    auto kernel = std::make_shared<CudaKernel>();
-    const std::string name(entry);
-    queue_.check(driver().cuModuleGetFunction(&kernel->function, loaded.module, name.c_str()),
-                 "cuModuleGetFunction",
-                 [&] { return fmt::format("looking for '{}' in {}", entry, source.name); });
-    const auto ask = [&](FunctionAttribute what) -> std::int64_t {
-        int value = -1;
-        return driver().cuFuncGetAttribute(&value, what, kernel->function) == 0 ? value : -1;
-    };
-    kernel->facts.registers = ask(function_registers);
-    kernel->facts.local_bytes = ask(function_shared_bytes);
-    kernel->facts.max_group_size = ask(function_max_threads);
-    kernel->facts.spill_bytes = use_of(loaded.image.log, entry).spill_bytes;
-    kernel->facts.occupancy = occupancy(kernel->function, defines);
-    return kernel;
-}
-
-/// A group occupies whole warps.
-double CudaDevice::occupancy(Function function, const Defines& defines) const {
-    const auto group_size = defines.find("GROUP_SIZE");
-    if (driver().cuOccupancyMaxActiveBlocksPerMultiprocessor == nullptr || group_size == defines.end()
-        || description_.threads_per_unit <= 0)
-        return -1;
-    constexpr int warp = 32;
-    const int threads = std::stoi(group_size->second);
-    int groups = 0;
-    if (driver().cuOccupancyMaxActiveBlocksPerMultiprocessor(&groups, function, threads, 0) != 0) return -1;
-    const int held = (threads + warp - 1) / warp * warp;
-    return static_cast<double>(groups) * held / description_.threads_per_unit;
+    return modules_.compile(queue_, source, entry, defines);
 }
 
 /// Earlier commands finish first, so that a profiler counts only commands between the two calls.

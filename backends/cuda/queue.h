@@ -33,7 +33,6 @@ public:
     Queue& operator=(const Queue&) = delete;
 
     Stream stream() const { return stream_; }
-    Context context() const { return context_; }
     /// As Device::clock().
     std::string clock() const { return clock_ ? clock_->name() : expected_clock(driver()); }
     /// Page-locked memory for transfers; a wait releases it. Requires a Scope.
