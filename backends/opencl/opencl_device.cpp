@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
-#define CL_TARGET_OPENCL_VERSION 120
 #include "backends/opencl/opencl_device.h"
 
-#include "backends/hardware.h"
+#include "backends/opencl/call_error.h"
+#include "backends/opencl/description.h"
 #include "backends/ptxas_log.h"
 #include "backends/staging.h"
 
-#include <CL/cl.h>
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <new>
 #include <type_traits>
 
@@ -19,71 +16,10 @@ namespace tandem::opencl {
 
 namespace {
 
-std::string error_name(cl_int code) {
-    static const std::map<cl_int, const char*> names{
-        {CL_DEVICE_NOT_AVAILABLE, "device not available"},
-        {CL_MEM_OBJECT_ALLOCATION_FAILURE, "memory allocation failure"},
-        {CL_OUT_OF_RESOURCES, "out of resources"},
-        {CL_OUT_OF_HOST_MEMORY, "out of host memory"},
-        {CL_BUILD_PROGRAM_FAILURE, "build failure"},
-        {CL_INVALID_WORK_GROUP_SIZE, "invalid work-group size"},
-        {CL_INVALID_KERNEL_ARGS, "invalid kernel arguments"},
-        {CL_INVALID_ARG_SIZE, "invalid argument size"},
-        {CL_INVALID_BUFFER_SIZE, "invalid buffer size"},
-    };
-    const auto found = names.find(code);
-    return found == names.end() ? fmt::format("code {}", code)
-                                : fmt::format("code {}, {}", code, found->second);
-}
-
 /// For clCreateBuffer, which reports a size beyond the device's as invalid.
 bool is_out_of_memory(cl_int code) {
     return code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES
            || code == CL_OUT_OF_HOST_MEMORY || code == CL_INVALID_BUFFER_SIZE;
-}
-
-template<class T>
-T device_value(cl_device_id device, cl_device_info what) {
-    T value{};
-    clGetDeviceInfo(device, what, sizeof(T), &value, nullptr);
-    return value;
-}
-
-std::string device_text(cl_device_id device, cl_device_info what) {
-    std::size_t size = 0;
-    clGetDeviceInfo(device, what, 0, nullptr, &size);
-    std::string text(size, '\0');
-    clGetDeviceInfo(device, what, size, text.data(), nullptr);
-    while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.pop_back();
-    return text;
-}
-
-/// The UUID of the hardware (cl_khr_device_uuid), to recognise a GPU that two backends list.
-std::string hardware_id(cl_device_id device) {
-    constexpr cl_device_info uuid = 0x106A; // CL_DEVICE_UUID_KHR
-    if (device_text(device, CL_DEVICE_EXTENSIONS).find("cl_khr_device_uuid") == std::string::npos) return {};
-    return uuid_text(device_value<std::array<unsigned char, 16>>(device, uuid));
-}
-
-DeviceInfo describe(cl_device_id device, std::size_t index) {
-    DeviceInfo info;
-    info.id = fmt::format("opencl:{}", index);
-    info.name = device_text(device, CL_DEVICE_NAME);
-    info.driver =
-        fmt::format("{}, {}", device_text(device, CL_DEVICE_VERSION), device_text(device, CL_DRIVER_VERSION));
-    info.compiler = device_text(device, CL_DEVICE_OPENCL_C_VERSION);
-    info.hardware = hardware_id(device);
-    info.is_gpu = (device_value<cl_device_type>(device, CL_DEVICE_TYPE) & CL_DEVICE_TYPE_GPU) != 0;
-    info.compute_units = device_value<cl_uint>(device, CL_DEVICE_MAX_COMPUTE_UNITS);
-    info.clock_mhz = device_value<cl_uint>(device, CL_DEVICE_MAX_CLOCK_FREQUENCY);
-    info.max_group_size =
-        static_cast<std::uint32_t>(device_value<std::size_t>(device, CL_DEVICE_MAX_WORK_GROUP_SIZE));
-    info.global_bytes = device_value<cl_ulong>(device, CL_DEVICE_GLOBAL_MEM_SIZE);
-    info.max_allocation = device_value<cl_ulong>(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
-    info.local_bytes = device_value<cl_ulong>(device, CL_DEVICE_LOCAL_MEM_SIZE);
-    info.allocates_late = true; // the standard allows it, and GPU drivers do
-    info.has_double = device_value<cl_device_fp_config>(device, CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
-    return info;
 }
 
 std::string build_log(cl_program program, cl_device_id device) {
@@ -184,7 +120,7 @@ private:
 };
 
 OpenclDevice::OpenclDevice(cl_device_id device, std::size_t index)
-    : info_(describe(device, index)), device_(device) {
+    : info_(describe(device, fmt::format("opencl:{}", index))), device_(device) {
     cl_int code = CL_SUCCESS;
     context_ = clCreateContext(nullptr, 1, &device_, nullptr, nullptr, &code);
     check(code, "clCreateContext", "opening the device");
@@ -192,15 +128,13 @@ OpenclDevice::OpenclDevice(cl_device_id device, std::size_t index)
 }
 
 OpenclDevice::OpenclDevice(cl_context context, cl_device_id device, cl_command_queue queue)
-    : info_(describe(device, 0)),
+    : info_(describe(device, "opencl:adopted")),
       device_(device),
       context_(context),
       queue_(queue),
       timed_(queue),
       active_(queue),
-      owned_(false) {
-    info_.id = "opencl:adopted";
-}
+      owned_(false) {}
 
 OpenclDevice::~OpenclDevice() {
     // Commands in flight read staged memory. If the wait fails, the memory is leaked, not freed.
@@ -225,10 +159,7 @@ bool OpenclDevice::settle() {
 void OpenclDevice::fail(cl_int code, std::string_view call, std::string_view what) {
     // The handler of the error may free memory that commands in flight still use.
     settle();
-    const auto text = fmt::format("{} ({}): {} failed with {} while {}", info_.id, info_.name, call,
-                                  error_name(code), what);
-    if (code == CL_MEM_OBJECT_ALLOCATION_FAILURE) throw OutOfMemory(text);
-    throw DeviceError(text);
+    throw_call_error(info_, code, call, what);
 }
 
 template<class Call, class What>
@@ -354,8 +285,7 @@ std::shared_ptr<Kernel::Impl> OpenclDevice::do_compile(const KernelSource& sourc
          & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT)
         != 0)
         options += " -cl-fp32-correctly-rounded-divide-sqrt";
-    const bool verbose =
-        device_text(device_, CL_DEVICE_EXTENSIONS).find("cl_nv_compiler_options") != std::string::npos;
+    const bool verbose = has_extension(device_, "cl_nv_compiler_options");
     if (verbose) options += " -cl-nv-verbose";
     for (const auto& [name, value] : defines) options += fmt::format(" -D{}={}", name, value);
     auto kernel = std::make_shared<OpenclKernel>();
@@ -436,52 +366,19 @@ std::pair<std::int64_t, std::int64_t> OpenclDevice::do_interval(std::uint64_t ti
     return {static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end - begin)};
 }
 
-/// The loader's folder and its vendor files, for the message that explains an empty list.
-std::string vendor_files() {
-    const auto* chosen = std::getenv("OCL_ICD_VENDORS");
-    const std::string folder = chosen != nullptr ? chosen : "/etc/OpenCL/vendors";
-    std::vector<std::string> names;
-    std::error_code ignored;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-        names.push_back(entry.path().filename().string());
-    std::sort(names.begin(), names.end());
-    return fmt::format("{} has: {}", folder,
-                       names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", ")));
-}
-
-std::vector<cl_device_id> devices_of(cl_platform_id platform) {
-    cl_uint count = 0;
-    if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count) != CL_SUCCESS) return {};
-    std::vector<cl_device_id> devices(count);
-    clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, devices.data(), nullptr);
-    return devices;
-}
-
 } // namespace
 
 Found discover() {
+    auto listing = list_devices();
     Found found;
-    cl_uint count = 0;
-    const auto code = clGetPlatformIDs(0, nullptr, &count);
-    if (code != CL_SUCCESS || count == 0) {
-        found.reason = fmt::format("opencl: no platform (the loader returned {}; {}); install a "
-                                   "driver, for a CPU the package pocl-opencl-icd",
-                                   code, vendor_files());
-        return found;
-    }
-    std::vector<cl_platform_id> platforms(count);
-    clGetPlatformIDs(count, platforms.data(), nullptr);
-    for (auto* platform : platforms) {
-        for (auto* device : devices_of(platform)) {
-            try {
-                found.devices.push_back(std::make_unique<OpenclDevice>(device, found.devices.size()));
-            } catch (const DeviceError& error) {
-                found.reason = error.what();
-            }
+    found.reason = std::move(listing.reason);
+    for (auto* device : listing.devices) {
+        try {
+            found.devices.push_back(std::make_unique<OpenclDevice>(device, found.devices.size()));
+        } catch (const DeviceError& error) {
+            found.reason = error.what();
         }
     }
-    if (found.devices.empty() && found.reason.empty())
-        found.reason = fmt::format("opencl: {} platform(s), but no device", count);
     return found;
 }
 
