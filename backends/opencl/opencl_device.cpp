@@ -3,14 +3,12 @@
 
 #include "backends/opencl/call_error.h"
 #include "backends/opencl/description.h"
+#include "backends/opencl/queue.h"
 #include "backends/ptxas_log.h"
-#include "backends/staging.h"
 
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
-#include <new>
-#include <type_traits>
 
 namespace tandem::opencl {
 
@@ -52,13 +50,27 @@ struct OpenclKernel : Kernel::Impl {
     }
 };
 
-/// Memory for copies of uploads in flight; uploads beyond it wait.
-constexpr std::size_t max_staged = std::size_t{64} << 20;
+/// A context, which it releases only when it has made it.
+class Context {
+public:
+    Context(const DeviceInfo& info, cl_device_id device) : owned_(true) {
+        cl_int code = CL_SUCCESS;
+        handle_ = clCreateContext(nullptr, 1, &device, nullptr, nullptr, &code);
+        if (code != CL_SUCCESS) throw_call_error(info, code, "clCreateContext", "opening the device");
+    }
+    explicit Context(cl_context adopted) : handle_(adopted) {}
+    ~Context() {
+        if (owned_) clReleaseContext(handle_);
+    }
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
 
-Staging::Source host_memory() {
-    return {[](std::size_t bytes) { return new (std::nothrow) std::byte[bytes]; },
-            [](std::byte* memory) { delete[] memory; }};
-}
+    cl_context handle() const { return handle_; }
+
+private:
+    cl_context handle_ = nullptr;
+    bool owned_ = false;
+};
 
 class OpenclDevice : public Device {
 public:
@@ -68,7 +80,7 @@ public:
 
     const DeviceInfo& info() const override { return info_; }
     std::string clock() const override { return "OpenCL profiling"; }
-    void* queue() const override { return active_; }
+    void* queue() const override { return queue_.active(); }
 
 private:
     std::shared_ptr<Buffer::Impl> do_allocate(std::size_t bytes) override;
@@ -80,119 +92,47 @@ private:
     std::shared_ptr<Kernel::Impl> do_compile(const KernelSource& source, std::string_view entry,
                                              const Defines& defines) override;
     std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) override;
-    void do_finish() override;
-    void do_follow(void* queue) override {
-        check(clFinish(static_cast<cl_command_queue>(queue)), "clFinish", "waiting for another queue");
+    void do_finish() override { queue_.finish(); }
+    void do_follow(void* queue) override { queue_.follow(static_cast<cl_command_queue>(queue)); }
+    void do_set_clocks(Clocks clocks) override { queue_.set_clocks(clocks); }
+    std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) override {
+        return queue_.interval(ticket);
     }
-    void do_set_clocks(Clocks clocks) override { active_ = clocks == Clocks::on ? timed_queue() : queue_; }
-    std::pair<std::int64_t, std::int64_t> do_interval(std::uint64_t ticket) override;
 
-    /// `what` is text or a callable that makes it, called on failure only.
-    template<class What>
-    void check(cl_int code, std::string_view call, const What& what) {
-        if (code == CL_SUCCESS) return;
-        if constexpr (std::is_invocable_v<What>)
-            fail(code, call, what());
-        else
-            fail(code, call, what);
-    }
-    [[noreturn]] void fail(cl_int code, std::string_view call, std::string_view what);
-    /// Enqueues by `call`, which receives a pointer for the command's event, or null. Returns the ticket.
-    template<class Call, class What>
-    std::uint64_t submit(std::string_view name, const Call& call, const What& what);
-    cl_command_queue make_queue(cl_command_queue_properties properties);
-    cl_command_queue timed_queue();
     /// Builds once per text and options; entries of one file share the program.
     cl_program program(const KernelSource& source, const std::string& options);
     void set_arguments(cl_kernel kernel, std::span<const Argument> arguments, std::string_view entry);
-    bool settle();
 
     DeviceInfo info_;
     cl_device_id device_ = nullptr;
-    cl_context context_ = nullptr;
-    cl_command_queue queue_ = nullptr; ///< without profiling: the headline runs
-    cl_command_queue timed_ = nullptr; ///< with profiling: the breakdown per command
-    cl_command_queue active_ = nullptr;
-    bool owned_ = true;
+    Context context_;
     std::map<std::string, cl_program> programs_;
-    std::vector<cl_event> events_;
-    Staging staged_{host_memory(), max_staged}; ///< copies of uploads in flight
+    Queue queue_;
 };
 
 OpenclDevice::OpenclDevice(cl_device_id device, std::size_t index)
-    : info_(describe(device, fmt::format("opencl:{}", index))), device_(device) {
-    cl_int code = CL_SUCCESS;
-    context_ = clCreateContext(nullptr, 1, &device_, nullptr, nullptr, &code);
-    check(code, "clCreateContext", "opening the device");
-    queue_ = active_ = make_queue(0);
-}
+    : info_(describe(device, fmt::format("opencl:{}", index))),
+      device_(device),
+      context_(info_, device),
+      queue_(info_, device, context_.handle()) {}
 
 OpenclDevice::OpenclDevice(cl_context context, cl_device_id device, cl_command_queue queue)
-    : info_(describe(device, "opencl:adopted")),
-      device_(device),
-      context_(context),
-      queue_(queue),
-      timed_(queue),
-      active_(queue),
-      owned_(false) {}
+    : info_(describe(device, "opencl:adopted")), device_(device), context_(context), queue_(info_, queue) {}
 
 OpenclDevice::~OpenclDevice() {
-    // Commands in flight read staged memory. If the wait fails, the memory is leaked, not freed.
-    if (!settle()) staged_.abandon();
-    for (auto* event : events_)
-        if (event) clReleaseEvent(event);
     for (const auto& [key, made] : programs_) clReleaseProgram(made);
-    if (!owned_) return;
-    if (timed_) clReleaseCommandQueue(timed_);
-    if (queue_) clReleaseCommandQueue(queue_);
-    if (context_) clReleaseContext(context_);
-}
-
-/// Waits until nothing is in flight; false when the wait fails.
-bool OpenclDevice::settle() {
-    if (active_ == nullptr) return true;
-    if (clFinish(active_) != CL_SUCCESS) return false;
-    staged_.release();
-    return true;
-}
-
-void OpenclDevice::fail(cl_int code, std::string_view call, std::string_view what) {
-    // The handler of the error may free memory that commands in flight still use.
-    settle();
-    throw_call_error(info_, code, call, what);
-}
-
-template<class Call, class What>
-std::uint64_t OpenclDevice::submit(std::string_view name, const Call& call, const What& what) {
-    cl_event event = nullptr;
-    check(call(clocks() == Clocks::on ? &event : nullptr), name, what);
-    if (event == nullptr) return 0;
-    events_.push_back(event);
-    return events_.size();
-}
-
-cl_command_queue OpenclDevice::make_queue(cl_command_queue_properties properties) {
-    cl_int code = CL_SUCCESS;
-    auto* queue = clCreateCommandQueue(context_, device_, properties, &code);
-    check(code, "clCreateCommandQueue", "opening the device");
-    return queue;
-}
-
-cl_command_queue OpenclDevice::timed_queue() {
-    if (!timed_) timed_ = make_queue(CL_QUEUE_PROFILING_ENABLE);
-    return timed_;
 }
 
 std::shared_ptr<Buffer::Impl> OpenclDevice::do_allocate(std::size_t bytes) {
     auto buffer = std::make_shared<OpenclBuffer>();
     cl_int code = CL_SUCCESS;
-    buffer->memory = clCreateBuffer(context_, CL_MEM_READ_WRITE, bytes, nullptr, &code);
+    buffer->memory = clCreateBuffer(context_.handle(), CL_MEM_READ_WRITE, bytes, nullptr, &code);
     const auto what = [&] {
         return fmt::format("allocating {} bytes of {} with {} in use", bytes, info_.global_bytes,
                            bytes_allocated());
     };
     try {
-        check(code, "clCreateBuffer", what);
+        queue_.check(code, "clCreateBuffer", what);
     } catch (const DeviceError& error) {
         if (is_out_of_memory(code)) throw OutOfMemory(error.what());
         throw;
@@ -209,33 +149,33 @@ std::shared_ptr<Buffer::Impl> OpenclDevice::do_adopt(void* native) {
 
 std::uint64_t OpenclDevice::do_upload(Buffer::Impl& to, std::span<const std::byte> from, std::size_t offset,
                                       bool blocking) {
-    auto* copy = blocking ? nullptr : staged_.take(from.size());
+    auto* copy = blocking ? nullptr : queue_.staging().take(from.size());
     if (copy != nullptr) std::memcpy(copy, from.data(), from.size());
     const void* source = copy != nullptr ? copy : from.data();
-    const auto ticket = submit(
+    const auto ticket = queue_.submit(
         "clEnqueueWriteBuffer",
         [&](cl_event* event) {
-            return clEnqueueWriteBuffer(active_, static_cast<OpenclBuffer&>(to).memory,
+            return clEnqueueWriteBuffer(queue_.active(), static_cast<OpenclBuffer&>(to).memory,
                                         copy != nullptr ? CL_FALSE : CL_TRUE, offset, from.size(), source, 0,
                                         nullptr, event);
         },
         [&] { return fmt::format("uploading '{}'", to.label); });
     if (copy != nullptr) return ticket;
     host_waited();
-    staged_.release(); // the queue is in order: earlier uploads are complete
+    queue_.staging().release(); // the queue is in order: earlier uploads are complete
     return ticket;
 }
 
 std::uint64_t OpenclDevice::do_download(const Buffer::Impl& from, std::span<std::byte> to,
                                         std::size_t offset) {
-    const auto ticket = submit(
+    const auto ticket = queue_.submit(
         "clEnqueueReadBuffer",
         [&](cl_event* event) {
-            return clEnqueueReadBuffer(active_, static_cast<const OpenclBuffer&>(from).memory, CL_TRUE,
-                                       offset, to.size(), to.data(), 0, nullptr, event);
+            return clEnqueueReadBuffer(queue_.active(), static_cast<const OpenclBuffer&>(from).memory,
+                                       CL_TRUE, offset, to.size(), to.data(), 0, nullptr, event);
         },
         [&] { return fmt::format("downloading '{}'", from.label); });
-    staged_.release();
+    queue_.staging().release();
     return ticket;
 }
 
@@ -246,17 +186,17 @@ std::uint64_t OpenclDevice::do_clear(Buffer::Impl& buffer, std::size_t bytes, st
     auto* memory = static_cast<OpenclBuffer&>(buffer).memory;
     const auto what = [&] { return fmt::format("clearing '{}'", buffer.label); };
     if (bytes <= zeros.size())
-        return submit(
+        return queue_.submit(
             "clEnqueueWriteBuffer",
             [&](cl_event* event) {
-                return clEnqueueWriteBuffer(active_, memory, CL_FALSE, offset, bytes, zeros.data(), 0,
+                return clEnqueueWriteBuffer(queue_.active(), memory, CL_FALSE, offset, bytes, zeros.data(), 0,
                                             nullptr, event);
             },
             what);
-    return submit(
+    return queue_.submit(
         "clEnqueueFillBuffer",
         [&](cl_event* event) {
-            return clEnqueueFillBuffer(active_, memory, &zero, 1, offset, bytes, 0, nullptr, event);
+            return clEnqueueFillBuffer(queue_.active(), memory, &zero, 1, offset, bytes, 0, nullptr, event);
         },
         what);
 }
@@ -267,8 +207,8 @@ cl_program OpenclDevice::program(const KernelSource& source, const std::string& 
     cl_int code = CL_SUCCESS;
     const char* text = source.text.data();
     const std::size_t length = source.text.size();
-    auto* made = clCreateProgramWithSource(context_, 1, &text, &length, &code);
-    check(code, "clCreateProgramWithSource", "compiling");
+    auto* made = clCreateProgramWithSource(context_.handle(), 1, &text, &length, &code);
+    queue_.check(code, "clCreateProgramWithSource", "compiling");
     if (clBuildProgram(made, 1, &device_, options.c_str(), nullptr, nullptr) == CL_SUCCESS)
         return programs_[key] = made;
     auto log = build_log(made, device_);
@@ -292,7 +232,8 @@ std::shared_ptr<Kernel::Impl> OpenclDevice::do_compile(const KernelSource& sourc
     cl_int code = CL_SUCCESS;
     auto* made = program(source, options);
     kernel->kernel = clCreateKernel(made, std::string(entry).c_str(), &code);
-    check(code, "clCreateKernel", [&] { return fmt::format("looking for '{}' in {}", entry, source.name); });
+    queue_.check(code, "clCreateKernel",
+                 [&] { return fmt::format("looking for '{}' in {}", entry, source.name); });
     cl_ulong local = 0;
     std::size_t group = 0;
     clGetKernelWorkGroupInfo(kernel->kernel, device_, CL_KERNEL_LOCAL_MEM_SIZE, sizeof(local), &local,
@@ -326,7 +267,8 @@ void OpenclDevice::set_arguments(cl_kernel kernel, std::span<const Argument> arg
             const auto& scalar = std::get<Argument::Scalar>(value);
             code = clSetKernelArg(kernel, i, scalar.size, scalar.bytes.data());
         }
-        check(code, "clSetKernelArg", [&] { return fmt::format("setting argument {} of '{}'", i, entry); });
+        queue_.check(code, "clSetKernelArg",
+                     [&] { return fmt::format("setting argument {} of '{}'", i, entry); });
     }
 }
 
@@ -335,35 +277,15 @@ std::uint64_t OpenclDevice::do_launch(Kernel::Impl& kernel, Grid grid, std::span
     set_arguments(handle, arguments, kernel.facts.entry);
     const std::size_t local = grid.group_size;
     const std::size_t global = grid.groups * local;
-    return submit(
+    return queue_.submit(
         "clEnqueueNDRangeKernel",
         [&](cl_event* event) {
-            return clEnqueueNDRangeKernel(active_, handle, 1, nullptr, &global, &local, 0, nullptr, event);
+            return clEnqueueNDRangeKernel(queue_.active(), handle, 1, nullptr, &global, &local, 0, nullptr,
+                                          event);
         },
         [&] {
             return fmt::format("launching '{}' with {} groups of {}", kernel.facts.entry, grid.groups, local);
         });
-}
-
-void OpenclDevice::do_finish() {
-    check(clFinish(active_), "clFinish", "waiting");
-    staged_.release();
-}
-
-std::pair<std::int64_t, std::int64_t> OpenclDevice::do_interval(std::uint64_t ticket) {
-    auto*& event = events_.at(ticket - 1);
-    cl_ulong begin = 0;
-    cl_ulong end = 0;
-    const bool known =
-        clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof(begin), &begin, nullptr)
-            == CL_SUCCESS
-        && clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof(end), &end, nullptr) == CL_SUCCESS
-        && end >= begin;
-    clReleaseEvent(event);
-    event = nullptr;
-    if (ticket == events_.size()) events_.clear();
-    if (!known) return {-1, -1};
-    return {static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end - begin)};
 }
 
 } // namespace
