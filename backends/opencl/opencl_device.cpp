@@ -3,10 +3,9 @@
 
 #include "backends/opencl/call_error.h"
 #include "backends/opencl/description.h"
+#include "backends/opencl/programs.h"
 #include "backends/opencl/queue.h"
-#include "backends/ptxas_log.h"
 
-#include <algorithm>
 #include <array>
 #include <fmt/format.h>
 
@@ -20,14 +19,6 @@ bool is_out_of_memory(cl_int code) {
            || code == CL_OUT_OF_HOST_MEMORY || code == CL_INVALID_BUFFER_SIZE;
 }
 
-std::string build_log(cl_program program, cl_device_id device) {
-    std::size_t size = 0;
-    clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
-    std::string log(size, '\0');
-    clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
-    return log;
-}
-
 struct OpenclBuffer : Buffer::Impl {
     cl_mem memory = nullptr;
     bool owned = true;
@@ -38,16 +29,6 @@ struct OpenclBuffer : Buffer::Impl {
         if (owned && memory) clReleaseMemObject(memory);
     }
     void* native() const override { return memory; }
-};
-
-struct OpenclKernel : Kernel::Impl {
-    cl_kernel kernel = nullptr;
-    OpenclKernel() = default;
-    OpenclKernel(const OpenclKernel&) = delete;
-    OpenclKernel& operator=(const OpenclKernel&) = delete;
-    ~OpenclKernel() override {
-        if (kernel) clReleaseKernel(kernel);
-    }
 };
 
 /// A context, which it releases only when it has made it.
@@ -76,7 +57,6 @@ class OpenclDevice : public Device {
 public:
     OpenclDevice(cl_device_id device, std::size_t index);
     OpenclDevice(cl_context context, cl_device_id device, cl_command_queue queue);
-    ~OpenclDevice() override;
 
     const DeviceInfo& info() const override { return info_; }
     std::string clock() const override { return "OpenCL profiling"; }
@@ -90,7 +70,9 @@ private:
     std::uint64_t do_download(const Buffer::Impl& from, std::span<std::byte> to, std::size_t offset) override;
     std::uint64_t do_clear(Buffer::Impl& buffer, std::size_t bytes, std::size_t offset) override;
     std::shared_ptr<Kernel::Impl> do_compile(const KernelSource& source, std::string_view entry,
-                                             const Defines& defines) override;
+                                             const Defines& defines) override {
+        return programs_.compile(queue_, source, entry, defines);
+    }
     std::uint64_t do_launch(Kernel::Impl& kernel, Grid grid, std::span<const Argument> arguments) override;
     void do_finish() override { queue_.finish(); }
     void do_follow(void* queue) override { queue_.follow(static_cast<cl_command_queue>(queue)); }
@@ -99,29 +81,25 @@ private:
         return queue_.interval(ticket);
     }
 
-    /// Builds once per text and options; entries of one file share the program.
-    cl_program program(const KernelSource& source, const std::string& options);
     void set_arguments(cl_kernel kernel, std::span<const Argument> arguments, std::string_view entry);
 
     DeviceInfo info_;
-    cl_device_id device_ = nullptr;
     Context context_;
-    std::map<std::string, cl_program> programs_;
-    Queue queue_;
+    Programs programs_;
+    Queue queue_; ///< its end waits, before programs are released
 };
 
 OpenclDevice::OpenclDevice(cl_device_id device, std::size_t index)
     : info_(describe(device, fmt::format("opencl:{}", index))),
-      device_(device),
       context_(info_, device),
+      programs_(info_, device, context_.handle()),
       queue_(info_, device, context_.handle()) {}
 
 OpenclDevice::OpenclDevice(cl_context context, cl_device_id device, cl_command_queue queue)
-    : info_(describe(device, "opencl:adopted")), device_(device), context_(context), queue_(info_, queue) {}
-
-OpenclDevice::~OpenclDevice() {
-    for (const auto& [key, made] : programs_) clReleaseProgram(made);
-}
+    : info_(describe(device, "opencl:adopted")),
+      context_(context),
+      programs_(info_, device, context),
+      queue_(info_, queue) {}
 
 std::shared_ptr<Buffer::Impl> OpenclDevice::do_allocate(std::size_t bytes) {
     auto buffer = std::make_shared<OpenclBuffer>();
@@ -199,60 +177,6 @@ std::uint64_t OpenclDevice::do_clear(Buffer::Impl& buffer, std::size_t bytes, st
             return clEnqueueFillBuffer(queue_.active(), memory, &zero, 1, offset, bytes, 0, nullptr, event);
         },
         what);
-}
-
-cl_program OpenclDevice::program(const KernelSource& source, const std::string& options) {
-    const auto key = fmt::format("{} {}", source.name, options);
-    if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
-    cl_int code = CL_SUCCESS;
-    const char* text = source.text.data();
-    const std::size_t length = source.text.size();
-    auto* made = clCreateProgramWithSource(context_.handle(), 1, &text, &length, &code);
-    queue_.check(code, "clCreateProgramWithSource", "compiling");
-    if (clBuildProgram(made, 1, &device_, options.c_str(), nullptr, nullptr) == CL_SUCCESS)
-        return programs_[key] = made;
-    auto log = build_log(made, device_);
-    clReleaseProgram(made);
-    std::replace(log.begin(), log.end(), '\n', ' ');
-    throw DeviceError(
-        fmt::format("{}: {} does not compile with {}: {}", info_.id, source.name, options, log));
-}
-
-std::shared_ptr<Kernel::Impl> OpenclDevice::do_compile(const KernelSource& source, std::string_view entry,
-                                                       const Defines& defines) {
-    std::string options = "-cl-std=CL1.2";
-    if ((device_value<cl_device_fp_config>(device_, CL_DEVICE_SINGLE_FP_CONFIG)
-         & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT)
-        != 0)
-        options += " -cl-fp32-correctly-rounded-divide-sqrt";
-    const bool verbose = has_extension(device_, "cl_nv_compiler_options");
-    if (verbose) options += " -cl-nv-verbose";
-    for (const auto& [name, value] : defines) options += fmt::format(" -D{}={}", name, value);
-    auto kernel = std::make_shared<OpenclKernel>();
-    cl_int code = CL_SUCCESS;
-    auto* made = program(source, options);
-    kernel->kernel = clCreateKernel(made, std::string(entry).c_str(), &code);
-    queue_.check(code, "clCreateKernel",
-                 [&] { return fmt::format("looking for '{}' in {}", entry, source.name); });
-    cl_ulong local = 0;
-    std::size_t group = 0;
-    clGetKernelWorkGroupInfo(kernel->kernel, device_, CL_KERNEL_LOCAL_MEM_SIZE, sizeof(local), &local,
-                             nullptr);
-    clGetKernelWorkGroupInfo(kernel->kernel, device_, CL_KERNEL_WORK_GROUP_SIZE, sizeof(group), &group,
-                             nullptr);
-    if (verbose) {
-        const auto use = use_of(build_log(made, device_), entry);
-        kernel->facts.registers = use.registers;
-        kernel->facts.spill_bytes = use.spill_bytes;
-    }
-    kernel->facts.local_bytes = static_cast<std::int64_t>(local);
-    // A kernel runs at the size that it is compiled for: NVIDIA's driver reports 256 for kernels that run in
-    // groups of 992.
-    std::array<std::size_t, 3> compiled{};
-    clGetKernelWorkGroupInfo(kernel->kernel, device_, CL_KERNEL_COMPILE_WORK_GROUP_SIZE, sizeof(compiled),
-                             compiled.data(), nullptr);
-    kernel->facts.max_group_size = static_cast<std::int64_t>(std::max(group, compiled[0]));
-    return kernel;
 }
 
 void OpenclDevice::set_arguments(cl_kernel kernel, std::span<const Argument> arguments,

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "backends/opencl/programs.h"
+
+#include "backends/opencl/description.h"
+#include "backends/ptxas_log.h"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+
+namespace tandem::opencl {
+
+namespace {
+
+std::string build_log(cl_program program, cl_device_id device) {
+    std::size_t size = 0;
+    clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
+    std::string log(size, '\0');
+    clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
+    return log;
+}
+
+/// A property of a kernel; zero when the driver does not report it.
+template<class T>
+T kernel_value(cl_kernel kernel, cl_device_id device, cl_kernel_work_group_info what) {
+    T value{};
+    clGetKernelWorkGroupInfo(kernel, device, what, sizeof(T), &value, nullptr);
+    return value;
+}
+
+} // namespace
+
+Programs::~Programs() {
+    for (const auto& [key, program] : built_) clReleaseProgram(program);
+}
+
+/// Whether NVIDIA's compiler can write the resources of each entry into the build log.
+bool Programs::reports_use() const { return has_extension(device_, "cl_nv_compiler_options"); }
+
+std::string Programs::options(const Defines& defines) const {
+    std::string options = "-cl-std=CL1.2";
+    const auto floats = device_value<cl_device_fp_config>(device_, CL_DEVICE_SINGLE_FP_CONFIG);
+    if ((floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0)
+        options += " -cl-fp32-correctly-rounded-divide-sqrt";
+    if (reports_use()) options += " -cl-nv-verbose";
+    for (const auto& [name, value] : defines) options += fmt::format(" -D{}={}", name, value);
+    return options;
+}
+
+cl_program Programs::build(Queue& queue, const KernelSource& source, const std::string& options) {
+    const auto key = fmt::format("{} {}", source.name, options);
+    if (const auto found = built_.find(key); found != built_.end()) return found->second;
+    cl_int code = CL_SUCCESS;
+    const char* text = source.text.data();
+    const std::size_t length = source.text.size();
+    auto* program = clCreateProgramWithSource(context_, 1, &text, &length, &code);
+    queue.check(code, "clCreateProgramWithSource", "compiling");
+    if (clBuildProgram(program, 1, &device_, options.c_str(), nullptr, nullptr) == CL_SUCCESS)
+        return built_[key] = program;
+    auto log = build_log(program, device_);
+    clReleaseProgram(program);
+    std::replace(log.begin(), log.end(), '\n', ' ');
+    throw DeviceError(
+        fmt::format("{}: {} does not compile with {}: {}", info_.id, source.name, options, log));
+}
+
+std::shared_ptr<OpenclKernel> Programs::compile(Queue& queue, const KernelSource& source,
+                                                std::string_view entry, const Defines& defines) {
+    auto kernel = std::make_shared<OpenclKernel>();
+    auto* program = build(queue, source, options(defines));
+    cl_int code = CL_SUCCESS;
+    kernel->kernel = clCreateKernel(program, std::string(entry).c_str(), &code);
+    queue.check(code, "clCreateKernel",
+                [&] { return fmt::format("looking for '{}' in {}", entry, source.name); });
+    read_facts(*kernel, program, entry);
+    return kernel;
+}
+
+void Programs::read_facts(OpenclKernel& kernel, cl_program program, std::string_view entry) const {
+    auto& facts = kernel.facts;
+    if (reports_use()) {
+        const auto use = use_of(build_log(program, device_), entry);
+        facts.registers = use.registers;
+        facts.spill_bytes = use.spill_bytes;
+    }
+    facts.local_bytes =
+        static_cast<std::int64_t>(kernel_value<cl_ulong>(kernel.kernel, device_, CL_KERNEL_LOCAL_MEM_SIZE));
+    // A kernel runs at the size that it is compiled for: NVIDIA's driver reports 256 for kernels that run in
+    // groups of 992.
+    const auto reported = kernel_value<std::size_t>(kernel.kernel, device_, CL_KERNEL_WORK_GROUP_SIZE);
+    const auto compiled =
+        kernel_value<std::array<std::size_t, 3>>(kernel.kernel, device_, CL_KERNEL_COMPILE_WORK_GROUP_SIZE);
+    facts.max_group_size = static_cast<std::int64_t>(std::max(reported, compiled[0]));
+}
+
+} // namespace tandem::opencl
