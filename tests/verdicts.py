@@ -50,7 +50,7 @@ class Verdicts(unittest.TestCase):
             yield from zip(groups, session["verdicts"])
 
     def test_equals_the_program(self):
-        told, differ, single, groups = 0, 0, 0, 0
+        apart, differ, single, groups = 0, 0, 0, 0
         for cells, line in self.pairs():
             self.assertEqual([error.message for error in self.validator.iter_errors(line)], [])
             own = computed(cells)
@@ -64,11 +64,11 @@ class Verdicts(unittest.TestCase):
                     self.assertAlmostEqual(one.ratio.low, cell["low"], delta=1e-12 * cell["low"])
                     self.assertAlmostEqual(one.ratio.high, cell["high"], delta=1e-12 * cell["high"])
             groups += 1
-            told += any(cell["told_apart"] for cell in line["cells"])
+            apart += any(cell["told_apart"] for cell in line["cells"])
             single += any(cell["low"] is None for cell in line["cells"])
             differ += line["answers_differ"]
         # The sessions have all cases.
-        self.assertGreater(min(told, groups - told, single, differ), 5, (groups, told, single, differ))
+        self.assertGreater(min(apart, groups - apart, single, differ), 5, (groups, apart, single, differ))
 
     def test_sentences(self):
         sentences = [sentence for session in self.sessions for sentence in session["sentences"]]
@@ -85,8 +85,8 @@ class Verdicts(unittest.TestCase):
                              [(one.cell, one.has_interval, one.is_told_apart) for one in computed(cells).cells])
             self.assertEqual(read.leaders(), computed(cells).leaders())
             # Not of exactly these cells.
-            for others in (cells[1:], [timed_of_another_session(cells[0]), *cells[1:]], [*cells, cells[0]]):
-                self.assertFalse(verdict_of(others, recorded).is_recorded)
+            for changed in (cells[1:], [timed_of_another_session(cells[0]), *cells[1:]], [*cells, cells[0]]):
+                self.assertFalse(verdict_of(changed, recorded).is_recorded)
 
     def test_leaders(self):
         quick, slow, doubtful = [1.0, 1.1, 1.0, 1.1, 1.0, 1.1, 1.0], [2.0] * 7, [1.1, 1.0, 1.1, 1.0, 1.1, 1.0, 1.1]
