@@ -64,9 +64,10 @@ DEVICE void load_job(const Refit* refit, uint word, uint job, uint job_count, LO
 
 // Negative zero becomes positive, so that equal slabs have equal bits.
 DEVICE void bound_tetrahedron(const Refit* refit, LOCAL const uint* strip, uint item, real* node) {
+    const BodyTetrahedron one = {strip[JOB_BODY], strip[JOB_TETRAHEDRA] + item, strip[JOB_VERTICES],
+                                 strip[JOB_FLAGS]};
     Point corner[4];
-    load_corners_of(refit->poses, refit->tetrahedra, refit->vertices, strip[JOB_BODY],
-                    strip[JOB_TETRAHEDRA] + item, strip[JOB_VERTICES], strip[JOB_FLAGS], corner);
+    load_corners(refit->poses, refit->tetrahedra, refit->vertices, &one, corner);
     for (int axis = 0; axis < DIRECTIONS; ++axis) {
         node[axis] = REAL_INFINITY;
         node[axis + DIRECTIONS] = -REAL_INFINITY;

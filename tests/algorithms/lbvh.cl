@@ -37,9 +37,9 @@ DEVICE GLOBAL const uint* children_of(GLOBAL const uint* children, GLOBAL const 
 
 // Empty slabs (lower end above upper end) overlap nothing and enlarge no union. Negative zero becomes
 // positive, so equal slabs have equal bits.
-DEVICE void bound_tetrahedron(GLOBAL const uint* bodies, GLOBAL const real* poses,
-                              GLOBAL const uint* tetrahedra, GLOBAL const real* vertices, uint body,
-                              uint item, int is_active, GLOBAL real* node) {
+DEVICE void bound_tetrahedron(GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
+                              GLOBAL const real* vertices, const BodyTetrahedron* one, int is_active,
+                              GLOBAL real* node) {
     real slabs[K];
     for (int axis = 0; axis < DIRECTIONS; ++axis) {
         slabs[axis] = REAL_INFINITY;
@@ -47,8 +47,8 @@ DEVICE void bound_tetrahedron(GLOBAL const uint* bodies, GLOBAL const real* pose
     }
     if (is_active) {
         Point corner[4];
-        load_corners(bodies, poses, tetrahedra, vertices, body, item, corner);
-        const Point drift = drift_at(poses, body);
+        load_corners(poses, tetrahedra, vertices, one, corner);
+        const Point drift = drift_at(poses, one->body);
         for (int i = 0; i < 4; ++i) widen_by_point(corner[i], drift, slabs, slabs + DIRECTIONS);
     }
     for (int word = 0; word < K; ++word) node[word] = slabs[word] + (real)0;
@@ -79,8 +79,9 @@ KERNEL void refit_trees(GLOBAL real* nodes, GLOBAL real* volumes, GLOBAL const u
     const uint items = items_of(bodies, body);
     for (uint item = LOCAL_ID; item < items; item += GROUP_SIZE) {
         const uint leaf = items - 1u + item;
-        bound_tetrahedron(bodies, poses, tetrahedra, vertices, body, item,
-                          skipped[tree[TREE_NODES] + leaf] == 0u, own + (ulong)leaf * K);
+        const BodyTetrahedron one = tetrahedron_of(((GLOBAL const WordRow*)bodies)[body], body, item);
+        bound_tetrahedron(poses, tetrahedra, vertices, &one, skipped[tree[TREE_NODES] + leaf] == 0u,
+                          own + (ulong)leaf * K);
     }
     BARRIER_GLOBAL;
     GLOBAL const uint* first = depths + tree[TREE_DEPTHS];
