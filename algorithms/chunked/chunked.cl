@@ -94,8 +94,8 @@ KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL 
                      uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, stacks, STACK_DEPTH * GROUP_SIZE);
     LOCAL uint* stack = stacks + LOCAL_ID;
-    const Job job = {nodes, trees, bodies,         levels, ids,      pairs,
-                     level, below, below_capacity, found,  capacity, status};
+    const Job job = {nodes, trees, levels,         pairs,
+                     level, below, below_capacity, {bodies, ids, found, capacity, status}};
     const uint pair_count = body_pair_count(pair_capacity, status);
     GLOBAL const ulong* starts = seeds + row_of_level(level, pair_count);
     const ulong own = starts[pair_count];
@@ -176,8 +176,8 @@ KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* tree
     // Rows pushed in this turn, and in the one before, which slow work-items may still read. The third
     // counter is reset for the next turn.
     LOCAL_ARRAY(uint, pushed, 3);
-    const Job job = {nodes, trees, bodies,         levels, ids,      pairs,
-                     level, below, below_capacity, found,  capacity, status};
+    const Job job = {nodes, trees, levels,         pairs,
+                     level, below, below_capacity, {bodies, ids, found, capacity, status}};
     const uint all_pairs = body_pair_count(pair_capacity, status);
     GLOBAL const ulong* starts = seeds + row_of_level(level, all_pairs);
     const ulong own = starts[all_pairs];

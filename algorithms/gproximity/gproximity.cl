@@ -69,38 +69,46 @@ KERNEL void scatter_roots(GLOBAL uint* items, GLOBAL uint* counts, uint queues, 
         counts[queue] = share_of_queue((uint)queue, count, queues);
 }
 
+// Arguments of a launch of walks.
+typedef struct {
+    GLOBAL const real* nodes;
+    GLOBAL const uint* trees;
+    GLOBAL const uint* pairs;
+    PairOutput output;
+} Job;
+
 // Result of one node pair: a candidate pair, nothing, or two children to push.
 typedef struct {
     uint pair, a, b;
     uint descend; // 0 none, 1 children of a, 2 children of b
 } Step;
 
-DEVICE Step walk_item(Step step, GLOBAL const real* nodes, GLOBAL const uint* trees,
-                      GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* pairs,
-                      GLOBAL uint* found, uint capacity, GLOBAL uint* status, Tally* tally) {
-    const uint body_a = body_a_of(pairs, step.pair);
-    const uint body_b = body_b_of(pairs, step.pair);
-    GLOBAL const uint* a = tree_of(trees, body_a);
-    GLOBAL const uint* b = tree_of(trees, body_b);
-    GLOBAL const real* node_a = node_at(nodes, a[TREE_NODES] + step.a);
-    GLOBAL const real* node_b = node_at(nodes, b[TREE_NODES] + step.b);
+DEVICE Step walk_item(const Job* job, Step step, Tally* tally) {
+    const uint body_a = body_a_of(job->pairs, step.pair);
+    const uint body_b = body_b_of(job->pairs, step.pair);
+    GLOBAL const uint* a = tree_of(job->trees, body_a);
+    GLOBAL const uint* b = tree_of(job->trees, body_b);
+    GLOBAL const real* node_a = node_at(job->nodes, a[TREE_NODES] + step.a);
+    GLOBAL const real* node_b = node_at(job->nodes, b[TREE_NODES] + step.b);
     step.descend = 0u;
     if (WINDOWED
-        && !in_window(status, first_item_below(step.a, a[TREE_ITEMS]),
+        && !in_window(job->output.status, first_item_below(step.a, a[TREE_ITEMS]),
                       (ulong)last_item_below(step.a, a[TREE_ITEMS]) + 1))
         return step;
     if (COUNT_WORK) tally->tests += 1;
     if (!overlap(node_a, node_b)) return step;
     const int leaf_a = is_leaf(step.a, a[TREE_ITEMS]);
     const int leaf_b = is_leaf(step.b, b[TREE_ITEMS]);
-    if (leaf_a && leaf_b && EMITS_SLOTS)
-        emit_slots(status, found, capacity, first_slot_of(a) + leaf_item(step.a, a[TREE_ITEMS]),
+    if (leaf_a && leaf_b && EMITS_SLOTS) {
+        emit_slots(&job->output, first_slot_of(a) + leaf_item(step.a, a[TREE_ITEMS]),
                    first_slot_of(b) + leaf_item(step.b, b[TREE_ITEMS]));
-    else if (leaf_a && leaf_b)
-        emit(tally, status, found, capacity, bodies, ids, body_a, body_b, leaf_item(step.a, a[TREE_ITEMS]),
-             leaf_item(step.b, b[TREE_ITEMS]));
-    else
+    } else if (leaf_a && leaf_b) {
+        const WordRow pair = {body_a, body_b, leaf_item(step.a, a[TREE_ITEMS]),
+                              leaf_item(step.b, b[TREE_ITEMS])};
+        emit(tally, &job->output, pair);
+    } else {
         step.descend = leaf_b || (!leaf_a && node_size(node_a) > node_size(node_b)) ? 1u : 2u;
+    }
     return step;
 }
 
@@ -170,6 +178,7 @@ KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* trees, 
                             uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, queue, LOCAL_QUEUE * ITEM_WORDS);
     LOCAL_ARRAY(uint, shared, 4);
+    const Job job = {nodes, trees, pairs, {bodies, ids, found, capacity, status}};
     GLOBAL uint* own = items + (ulong)GROUP_ID * queue_capacity * ITEM_WORDS;
     Tally tally = empty_tally();
     // Set in work-item 0 if the group starts without items; it then counts as idle from the start.
@@ -200,7 +209,7 @@ KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* trees, 
         if (LOCAL_ID == 0u) shared[SIZE] = size - active;
         BARRIER;
         if (LOCAL_ID < active) {
-            step = walk_item(step, nodes, trees, bodies, ids, pairs, found, capacity, status, &tally);
+            step = walk_item(&job, step, &tally);
             if (step.descend != 0u) push_children(step, queue, shared + SIZE, own, stored);
         }
         BARRIER_GLOBAL;

@@ -268,9 +268,8 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
                             if (is_pair) put_pair(&team, slot, slot_a[part], slot_b[part]);
                         } else if (is_pair) {
                             tally.count += 1;
-                            if (OUTPUT == OUTPUT_DIGEST)
-                                tally_digest(&tally, bodies, ids, a.body, b.body, a.item + lane_a,
-                                             b.item + lane_b);
+                            const WordRow row = {a.body, b.body, a.item + lane_a, b.item + lane_b};
+                            if (OUTPUT == OUTPUT_DIGEST) tally_digest(&tally, bodies, ids, row);
                         }
                     }
                     next += LANES;

@@ -102,20 +102,16 @@ typedef struct {
     GLOBAL const real* nodes;
     GLOBAL const uint* trees;
     GLOBAL const uint* children;
-    GLOBAL const uint* bodies;
-    GLOBAL const uint* ids;
-    GLOBAL uint* found;
-    uint capacity;
-    GLOBAL uint* status;
+    PairOutput output;
 } Job;
 
 // Emits every leaf of body b that overlaps the leaf of a's item. Returns the number of leaves.
 DEVICE uint query_leaf(const Job* job, uint a, uint b, uint item, Tally* tally) {
-    const uint leaf = items_of(job->bodies, a) - 1u + item;
+    const uint leaf = items_of(job->output.bodies, a) - 1u + item;
     GLOBAL const real* query = job->nodes + ((ulong)tree_of(job->trees, a)[TREE_NODES] + leaf) * K;
     GLOBAL const uint* tree = tree_of(job->trees, b);
     GLOBAL const real* nodes = job->nodes + (ulong)tree[TREE_NODES] * K;
-    const uint inner = items_of(job->bodies, b) - 1u;
+    const uint inner = items_of(job->output.bodies, b) - 1u;
     uint stack[STACK_CAPACITY];
     uint stack_size = 1;
     uint hits = 0;
@@ -131,8 +127,8 @@ DEVICE uint query_leaf(const Job* job, uint a, uint b, uint item, Tally* tally) 
             stack[stack_size++] = child[1];
         } else {
             ++hits;
-            emit(tally, job->status, job->found, job->capacity, job->bodies, job->ids, a, b, item,
-                 node - inner);
+            const WordRow found = {a, b, item, node - inner};
+            emit(tally, &job->output, found);
         }
     }
     return hits;
@@ -144,7 +140,7 @@ KERNEL void query_leaves(GLOBAL const real* nodes, GLOBAL const uint* trees, GLO
                          GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* pairs,
                          uint pair_capacity, uint blocks, GLOBAL uint* found, uint capacity,
                          GLOBAL uint* status) {
-    const Job job = {nodes, trees, children, bodies, ids, found, capacity, status};
+    const Job job = {nodes, trees, children, {bodies, ids, found, capacity, status}};
     const ulong work = (ulong)body_pair_count(pair_capacity, status) * blocks;
     Tally tally = empty_tally();
     ulong hits = 0;
