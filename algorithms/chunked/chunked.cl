@@ -65,15 +65,24 @@ KERNEL void scan_seeds(GLOBAL ulong* seeds, uint pair_capacity, GLOBAL const uin
     }
 }
 
-// Walk number `seed` of this launch: first the seeds of the level's own table, then those handed down.
-DEVICE Walk walk_of_seed(const Job* job, uint pair_count, GLOBAL const ulong* starts, ulong own, uint near,
-                         GLOBAL const uint* handed, ulong seed) {
-    if (seed >= own) {
-        GLOBAL const uint* row = handed + (seed - own) * SEED_WORDS;
-        return start_walk(job->trees, job->levels, job->pairs, job->level, row[0], row[1], row[2]);
+// Seeds of a launch: the level's own, `own` in number with a start for each of `pair_count` body pairs, then
+// those handed down.
+typedef struct {
+    GLOBAL const ulong* starts;
+    GLOBAL const uint* handed;
+    ulong own;
+    uint pair_count;
+} SeedTables;
+
+// Walk number `seed` of a launch. The level's own seeds from body pair `near` on include it.
+DEVICE Walk walk_of_seed(const Job* job, const SeedTables* seeds, uint near, ulong seed) {
+    if (seed >= seeds->own) {
+        GLOBAL const uint* row = seeds->handed + (seed - seeds->own) * SEED_WORDS;
+        const Seed given = {row[0], row[1], row[2]};
+        return start_walk(job->trees, job->levels, job->pairs, job->level, given);
     }
-    const uint pair = pair_from(starts, near, pair_count, seed);
-    return walk_in_pair(job->trees, job->levels, job->pairs, job->level, pair, seed - starts[pair]);
+    const uint pair = pair_from(seeds->starts, near, seeds->pair_count, seed);
+    return walk_in_pair(job->trees, job->levels, job->pairs, job->level, pair, seed - seeds->starts[pair]);
 }
 
 // Number of seeds of a launch: the level's own and those handed down.
@@ -107,8 +116,9 @@ KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL 
     while (top != 0u || seed < total) {
         Descent to = {1u, 1u, 0u, 0u};
         if (top == 0u) {
+            const SeedTables tables = {starts, handed, own, pair_count};
             const uint near = seed < own ? pair_between(starts, 0u, pair_count, seed) : 0u;
-            walk = walk_of_seed(&job, pair_count, starts, own, near, handed, seed);
+            walk = walk_of_seed(&job, &tables, near, seed);
             seed += GLOBAL_COUNT;
             if (COUNT_WORK) tally.seeds += 1;
         } else {
@@ -137,12 +147,11 @@ KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL 
 #define SHARED_ROWS SHARED_ROW_COUNT(GROUP_SIZE, LEAF_BITS)
 
 // Stored word by word, so that neighbouring work-items use different banks.
-DEVICE void push_row(LOCAL uint* rows, uint count, LOCAL uint* pushed, uint pair, uint chunk_a, uint chunk_b,
-                     uint nodes) {
+DEVICE void push_row(LOCAL uint* rows, uint count, LOCAL uint* pushed, Seed seed, uint nodes) {
     LOCAL uint* row = rows + count + LOCAL_ATOMIC_ADD(pushed, 1u);
-    row[0] = pair;
-    row[SHARED_ROWS] = chunk_a;
-    row[2 * SHARED_ROWS] = chunk_b;
+    row[0] = seed.pair;
+    row[SHARED_ROWS] = seed.chunk_a;
+    row[2 * SHARED_ROWS] = seed.chunk_b;
     row[3 * SHARED_ROWS] = nodes;
 }
 
@@ -200,22 +209,24 @@ KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* tree
         BARRIER;
         if (collecting) {
             const uint pair_count = body_pair_count(pair_capacity, status); // read again to save registers
+            const SeedTables tables = {starts, handed, own, pair_count};
             const uint near = start < own ? pair_between(starts, 0u, pair_count, start) : 0u;
             for (ulong seed = start + LOCAL_ID; seed < start + batch && seed < total; seed += GROUP_SIZE) {
-                const Walk walk = walk_of_seed(&job, pair_count, starts, own, near, handed, seed);
+                const Walk walk = walk_of_seed(&job, &tables, near, seed);
                 if (COUNT_WORK) tally.seeds += 1;
                 if (COUNT_WORK) tally.tests += 1;
-                if (roots_overlap(&job, &walk))
-                    push_row(rows, count, pushed + turn, walk.pair, walk.first_a / CHUNK_ITEMS,
-                             walk.first_b / CHUNK_ITEMS, waiting(&job, &walk, 1u, 1u));
+                if (!roots_overlap(&job, &walk)) continue;
+                const Seed chunks = {walk.pair, walk.first_a / CHUNK_ITEMS, walk.first_b / CHUNK_ITEMS};
+                push_row(rows, count, pushed + turn, chunks, waiting(&job, &walk, 1u, 1u));
             }
             start += (ulong)GROUP_COUNT * batch;
         } else if (LOCAL_ID < taken) {
-            const Walk walk = start_walk(trees, levels, pairs, level, row[0], row[1], row[2]);
+            const Seed chunks = {row[0], row[1], row[2]};
+            const Walk walk = start_walk(trees, levels, pairs, level, chunks);
             const Children children = expand(&job, &walk, row[3], &tally);
             for (uint i = 0; i < 4u; ++i)
                 if (((children.left >> i) & 1u) != 0u)
-                    push_row(rows, count, pushed + turn, row[0], row[1], row[2], child_pair(&children, i));
+                    push_row(rows, count, pushed + turn, chunks, child_pair(&children, i));
         }
         BARRIER;
         count += pushed[turn];
