@@ -82,13 +82,12 @@ DEVICE uint count_bits(uint bits) {
     return count;
 }
 
-// Writes the body pairs of one row from number `index` on, up to the capacity.
-DEVICE void write_pairs(GLOBAL uint* pairs, uint capacity, uint index, GLOBAL const uint* order,
-                        uint position, uint first, uint hits) {
+// Writes the pairs of body `a` with the bodies of those columns that `hits` marks, from number `index` on, up
+// to the capacity.
+DEVICE void write_pairs(GLOBAL uint* pairs, uint capacity, uint index, uint a, GLOBAL const uint* columns,
+                        uint hits) {
     for (; hits != 0u; hits &= hits - 1u, ++index) {
-        const uint column = 31u - COUNT_LEADING_ZEROS(hits & (~hits + 1u));
-        const uint a = order[position];
-        const uint b = order[first + column];
+        const uint b = columns[31u - COUNT_LEADING_ZEROS(hits & (~hits + 1u))];
         if (index >= capacity) return;
         pairs[2u * (ulong)index] = a < b ? a : b;
         pairs[2u * (ulong)index + 1u] = a < b ? b : a;
@@ -152,7 +151,8 @@ KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* r
                     shared[FIRST_INDEX] = counter_add(status + STATUS_BODY_PAIRS, shared[FOUND]);
                 BARRIER;
                 if (hits != 0u)
-                    write_pairs(pairs, capacity, shared[FIRST_INDEX] + offset, order, row, from, hits);
+                    write_pairs(pairs, capacity, shared[FIRST_INDEX] + offset, order[row], order + from,
+                                hits);
                 row += GROUP_SIZE;
                 rows_done += GROUP_SIZE;
             } while (rows_done < rows_end);

@@ -41,12 +41,11 @@ DEVICE void write_tile_pairs(const Team* team, uint waiting, GLOBAL uint* list, 
         if (start + i / 2u < capacity) list[start * TILE_PAIR_WORDS + i] = team->pairs[i];
 }
 
-// Loads the boxes of a tile for a level above 0. A tile of a lower level than the launch has its root as its
-// only box.
-DEVICE void load_boxes(GLOBAL const real* uppers, uint first_upper, GLOBAL const real* roots, uint number,
-                       const Tile* tile, uint level, LANE_BOX(box, DIRECTIONS)) {
-    GLOBAL const real* boxes = uppers + (ulong)(number - first_upper) * (K * LANES);
-    GLOBAL const real* root = root_of(roots, number);
+// Loads the boxes of a tile for a level above 0: number `upper` of the tiles with boxes of all directions. A
+// tile of a lower level than the launch has its root as its only box.
+DEVICE void load_boxes(GLOBAL const real* uppers, uint upper, GLOBAL const real* root, const Tile* tile,
+                       uint level, LANE_BOX(box, DIRECTIONS)) {
+    GLOBAL const real* boxes = uppers + (ulong)upper * (K * LANES);
     const int whole = tile->level != level;
     UNROLL for (uint word = 0; word < (uint)K; ++word) {
         FOR_LANES {
@@ -94,9 +93,9 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
         LANE_BOX(box, DIRECTIONS);
         if (tested) {
             GLOBAL const real* root = root_of(roots, pair.a);
-            load_boxes(uppers, first_upper, roots, pair.b, &b, level, box);
+            load_boxes(uppers, pair.b - first_upper, root_of(roots, pair.b), &b, level, box);
             COLLECT_ROWS(&team, box, DIRECTIONS, root)
-            load_boxes(uppers, first_upper, roots, pair.a, &a, level, box);
+            load_boxes(uppers, pair.a - first_upper, root, &a, level, box);
             if (WINDOWED) lanes_in_window(status, &a, level, keeps);
         }
         LANE_BARRIER;
