@@ -26,11 +26,12 @@ int check_cells(const Job& job, const RunOptions& options, RecordFile& file, con
     measuring.check.truths = options.truth == TruthAmount::none ? nullptr : &truths;
     measuring.stopping.repeat = 0;
     int code = 0;
-    measure_cells(job, job.cells, references, measuring, file, progress, [&](const CellResult& result) {
+    const auto ended = [&](const CellResult& result) {
         const auto& m = result.measurement;
         code = std::max({code, result.code, misses_against_its_promise(m) ? 1 : 0});
         if (result.measured) print(*result.cell, m);
-    });
+    };
+    measure_cells(job, job.cells, references, measuring, file, {progress, ended});
     return code;
 }
 

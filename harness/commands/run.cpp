@@ -212,11 +212,11 @@ int Run::measure(Job& job) {
     References references(job.scene, job.range, checks_folder(options_));
     std::map<const Cell*, CellResult> results;
     int code = 0;
-    interrupted_ = measure_cells(job, job.cells, references, measuring, *file_, progress_,
-                                 [&](const CellResult& result) {
-                                     code = std::max(code, result.code);
-                                     results.emplace(result.cell, result);
-                                 });
+    const auto ended = [&](const CellResult& result) {
+        code = std::max(code, result.code);
+        results.emplace(result.cell, result);
+    };
+    interrupted_ = measure_cells(job, job.cells, references, measuring, *file_, {progress_, ended});
     measured_ += results.size();
     conclude(job, results);
     // Dumps come last, because a dump that cannot be written ends the run.

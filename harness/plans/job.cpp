@@ -126,30 +126,29 @@ std::unique_ptr<CellSampler> make_sampler(const Cell& cell, const Job& job, Refe
 } // namespace
 
 bool measure_cells(const Job& job, std::span<const Cell> cells, References& references,
-                   const Measuring& measuring, RecordFile& file, const Progress& progress,
-                   const std::function<void(const CellResult&)>& ended) {
+                   const Measuring& measuring, RecordFile& file, const CellsListener& listener) {
     ResultSink sink(file, measuring.unfinished);
     std::vector<std::unique_ptr<CellSampler>> samplers;
     std::vector<CellSampler*> group;
     for (const auto& cell : cells)
         group.push_back(samplers.emplace_back(make_sampler(cell, job, references, sink)).get());
-    RoundsListener listener;
+    RoundsListener rounds;
     std::size_t done = 0;
-    listener.progress = [&](std::string_view text) {
-        progress.show(fmt::format("[{}/{}] {}", done, cells.size(), text));
+    rounds.progress = [&](std::string_view text) {
+        listener.progress.show(fmt::format("[{}/{}] {}", done, cells.size(), text));
     };
-    listener.stop = [&] { return sink.failed() || measuring.stop(); };
-    listener.kept = [&](const CellSampler& sampler, bool is_first) {
+    rounds.stop = [&] { return sink.failed() || measuring.stop(); };
+    rounds.kept = [&](const CellSampler& sampler, bool is_first) {
         sink.keep(sampler, requested_key(sampler.cell(), job), is_first);
     };
-    listener.finished = [&](const Outcome& outcome, const Sampling& sampling) {
+    rounds.finished = [&](const Outcome& outcome, const Sampling& sampling) {
         ++done;
-        progress.clear();
-        ended(end_cell(outcome, sampling, job, sink));
+        listener.progress.clear();
+        listener.ended(end_cell(outcome, sampling, job, sink));
     };
     auto check = measuring.check;
-    check.progress = listener.progress;
-    return sample_group(group, check, measuring.stopping, measuring.seed, listener);
+    check.progress = rounds.progress;
+    return sample_group(group, check, measuring.stopping, measuring.seed, rounds);
 }
 
 std::filesystem::path checks_folder(const RunOptions& options) {

@@ -46,12 +46,17 @@ struct CellResult {
     bool converged = false; ///< precise enough, or sampled as often as requested
 };
 
+/// How a measurement reports: `progress` shows what runs, `ended` takes each cell's result as it ends.
+struct CellsListener {
+    const Progress& progress;
+    std::function<void(const CellResult&)> ended;
+};
+
 /// Measures the cells as one group. Appends a record for each cell as it ends, also when its device failed,
-/// and calls `ended`. Stops when a record cannot be written. Returns whether the measurement was interrupted:
-/// then cells that had not begun have no record.
+/// before the listener gets its result. Stops when a record cannot be written. Returns whether the
+/// measurement was interrupted: then cells that had not begun have no record.
 bool measure_cells(const Job& job, std::span<const Cell> cells, References& references,
-                   const Measuring& measuring, RecordFile& file, const Progress& progress,
-                   const std::function<void(const CellResult&)>& ended);
+                   const Measuring& measuring, RecordFile& file, const CellsListener& listener);
 
 /// The folder for stored digests of references and errors against the truth; empty with --check-afresh.
 std::filesystem::path checks_folder(const RunOptions& options);

@@ -88,10 +88,18 @@ void add_host_time(ContactSearch& search, Stage stage, std::int64_t host_ns) {
     search.stages[static_cast<std::size_t>(stage)].host_ns += host_ns;
 }
 
+/// Outputs of the steps of a simulation.
+struct StepOutputs {
+    SimulationSession& session; ///< recording and checkpoints
+    RecordFile& file;
+    RunTotals& totals;
+};
+
 /// Runs steps until `last` are done. Adds each to the totals and the records, except steps that an earlier
 /// process recorded after the checkpoint.
 void run_steps(const SimulateOptions& options, std::size_t last, Simulation& simulation,
-               ContactFinder& finder, SimulationSession& session, RecordFile& file, RunTotals& totals) {
+               ContactFinder& finder, const StepOutputs& outputs) {
+    auto& [session, file, totals] = outputs;
     const Progress progress(options.quiet);
     const auto recorded = options.resume ? steps_recorded(file, totals.session) : std::set<std::size_t>{};
     const auto detect = [&](const Frame& frame, std::vector<ContactPoint>& contacts) {
@@ -180,7 +188,7 @@ int simulate_command(const SimulateOptions& options) {
     try {
         ContactFinder finder(cell, scene, simulation.frame(), !options.record.empty());
         totals.warm_up_ns = finder.warm_up_ns();
-        run_steps(options, last, simulation, finder, session, file, totals);
+        run_steps(options, last, simulation, finder, {session, file, totals});
     } catch (const std::exception& error) {
         if (file.failed())
             put("{}", run_table(totals, true));

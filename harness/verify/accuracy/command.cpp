@@ -148,15 +148,16 @@ int measure_scene(const RunOptions& options, const std::vector<Cell>& cells, Rec
     measuring.stopping.repeat = options.repeat.value_or(3);
     int code = 0;
     print_header();
+    const auto ended = [&](const CellResult& result) {
+        const auto& m = result.measurement;
+        code = std::max({code, result.code, misses_against_its_promise(m) ? 1 : 0});
+        if (result.measured && !m.agreement.ok())
+            put("WRONG against the reference: {}\n", describe(*result.cell));
+        if (result.measured && m.errors) print_row(*result.cell, m);
+    };
     // Measure cell by cell, not in rounds: rows appear early, and times are not compared between cells.
     for (const auto& cell : job.cells)
-        measure_cells(job, {&cell, 1}, references, measuring, file, progress, [&](const CellResult& result) {
-            const auto& m = result.measurement;
-            code = std::max({code, result.code, misses_against_its_promise(m) ? 1 : 0});
-            if (result.measured && !m.agreement.ok())
-                put("WRONG against the reference: {}\n", describe(cell));
-            if (result.measured && m.errors) print_row(cell, m);
-        });
+        measure_cells(job, {&cell, 1}, references, measuring, file, {progress, ended});
     put("\n");
     return code;
 }
