@@ -37,11 +37,17 @@ Vector above(Random& random, const Vector& d, int reach, const Vector& steps) {
     }
 }
 
-/// Two tetrahedra of integers that touch at c. A face of a contains c in the plane of u and v, with the tip
+/// The plane through c with normal d; u and v are in it.
+struct Plane {
+    Vector c, d, u, v;
+};
+
+/// Two tetrahedra of integers that touch at c of a plane. A face of a contains c in the plane, with the tip
 /// below. b has a corner at c and the rest above. With weights other than 1 all corners of the face can round
 /// in the same direction, which corners with sum 0 cannot.
-std::pair<Corners, Corners> touching_across(Random& random, const Vector& c, const Vector& d, const Vector& u,
-                                            const Vector& v, int reach, const Vector& steps) {
+std::pair<Corners, Corners> touching_across(Random& random, const Plane& plane, int reach,
+                                            const Vector& steps) {
+    const auto& [c, d, u, v] = plane;
     for (;;) {
         const Vector p = in_plane(random, u, v, reach), q = in_plane(random, u, v, reach);
         const double weights[2]{1.0 * whole(random, 1, 2), 1.0 * whole(random, 1, 2)};
@@ -66,7 +72,7 @@ HardPair slab_touch(Random& random, double offset, std::uint64_t index) {
     const double unit = float_unit(2 * offset);
     Vector c;
     for (auto& x : c) x = std::round(random.uniform(-offset, offset) / unit);
-    const auto [a, b] = touching_across(random, c, d, u, v, reach_of(unit), {1, 1, 1});
+    const auto [a, b] = touching_across(random, {c, d, u, v}, reach_of(unit), {1, 1, 1});
     return exact_pair(random, scaled(a, unit), scaled(b, unit), Known::touching);
 }
 
@@ -80,7 +86,7 @@ HardPair corner_cancellation(Random& random, double offset, std::uint64_t index)
         2 * std::round(random.uniform(1.25 * 0x1p22, 1.5 * 0x1p22)) + (std::fmod(x, 2) == 0 ? 1 : 0);
     const Vector c{x, y, -(x + y - 1) - 2 * whole(random, -2, 2)};
     const int reach = std::min(reach_of(unit), 1 << 16);
-    const auto [a, b] = touching_across(random, c, {1, 1, 1}, {1, -1, 0}, {1, 1, -2}, reach, {1, 1, 2});
+    const auto [a, b] = touching_across(random, {c, {1, 1, 1}, {1, -1, 0}, {1, 1, -2}}, reach, {1, 1, 2});
     const Vector signs = directions[3 + index % 4] * unit;
     const auto reflected = [&](Corners corners) {
         for (auto& corner : corners) corner = corner.cwiseProduct(signs);

@@ -66,10 +66,17 @@ bool on_perimeter(const Plan& plan, std::uint64_t column, std::uint64_t row) {
     return column == 0 || row == 0 || column + 1 == plan.columns || row + 1 == plan.rows;
 }
 
-/// Adds a box between two points of the plan.
-void add_slab(Assembly& assembly, double x0, double x1, double base, double height, double z0, double z1) {
-    assembly.add(assembly.add_box({x1 - x0, height, z1 - z0}),
-                 {.pose = {.translation = {0.5 * (x0 + x1), base + 0.5 * height, 0.5 * (z0 + z1)}}});
+struct Interval {
+    double low, high;
+
+    double length() const { return high - low; }
+    double middle() const { return 0.5 * (low + high); }
+};
+
+/// Adds a box over a rectangle of the plan.
+void add_slab(Assembly& assembly, Interval x, Interval z, double base, double height) {
+    assembly.add(assembly.add_box({x.length(), height, z.length()}),
+                 {.pose = {.translation = {x.middle(), base + 0.5 * height, z.middle()}}});
 }
 
 /// Adds beams between adjacent pillars. Beams along x cover the corners; beams along z begin behind them.
@@ -77,13 +84,15 @@ void add_architraves(Assembly& assembly, const Plan& plan, double base) {
     const double half = 0.5 * plan.thickness();
     for (const auto row : {std::uint64_t{0}, plan.rows - 1})
         for (std::uint64_t i = 0; i + 1 < plan.columns; ++i)
-            add_slab(assembly, plan.x(i) - (i == 0 ? 0.5 * plan.width : 0),
-                     plan.x(i + 1) + (i + 2 == plan.columns ? 0.5 * plan.width : 0), base, plan.course(),
-                     plan.z(row) - half, plan.z(row) + half);
+            add_slab(assembly,
+                     {plan.x(i) - (i == 0 ? 0.5 * plan.width : 0),
+                      plan.x(i + 1) + (i + 2 == plan.columns ? 0.5 * plan.width : 0)},
+                     {plan.z(row) - half, plan.z(row) + half}, base, plan.course());
     for (const auto column : {std::uint64_t{0}, plan.columns - 1})
         for (std::uint64_t i = 0; i + 1 < plan.rows; ++i)
-            add_slab(assembly, plan.x(column) - half, plan.x(column) + half, base, plan.course(),
-                     plan.z(i) + (i == 0 ? half : 0), plan.z(i + 1) - (i + 2 == plan.rows ? half : 0));
+            add_slab(assembly, {plan.x(column) - half, plan.x(column) + half},
+                     {plan.z(i) + (i == 0 ? half : 0), plan.z(i + 1) - (i + 2 == plan.rows ? half : 0)}, base,
+                     plan.course());
 }
 
 /// Adds slabs side by side across the whole width.
@@ -94,8 +103,8 @@ void add_ceiling(Assembly& assembly, const Plan& plan, double base) {
         return half_depth * (2 * static_cast<double>(i) / static_cast<double>(plan.rows - 1) - 1);
     };
     for (std::uint64_t i = 0; i + 1 < plan.rows; ++i)
-        add_slab(assembly, -half_width, half_width, base, halved_on_grid(0.5 * plan.course()), edge(i),
-                 edge(i + 1));
+        add_slab(assembly, {-half_width, half_width}, {edge(i), edge(i + 1)}, base,
+                 halved_on_grid(0.5 * plan.course()));
 }
 
 Scene make(std::span<const SceneParameter> parameters) {

@@ -19,23 +19,29 @@ constexpr double normal_rounding = 1e-6; ///< rounding error of a normal in sing
 constexpr double tilt = 0.1;             ///< radians, largest tilt of faces that rest on each other
 constexpr double least_cosine = 0.1;     ///< a face more parallel to a direction gives no depth along it
 
+/// A tetrahedron of a contact. `sign` is 1 if its body is a, -1 if it is b.
+struct ContactSide {
+    std::uint32_t body, tetrahedron;
+    double sign;
+};
+
 /// Boundary faces of one body near a contact, in world axes; `rays` are their normals, directed out of body
 /// a.
 struct NearBoundary {
     std::vector<NearFace> faces;
     std::vector<Eigen::Vector3d> rays;
 
-    void find(const Model& model, const Frame& frame, std::uint32_t body, std::uint32_t tetrahedron,
-              const Eigen::Vector3d& point, double slack, double sign) {
-        const auto& pose = frame.poses[body];
-        const auto mesh = model.scene->bodies[body].mesh;
-        model.boundaries[mesh].near(model.scene->meshes[mesh], tetrahedron,
+    void find(const Model& model, const Frame& frame, const ContactSide& side, const Eigen::Vector3d& point,
+              double slack) {
+        const auto& pose = frame.poses[side.body];
+        const auto mesh = model.scene->bodies[side.body].mesh;
+        model.boundaries[mesh].near(model.scene->meshes[mesh], side.tetrahedron,
                                     rotated(pose.rotation.conjugate(), point - pose.translation), slack,
                                     faces);
         rays.clear();
         for (auto& face : faces) {
             face.normal = rotated(pose.rotation, face.normal);
-            rays.push_back(sign * face.normal);
+            rays.push_back(side.sign * face.normal);
         }
     }
 
@@ -82,8 +88,8 @@ struct NormalCorrector {
         const Eigen::Vector3d original(contact.normal[0], contact.normal[1], contact.normal[2]);
         // A point on the surface of one body lies below the other's surface by the penetration.
         const double slack = nearness * pair_size(model, pair) + depths.at(bodies_of(pair));
-        a.find(model, frame, pair.body_a, pair.tet_a, point, slack, 1);
-        b.find(model, frame, pair.body_b, pair.tet_b, point, slack, -1);
+        a.find(model, frame, {pair.body_a, pair.tet_a, 1}, point, slack);
+        b.find(model, frame, {pair.body_b, pair.tet_b, -1}, point, slack);
         const double deviation = outside(a.rays, b.rays, original);
         if (deviation <= normal_rounding) return;
         auto normal = moved_into_cones(a.rays, b.rays, original);
