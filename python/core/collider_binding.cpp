@@ -30,17 +30,12 @@ std::vector<std::string> device_names(const Collider& collider) {
     return names;
 }
 
-std::shared_ptr<Collider> make(const std::vector<const Mesh*>& meshes, std::vector<std::uint32_t> bodies,
-                               std::vector<bool> deformable, std::string algorithm, std::string preset,
-                               std::string device, SettingTexts settings,
-                               std::optional<std::uintptr_t> stream, nb::object owner) {
+std::shared_ptr<Collider> make(const std::vector<const Mesh*>& meshes, const ColliderOptions& options,
+                               nb::object owner) {
     const nb::gil_scoped_release released;
     std::vector<Mesh> copies;
     for (const auto* mesh : meshes) copies.push_back(*mesh);
-    auto collider = std::make_shared<Collider>(
-        std::move(copies),
-        ColliderOptions{std::move(bodies), std::move(deformable), std::move(algorithm), std::move(preset),
-                        std::move(device), std::move(settings), stream});
+    auto collider = std::make_shared<Collider>(std::move(copies), options);
     collider->set_stream_owner(std::move(owner));
     return collider;
 }
@@ -85,10 +80,14 @@ void bind_collider(nb::module_& module) {
                                      const nb::list& vertices) {
         return run(self, device_input(*self, poses, vertices));
     };
+    nb::class_<ColliderOptions>(module, "ColliderOptions",
+                                "bodies, deformable: one entry per body. stream: an address.")
+        .def(nb::init<std::vector<std::uint32_t>, std::vector<bool>, std::string, std::string, std::string,
+                      SettingTexts, std::optional<std::uintptr_t>>(),
+             nb::arg("bodies"), nb::arg("deformable"), nb::arg("algorithm"), nb::arg("preset"),
+             nb::arg("device"), nb::arg("settings"), nb::arg("stream").none());
     nb::class_<Collider>(module, "Collider", "Implementation of tandem.Collider, which checks its input.")
-        .def(nb::new_(&make), nb::arg("meshes"), nb::arg("bodies"), nb::arg("deformable"),
-             nb::arg("algorithm"), nb::arg("preset"), nb::arg("device"), nb::arg("settings"),
-             nb::arg("stream").none(), nb::arg("owner").none())
+        .def(nb::new_(&make), nb::arg("meshes"), nb::arg("options"), nb::arg("owner").none())
         .def("run", run_given, nb::arg("poses").none(), nb::arg("vertices").none(),
              nb::sig("def run(self, poses: object | None, vertices: object | None) -> Answer | None"),
              "Runs a frame. vertices: a list with one array per deformable body, or {number: array}. Returns "

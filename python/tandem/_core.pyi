@@ -126,10 +126,15 @@ class Answer:
 def algorithms() -> list[str]:
     """Names of the algorithms that Collider accepts besides auto."""
 
+class ColliderOptions:
+    """bodies, deformable: one entry per body. stream: an address."""
+
+    def __init__(self, bodies: Sequence[int], deformable: Sequence[bool], algorithm: str, preset: str, device: str, settings: Mapping[str, str], stream: int | None) -> None: ...
+
 class Collider:
     """Implementation of tandem.Collider, which checks its input."""
 
-    def __init__(self, meshes: Sequence[Mesh], bodies: Sequence[int], deformable: Sequence[bool], algorithm: str, preset: str, device: str, settings: Mapping[str, str], stream: int | None, owner: object | None) -> None: ...
+    def __init__(self, meshes: Sequence[Mesh], options: ColliderOptions, owner: object | None) -> None: ...
 
     def run(self, poses: object | None, vertices: object | None) -> Answer | None:
         """

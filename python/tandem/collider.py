@@ -136,7 +136,8 @@ class Collider:
                 raise TypeError(f"{what}: type {type(text).__name__}; expected a name")
         texts = {name: _text(value, name) for name, value in settings.items()}
         address = None if stream is None else stream_address(stream)
-        self._core = _core.Collider(all_meshes, mesh_of_body, flags, algorithm, preset, device, texts, address, stream)
+        options = _core.ColliderOptions(mesh_of_body, flags, algorithm, preset, device, texts, address)
+        self._core = _core.Collider(all_meshes, options, stream)
 
     def run(self, poses: Any = None, vertices: Any = None) -> Answer:
         """Finds the candidate pairs and contacts of a frame.
