@@ -269,7 +269,7 @@ class Rates(unittest.TestCase):
             made.append(cells.RecordedCell(1, 3, str(number), "ok", "", {}, {}, 1, True, session, None, len(row), dict(enumerate(row)), None, None, "", "", False))
         return cells.RecordedCells("", "", made, [], [], len(made), 0, False)
 
-    def found(self, start, times=2000, paired=False, cells_each=1, rounds=10, noise=0.02, drift=0.0, change=0.0):
+    def found(self, start, times=2000, *, paired=False, cells_each=1, rounds=10, noise=0.02, drift=0.0, change=0.0):
         """The fraction of trials in which any change is reported, however small."""
         random, count = numpy.random.default_rng(start), 0
         for _ in range(times):
@@ -293,9 +293,9 @@ class Rates(unittest.TestCase):
 
     def test_many_cells_together_raise_no_more_false_alarms(self):
         for paired in (False, True):
-            self.assertLessEqual(self.found(14, 150, paired, 20, 12), 0.05 + self.error(0.05, 150))
+            self.assertLessEqual(self.found(14, 150, paired=paired, cells_each=20, rounds=12), 0.05 + self.error(0.05, 150))
         # A change of one cell is found among 19 others.
-        self.assertEqual(self.found(15, 20, True, 20, 12, change=0.2), 1)
+        self.assertEqual(self.found(15, 20, paired=True, cells_each=20, rounds=12, change=0.2), 1)
 
     def test_the_least_effect_is_found_four_times_of_five(self):
         """Rank tests use more of normal noise than medians do, so they detect the change more often."""
@@ -304,13 +304,13 @@ class Rates(unittest.TestCase):
             error = 0.02 * math.sqrt(math.pi / rounds)
             change = math.log1p(matching.least_effect(error, 0.05))
             for start, paired in ((16, True), (17, False)):
-                fraction = self.found(start, 1000, paired, rounds=rounds, change=change)
+                fraction = self.found(start, 1000, paired=paired, rounds=rounds, change=change)
                 self.assertTrue(0.8 - self.error(0.8, 1000) < fraction < 0.99, (rounds, paired, fraction))
 
     def test_pairs_are_insensitive_to_drift(self):
         drifting = {"noise": 0.005, "drift": 0.1, "change": 0.02}
-        self.assertLess(self.found(18, 200, False, **drifting), 0.2)
-        self.assertGreater(self.found(18, 200, True, **drifting), 0.99)
+        self.assertLess(self.found(18, 200, **drifting), 0.2)
+        self.assertGreater(self.found(18, 200, paired=True, **drifting), 0.99)
 
 
 if __name__ == "__main__":

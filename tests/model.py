@@ -49,7 +49,8 @@ def record(chance, bodies, devices, with_ranks=False, frames=2):
     parts = []
     for _ in range(devices):
         local_bodies = own if devices == 1 else int(own * chance.uniform(1.1, 1.6))
-        counts = loads.counts_of(scene, local_bodies, own, body_pairs / devices, pairs / devices, devices == 1, local_bodies if with_ranks else None)
+        counts = loads.counts_of(scene, local_bodies, own, body_pairs / devices, pairs / devices, is_sorted=devices == 1,
+                                 known=local_bodies if with_ranks else None)
         us = {part: known_us(part, counts, chance) for part in KNOWN}
         exchange = {"messages": chance.randrange(1, 20) * frames, "bytes": chance.randrange(1000, 1000000) * frames} if with_ranks else None
         if exchange:

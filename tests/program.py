@@ -49,7 +49,7 @@ def tandem(*arguments, environment=None, timeout=300, address_space=None):
     return done.returncode, done.stdout, lines
 
 
-def tried(what, count, unit, where="host", lost=0, crashes=0, hangs=0, rest=0):
+def tried(what, count, unit, where="host", *, lost=0, crashes=0, hangs=0, rest=0):
     """Appends a line to the file that TANDEM_TRIED names, if it is set, for scripts/tried (tests/support/tried.h has
     the same function). `count` units were tried; `lost` counts answers or records, `crashes` and `hangs` the
     program, and `rest` ended in other people's libraries."""

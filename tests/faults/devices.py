@@ -34,6 +34,7 @@ Kind = collections.namedtuple("Kind", "name code keeps_failing")
 NO_MEMORY = 2  # CUDA_ERROR_OUT_OF_MEMORY
 KINDS = {"opencl": (Kind("once", -5, False),), "cuda": (Kind("once", 999, False), Kind("without memory", NO_MEMORY, False), Kind("for good", 700, True))}
 Outcome = collections.namedtuple("Outcome", "code errors hung")
+Fault = collections.namedtuple("Fault", "command kind call is_last")  # is_last: the call is among those that close the device
 
 
 def stubs():
@@ -100,7 +101,9 @@ class Sweep(Case):
         """The files of a run without a failure that do not depend on time."""
         return {path.name: path.read_bytes() for path in sorted(folder.rglob("*")) if path.suffix in (".csv", ".frames", ".vtu", ".pvd", ".vtp")}
 
-    def judge(self, command, kind, call, folder, outcome, well, at_the_end):
+    def judge(self, fault, folder, outcome, well):
+        """Checks a run with a fault. `well`: code and files of the run without one."""
+        command, kind, call, is_last = fault
         where = f"{self.backend}, {command}, call {call} {kind.name}: {outcome.code}: {outcome.errors}"
         self.assertFalse(outcome.hung, where)
         self.assertGreaterEqual(outcome.code, 0, where)
@@ -112,7 +115,7 @@ class Sweep(Case):
             self.went_on[command] += 1
             self.assertEqual((outcome.errors, self.files(folder)), ([], well[1]), where)
             if self.backend == "cuda" and kind.code != NO_MEMORY:
-                self.assertRegex((folder / "failed").read_text(), CAN_DO_WITHOUT + ("|StreamSynchronize" if kind.keeps_failing or at_the_end else ""), where)
+                self.assertRegex((folder / "failed").read_text(), CAN_DO_WITHOUT + ("|StreamSynchronize" if kind.keeps_failing or is_last else ""), where)
             return
         self.assertIn(outcome.code, (2, 3), where)
         self.assertIn(len(outcome.errors), (1, 2) if command in ("run", "check", "accuracy") else (1,), where)
@@ -135,7 +138,7 @@ class Sweep(Case):
             with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as several:
                 for call, (folder, outcome) in zip(calls, several.map(lambda call: self.fault(command, kind, call), calls)):
                     with self.subTest(kind=kind.name, call=call):
-                        self.judge(command, kind, call, folder, outcome, well, call > total - LAST)
+                        self.judge(Fault(command, kind, call, call > total - LAST), folder, outcome, well)
                     shutil.rmtree(folder)
             self.counts[command] += len(calls)
         self.assertLess(self.went_on[command], self.counts[command])

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Time over errors, one column per scene. Pareto-optimal cells are joined by a line and have names."""
+import collections
 import math
 import textwrap
 
@@ -11,6 +12,13 @@ from .points import OF_CONTACTS, short_words, sweep_text, swept
 MAX_SCENES = 4
 MAX_NAMES = 5  # per panel
 PALE, FRONT = "0.7", "#0b5394"
+
+# A kind of error over which time is drawn. `value` takes a point. `without`: settings that do not affect it. `step`: factor between two named
+# points, at least. `gain`: what a smaller value means.
+Error = collections.namedtuple("Error", "value without title gain step")
+ERRORS = (Error(lambda p: p.ratio, OF_CONTACTS, "candidates per meeting pair", "fewer candidates", 1.01),
+          Error(lambda p: p.depth, (), "depth error, 99th percentile, / L", "less error", 2),
+          Error(lambda p: p.normal, (), "normal error, 99th percentile, degrees", "less error", 2))
 
 
 def frontier(points, value, step):
@@ -66,21 +74,22 @@ def _draw_front(axes, points, value, line, names):
                       textcoords="offset points", ha="right" if late else "left", fontsize=7, color=FRONT)
 
 
-def _scatter(axes, points, value, without, title, gain, step):
-    """Draws a panel. Names those points of the frontier that gain a factor of `step`, by the settings in which they differ."""
-    axes.set(xlabel="ms a frame", ylabel=title)
+def _scatter(axes, points, error):
+    """Draws a panel. Names those points of the frontier that gain the error's step, by the settings in which they differ."""
+    value = error.value
+    axes.set(xlabel="ms a frame", ylabel=error.title)
     known = [p for p in points if value(p) is not None]
     points = [p for p in known if value(p) > 0 and p.ms > 0]
     if not points:
         note(axes, "nothing to draw: all are 0" if known else "nothing to draw: no cell was asked for this (--truth contacts)")
         return
     _draw_all(axes, points, value)
-    line = _most_distinct(frontier([p for p in points if p.missed == 0], value, step), value)
+    line = _most_distinct(frontier([p for p in points if p.missed == 0], value, error.step), value)
     if line:
-        distinguishing = swept(line, without) or swept(points, without)
+        distinguishing = swept(line, error.without) or swept(points, error.without)
         names = {p: short_words(p, distinguishing) or p.label for p in line}
         _draw_front(axes, points, value, line, names)
-        axes.set_title("\n".join(textwrap.wrap(_message(line, names, value, gain), 80)), fontsize=8, loc="left")
+        axes.set_title("\n".join(textwrap.wrap(_message(line, names, value, error.gain), 80)), fontsize=8, loc="left")
     axes.margins(x=0.1, y=0.15)
     few_ticks(axes)
     values = [value(p) for p in points]
@@ -89,11 +98,10 @@ def _scatter(axes, points, value, without, title, gain, step):
 
 
 def _column(panels, scene, own):
-    _scatter(panels[0], own, lambda p: p.ratio, OF_CONTACTS, "candidates per meeting pair", "fewer candidates", 1.01)
-    _scatter(panels[1], own, lambda p: p.depth, (), "depth error, 99th percentile, / L", "less error", 2)
-    _scatter(panels[2], own, lambda p: p.normal, (), "normal error, 99th percentile, degrees", "less error", 2)
+    for axes, error in zip(panels, ERRORS):
+        _scatter(axes, own, error)
     title = f"{scene}: {sweep_text(swept(own)) or 'one cell'}. Pale: beaten in both; hollow: misses pairs that meet; bars: 95 % of the median"
-    panels[2].text(0, -0.32, "\n".join(textwrap.wrap(title, 100)), transform=panels[2].transAxes, fontsize=7, va="top", color="0.3")
+    panels[-1].text(0, -0.32, "\n".join(textwrap.wrap(title, 100)), transform=panels[-1].transAxes, fontsize=7, va="top", color="0.3")
 
 
 def scenes_of(points):
@@ -106,7 +114,7 @@ def draw(points):
     shown = scenes_of(points)[:MAX_SCENES]
     if not shown:
         return None
-    figure, axes = plt.subplots(3, len(shown), figsize=(6.4 * len(shown), 9), squeeze=False, layout="constrained")
+    figure, axes = plt.subplots(len(ERRORS), len(shown), figsize=(6.4 * len(shown), 9), squeeze=False, layout="constrained")
     for column, scene in zip(axes.T, shown):
         _column(column, scene, [p for p in points if p.scene == scene])
     return figure, [p for p in points if p.scene in shown]

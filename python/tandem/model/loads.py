@@ -47,7 +47,7 @@ def _load(counts, times, total, frames, exchange=None):
     return Load(counts, times, total, exchange)
 
 
-def counts_of(scene, bodies, own, body_pairs, pairs, is_sorted, known=None):
+def counts_of(scene, bodies, own, body_pairs, pairs, *, is_sorted, known=None):
     """Counts of a device with `bodies` bodies, of which it owns `own`. `known`: number of bodies whose poses the host has for the device;
     default: all of the scene."""
     tiles = lambda n: math.ceil(n / TILE)
@@ -60,7 +60,7 @@ def _load_alone(record, frames):
     scene, work = record["scene"], record["work"]
     stages = {name: stage["device_ns"]["median"] for name, stage in record["stages"].items()}
     counts = counts_of(scene, scene["bodies"], scene["bodies"], _mean(work["body_pairs"]), _mean(work["candidate_pairs"]),
-                       record["settings"].get("broad") == "device")
+                       is_sorted=record["settings"].get("broad") == "device")
     return _load(counts, _part_times(stages, frames), record["total_ns"]["median"] / frames / 1e3, frames)
 
 
@@ -68,7 +68,7 @@ def _load_of_part(record, one, frames):
     """The load of one of several devices."""
     stages, scene = {name: stage["device_ns"] for name, stage in one["stages"].items()}, record["scene"]
     counts = counts_of(scene, _mean(one["bodies"]), scene["bodies"] / len(record["partition"]["devices"]), _mean(one["body_pairs"]),
-                       _mean(one["candidate_pairs"]), False, _mean(one["bodies"]) if record.get("ranks") else None)
+                       _mean(one["candidate_pairs"]), is_sorted=False, known=_mean(one["bodies"]) if record.get("ranks") else None)
     return _load(counts, _part_times(stages, frames), one["ns"]["median"] / frames / 1e3, frames, one["exchange"])
 
 
