@@ -15,59 +15,68 @@ namespace {
 
 using namespace testing_support;
 
+using SettingValues = std::pair<std::string, std::vector<std::string>>;
+
+const std::vector<SettingValues> shared_settings{
+    {"residency", {"resident", "published"}}, {"convert", {"serial", "parallel"}},
+    {"work_items", {"64", "2048"}},           {"broad", {"sphere", "device"}},
+    {"body_pair_capacity", {"1", "65536"}},   {"pair_capacity", {"1", "100000"}},
+    {"contact_capacity", {"1", "100000"}}};
+
+const std::vector<SettingValues> settings_of_single_algorithms{
+    {"leaves", {"2", "4", "32"}},
+    {"seed_threshold", {"0", "1", "40", "1e7"}},
+    {"seed_target", {"1000", "1048576"}},
+    {"seed_capacity", {"1", "65536"}},
+    {"builder", {"morton", "sah", "breadth", "hilbert", "median"}},
+    {"slabs", {"three", "all"}},
+    {"tile_pair_capacity", {"1", "65536"}},
+    {"most_seeds", {"1", "256", "16384"}},
+    {"root_test", {"yes", "no"}},
+    {"schedule", {"group", "item"}},
+    {"descent", {"larger", "both"}},
+    {"groups", {"8", "13"}},
+    {"local_queue", {"4", "200"}},
+    {"initial_items", {"1", "0"}},
+    {"queue_capacity", {"4", "1000"}},
+    {"idle_limit", {"1", "1000"}},
+    {"batch", {"0", "5"}},
+    {"upload", {"seeds", "queues"}},
+    {"pair_layout", {"slots", "items"}},
+    {"refill", {"yes", "no"}},
+    {"full_exit", {"yes", "no"}},
+    {"balance", {"parallel", "serial"}},
+    {"balance_group_size", {"1", "32"}}};
+
+Axis axis_of(const SettingValues& setting) {
+    Axis axis;
+    for (const auto& value : setting.second) axis.push_back({{setting.first, value}});
+    return axis;
+}
+
+/// Every k, and both choices of axes where there are two.
+Axis axis_of_directions() {
+    const std::vector<std::string> every{"6", "8", "12", "14", "16", "18", "20", "24", "26"};
+    Axis axis;
+    for (const auto& k : sanitized() ? std::vector<std::string>{"8", "18"} : every) {
+        axis.push_back({{"k", k}});
+        if (k == "8" && !sanitized()) axis.push_back({{"k", k}, {"axes", "coordinate"}});
+    }
+    return axis;
+}
+
 /// Value axes of the settings that `traversal` declares.
 std::vector<Axis> axes_of(const Traversal& traversal) {
-    const auto of = [](const std::string& name, const std::vector<std::string>& values) {
-        Axis axis;
-        for (const auto& value : values) axis.push_back({{name, value}});
-        return axis;
-    };
-    const std::vector<std::string> every{"6", "8", "12", "14", "16", "18", "20", "24", "26"};
-    Axis directions;
-    for (const auto& k : sanitized() ? std::vector<std::string>{"8", "18"} : every) {
-        directions.push_back({{"k", k}});
-        if (k == "8" && !sanitized()) directions.push_back({{"k", k}, {"axes", "coordinate"}});
-    }
-    std::vector<Axis> axes{directions,
-                           of("precision", {"float", "double"}),
+    std::vector<Axis> axes{axis_of_directions(),
+                           axis_of({"precision", {"float", "double"}}),
                            {{{"rounding", "safe"}},
                             {{"rounding", "nearest"}},
                             {{"rounding", "published"}},
                             {{"rounding", "safe"}, {"placement", "exact"}}},
-                           of("group_size", traversal.name() == "tiled"
-                                                ? std::vector<std::string>{"1", "8", "32", "64", "256"}
-                                                : std::vector<std::string>{"1", "8", "32", "64"}),
-                           of("residency", {"resident", "published"}),
-                           of("convert", {"serial", "parallel"}),
-                           of("work_items", {"64", "2048"}),
-                           of("broad", {"sphere", "device"}),
-                           of("body_pair_capacity", {"1", "65536"}),
-                           of("pair_capacity", {"1", "100000"}),
-                           of("contact_capacity", {"1", "100000"}),
-                           // Settings of single algorithms.
-                           of("leaves", {"2", "4", "32"}),
-                           of("seed_threshold", {"0", "1", "40", "1e7"}),
-                           of("seed_target", {"1000", "1048576"}),
-                           of("seed_capacity", {"1", "65536"}),
-                           of("builder", {"morton", "sah", "breadth", "hilbert", "median"}),
-                           of("slabs", {"three", "all"}),
-                           of("tile_pair_capacity", {"1", "65536"}),
-                           of("most_seeds", {"1", "256", "16384"}),
-                           of("root_test", {"yes", "no"}),
-                           of("schedule", {"group", "item"}),
-                           of("descent", {"larger", "both"}),
-                           of("groups", {"8", "13"}),
-                           of("local_queue", {"4", "200"}),
-                           of("initial_items", {"1", "0"}),
-                           of("queue_capacity", {"4", "1000"}),
-                           of("idle_limit", {"1", "1000"}),
-                           of("batch", {"0", "5"}),
-                           of("upload", {"seeds", "queues"}),
-                           of("pair_layout", {"slots", "items"}),
-                           of("refill", {"yes", "no"}),
-                           of("full_exit", {"yes", "no"}),
-                           of("balance", {"parallel", "serial"}),
-                           of("balance_group_size", {"1", "32"})};
+                           axis_of({"group_size", {"1", "8", "32", "64"}})};
+    if (traversal.name() == "tiled") axes.back().push_back({{"group_size", "256"}});
+    for (const auto* settings : {&shared_settings, &settings_of_single_algorithms})
+        for (const auto& setting : *settings) axes.push_back(axis_of(setting));
     std::erase_if(axes, [&](const Axis& axis) { return !declares(traversal, axis.front().begin()->first); });
     return axes;
 }

@@ -18,6 +18,52 @@ namespace {
 
 using namespace testing_support;
 
+/// Boxes in order of their items, each with its lower ends, then its upper ends.
+using Boxes = std::vector<std::vector<float>>;
+
+/// The unions of 32 boxes each.
+Boxes merged_by_tile(const Boxes& boxes) {
+    Boxes merged;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (i % 32 == 0) merged.push_back(boxes[i]);
+        auto& all = merged.back();
+        for (std::size_t word = 0; word < all.size(); ++word)
+            all[word] = word < all.size() / 2 ? std::min(all[word], boxes[i][word])
+                                              : std::max(all[word], boxes[i][word]);
+    }
+    return merged;
+}
+
+/// The bounds of tile trees, downloaded. Boxes of level 0 have the first `directions` of k / 2 directions.
+struct TileBounds {
+    const TileTrees& tiles;
+    std::size_t k, directions;
+    std::vector<float> leaves, uppers, roots;
+
+    bool has(std::uint32_t level, std::size_t word) const { return level > 0 || word % (k / 2) < directions; }
+    float word_of(std::uint32_t body, std::uint32_t level, std::uint32_t box, std::size_t word) const {
+        const auto tile = tiles.first_tile(body, level) + box / 32;
+        const auto lane = box % 32;
+        if (level > 0) return uppers[((tile - tiles.first_upper()) * k + word) * 32 + lane];
+        const auto own = word < k / 2 ? word : directions + word % (k / 2);
+        return leaves[(tile * 2 * directions + own) * 32 + lane];
+    }
+    void expect_boxes(std::uint32_t body, std::uint32_t level, const Boxes& expected) const {
+        for (std::uint32_t box = 0; box < expected.size(); ++box)
+            for (std::size_t word = 0; word < k; ++word) {
+                if (!has(level, word)) continue;
+                ASSERT_EQ(word_of(body, level, box, word), expected[box][word])
+                    << "body " << body << " level " << level << " box " << box;
+            }
+    }
+    /// Compares the roots of the tiles of a level.
+    void expect_roots(std::uint32_t body, std::uint32_t level, const Boxes& expected) const {
+        for (std::uint32_t tile = 0; tile < expected.size(); ++tile)
+            for (std::size_t word = 0; word < k; ++word)
+                ASSERT_EQ(roots[(tiles.first_tile(body, level) + tile) * k + word], expected[tile][word]);
+    }
+};
+
 class Tiles : public testing::TestWithParam<std::string> {
 protected:
     Device& on = device(GetParam());
@@ -47,44 +93,26 @@ protected:
         TileTrees tiles(bodies, slabs, group_size, 1, units_at_once);
         bodies.update(frame);
         tiles.refit(frame);
-        const auto k = static_cast<std::size_t>(geometry.k), half = k / 2;
+        const auto k = static_cast<std::size_t>(geometry.k);
         const auto nodes = chunks.nodes<float>();
-        const auto leaves = words_of(tiles.leaves()), roots = words_of(tiles.roots()),
-                   uppers = words_of(tiles.uppers());
-        const auto directions = slabs == Slabs::three ? std::min<std::size_t>(3, half) : half;
+        const auto directions = slabs == Slabs::three ? std::min<std::size_t>(3, k / 2) : k / 2;
+        const TileBounds found{tiles,
+                               k,
+                               directions,
+                               words_of(tiles.leaves()),
+                               words_of(tiles.uppers()),
+                               words_of(tiles.roots())};
         EXPECT_EQ(words_of(tiles.volumes()), chunks.volumes<float>());
         for (std::uint32_t body = 0; body < bodies.count(); ++body) {
-            std::vector<std::vector<float>> below; // boxes of one level
-            const auto items = bodies.row(body).tetrahedron_count;
-            for (std::uint32_t item = 0; item < items; ++item)
-                below.push_back(chunk_leaf(chunks, nodes, body, item, k));
+            Boxes boxes; // of one level
+            for (std::uint32_t item = 0; item < bodies.row(body).tetrahedron_count; ++item)
+                boxes.push_back(chunk_leaf(chunks, nodes, body, item, k));
             for (std::uint32_t level = 0; level < tiles.levels_of(body); ++level) {
-                std::vector<std::vector<float>> merged;
-                for (std::uint32_t box = 0; box < below.size(); ++box) {
-                    const auto tile = tiles.first_tile(body, level) + box / 32;
-                    const auto lane = box % 32;
-                    for (std::size_t word = 0; word < k; ++word) {
-                        const auto axis = word % half;
-                        if (level == 0 && axis >= directions) continue;
-                        const auto own = word < half ? axis : directions + axis;
-                        const auto found =
-                            level == 0 ? leaves[(tile * 2 * directions + own) * 32 + lane]
-                                       : uppers[((tile - tiles.first_upper()) * k + word) * 32 + lane];
-                        ASSERT_EQ(found, below[box][word])
-                            << "body " << body << " level " << level << " box " << box;
-                    }
-                    if (lane == 0) merged.push_back(below[box]);
-                    for (std::size_t word = 0; word < k; ++word)
-                        merged.back()[word] = word < half ? std::min(merged.back()[word], below[box][word])
-                                                          : std::max(merged.back()[word], below[box][word]);
-                }
-                for (std::uint32_t tile = 0; tile < merged.size(); ++tile)
-                    for (std::size_t word = 0; word < k; ++word)
-                        ASSERT_EQ(roots[(tiles.first_tile(body, level) + tile) * k + word],
-                                  merged[tile][word]);
-                below = std::move(merged);
+                ASSERT_NO_FATAL_FAILURE(found.expect_boxes(body, level, boxes));
+                boxes = merged_by_tile(boxes);
+                ASSERT_NO_FATAL_FAILURE(found.expect_roots(body, level, boxes));
             }
-            EXPECT_EQ(below.size(), 1u);
+            EXPECT_EQ(boxes.size(), 1u);
         }
     }
 
@@ -165,37 +193,45 @@ TEST_P(Tiles, AFrameWithMuchMoreWorkThanTheLast) {
     }
 }
 
+/// Bodies of scattered tetrahedra that overlap; `counts` has the number of tetrahedra of each mesh.
+Scene scattered_scene(const std::vector<std::size_t>& counts, std::size_t bodies) {
+    Random random(9);
+    Scene scene;
+    for (const auto count : counts) {
+        std::vector<Eigen::Vector3d> positions;
+        for (std::size_t i = 0; i < count; ++i)
+            positions.push_back({random.uniform(), random.uniform(), random.uniform()});
+        scene.meshes.push_back(tetrahedra_at(positions, 0.05));
+    }
+    for (std::uint32_t body = 0; body < bodies; ++body)
+        scene.bodies.push_back({.mesh = body % static_cast<std::uint32_t>(counts.size())});
+    scene.frame = [bodies](std::size_t) {
+        Frame frame;
+        frame.poses.resize(bodies);
+        frame.deformed.resize(bodies);
+        for (std::size_t i = 0; i < bodies; ++i)
+            frame.poses[i].translation.x() = 0.03 * static_cast<double>(i);
+        return frame;
+    };
+    return scene;
+}
+
+std::unique_ptr<Session> tiled_session(Device& on, const Scene& scene, const std::string& broad,
+                                       std::uint32_t most_seeds) {
+    const auto& traversal = algorithm("tiled");
+    const std::array devices{&on};
+    const SettingTexts settings{{"broad", broad}, {"most_seeds", std::to_string(most_seeds)}};
+    return traversal.prepare(devices, scene, resolve(traversal.parameters(), {}, settings, "tiled"));
+}
+
 /// Few bodies with few tiles below their top tiles start the traversal at those tiles. Many bodies, or bodies
 /// without such tiles, start at the tops.
 TEST_P(Tiles, FewBodiesStartBelowTheirTops) {
-    const auto scene_of = [](const std::vector<std::size_t>& counts, std::size_t bodies) {
-        Random random(9);
-        Scene scene;
-        for (const auto count : counts) {
-            std::vector<Eigen::Vector3d> positions;
-            for (std::size_t i = 0; i < count; ++i)
-                positions.push_back({random.uniform(), random.uniform(), random.uniform()});
-            scene.meshes.push_back(tetrahedra_at(positions, 0.05));
-        }
-        for (std::uint32_t body = 0; body < bodies; ++body)
-            scene.bodies.push_back({.mesh = body % static_cast<std::uint32_t>(counts.size())});
-        scene.frame = [bodies](std::size_t) {
-            Frame frame;
-            frame.poses.resize(bodies);
-            frame.deformed.resize(bodies);
-            for (std::size_t i = 0; i < bodies; ++i)
-                frame.poses[i].translation.x() = 0.03 * static_cast<double>(i);
-            return frame;
-        };
-        return scene;
-    };
     struct Case {
         std::vector<std::size_t> counts;
         std::size_t bodies;
         std::uint32_t most_seeds, levels, walked, starts;
     };
-    const std::array devices{&on};
-    const auto& traversal = algorithm("tiled");
     for (const auto& [counts, count, most_seeds, levels, walked, starts] :
          {Case{{64}, 3, 12, 2, 1, 2}, Case{{64}, 3, 11, 2, 2, 1}, Case{{40, 96, 128}, 4, 96, 2, 1, 4},
           Case{{1100, 2100}, 2, 256, 3, 2, 3}, Case{{1100, 2100}, 2, 16384, 3, 1, 66},
@@ -203,7 +239,7 @@ TEST_P(Tiles, FewBodiesStartBelowTheirTops) {
           Case{{40}, 33, 256, 2, 2, 1}}) {
         SCOPED_TRACE(
             fmt::format("{} bodies of {} tetrahedra and more, {} seeds", count, counts.front(), most_seeds));
-        const auto scene = scene_of(counts, count);
+        const auto scene = scattered_scene(counts, count);
         const Bodies bodies(on, scene, {}, Bodies::Sharing::by_mesh);
         const TileTrees trees(bodies, Slabs::three, group_size, most_seeds);
         EXPECT_EQ(trees.levels(), levels);
@@ -211,19 +247,13 @@ TEST_P(Tiles, FewBodiesStartBelowTheirTops) {
         EXPECT_EQ(trees.begins(walked - 1), starts);
         const auto right = reference(scene, scene.frame(0), {}, true, Method::brute_force);
         ASSERT_GT(right.digest.count, 0u);
-        const auto session_by = [&, most_seeds = most_seeds](const std::string& broad) {
-            return traversal.prepare(devices, scene,
-                                     resolve(traversal.parameters(), {},
-                                             {{"broad", broad}, {"most_seeds", std::to_string(most_seeds)}},
-                                             "tiled"));
-        };
         for (const std::string broad : {"device", "sphere"}) {
-            const auto session = session_by(broad);
+            const auto session = tiled_session(on, scene, broad, most_seeds);
             for (int i = 0; i < 2; ++i) EXPECT_EQ(session->run(scene.frame(0)).download(), right.pairs);
         }
         if (starts < 8) continue;
         // Start pairs whose roots are disjoint, here most of them, are not tested.
-        const auto session = session_by("sphere");
+        const auto session = tiled_session(on, scene, "sphere", most_seeds);
         session->count_work(true);
         const auto seeds = session->run(scene.frame(0)).work.at("seeds");
         EXPECT_GT(seeds, 0u);
