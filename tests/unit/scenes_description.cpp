@@ -132,15 +132,16 @@ std::string dynamic_scene(const std::string& dynamics, const std::string& bodies
            + stone + "}" + bodies + "]}";
 }
 
-TEST_F(ScenesDescription, DynamicsAreRead) {
-    const auto scene = load(dynamic_scene(
-        R"(, "gravity": [0, -1.6, 0], "step": 0.005, "steps": 7,
+constexpr const char* dynamics_of_every_field = R"(, "gravity": [0, -1.6, 0], "step": 0.005, "steps": 7,
            "solver": {"method": "jacobi", "iterations": 20, "absolute_tolerance": 0.5, "relative_tolerance": 0.25, "warm_start": true},
            "stepping": {"pre_stabilize": true, "post_stabilize": true, "bounce": false, "linear_damping": 0.125,
                         "surface_normals": false, "contact_layer": 0.0625,
                         "angular_damping": 0.25, "adaptive_tolerance": 0.001, "least_step": 0.0001, "couple_contacts": false},
-           "reduction": {"distance": 0.001, "per_pair": 4})",
-        "", R"(, "velocity": [1, 2, 3], "spin": [0, 0, 2, 1.5])"));
+           "reduction": {"distance": 0.001, "per_pair": 4})";
+
+TEST_F(ScenesDescription, DynamicsAreRead) {
+    const auto scene = load(
+        dynamic_scene(dynamics_of_every_field, "", R"(, "velocity": [1, 2, 3], "spin": [0, 0, 2, 1.5])"));
     EXPECT_EQ(scene.frame_count, 1u);
     ASSERT_NE(scene.dynamics, nullptr);
     const auto& d = *scene.dynamics;
@@ -155,6 +156,15 @@ TEST_F(ScenesDescription, DynamicsAreRead) {
     EXPECT_EQ(d.bodies[1].material, 1u);
     EXPECT_EQ(d.bodies[1].velocity, Eigen::Vector3d(1, 2, 3));
     EXPECT_EQ(d.bodies[1].spin, Eigen::Vector3d(0, 0, 1.5));
+    EXPECT_EQ(d.reduction.distance, 0.001);
+    EXPECT_EQ(d.reduction.per_pair, 4u);
+    EXPECT_EQ(scene.frame(0).poses[1].translation, Eigen::Vector3d(0, 3, 0));
+    EXPECT_NE(load(dynamic_scene(R"(, "steps": 7)")).digest, load(dynamic_scene(R"(, "steps": 8)")).digest);
+}
+
+TEST_F(ScenesDescription, SolverAndSteppingAreRead) {
+    const auto scene = load(dynamic_scene(dynamics_of_every_field));
+    const auto& d = *scene.dynamics;
     EXPECT_EQ(d.solver.method, SolverSettings::Method::jacobi);
     EXPECT_EQ(d.solver.iterations, 20u);
     EXPECT_EQ(d.solver.absolute_tolerance, 0.5);
@@ -169,10 +179,9 @@ TEST_F(ScenesDescription, DynamicsAreRead) {
     EXPECT_EQ(d.stepping.adaptive_tolerance, 0.001);
     EXPECT_EQ(d.stepping.least_step, 0.0001);
     EXPECT_FALSE(d.stepping.couple_contacts);
-    EXPECT_EQ(d.reduction.distance, 0.001);
-    EXPECT_EQ(d.reduction.per_pair, 4u);
-    EXPECT_EQ(scene.frame(0).poses[1].translation, Eigen::Vector3d(0, 3, 0));
-    EXPECT_NE(load(dynamic_scene(R"(, "steps": 7)")).digest, load(dynamic_scene(R"(, "steps": 8)")).digest);
+}
+
+TEST_F(ScenesDescription, DynamicsHaveDefaults) {
     const auto plain = load(dynamic_scene(""));
     EXPECT_EQ(plain.dynamics->solver.iterations, 1000u);
     EXPECT_EQ(plain.dynamics->solver.absolute_tolerance, 0);

@@ -30,14 +30,20 @@ Mesh fan(std::vector<Eigen::Vector3d> vertices, std::span<const Triangle> triang
     return mesh;
 }
 
+/// A body in the world.
 struct Placed {
+    std::uint32_t body;
+    const Mesh* mesh;
     std::vector<Corners<double>> corners;
     std::vector<Eigen::AlignedBox3d> boxes;
     Eigen::AlignedBox3d box;
 };
 
-Placed place(const Mesh& mesh, const Pose& pose, const std::vector<Eigen::Vector3d>* deformed) {
-    Placed result;
+Placed place(const Scene& scene, const Frame& frame, std::uint32_t body) {
+    const auto& mesh = scene.meshes[scene.bodies[body].mesh];
+    const auto& pose = frame.poses[body];
+    const auto* deformed = scene.bodies[body].deformable ? &frame.deformed[body] : nullptr;
+    Placed result{body, &mesh, {}, {}, {}};
     for (const auto& t : mesh.tetrahedra) {
         auto& corners = result.corners.emplace_back();
         Eigen::AlignedBox3d box;
@@ -53,16 +59,15 @@ Placed place(const Mesh& mesh, const Pose& pose, const std::vector<Eigen::Vector
     return result;
 }
 
-void contacts_of(const Mesh& mesh_a, const Mesh& mesh_b, const Placed& a, const Placed& b,
-                 std::uint32_t body_a, std::uint32_t body_b, const ContactSettings& settings,
-                 std::vector<ContactPoint>& contacts) {
+void add_contacts(const Placed& a, const Placed& b, const ContactSettings& settings,
+                  std::vector<ContactPoint>& contacts) {
     ContactCounts counts;
     for (std::uint32_t i = 0; i < a.corners.size(); ++i)
         for (std::uint32_t j = 0; j < b.corners.size(); ++j) {
             if (!a.boxes[i].intersects(b.boxes[j])) continue;
-            for (const auto& c : reference_contacts<double>(a.corners[i], b.corners[j], mesh_a.boundary[i],
-                                                            mesh_b.boundary[j], counts, settings))
-                contacts.push_back({{body_a, i, body_b, j}, c.feature, c.point, c.normal, c.depth});
+            for (const auto& c : reference_contacts<double>(a.corners[i], b.corners[j], a.mesh->boundary[i],
+                                                            b.mesh->boundary[j], counts, settings))
+                contacts.push_back({{a.body, i, b.body, j}, c.feature, c.point, c.normal, c.depth});
         }
 }
 
@@ -186,16 +191,14 @@ Pose at(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), 
 Detect detector(const Scene& scene, const ContactSettings& settings) {
     return [&scene, settings](const Frame& frame, std::vector<ContactPoint>& contacts) {
         std::vector<Placed> placed;
-        for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-            placed.push_back(place(scene.meshes[scene.bodies[i].mesh], frame.poses[i],
-                                   scene.bodies[i].deformable ? &frame.deformed[i] : nullptr));
+        for (std::uint32_t body = 0; body < scene.bodies.size(); ++body)
+            placed.push_back(place(scene, frame, body));
         contacts.clear();
         for (std::uint32_t a = 0; a < placed.size(); ++a)
             for (std::uint32_t b = a + 1; b < placed.size(); ++b)
                 if (placed[a].box.intersects(placed[b].box)
                     && !(scene.bodies[a].fixed && scene.bodies[b].fixed))
-                    contacts_of(scene.meshes[scene.bodies[a].mesh], scene.meshes[scene.bodies[b].mesh],
-                                placed[a], placed[b], a, b, settings, contacts);
+                    add_contacts(placed[a], placed[b], settings, contacts);
         std::sort(contacts.begin(), contacts.end(), [](const ContactPoint& a, const ContactPoint& b) {
             return std::tie(a.pair, a.feature) < std::tie(b.pair, b.feature);
         });

@@ -16,16 +16,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Event event(Command command, Stage stage, std::string label, std::int64_t host, std::int64_t host_ns,
-            std::int64_t begin, std::int64_t ns, bool blocked = false) {
+struct Span {
+    std::int64_t begin, ns;
+};
+
+Event event(Command command, Stage stage, std::string label, Span host, Span device, bool blocked = false) {
     Event e;
     e.command = command;
     e.stage = stage;
     e.label = std::move(label);
-    e.host_begin_ns = host;
-    e.host_ns = host_ns;
-    e.begin_ns = begin;
-    e.device_ns = ns;
+    e.host_begin_ns = host.begin;
+    e.host_ns = host.ns;
+    e.begin_ns = device.begin;
+    e.device_ns = device.ns;
     e.blocked = blocked;
     return e;
 }
@@ -36,10 +39,10 @@ DeviceTimeline frame() {
     timeline.info.id = "cuda:0";
     timeline.info.name = "GPU";
     timeline.trace.events = {
-        event(Command::upload, Stage::write, "poses", 10'000, 500, 5'000, 1'000),
-        event(Command::launch, Stage::refit, "refit_strips", 11'000, 500, 6'500, 4'000),
-        event(Command::launch, Stage::refit, "refit_tops", 12'000, 500, 10'499, 2'000), // 1 ns too early
-        event(Command::download, Stage::read, "status", 13'000, 9'000, 13'000, 1'000, true)};
+        event(Command::upload, Stage::write, "poses", {10'000, 500}, {5'000, 1'000}),
+        event(Command::launch, Stage::refit, "refit_strips", {11'000, 500}, {6'500, 4'000}),
+        event(Command::launch, Stage::refit, "refit_tops", {12'000, 500}, {10'499, 2'000}), // 1 ns too early
+        event(Command::download, Stage::read, "status", {13'000, 9'000}, {13'000, 1'000}, true)};
     return timeline;
 }
 
