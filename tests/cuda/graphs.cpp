@@ -135,11 +135,13 @@ TEST_F(CudaGraphs, NoGraphOutlivesABufferOfItsCommands) {
 }
 
 TEST_F(CudaGraphs, ClocksAndTheDefaultStreamSubmitCommandsOneByOne) {
-    const StageScope stage(*device, Stage::traverse);
-    device->set_clocks(Clocks::on);
-    for (int i = 0; i < 3; ++i) frame(1);
-    EXPECT_EQ(device->finish().events.size(), 15u);
-    device->set_clocks(Clocks::off);
+    {
+        const StageScope stage(*device, Stage::traverse); // ends before its device
+        device->set_clocks(Clocks::on);
+        for (int i = 0; i < 3; ++i) frame(1);
+        EXPECT_EQ(device->finish().events.size(), 15u);
+        device->set_clocks(Clocks::off);
+    }
     EXPECT_EQ(graphs(), 0u);
     words = {};
     make_current(other);
