@@ -31,6 +31,23 @@ def changed(record, path, change):
     return copy
 
 
+MAPS = {"settings", "defines", "counters", "kernel_times", "host_work"}
+NULLABLE = {"chosen", "failure", "agreement", "commit", "hardware", "device_span_ns", "session", "command", "registers", "local_bytes",
+            "spill_bytes", "missed_upper95", "candidate_ratio", "decisions", "depth_relative", "depth_ulps", "normal_degrees", "point",
+            "hausdorff", "volume_relative"}
+OF_CONDITION = ("cores", "quota_cores", "own_cores", "other_cores", "governor", "mhz", "throttled_periods", "pressure_percent")
+OF_SAMPLING = ("cells", "seed", "repeat", "noise", "seconds", "spent_seconds", "converged", "drift")
+NULLABLE_PATHS = {("environment", "processor"), ("environment", "sources"), ("conditions",), ("ranks",), ("partition",),
+                  *(("conditions", when, "processor", name) for when in ("before", "after") for name in OF_CONDITION),
+                  *(("conditions", when, "gpus", 0) for when in ("before", "after")), *(("sampling", name) for name in OF_SAMPLING),
+                  ("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift"),
+                  *(("work", name) for name in ("undecided_by_filter", "undecided_by_double", "batches"))}
+# Fields that records of earlier versions lack.
+SINCE = {"chosen", "truth", "inputs", "volume_relative", "no_volume"}
+SINCE_PATHS = {("devices", 0, "clock"), ("work", "digest"), ("work", "contact_digest"), ("work", "submissions"), ("sampling", "continued"),
+               ("host_work",), ("ranks",), ("partition",)}
+
+
 class Records(Case):
     def test_ceilings_are_measured_and_recorded(self):
         out = self.work / "ceilings.jsonl"
@@ -133,47 +150,44 @@ class Records(Case):
         self.assertEqual([(r["settings"]["k"], r["settings"]["precision"]) for r in self.records(out)],
                          list(itertools.product(["6", "8"], ["float", "double"])))
 
-    def test_schema_can_fail(self):
-        """Every field of a real record: removed, of another type, null, or with an additional field beside it."""
+    def full_record(self):
+        """A record with every optional part, but few entries of maps and lists whose entries all have the same fields."""
         out = self.work / "schema.jsonl"
         flat, _ = self.flawed("schema.msh")
         tandem("run", "--mesh", flat, "--mesh", self.good, "--device", "opencl:0", "--algorithm", "gproximity", "--truth", "contacts",
                "--out", out)
         record = self.records(out)[0]
-        for name in ("stages", "kernel_times", "host_work"):  # maps by name whose entries all have the same fields
+        for name in ("stages", "kernel_times", "host_work"):
             record[name] = {key: record[name][key] for key in sorted(record[name])[-2:]}
         record["kernels"] = record["kernels"][:1]
-        maps, nullable = {"settings", "defines", "counters", "kernel_times", "host_work"}, {"chosen", "failure", "agreement", "commit", "hardware", "device_span_ns",
-                                                   "session", "command",
-                                                   "registers", "local_bytes", "spill_bytes", "missed_upper95", "candidate_ratio", "decisions",
-                                                   "depth_relative", "depth_ulps", "normal_degrees", "point", "hausdorff", "volume_relative"}
-        of_condition = ("cores", "quota_cores", "own_cores", "other_cores", "governor", "mhz", "throttled_periods", "pressure_percent")
-        nullable_paths = {("environment", "processor"), ("environment", "sources"), ("conditions",), ("ranks",), ("partition",),
-                          *(("conditions", when, "processor", name) for when in ("before", "after") for name in of_condition),
-                          *(("conditions", when, "gpus", 0) for when in ("before", "after")), *(("sampling", name) for name in ("cells", "seed", "repeat", "noise", "seconds", "spent_seconds", "converged", "drift")), ("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift"),
-                          *(("work", name) for name in ("undecided_by_filter", "undecided_by_double", "batches")),
-                          *(("work", "counters", name) for name in record["work"]["counters"])}
-        # fields that records of earlier versions lack
-        since = {"chosen", "truth", "inputs", "volume_relative", "no_volume"}
-        since_paths = {("devices", 0, "clock"), ("work", "digest"), ("work", "contact_digest"), ("work", "submissions"), ("sampling", "continued"), ("host_work",), ("ranks",), ("partition",)}
+        return record
+
+    def check_field(self, record, path):
+        """The field removed, of another type, null, or with an additional field beside it."""
+        parent, name = path[-2] if len(path) > 1 else None, path[-1]
+        nullable_paths = NULLABLE_PATHS | {("work", "counters", counter) for counter in record["work"]["counters"]}
+        optional = parent in MAPS or parent == "stages" or isinstance(name, int) or name in SINCE or path in SINCE_PATHS
+        gone = changed(record, path, lambda p, n: p.pop(n))
+        self.assertTrue(optional or not self.validator.is_valid(gone), "taken away")
+        self.assertFalse(self.validator.is_valid(changed(record, path, lambda p, n: p.update({n: {"x": []}})
+                                                         if isinstance(p, dict) else p.append({"x": []}))), "type")
+        null = changed(record, path, lambda p, n: p.__setitem__(n, None))
+        self.assertEqual(self.validator.is_valid(null), name in NULLABLE or path in nullable_paths, "null")
+        if not isinstance(name, int) and parent not in MAPS:
+            more = changed(record, path, lambda p, n: p.update(surprise=1))
+            self.assertFalse(self.validator.is_valid(more), "one more")
+
+    def test_schema_can_fail(self):
+        """Every field of a real record."""
+        record = self.full_record()
         seen = set()
         for path in paths(record):
             shape = tuple(0 if isinstance(name, int) else name for name in path)
             if shape in seen:
                 continue
             seen.add(shape)
-            parent, name = path[-2] if len(path) > 1 else None, path[-1]
-            optional = parent in maps or parent == "stages" or isinstance(name, int) or name in since or path in since_paths
             with self.subTest(path=path):
-                gone = changed(record, path, lambda p, n: p.pop(n))
-                self.assertTrue(optional or not self.validator.is_valid(gone), "taken away")
-                self.assertFalse(self.validator.is_valid(changed(record, path, lambda p, n: p.update({n: {"x": []}})
-                                                                 if isinstance(p, dict) else p.append({"x": []}))), "type")
-                null = changed(record, path, lambda p, n: p.__setitem__(n, None))
-                self.assertEqual(self.validator.is_valid(null), name in nullable or path in nullable_paths, "null")
-                if not isinstance(name, int) and parent not in maps:
-                    more = changed(record, path, lambda p, n: p.update(surprise=1))
-                    self.assertFalse(self.validator.is_valid(more), "one more")
+                self.check_field(record, path)
         self.assertGreater(len(seen), 150)
         for change in ({"status": "fine"}, {"status": "failed"}, {"failure": "device lost"}, {"failure": ""}, {"schema": 2},
                        {"stages": {"travers": record["stages"]["traverse"]}}, {"breakdown_ns": {"samples": []}},
@@ -218,6 +232,29 @@ class Records(Case):
         self.assertEqual([r["status"] for r in records], ["ok", "failed", "ok"])
         self.assertIn("34359738360", records[1]["failure"])
 
+    def check_row(self, row, record):
+        """The columns of a record with three samples, measured on the host."""
+        for name in ("status", "algorithm", "preset", "session", "key"):
+            self.assertEqual(row[name], record[name])
+        self.assertEqual((row["failure"], row["device"], row["commit"]), ("", "host", record["environment"]["commit"]))
+        frames = record["frames"]["last"] - record["frames"]["first"] + 1
+        for name, value in (("ms", "median"), ("ms_low", "low"), ("ms_high", "high")):
+            self.assertAlmostEqual(float(row[name]), record["total_ns"][value] / frames / 1e6, delta=1e-8 * float(row[name]))
+        self.assertEqual(int(row["samples"]), 3)
+        self.assertEqual(int(row["candidate_pairs"]), sum(record["work"]["candidate_pairs"]))
+        self.assertEqual(int(row["contacts"]), sum(record["work"]["contacts"]))
+        self.assertEqual(int(row["launches"]), sum(stage["launches"] for stage in record["stages"].values()))
+        truth = record["error"]["truth"]
+        self.assertEqual(int(row["pairs_missed"]), truth["missed_touching"] + truth["missed_overlapping"])
+        for name, value in record["settings"].items():
+            self.assertEqual(row[f"set_{name}"], str(value))
+        for name, value in record["work"]["counters"].items():
+            self.assertEqual(row[f"count_{name}"], "" if value is None else str(value))
+        for name, stage in record["stages"].items():
+            on_device = stage["device_ns"]["median"] if stage["device_ns"] else 0
+            median = on_device or stage["host_ns"]["median"]
+            self.assertAlmostEqual(float(row[f"stage_{name}_ms"]), median / frames / 1e6, delta=1e-8)
+
     def test_records_become_a_table(self):
         out, table = self.work / "table.jsonl", self.work / "table.csv"
         status, text, errors = tandem("run", "--mesh", self.good, "--mesh", self.good, "--algorithm", "tiled,chunked", "--device", "host",
@@ -237,26 +274,7 @@ class Records(Case):
             rows = list(csv.DictReader(file))
         self.assertEqual(len(rows), 5)
         for row, record in zip(rows, records):
-            for name in ("status", "algorithm", "preset", "session", "key"):
-                self.assertEqual(row[name], record[name])
-            self.assertEqual((row["failure"], row["device"], row["commit"]), ("", "host", record["environment"]["commit"]))
-            frames = record["frames"]["last"] - record["frames"]["first"] + 1
-            for name, value in (("ms", "median"), ("ms_low", "low"), ("ms_high", "high")):
-                self.assertAlmostEqual(float(row[name]), record["total_ns"][value] / frames / 1e6, delta=1e-8 * float(row[name]))
-            self.assertEqual(int(row["samples"]), 3)
-            self.assertEqual(int(row["candidate_pairs"]), sum(record["work"]["candidate_pairs"]))
-            self.assertEqual(int(row["contacts"]), sum(record["work"]["contacts"]))
-            self.assertEqual(int(row["launches"]), sum(stage["launches"] for stage in record["stages"].values()))
-            truth = record["error"]["truth"]
-            self.assertEqual(int(row["pairs_missed"]), truth["missed_touching"] + truth["missed_overlapping"])
-            for name, value in record["settings"].items():
-                self.assertEqual(row[f"set_{name}"], str(value))
-            for name, value in record["work"]["counters"].items():
-                self.assertEqual(row[f"count_{name}"], "" if value is None else str(value))
-            for name, stage in record["stages"].items():
-                on_device = stage["device_ns"]["median"] if stage["device_ns"] else 0
-                median = on_device or stage["host_ns"]["median"]
-                self.assertAlmostEqual(float(row[f"stage_{name}_ms"]), median / frames / 1e6, delta=1e-8)
+            self.check_row(row, record)
         # Settings of the other algorithm are empty.
         self.assertEqual({row["set_most_seeds"] for row in rows if row["algorithm"] == "chunked"}, {""})
         self.assertEqual((rows[4]["status"], rows[4]["failure"], rows[4]["ms"]), ("failed", failed["failure"], ""))
