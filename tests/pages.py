@@ -3,6 +3,7 @@
 """pages.py PROGRAM SOURCE: numbers, tables, pictures, commands and quotes of committed pages equal what they come from
 (tandem.answer, scripts/tried, scripts/pictures). Also checks the committed microbenchmarks."""
 import collections
+import copy
 import json
 import re
 import shutil
@@ -12,7 +13,7 @@ import textwrap
 import unittest
 
 from program import SOURCE
-from script_case import ScriptCase, committed, script
+from script_case import ScriptCase, committed, loaded, script
 
 QUOTE = re.compile(r"(?s)<!-- quote: (\S+) -->\n```\w+\n(.*?)```")
 
@@ -97,6 +98,17 @@ class Pages(ScriptCase):
         self.assertEqual(script("answer", SOURCE / "results/h200/plan.jsonl", "--picture", drawn), (0, "", []))
         self.assertGreater(len(words(drawn)), 10)
         self.assertEqual(words(SOURCE / "results/h200/answer.svg"), words(drawn))
+
+    def test_the_title_names_only_cells_that_are_told_apart(self):
+        answer = loaded("answer")
+        cells, _ = answer.read(SOURCE / "results/h200/plan.jsonl")
+        names = {"tiled": "tiled", "chunked": "chunked, grouped"}
+        scene = next(iter(answer.SCENES))
+        cells[scene, "18", "chunked"] = copied = copy.copy(cells[scene, "18", "tiled"])
+        copied.total = {number: ms * (1.001 if number % 2 else 0.998) for number, ms in copied.total.items()}
+        copied.key = "another"
+        self.assertEqual(answer.title_of(cells, names), f"Fastest in {len(answer.SCENES) - 1} of {len(answer.SCENES)} scenes: tiled; "
+                         "in 1: not told apart (NVIDIA H200)")
 
     def test_numbers_of_the_readme_are_generated(self):
         """Measured numbers occur only between the marks of tandem.answer."""
