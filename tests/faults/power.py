@@ -202,7 +202,7 @@ class Power(Case):
         if not path.endswith(".jsonl"):
             return content
         lines = [json.loads(line) for line in content.splitlines()]
-        once = {tuple(str(line.get(name)) for name in ("what", "key", "asked", "kind", "step", "exit")) for line in lines if line.get("kind") != "run"}
+        once = {tuple(str(line.get(name)) for name in ("what", "key", "asked", "kind", "step", "exit")) for line in lines if line.get("kind") not in ("run", "verdict")}
         return sorted(once)
 
     def sweep(self, command, prepare=lambda folder: None):
