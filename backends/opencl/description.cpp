@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <mutex>
 
 namespace tandem::opencl {
 
@@ -79,6 +80,9 @@ DeviceInfo describe(cl_device_id device, std::string id) {
 }
 
 Listing list_devices() {
+    // While one thread initialises PoCL by the first call, it has no devices for other threads.
+    static std::mutex mutex;
+    const std::scoped_lock lock(mutex);
     Listing listing;
     cl_uint count = 0;
     const auto code = clGetPlatformIDs(0, nullptr, &count);
