@@ -10,6 +10,7 @@
 #include "backends/ptxas_log.h"
 #include "scenes/builtin.h"
 #include "tests/nvrtc/compiling_device.h"
+#include "tests/support/contact_rules.h"
 #include "tests/support/folder.h"
 #include "tests/support/long_form.h"
 
@@ -77,13 +78,12 @@ void prepare_pair_list(Device& device, Precision precision) {
 void prepare_contacts(Device& device) {
     const auto& traversal = algorithm("chunked");
     for (const std::string precision : {"float", "double"})
-        for (const std::string rule :
-             {"opposing", "published", "sat", "clip", "restricted", "vertex", "consistent", "growth"})
+        for (const auto& [rule, word] : testing_support::contact_rules())
             for (const std::string decision : {"fp32", "recheck", "fp64", "exact"})
-                if (rule == "sat" || decision == "fp32"
+                if (rule == ContactRule::sat || decision == "fp32"
                     || (testing_support::long_form() && decision == "recheck"))
                     prepare(device, traversal, traversal.presets().front().values,
-                            {{"precision", precision}, {"contact_rule", rule}, {"decision", decision}});
+                            {{"precision", precision}, {"contact_rule", word}, {"decision", decision}});
 }
 
 /// The plan: every geometry and contact rule with the first preset of every algorithm; every rounding and

@@ -4,6 +4,7 @@
 #include "contacts_pairs.h"
 
 #include "harness/verify/accuracy/answer_errors.h"
+#include "tests/support/contact_rules.h"
 #include "tests/support/oracle_nested.h"
 #include "tests/support/oracle_pairs.h"
 
@@ -63,25 +64,16 @@ Errors errors_of(ContactRule rule, Family family) {
 
 bool printing() { return std::getenv("TANDEM_PRINT") != nullptr; }
 
-void print(const char* family, const char* rule, const Errors& e) {
+void print(const char* family, const std::string& rule, const Errors& e) {
     if (!printing()) return;
-    std::printf("| %s | %s | %zu | %zu | %.2g, %.2g | %.2g, %.2g |\n", family, rule, e.pairs,
+    std::printf("| %s | %s | %zu | %zu | %.2g, %.2g | %.2g, %.2g |\n", family, rule.c_str(), e.pairs,
                 e.without_contact, Errors::at(e.depth, 0.5), Errors::at(e.depth, 1), Errors::at(e.angle, 0.5),
                 Errors::at(e.angle, 1));
 }
 
-constexpr std::pair<ContactRule, const char*> rules[] = {{ContactRule::opposing, "opposing"},
-                                                         {ContactRule::published, "published"},
-                                                         {ContactRule::sat, "sat"},
-                                                         {ContactRule::clip, "clip"},
-                                                         {ContactRule::restricted, "restricted"},
-                                                         {ContactRule::vertex, "vertex"},
-                                                         {ContactRule::consistent, "consistent"},
-                                                         {ContactRule::growth, "growth"}};
-
 TEST(ContactsAccuracy, SatFindsTheLeastTranslation) {
     for (const auto family : {Family::generic, Family::far_origin, Family::sliver, Family::scale_ratio})
-        for (const auto& [rule, name_of_rule] : rules) {
+        for (const auto& [rule, name_of_rule] : testing_support::contact_rules()) {
             const bool bounded = rule == ContactRule::sat || rule == ContactRule::restricted;
             if (!bounded && !printing()) continue;
             const auto errors = errors_of(rule, family);
@@ -93,7 +85,7 @@ TEST(ContactsAccuracy, SatFindsTheLeastTranslation) {
     if (!printing()) return;
     TouchMaker maker(3);
     NestedMaker nested(3);
-    for (const auto& [rule, name_of_rule] : rules) {
+    for (const auto& [rule, name_of_rule] : testing_support::contact_rules()) {
         print("nested copies", name_of_rule, errors_of(rule, [&] { return maker.nested(); }));
         print("nested, touching", name_of_rule,
               errors_of(rule, [&] { return nested.make(Nesting::on_faces); }));

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/parameters/table.h"
+
+#include <string>
+#include <vector>
+
+namespace tandem::testing_support {
+
+struct NamedRule {
+    ContactRule rule;
+    std::string name; ///< in --set and in records
+};
+
+/// Every contact rule except none, in the order of the setting.
+inline std::vector<NamedRule> contact_rules() {
+    std::vector<NamedRule> rules;
+    for (const auto& word : parameters::contact_rule.choices())
+        if (const auto rule = static_cast<ContactRule>(word.value); rule != ContactRule::none)
+            rules.push_back({rule, std::string(word.text)});
+    return rules;
+}
+
+/// The rules whose contacts do not depend on the order of the two tetrahedra and of their corners.
+inline std::vector<ContactRule> canonical_contact_rules() {
+    std::vector<ContactRule> rules;
+    for (const auto& [rule, name] : contact_rules())
+        if (rule != ContactRule::opposing && rule != ContactRule::published) rules.push_back(rule);
+    return rules;
+}
+
+} // namespace tandem::testing_support
