@@ -112,7 +112,6 @@ class Refusals(RanksCase):
 
     def test_what_ranks_cannot_do_together(self):
         self.one_line(of(2)("run", self.plan(devices=["host", "opencl:0"])), "host, opencl:0 are devices of several cells")
-        self.one_line(of(2)("run", self.plan(algorithms="auto")), "--algorithm auto needs one process")
         self.one_line(of(2)("run", self.plan(), "--isolate"), "--isolate runs each cell in a process of its own")
         self.one_line(of(2)("run", self.plan(scenes="plate")), "unknown scene 'plate'")
 
