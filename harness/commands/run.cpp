@@ -237,9 +237,10 @@ void Run::conclude(const Job& job, const std::map<const Cell*, CellResult>& resu
         if (const auto found = results.find(&cell); found != results.end())
             in_order.push_back(&found->second);
     const auto rows = rows_of(job, in_order);
-    print_results(rows, in_order);
+    const auto verdicts = verdicts_of(rows);
+    print_results(rows, verdicts, in_order);
     if (interrupted_ || file_->failed() || !is_first(team_)) return;
-    for (const auto& verdict : verdicts_of(rows))
+    for (const auto& verdict : verdicts)
         verdicts_ += file_->append_or_report(verdict_record(verdict, rows, job.scene, job.range)) ? 1 : 0;
 }
 

@@ -37,9 +37,10 @@ std::vector<Row> rows_of(const Job& job, std::span<const CellResult* const> resu
     return rows;
 }
 
-void print_results(std::span<const Row> rows, std::span<const CellResult* const> results) {
+void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdicts,
+                   std::span<const CellResult* const> results) {
     if (rows.empty()) return;
-    put("\n{}\n", result_tables(rows, prints_colour()));
+    put("\n{}\n", result_tables(rows, verdicts, prints_colour()));
     for (const auto* result : results) {
         if (!result->measured) continue;
         const auto doubt = doubts(*result);

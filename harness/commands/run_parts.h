@@ -18,7 +18,9 @@ void print_skipped(const InputError& error);
 /// The measured cells among the results, in order.
 std::vector<Row> rows_of(const Job& job, std::span<const CellResult* const> results);
 
-/// Prints the tables of the rows, and for each measured result whether its answer is right.
-void print_results(std::span<const Row> rows, std::span<const CellResult* const> results);
+/// Prints the tables of the rows with their verdicts, and for each measured result whether its answer is
+/// right.
+void print_results(std::span<const Row> rows, const std::vector<Verdict>& verdicts,
+                   std::span<const CellResult* const> results);
 
 } // namespace tandem

@@ -273,11 +273,10 @@ std::string ratio_tables(std::span<const Row> rows, const RowLabels& labels) {
 
 } // namespace
 
-std::string result_tables(std::span<const Row> rows, bool colour) {
+std::string result_tables(std::span<const Row> rows, const std::vector<Verdict>& verdicts, bool colour) {
     if (rows.empty()) return {};
     const auto labels = row_labels(rows);
     auto text = labels.common.empty() ? std::string() : "all: " + labels.common + "\n\n";
-    const auto verdicts = verdicts_of(rows);
     text += totals_table(rows, labels, verdicts, colour) + "\n";
     text += stages_table(rows, labels) + "\n";
     for (std::size_t i = 0; i < rows.size(); ++i) text += devices_table(rows[i], labels.by_row[i]);
