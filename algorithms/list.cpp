@@ -1,23 +1,36 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/chunked/chunked.h"
-#include "algorithms/baselines/embree/embree.h"
-#include "algorithms/gproximity/gproximity.h"
 #include "algorithms/sources.h"
-#include "algorithms/tiled/tiled.h"
 #include "algorithms/traversal.h"
 #include "base/digest.h"
 #include "base/error.h"
 
 #include <algorithm>
-#include <array>
 #include <fmt/format.h>
+#include <vector>
+
+// The algorithms, one line each, in the order of listings. NAME.cpp defines `const Traversal& NAME()`, the
+// instance. Baselines are libraries of others.
+// clang-format off
+#define TANDEM_ALGORITHMS(ALGORITHM) \
+    ALGORITHM(chunked) \
+    ALGORITHM(gproximity) \
+    ALGORITHM(tiled)
+#define TANDEM_BASELINES(ALGORITHM) \
+    ALGORITHM(embree)
+// clang-format on
 
 namespace tandem {
+
+#define TANDEM_DECLARE(name) const Traversal& name();
+#define TANDEM_ADDRESS(name) &name(),
+
+TANDEM_ALGORITHMS(TANDEM_DECLARE)
+TANDEM_BASELINES(TANDEM_DECLARE)
 
 namespace {
 
 std::vector<const Traversal*>& listed() {
-    static std::vector<const Traversal*> all{&chunked(), &gproximity(), &tiled()};
+    static std::vector<const Traversal*> all{TANDEM_ALGORITHMS(TANDEM_ADDRESS)};
     return all;
 }
 
@@ -31,7 +44,7 @@ std::vector<std::span<const KernelSource>>& known_sources() {
 std::span<const Traversal* const> algorithms() { return listed(); }
 
 std::span<const Traversal* const> baselines() {
-    static const std::array<const Traversal*, 1> all{&embree()};
+    static const std::vector<const Traversal*> all{TANDEM_BASELINES(TANDEM_ADDRESS)};
     return all;
 }
 

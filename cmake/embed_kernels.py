@@ -10,16 +10,18 @@ DEFAULT = re.compile(r"^#ifndef (\w+)\n#define \1 (\d+)$", re.M)
 
 
 def flatten(root, name, included):
-    """Text of `name` with each header included once, and #line directives for compiler messages. Extends `included`."""
+    """Text of `name` with each header included once, and #line directives for compiler messages. An include with * includes
+    all files that it matches, by name. Extends `included`."""
     lines = [f'#line 1 "{name}"']
     for number, line in enumerate((root / name).read_text().splitlines(), 1):
         match = INCLUDE.match(line)
         if not match:
             lines.append(line)
             continue
-        if match[1] not in included:
-            included.add(match[1])
-            lines += flatten(root, match[1], included)
+        for header in sorted(path.relative_to(root).as_posix() for path in root.glob(match[1])) or [match[1]]:
+            if header not in included:
+                included.add(header)
+                lines += flatten(root, header, included)
         lines.append(f'#line {number + 1} "{name}"')
     return lines
 

@@ -42,7 +42,7 @@ function(tandem_kernels target)
   set(script ${PROJECT_SOURCE_DIR}/cmake/embed_kernels.py)
   file(GLOB_RECURSE kernels CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/${folder}/*.cl)
   list(TRANSFORM kernels PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE files)
-  file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/backends/portable.h
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/backends/lanes.h ${PROJECT_SOURCE_DIR}/backends/portable.h
        ${PROJECT_SOURCE_DIR}/algorithms/*.clh ${PROJECT_SOURCE_DIR}/${folder}/*.clh)
   set(geometries)
   foreach(k_axes ${given_UNPARSED_ARGUMENTS})

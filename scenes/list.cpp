@@ -68,9 +68,9 @@ std::vector<SceneParameter> with_values(const SceneKind& kind, std::string_view 
 } // namespace
 
 std::span<const SceneKind> scene_kinds() {
-    static const std::vector<SceneKind> kinds{plates_kind(),    pile_kind(),   glasses_kind(), funnel_kind(),
-                                              colosseum_kind(), tower_kind(),  meteor_kind(),  jacks_kind(),
-                                              chalk_kind(),     temple_kind(), arch_kind(),    block_kind()};
+#define TANDEM_KIND(name) name##_kind(),
+    static const std::vector<SceneKind> kinds{TANDEM_SCENE_KINDS(TANDEM_KIND)};
+#undef TANDEM_KIND
     return kinds;
 }
 

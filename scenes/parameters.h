@@ -20,19 +20,25 @@ std::uint64_t refine_value(std::span<const SceneParameter> parameters);
 /// records without this parameter.
 std::string key_of(std::string_view name, std::span<const SceneParameter> parameters);
 
-/// The kinds of scene, one function each.
-SceneKind plates_kind();
-SceneKind pile_kind();
-SceneKind glasses_kind();
-SceneKind funnel_kind();
-SceneKind colosseum_kind();
-SceneKind tower_kind();
-SceneKind meteor_kind();
-SceneKind jacks_kind();
-SceneKind chalk_kind();
-SceneKind temple_kind();
-SceneKind arch_kind();
-SceneKind block_kind();
+// The kinds of scene, one word each, in the order of listings: scenes/kinds/WORD.cpp defines WORD_kind().
+// clang-format off
+#define TANDEM_SCENE_KINDS(KIND) \
+    KIND(plates) \
+    KIND(pile) \
+    KIND(glasses) \
+    KIND(funnel) \
+    KIND(colosseum) \
+    KIND(tower) \
+    KIND(meteor) \
+    KIND(jacks) \
+    KIND(chalk) \
+    KIND(temple) \
+    KIND(arch) \
+    KIND(block)
+// clang-format on
+#define TANDEM_DECLARE_KIND(name) SceneKind name##_kind();
+TANDEM_SCENE_KINDS(TANDEM_DECLARE_KIND)
+#undef TANDEM_DECLARE_KIND
 
 /// Reads a scene description in JSON (scenes/scene.schema.json); paths of mesh files are relative to it.
 Scene load_description(const std::string& path);

@@ -126,7 +126,7 @@ class Mistakes(unittest.TestCase):
             page.parent.mkdir(parents=True)
             page.write_text((SOURCE / PAGE).read_text(encoding="utf-8"), encoding="utf-8")
             for path in ("base/error.h", "scenes/scene.h", "scenes/motion.h", "harness/plans/cells.h", "algorithms/traversal.h",
-                         "algorithms/tiled/tiled.h"):
+                         "algorithms/tiled/turns.h"):
                 (root / path).parent.mkdir(parents=True, exist_ok=True)
                 (root / path).touch()
             if many:
@@ -143,8 +143,8 @@ class Mistakes(unittest.TestCase):
         self.assertEqual(self.errors('\n  #  include "harness/plans/cells.h"\n'), ["geometry/new.h:2: room geometry must not include room harness"])
         self.assertEqual(self.errors('#include "scenes/motion.h"\n', "algorithms/new.cpp"),
                          ["algorithms/new.cpp:1: room algorithms must not include motion.h of room scenes"])
-        self.assertEqual(self.errors('#include "algorithms/tiled/tiled.h"\n', "harness/new.cpp"),
-                         ["harness/new.cpp:1: room harness must not include tiled/tiled.h of room algorithms"])
+        self.assertEqual(self.errors('#include "algorithms/tiled/turns.h"\n', "harness/new.cpp"),
+                         ["harness/new.cpp:1: room harness must not include tiled/turns.h of room algorithms"])
         self.assertEqual(self.errors('#include "base/nothing.h"\n'), ["geometry/new.h:1: no file base/nothing.h"])
 
     def test_a_room_without_a_row_fails(self):

@@ -5,6 +5,7 @@
 #include "algorithms/hierarchy/order.h"
 #include "algorithms/distributed/subdomain.h"
 #include "scenes/scene.h"
+#include "backends/lanes.h"
 
 namespace tandem {
 
@@ -29,7 +30,7 @@ public:
     };
 
     /// Slots in a block. The tetrahedra of a body start at the begin of a block.
-    static constexpr std::uint32_t block_slots = 32;
+    static constexpr std::uint32_t block_slots = TANDEM_LANES;
 
     /// Uploads constant data. `scene` must outlive this. `pair_layout` is a request; see pair_layout().
     /// Throws DeviceError for more than 2^32 vertices or tetrahedra, OutOfMemory if they do not fit.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/chunked/chunked.h"
+#include "algorithms/traversal.h"
 
 #include "algorithms/chunked/chunked_walker.h"
 #include "algorithms/chunked/levels.clh"
@@ -102,6 +102,7 @@ private:
 
 } // namespace
 
+/// The chunked static scheduler of the paper.
 const Traversal& chunked() {
     static const Chunked instance;
     return instance;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/gproximity/gproximity.h"
+#include "algorithms/traversal.h"
 
 #include "algorithms/gproximity/queue_walker.h"
 #include "algorithms/cost.h"
@@ -71,6 +71,7 @@ private:
 
 } // namespace
 
+/// gProximity's dynamic load balancing, implemented from scratch, with its published numbers as presets.
 const Traversal& gproximity() {
     static const Gproximity instance;
     return instance;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/hierarchy/axis_orders.h"
+#include "backends/lanes.h"
 
 #include <algorithm>
 #include <bit>
@@ -34,7 +35,7 @@ void AxisOrders::cut(ItemRange range, std::size_t axis, std::size_t split) {
 }
 
 std::size_t run_of(std::size_t size) {
-    constexpr std::size_t tile = 32;
+    constexpr std::size_t tile = TANDEM_LANES;
     if (size <= tile) return std::bit_ceil(size) / 2;
     auto run = tile;
     while (size > run * tile) run *= tile;

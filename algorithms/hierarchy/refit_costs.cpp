@@ -2,6 +2,7 @@
 // Cost floors of refit.cl and refit_tiles.cl: moving bodies only, all launches of a frame together.
 #include "algorithms/cost.h"
 #include "algorithms/hierarchy/levels.h"
+#include "backends/lanes.h"
 
 #include <cmath>
 #include <numeric>
@@ -10,7 +11,7 @@ namespace tandem {
 
 namespace {
 
-constexpr double tile_boxes = 32, corners = 4;
+constexpr double tile_boxes = TANDEM_LANES, corners = 4;
 
 double parts_of(double count, double each) { return std::ceil(count / each); }
 

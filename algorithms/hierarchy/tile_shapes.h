@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/bodies/bodies.h"
+#include "backends/lanes.h"
 
 namespace tandem {
 
@@ -10,7 +11,7 @@ namespace tandem {
 class TileShapes {
 public:
     /// Tetrahedra per tile.
-    static constexpr std::uint32_t lanes = 32;
+    static constexpr std::uint32_t lanes = TANDEM_LANES;
 
     /// Uploads the tables of the meshes of `bodies`. Throws OutOfMemory.
     explicit TileShapes(const Bodies& bodies);

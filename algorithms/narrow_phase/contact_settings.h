@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/parameters/contact_rules.clh"
 #include "algorithms/parameters/table.h"
 
 namespace tandem {
@@ -12,6 +13,16 @@ struct ContactSettings {
 
     bool operator==(const ContactSettings&) const = default;
 };
+
+/// The traits of a rule, a sum of those of contact_rules.clh; 0 for none.
+constexpr unsigned traits_of(ContactRule rule) {
+    constexpr unsigned traits[] = {
+#define TANDEM_TRAITS(word, traits, help) traits,
+        TANDEM_CONTACT_RULES(TANDEM_TRAITS)
+#undef TANDEM_TRAITS
+            0};
+    return traits[static_cast<unsigned>(rule)];
+}
 
 /// Contact settings of resolved settings; the defaults when contact_rule=none.
 ContactSettings contact_settings_of(const Settings& settings);

@@ -35,10 +35,6 @@ unsigned given_feature(unsigned feature, const Sorted<Real>& own, const Sorted<R
     return 8 + 24 * given_owner + 4 * number + other.names[feature % 4];
 }
 
-bool is_canonical(ContactRule rule) {
-    return rule != ContactRule::opposing && rule != ContactRule::published;
-}
-
 /// Boundary bits of the given faces, in the order of the sorted corners opposite to them.
 template<class Real>
 unsigned sorted_faces(unsigned given, const Sorted<Real>& sorted) {
@@ -48,12 +44,20 @@ unsigned sorted_faces(unsigned given, const Sorted<Real>& sorted) {
     return faces;
 }
 
+/// Requires canonical order where the rule has that trait.
 template<class Real>
-std::vector<Contact<Real>> sorted_contacts(const ReferencePair<Real>& pair, ContactRule rule,
-                                           const Boundaries& boundaries) {
-    if (rule == ContactRule::vertex) return vertex_contacts(pair, boundaries);
-    if (rule == ContactRule::consistent) return consistent_contacts(pair, boundaries);
-    return axis_contacts(pair, rule, boundaries);
+std::vector<Contact<Real>> contacts_by_rule(const ReferencePair<Real>& pair, ContactRule rule,
+                                            const Boundaries& boundaries) {
+    switch (rule) {
+#define TANDEM_CASE(word, traits, help)                                                                      \
+    case ContactRule::word:                                                                                  \
+        return word##_contacts(pair, boundaries);
+        TANDEM_CONTACT_RULES(TANDEM_CASE)
+#undef TANDEM_CASE
+    case ContactRule::none:
+        break;
+    }
+    return {};
 }
 
 template<class Real>
@@ -121,7 +125,7 @@ std::vector<Contact<Real>> canonical_contacts(const Corners<Real>& a, const Corn
     ReferencePair<Real> pair;
     if (!meets(pair, first.corners, second.corners, settings.decision != DecisionPrecision::fp32, counts))
         return {};
-    auto contacts = sorted_contacts(pair, settings.rule, boundaries);
+    auto contacts = contacts_by_rule(pair, settings.rule, boundaries);
     for (auto& contact : contacts) {
         const unsigned owner = contact.feature < 8 ? contact.feature / 4 : contact.feature < 32 ? 0 : 1;
         const unsigned given_owner = swapped ? 1 - owner : owner;
@@ -146,11 +150,11 @@ std::vector<Contact<Real>> reference_contacts(const Corners<Real>& a, const Corn
         return {};
     }
     const Boundaries boundaries{boundary_a, boundary_b};
-    if (is_canonical(settings.rule)) return canonical_contacts(a, b, boundaries, settings, counts);
+    if ((traits_of(settings.rule) & TANDEM_CANONICAL) != 0)
+        return canonical_contacts(a, b, boundaries, settings, counts);
     ReferencePair<Real> pair;
     if (!meets(pair, a, b, settings.decision != DecisionPrecision::fp32, counts)) return {};
-    return settings.rule == ContactRule::published ? published_contacts(pair, boundaries)
-                                                   : opposing_contacts(pair, boundaries);
+    return contacts_by_rule(pair, settings.rule, boundaries);
 }
 
 template std::vector<Contact<float>> reference_contacts(const Corners<float>&, const Corners<float>&,

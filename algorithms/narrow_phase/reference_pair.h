@@ -141,20 +141,19 @@ private:
 /// Bits of the boundary faces of A and of B.
 using Boundaries = std::array<unsigned, 2>;
 
-/// Contacts of a loaded pair by each rule, in ascending order of feature. All rules except the first two
-/// require canonical order.
-template<class Real>
-std::vector<Contact<Real>> opposing_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
-template<class Real>
-std::vector<Contact<Real>> published_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
-/// Rules sat, clip, restricted and growth, which have one normal and one depth per pair.
-template<class Real>
-std::vector<Contact<Real>> axis_contacts(const ReferencePair<Real>& pair, ContactRule rule,
-                                         const Boundaries& boundaries);
-template<class Real>
-std::vector<Contact<Real>> vertex_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
-template<class Real>
-std::vector<Contact<Real>> consistent_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries);
+// The contacts of a loaded pair by rule WORD, WORD_contacts(), in ascending order of feature. The pair is in
+// canonical order where the rule has that trait. Defined in rules/WORD.cpp, which ends with
+// TANDEM_REFERENCE_OF.
+#define TANDEM_DECLARE_REFERENCE(word, traits, help)                                                         \
+    template<class Real>                                                                                     \
+    std::vector<Contact<Real>> word##_contacts(const ReferencePair<Real>& pair,                              \
+                                               const Boundaries& boundaries);
+TANDEM_CONTACT_RULES(TANDEM_DECLARE_REFERENCE)
+#undef TANDEM_DECLARE_REFERENCE
+
+#define TANDEM_REFERENCE_OF(word)                                                                            \
+    template std::vector<Contact<float>> word##_contacts(const ReferencePair<float>&, const Boundaries&);    \
+    template std::vector<Contact<double>> word##_contacts(const ReferencePair<double>&, const Boundaries&);
 
 /// What distances of corners behind faces prove: 1 apart, 2 meeting, 0 neither. Whether they prove anything
 /// may depend on the order of corners and tetrahedra; the verdict does not.

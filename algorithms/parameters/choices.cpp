@@ -20,10 +20,6 @@ static_assert(is(Output::pairs, OUTPUT_PAIRS) && is(Output::count, OUTPUT_COUNT)
               && is(Output::digest, OUTPUT_DIGEST));
 static_assert(is(PairLayout::items, PAIR_ITEMS) && is(PairLayout::slots, PAIR_SLOTS));
 static_assert(is(Slabs::three, SLABS_THREE) && is(Slabs::all, SLABS_ALL));
-static_assert(is(ContactRule::opposing, RULE_OPPOSING) && is(ContactRule::published, RULE_PUBLISHED)
-              && is(ContactRule::sat, RULE_SAT) && is(ContactRule::clip, RULE_CLIP)
-              && is(ContactRule::restricted, RULE_RESTRICTED) && is(ContactRule::vertex, RULE_VERTEX)
-              && is(ContactRule::consistent, RULE_CONSISTENT) && is(ContactRule::growth, RULE_GROWTH));
 
 } // namespace
 

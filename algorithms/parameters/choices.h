@@ -4,6 +4,8 @@
 // differ.
 #pragma once
 
+#include "algorithms/parameters/contact_rules.clh"
+
 namespace tandem {
 
 /// Directions for k = 8.
@@ -85,8 +87,13 @@ enum class PairLayout {
 /// Output of a walk.
 enum class Output { pairs, count, digest };
 
-/// Rule that makes contacts of a colliding pair; narrow_phase/README.md has the rules.
-enum class ContactRule { opposing, published, sat, clip, restricted, vertex, consistent, growth, none };
+/// Rule that makes contacts of a colliding pair: one of contact_rules.clh, or none.
+enum class ContactRule {
+#define TANDEM_ENUMERATOR(word, traits, help) word,
+    TANDEM_CONTACT_RULES(TANDEM_ENUMERATOR)
+#undef TANDEM_ENUMERATOR
+        none
+};
 
 /// Method that decides whether a pair collides.
 enum class DecisionPrecision {

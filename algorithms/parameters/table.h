@@ -78,23 +78,16 @@ inline constexpr auto slabs =
                    "three elsewhere"}
         .with_alternatives({Slabs::three, Slabs::all});
 
+#define TANDEM_CHOICE(word, traits, help) {#word, ContactRule::word},
+#define TANDEM_HELP(word, traits, help) #word ": " help "; "
 inline constexpr Setting<ContactRule> contact_rule{
     "contact_rule",
     ContactRule::opposing,
-    {{"opposing", ContactRule::opposing},
-     {"published", ContactRule::published},
-     {"sat", ContactRule::sat},
-     {"clip", ContactRule::clip},
-     {"restricted", ContactRule::restricted},
-     {"vertex", ContactRule::vertex},
-     {"consistent", ContactRule::consistent},
-     {"growth", ContactRule::growth},
-     {"none", ContactRule::none}},
+    {TANDEM_CONTACT_RULES(TANDEM_CHOICE){"none", ContactRule::none}},
     "CONTACT_RULE",
-    "opposing: the paper's most opposing boundary faces; published: with its code's tolerances and gaps; "
-    "sat: the least translation; clip: the intersection; restricted: sat along axes of boundary faces; "
-    "vertex: corners inside, nearest boundary face; consistent: the face that their edges leave by; growth: "
-    "the first contact when both grow"};
+    TANDEM_CONTACT_RULES(TANDEM_HELP) "none: no contacts"};
+#undef TANDEM_CHOICE
+#undef TANDEM_HELP
 inline constexpr Setting<DecisionPrecision> decision{
     "decision",
     DecisionPrecision::fp32,

