@@ -35,11 +35,12 @@
 #define TEAM_BARRIER BARRIER
 #endif
 
-// Lanes are the elements of a tile (lanes.h). A team of LANE_STEP work-items works on a tile; each runs the body of
-// FOR_LANES for every LANE_STEP-th lane. On a GPU a lane is a work-item of a warp. On the host device, whose
-// groups have one work-item, FOR_LANES is a loop that the compiler vectorises. Without a barrier for a warp
-// the group is the team, and work-items past the last lane only wait. A value kept from one FOR_LANES to the
-// next is an array `type name[LANE_PARTS]`; a lane uses name[part]. No barriers inside FOR_LANES.
+// Lanes are the elements of a tile (lanes.h). A team of LANE_STEP work-items works on a tile; each runs the
+// body of FOR_LANES for every LANE_STEP-th lane. On a GPU a lane is a work-item of a warp. On the host
+// device, whose groups have one work-item, FOR_LANES is a loop that the compiler vectorises. Without a
+// barrier for a warp the group is the team, and work-items past the last lane only wait. A value kept from
+// one FOR_LANES to the next is an array `type name[LANE_PARTS]`; a lane uses name[part]. No barriers inside
+// FOR_LANES.
 #define LANES TANDEM_LANES
 #if GROUP_SIZE % LANES == 0 && (GROUP_SIZE == LANES || defined(__CUDACC__) || defined(__NV_CL_C_VERSION))
 #define LANE_STEP LANES

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-namespace tandem::read {
+namespace tandem::base64 {
 
 namespace {
 
@@ -22,7 +22,7 @@ constexpr auto digits = [] {
 } // namespace
 
 /// Accepts padding between groups: VTK encodes a header and its data as separate base64 texts.
-std::optional<std::string> decode_base64(std::string_view text, std::size_t limit) {
+std::optional<std::string> decode(std::string_view text, std::size_t limit) {
     std::string bytes;
     bytes.reserve(limit);
     std::uint32_t group = 0;
@@ -45,7 +45,7 @@ std::optional<std::string> decode_base64(std::string_view text, std::size_t limi
     return bytes;
 }
 
-std::string encode_base64(std::string_view bytes) {
+std::string encode(std::string_view bytes) {
     std::string text;
     text.reserve((bytes.size() + 2) / 3 * 4);
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
@@ -59,4 +59,4 @@ std::string encode_base64(std::string_view bytes) {
     return text;
 }
 
-} // namespace tandem::read
+} // namespace tandem::base64

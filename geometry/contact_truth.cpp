@@ -6,7 +6,7 @@
 
 namespace tandem {
 
-using namespace oracle;
+using namespace geometry;
 
 std::optional<ContactTruth> contact_truth(const TetraCorners& a, const TetraCorners& b, double slack) {
     const auto exact = exact_contact(a, b, slack);

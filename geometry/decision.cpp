@@ -12,7 +12,7 @@ namespace tandem {
 
 namespace {
 
-using namespace oracle;
+using namespace geometry;
 
 /// Uses comparisons only, which do not round.
 bool boxes_apart(const TetraCorners& a, const TetraCorners& b) {

@@ -4,7 +4,7 @@
 #include "geometry/lattice.h"
 #include "geometry/rounding.h"
 
-namespace tandem::oracle {
+namespace tandem::geometry {
 
 namespace {
 
@@ -50,4 +50,4 @@ std::optional<ExactContact> exact_contact(const TetraCorners& a, const TetraCorn
     return result;
 }
 
-} // namespace tandem::oracle
+} // namespace tandem::geometry

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace tandem::oracle {
+namespace tandem::geometry {
 
 using RationalPoint = Vector<mpq_class>;
 
@@ -32,4 +32,4 @@ std::vector<RationalPoint> intersection_vertices(const Points<mpz_class>& a, con
 mpq_class intersection_volume(const Points<mpz_class>& a, const Points<mpz_class>& b,
                               const std::vector<RationalPoint>& vertices);
 
-} // namespace tandem::oracle
+} // namespace tandem::geometry

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-namespace tandem::oracle {
+namespace tandem::geometry {
 
 /// An edge of a tetrahedron, and the two other corners.
 struct Edge {
@@ -122,4 +122,4 @@ void for_each_facet(const Points<Number>& a, const Points<Number>& b, FacetSet s
         }
 }
 
-} // namespace tandem::oracle
+} // namespace tandem::geometry

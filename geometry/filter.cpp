@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tandem::oracle {
+namespace tandem::geometry {
 
 namespace {
 
@@ -189,4 +189,4 @@ int certain_orientation(const TetraCorners& corners) {
     return certain(dot(normal.vector, w), normal.bound(size));
 }
 
-} // namespace tandem::oracle
+} // namespace tandem::geometry

@@ -4,7 +4,7 @@
 #include "geometry/decision.h"
 #include "geometry/facets.h"
 
-namespace tandem::oracle {
+namespace tandem::geometry {
 
 /// What double arithmetic can certify about a pair.
 struct Filtered {
@@ -30,4 +30,4 @@ Filtered filter(const TetraCorners& a, const TetraCorners& b, double error = 0);
 /// The sign of orientation() in facets.h when double arithmetic is certain; 0 when uncertain. The same bound.
 int certain_orientation(const TetraCorners& corners);
 
-} // namespace tandem::oracle
+} // namespace tandem::geometry

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tandem::oracle {
+namespace tandem::geometry {
 
 namespace {
 
@@ -114,4 +114,4 @@ LatticePoints lattice_points(std::span<const std::array<double, 3>> points) {
     return result;
 }
 
-} // namespace tandem::oracle
+} // namespace tandem::geometry

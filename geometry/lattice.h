@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace tandem::oracle {
+namespace tandem::geometry {
 
 __extension__ using Int128 = __int128;
 
@@ -33,4 +33,4 @@ struct LatticePoints {
 };
 LatticePoints lattice_points(std::span<const std::array<double, 3>> points);
 
-} // namespace tandem::oracle
+} // namespace tandem::geometry

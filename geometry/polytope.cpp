@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-namespace tandem::oracle {
+namespace tandem::geometry {
 
 namespace {
 
@@ -121,4 +121,4 @@ mpq_class intersection_volume(const Points<mpz_class>& a, const Points<mpz_class
     return sum / 6;
 }
 
-} // namespace tandem::oracle
+} // namespace tandem::geometry

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/program.h"
 
-namespace tandem::oracle {
+namespace tandem::geometry {
 
 namespace {
 
@@ -74,4 +74,4 @@ bool hulls_meet(const Points<mpz_class>& a, const Points<mpz_class>& b) {
     return tableau.gain(weights) == 0;
 }
 
-} // namespace tandem::oracle
+} // namespace tandem::geometry

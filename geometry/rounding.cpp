@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace tandem::oracle {
+namespace tandem::geometry {
 
 namespace {
 
@@ -64,4 +64,4 @@ mpq_class scaled(const mpq_class& x, long exponent) {
     return exponent < 0 ? mpq_class(x >> by) : mpq_class(x << by);
 }
 
-} // namespace tandem::oracle
+} // namespace tandem::geometry

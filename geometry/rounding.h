@@ -3,7 +3,7 @@
 
 #include <gmpxx.h>
 
-namespace tandem::oracle {
+namespace tandem::geometry {
 
 /// The double nearest to x, ties to even; subnormal and infinite results as in IEEE 754.
 double nearest(const mpq_class& x);
@@ -14,4 +14,4 @@ double nearest_root(const mpq_class& x);
 /// x * 2^exponent.
 mpq_class scaled(const mpq_class& x, long exponent);
 
-} // namespace tandem::oracle
+} // namespace tandem::geometry

@@ -13,7 +13,7 @@ namespace tandem {
 
 namespace {
 
-using namespace oracle;
+using namespace geometry;
 
 using IntegerPoint = Vector<mpz_class>;
 

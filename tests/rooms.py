@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""rooms.py PROGRAM SOURCE: the tables of docs/developer/rooms.md allow every include of the tree."""
+"""rooms.py PROGRAM SOURCE: the tables of docs/developer/rooms.md allow every include and every namespace of the tree."""
 import pathlib
 import re
 import tempfile
@@ -9,6 +9,7 @@ import unittest
 from program import SOURCE
 
 PAGE = "docs/developer/rooms.md"
+NAMESPACE = re.compile(r"(?:inline )?namespace ([a-z_0-9:]+) \{")
 INCLUDE = re.compile(r'\s*#\s*include\s*"([^"]+)"')
 ENDINGS = {".h", ".hpp", ".cpp", ".c", ".cl", ".clh", ".cu"}
 LEAST = 500  # minimum number of includes in a whole tree: fewer mean that the search has missed files
@@ -36,6 +37,7 @@ class Rules:
         self.rooms = {words(row[0])[0]: set(words(row[1])) for row in of_page["Room", "May include"]}
         self.limits = {(words(row[0])[0], words(row[1])[0]): (words(row[2]), words(row[3])) for row in of_page["From", "To"]}
         self.elsewhere = {words(row[0])[0] for row in of_page["Header", "Found in"]}
+        self.namespaces = {(name, words(row[1])[0]) for row in of_page["Namespace", "In"] for name in words(row[0])}
 
     def room_of(self, path):
         """The longest room that contains the path; otherwise the folder, which has no row."""
@@ -60,6 +62,13 @@ class Rules:
         return ""
 
 
+    def is_namespace(self, path, name):
+        """Whether a file may open the namespace `name`, which stands inside `tandem`."""
+        *folders, file = path.split("/")
+        own = name == file.partition(".")[0] or any(name == folder or name.startswith(folder + "_") for folder in folders)
+        return own or any(name == other and path.startswith(place) for other, place in self.namespaces)
+
+
 def files(root):
     """Paths below the root that may have includes; build folders and hidden ones are excluded."""
     for folder in sorted(entry for entry in root.iterdir() if entry.is_dir() and not re.match(r"build|\.", entry.name)):
@@ -73,6 +82,10 @@ def check(root):
     for path in files(root):
         name = path.relative_to(root).as_posix()
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            opened = NAMESPACE.match(line)
+            inner = opened[1].split("::") if opened else []
+            errors += [f"{name}:{number}: namespace {one} is no folder or file of the path" for one in inner
+                       if one != "tandem" and not rules.is_namespace(name, one)]
             include = INCLUDE.match(line)
             if not include:
                 continue
@@ -83,7 +96,7 @@ def check(root):
                 target = beside.resolve().relative_to(root.resolve()).as_posix()
             if target in rules.elsewhere:
                 continue
-            error = rules.error(name, target) if (root / target).is_file() else f"no file {target}"
+            error = rules.error(name, target) if any(root.glob(target)) else f"no file {target}"
             if error:
                 errors.append(f"{name}:{number}: {error}")
     if count < LEAST:
@@ -146,6 +159,13 @@ class Mistakes(unittest.TestCase):
         self.assertEqual(self.errors('#include "algorithms/tiled/turns.h"\n', "harness/new.cpp"),
                          ["harness/new.cpp:1: room harness must not include tiled/turns.h of room algorithms"])
         self.assertEqual(self.errors('#include "base/nothing.h"\n'), ["geometry/new.h:1: no file base/nothing.h"])
+        self.assertEqual(self.errors('#include "base/*.clh"\n'), ["geometry/new.h:1: no file base/*.clh"])
+
+    def test_namespaces(self):
+        self.assertEqual(self.errors("namespace tandem::geometry {\nnamespace geometry_parts {\nnamespace new {\n"), [])
+        self.assertEqual(self.errors("namespace tandem {\nnamespace oracle {\n"),
+                         ["geometry/new.h:2: namespace oracle is no folder or file of the path"])
+        self.assertEqual(self.errors("namespace tandem::exporting {\n"), ["geometry/new.h:1: namespace exporting is no folder or file of the path"])
 
     def test_a_room_without_a_row_fails(self):
         self.assertEqual(self.errors('#include "base/error.h"\n', "extra/new.cpp"), [f"extra/new.cpp:1: folder extra is no room of {PAGE}"])

@@ -8,7 +8,7 @@ namespace tandem {
 
 namespace {
 
-using namespace contact_reference;
+using namespace narrow_phase;
 
 /// A tetrahedron's corners in ascending order, and their given numbers.
 template<class Real>

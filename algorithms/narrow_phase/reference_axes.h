@@ -4,7 +4,7 @@
 
 #include "algorithms/narrow_phase/reference_pair.h"
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 /// The best axis so far: the one with the least measure.
 template<class Real>
@@ -68,4 +68,4 @@ std::vector<Contact<Real>> contacts_along(const ReferencePair<Real>& pair, const
     return result;
 }
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/narrow_phase/reference_pair.h"
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 namespace {
 
@@ -104,4 +104,4 @@ unsigned certificate(const Corners<Real>& a, const Corners<Real>& b) {
 template unsigned certificate(const Corners<float>&, const Corners<float>&);
 template unsigned certificate(const Corners<double>&, const Corners<double>&);
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

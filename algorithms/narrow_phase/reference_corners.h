@@ -4,7 +4,7 @@
 
 #include "algorithms/narrow_phase/reference_pair.h"
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 /// The corner's contact with a face of the other tetrahedron; the normal points out of A.
 template<class Real>
@@ -35,4 +35,4 @@ unsigned corners_inside(const ReferencePair<Real>& pair, unsigned owner) {
     return inside;
 }
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/narrow_phase/reference_pair.h"
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 namespace {
 
@@ -95,4 +95,4 @@ unsigned certain_verdict(const Corners<Real>& a, const Corners<Real>& b) {
 template unsigned certain_verdict(const Corners<float>&, const Corners<float>&);
 template unsigned certain_verdict(const Corners<double>&, const Corners<double>&);
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

@@ -5,7 +5,7 @@
 
 #include "algorithms/narrow_phase/reference_pair.h"
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 /// The boundary face of A that opposes one of B most; empty unless both have boundary faces.
 template<class Real>
@@ -37,4 +37,4 @@ std::vector<Contact<Real>> kept(const ReferencePair<Real>& pair, unsigned face,
     return result;
 }
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

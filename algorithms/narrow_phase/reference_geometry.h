@@ -9,7 +9,7 @@
 #include <limits>
 #include <optional>
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 template<class Real>
 using Vector = std::array<Real, 3>;
@@ -122,4 +122,4 @@ Real taxicab(const Vector<Real>& a) {
     return std::abs(a[0]) + std::abs(a[1]) + std::abs(a[2]);
 }
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

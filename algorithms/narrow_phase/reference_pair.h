@@ -4,7 +4,7 @@
 
 #include "algorithms/narrow_phase/reference_geometry.h"
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 /// A point that two tetrahedra have in common, at one feature.
 template<class Real>
@@ -165,4 +165,4 @@ unsigned certificate(const Corners<Real>& a, const Corners<Real>& b);
 template<class Real>
 unsigned certain_verdict(const Corners<Real>& a, const Corners<Real>& b);
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

@@ -2,7 +2,7 @@
 #include "harness/plans/plan_file.h"
 
 #include "harness/plans/ranges.h"
-#include "scenes/describe.h"
+#include "scenes/description/describe.h"
 #include "base/error.h"
 #include "base/read_json.h"
 

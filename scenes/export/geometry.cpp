@@ -22,7 +22,7 @@ using Points = std::vector<Eigen::Vector3d>;
 template<class Number>
 std::string base64_of(const std::vector<Number>& numbers) {
     const auto bytes = std::as_bytes(std::span(numbers));
-    return read::encode_base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    return base64::encode({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 /// Rounds to six digits, which is enough for a screen.

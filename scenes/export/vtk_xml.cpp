@@ -39,7 +39,7 @@ std::string encoded(std::string_view bytes) {
         recording::put(header, std::uint64_t{packed.size()});
         data += packed;
     }
-    return read::encode_base64(header) + read::encode_base64(data);
+    return base64::encode(header) + base64::encode(data);
 }
 
 void put_number(std::string& out, float value) { recording::put_float(out, value); }

@@ -76,7 +76,7 @@ std::string VtuData::head(const Block& block, std::uint64_t bytes) const {
     // Base64 has more characters than bytes, so that this limits the allocation in both encodings.
     const bool fits = bytes <= block.stored.size();
     if (fits && !block.base64) return std::string(block.stored.substr(0, bytes));
-    auto data = fits ? decode_base64(block.stored, bytes) : std::string();
+    auto data = fits ? base64::decode(block.stored, bytes) : std::string();
     if (!data) xml_.fail(block.tag, "the data are not base64", "copy or export the file again");
     if (data->size() < bytes || !fits)
         xml_.fail(block.tag, fmt::format("the data end before {} announced bytes", bytes),

@@ -60,8 +60,8 @@ void launch_latency(benchmark::State& state, Device& device) {
 }
 
 void refit(benchmark::State& state, Device& device) {
-    testing_support::PreparedTrees scene(device, jacks(), {.k = static_cast<int>(state.range(0))}, 32,
-                                         group_size(device));
+    support::PreparedTrees scene(device, jacks(), {.k = static_cast<int>(state.range(0))}, 32,
+                                 group_size(device));
     const auto frame = jacks().frame(0);
     scene.update(frame); // PoCL compiles for a group size at the first launch
     device.finish();
@@ -96,7 +96,7 @@ void frame(benchmark::State& state, Device& device, const std::string& name, con
 /// Body pairs on the device after refit: kernels and the wait for them.
 void broad_on_device(benchmark::State& state, Device& device) {
     const auto scene = make_scene(fmt::format("pile:bodies={},mesh=grain1,frames=1", state.range(0)));
-    testing_support::PreparedTrees on(device, scene, {}, 32, group_size(device));
+    support::PreparedTrees on(device, scene, {}, 32, group_size(device));
     BroadStage stage(on.bodies, on.trees, {group_size(device), 64 * device.info().compute_units});
     const StageScope scope(device, Stage::broad);
     const auto status = device.allocate(STATUS_WORDS * 4, "status");

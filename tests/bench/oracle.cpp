@@ -12,7 +12,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 constexpr std::size_t pair_count = 2000;
 

@@ -90,7 +90,7 @@ void ghosts(benchmark::State& state) {
     std::mutex counting;
     for ([[maybe_unused]] auto _ : state) {
         counts = {};
-        testing_support::ThreadJob(ranks).run([&](Ranks& own) {
+        support::ThreadJob(ranks).run([&](Ranks& own) {
             GhostExchange ghost_exchange(pile.scene, {.k = 18}, own);
             GhostExchange::Traffic setup, frame;
             const auto& subdomain = partitioner.subdomains()[static_cast<std::size_t>(own.rank())];

@@ -13,7 +13,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 Kernel::Tetrahedron_3 tetrahedron(const TetraCorners& t) {
@@ -22,8 +22,8 @@ Kernel::Tetrahedron_3 tetrahedron(const TetraCorners& t) {
 }
 
 bool solid(const OraclePair& pair) {
-    const auto lattice = oracle::big_lattice(pair.a, pair.b);
-    return oracle::orientation(lattice.a) != 0 && oracle::orientation(lattice.b) != 0;
+    const auto lattice = geometry::big_lattice(pair.a, pair.b);
+    return geometry::orientation(lattice.a) != 0 && geometry::orientation(lattice.b) != 0;
 }
 
 /// Whether the fast tiers and the slow tier agree with CGAL on closed intersection.

@@ -13,7 +13,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 using ::testing::HasSubstr;
 
 class Batches : public testing::TestWithParam<std::string> {

@@ -14,7 +14,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 std::vector<Geometry> geometries() {
     std::vector<Geometry> all;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The kernels of the device's broad phase: their body pairs against those of a double loop over the root
 // volumes on the device.
-#include "broad_support.h"
+#include "tests/support/broad.h"
 
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 /// A cube from 0 to 1 along each axis.
 Mesh unit_cube() {

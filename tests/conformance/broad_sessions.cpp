@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sessions that find their body pairs on the device: every algorithm and preset with every broad phase
 // against brute force, capacities of the body pair buffer, and the commands of a frame.
-#include "broad_support.h"
+#include "tests/support/broad.h"
 
 #include "algorithms/bounds/geometry.h"
 #include "harness/verify/reference.h"
@@ -12,7 +12,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 class BroadSessions : public testing::TestWithParam<std::string> {};
 

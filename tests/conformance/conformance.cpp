@@ -13,7 +13,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 using SettingValues = std::pair<std::string, std::vector<std::string>>;
 
@@ -79,10 +79,11 @@ bool is_listed(std::string_view name) {
 }
 
 /// Every word of a setting.
-Axis axis_of(const Parameter& parameter) {
-    SettingValues setting{parameter.name, {}};
-    for (const auto& word : parameter.choices()) setting.second.emplace_back(word.text);
-    return axis_of(setting);
+Axis words_of(const Parameter& parameter) {
+    Axis axis;
+    for (const auto& word : parameter.choices())
+        axis.push_back({{std::string(parameter.name), std::string(word.text)}});
+    return axis;
 }
 
 /// Value axes of the settings that `traversal` declares: those listed above, and words of settings that only
@@ -101,7 +102,7 @@ std::vector<Axis> axes_of(const Traversal& traversal) {
     std::erase_if(axes, [&](const Axis& axis) { return !declares(traversal, axis.front().begin()->first); });
     for (const auto* parameter : traversal.parameters())
         if (!parameter->choices().empty() && is_own(traversal, *parameter) && !is_listed(parameter->name))
-            axes.push_back(axis_of(*parameter));
+            axes.push_back(words_of(*parameter));
     return axes;
 }
 

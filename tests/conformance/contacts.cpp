@@ -14,7 +14,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 /// A frame of bodies with one tetrahedron each.
 Scene bodies_of(const std::string& name, const std::vector<TetraCorners>& tetrahedra) {

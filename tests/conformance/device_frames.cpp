@@ -17,7 +17,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 using ::testing::HasSubstr;
 
 /// Message of the InputError of `work`; empty if there is none.

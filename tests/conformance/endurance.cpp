@@ -10,7 +10,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 /// Resident bytes of the process.
 std::int64_t resident_bytes() {

@@ -11,7 +11,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 Scene still(Mesh mesh, std::vector<Pose> poses) {
     Scene scene;

@@ -15,7 +15,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 constexpr std::uint32_t far_pair = 0x80000005; ///< twice this is 10 in 32 bits
 constexpr std::uint32_t pair_count = 0x80000008;

@@ -13,7 +13,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 /// Parameters: device, algorithm, precision.
 class MemoryLimits : public testing::TestWithParam<std::tuple<std::string, std::string, std::string>> {

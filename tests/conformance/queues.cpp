@@ -12,7 +12,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 class Queues : public testing::TestWithParam<std::string> {
 protected:

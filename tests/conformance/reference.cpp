@@ -9,7 +9,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 TEST(Reference, SweepEqualsBruteForce) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {

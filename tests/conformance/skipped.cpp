@@ -15,7 +15,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 using Skipped = std::vector<std::vector<std::uint32_t>>;
 

@@ -10,7 +10,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 class Slots : public testing::TestWithParam<std::string> {
 protected:

@@ -16,7 +16,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 /// Boxes in order of their items, each with its lower ends, then its upper ends.
 using Boxes = std::vector<std::vector<float>>;

@@ -43,7 +43,7 @@ struct Work {
         : device(on),
           stage(on, Stage::traverse),
           words(on.allocate(64, "words")),
-          kernel(test::compile(on, "do_nothing")) {}
+          kernel(unit_test::compile(on, "do_nothing")) {}
 
     void launch() { device.launch(kernel, {2, 1}, std::array<Argument, 1>{words}); }
     void clear() { device.clear(words, 32); }

@@ -26,7 +26,7 @@ void every_operation(Device& device, const After& after) {
     done("blocking upload", [&] { device.upload(words, bytes_of(values), 0, true); });
     done("clear", [&] { device.clear(words, 32); });
     done("download", [&] { device.download(words, std::as_writable_bytes(std::span(values))); });
-    done("compile", [&] { kernel = test::compile(device, "do_nothing"); });
+    done("compile", [&] { kernel = unit_test::compile(device, "do_nothing"); });
     const std::array<Argument, 1> arguments{words};
     done("launch", [&] { device.launch(kernel, {2, 1}, arguments); });
     done("finish", [&] { device.finish(); });
@@ -71,14 +71,14 @@ TEST_F(CudaDevice, AdoptedRunsOnTheGivenStreamOfTheGivenContext) {
 }
 
 TEST_F(CudaDevice, AnInvalidContextCannotBeAdopted) {
-    EXPECT_THAT(test::message_of([] { cuda::adopt(nullptr, nullptr); }),
+    EXPECT_THAT(unit_test::message_of([] { cuda::adopt(nullptr, nullptr); }),
                 testing::HasSubstr("the context cannot be adopted: CUDA_ERROR_INVALID_CONTEXT"));
 }
 
 TEST_F(CudaDevice, FramesDoNotAllocate) {
     const StageScope scope(*device, Stage::traverse);
     const auto words = device->allocate(4096, "a buffer with a label that is long");
-    const auto kernel = test::compile(*device, "do_nothing");
+    const auto kernel = unit_test::compile(*device, "do_nothing");
     const std::array<Argument, 3> arguments{words, 1u, 2.0};
     std::vector<std::uint32_t> values(1024, 1);
     const auto frame = [&] {
@@ -127,7 +127,7 @@ TEST_F(CudaDevice, UnknownAttributesGiveUnknownValues) {
 
 /// The stub reports 1,024 resident work-items of at most 2,048.
 TEST_F(CudaDevice, ReportsTheOccupancyOfAKernel) {
-    EXPECT_EQ(test::compile(*device, "do_nothing", {{"GROUP_SIZE", "64"}}).facts().occupancy, 0.5);
+    EXPECT_EQ(unit_test::compile(*device, "do_nothing", {{"GROUP_SIZE", "64"}}).facts().occupancy, 0.5);
 }
 
 /// A handler of the error may free memory that a command in flight reads.
@@ -135,7 +135,7 @@ TEST_F(CudaDevice, AnErrorWaitsForCommandsInFlight) {
     const auto waits = entry_of_stub<unsigned long()>("stub_waits");
     const StageScope scope(*device, Stage::traverse);
     const auto words = device->allocate(64, "words");
-    const auto kernel = test::compile(*device, "do_nothing");
+    const auto kernel = unit_test::compile(*device, "do_nothing");
     const std::array<Argument, 1> arguments{words};
     device->upload(words, bytes_of(std::vector<std::uint32_t>(16, 1)));
     const auto before = waits();
@@ -149,9 +149,9 @@ TEST_F(CudaDevice, AnErrorWaitsForCommandsInFlight) {
 TEST_F(CudaDevice, ArgumentsHaveALimit) {
     const StageScope scope(*device, Stage::traverse);
     const auto words = device->allocate(64, "words");
-    const auto kernel = test::compile(*device, "do_nothing");
+    const auto kernel = unit_test::compile(*device, "do_nothing");
     const std::vector<Argument> arguments(33, Argument(words));
-    EXPECT_THAT(test::message_of([&] {
+    EXPECT_THAT(unit_test::message_of([&] {
                     device->launch(kernel, {1, 1}, arguments);
                 }),
                 testing::HasSubstr("'do_nothing' with 33 arguments; a launch takes at most 32"));
@@ -161,7 +161,7 @@ TEST_F(CudaDevice, ArgumentsHaveALimit) {
 TEST_F(CudaDevice, OutOfMemoryIsDistinguished) {
     const StageScope scope(*device, Stage::traverse);
     const auto words = device->allocate(64, "words");
-    const auto kernel = test::compile(*device, "do_nothing");
+    const auto kernel = unit_test::compile(*device, "do_nothing");
     const std::array<Argument, 1> arguments{words};
     device->set_clocks(Clocks::on);
     device->launch(kernel, {1, 1}, arguments);

@@ -12,7 +12,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 class CudaFrames : public CudaDevice {
 protected:
@@ -110,7 +110,7 @@ TEST_F(CudaFrames, WorkOnTheApplicationsStream) {
     make_current(nullptr);
     EXPECT_EQ(cuda::on_stream(0, nullptr)->queue(), nullptr);
     EXPECT_EQ(cuda::on_stream(0, reinterpret_cast<void*>(1))->queue(), nullptr) << "CU_STREAM_LEGACY";
-    EXPECT_THAT(test::message_of([] { cuda::on_stream(3, nullptr); }),
+    EXPECT_THAT(unit_test::message_of([] { cuda::on_stream(3, nullptr); }),
                 testing::HasSubstr("cuda:3: the driver has 1 devices, numbered from 0"));
 }
 

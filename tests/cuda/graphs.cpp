@@ -13,7 +13,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 /// Frames with the same commands, submitted as a graph from the second time on. A frame uploads words and
 /// reads them back.
@@ -41,7 +41,7 @@ protected:
     void SetUp() override {
         CudaDevice::SetUp();
         words = device->allocate(64, "words");
-        kernel = test::compile(*device, "do_nothing");
+        kernel = unit_test::compile(*device, "do_nothing");
     }
     ~CudaGraphs() override {
         unsetenv("STUB_GRAPH");
@@ -149,7 +149,7 @@ TEST_F(CudaGraphs, ClocksAndTheDefaultStreamSubmitCommandsOneByOne) {
     {
         const StageScope adopted(*device, Stage::traverse);
         words = device->allocate(64, "words");
-        kernel = test::compile(*device, "do_nothing");
+        kernel = unit_test::compile(*device, "do_nothing");
         for (std::uint32_t value = 0; value < 3; ++value) EXPECT_EQ(frame(value), answer(value));
     }
     EXPECT_EQ(graphs(), 0u);
@@ -189,7 +189,7 @@ TEST_F(CudaGraphs, ErrorsNameTheirOperation) {
     frame(1);
     setenv("STUB_INSTANTIATE", "700", 1);
     EXPECT_THAT(
-        test::message_of([&] { frame(2); }),
+        unit_test::message_of([&] { frame(2); }),
         testing::AllOf(testing::HasSubstr("cuGraphInstantiate failed with CUDA_ERROR_ILLEGAL_ADDRESS"),
                        testing::HasSubstr("while capturing 5 commands")));
     unsetenv("STUB_INSTANTIATE");
@@ -197,15 +197,15 @@ TEST_F(CudaGraphs, ErrorsNameTheirOperation) {
     setenv("STUB_GRAPH", "2", 1);
     EXPECT_THROW(frame(4), OutOfMemory);
     setenv("STUB_GRAPH", "700", 1);
-    EXPECT_THAT(test::message_of([&] { frame(4); }),
+    EXPECT_THAT(unit_test::message_of([&] { frame(4); }),
                 testing::AllOf(testing::HasSubstr("cuGraphLaunch failed with CUDA_ERROR_ILLEGAL_ADDRESS"),
                                testing::HasSubstr("while submitting 5 commands as one")));
     unsetenv("STUB_GRAPH");
     EXPECT_EQ(frame(5), answer(5));
     setenv("STUB_LAUNCH", "700", 1);
-    EXPECT_THAT(test::message_of([&] { frame(6, 9); }),
+    EXPECT_THAT(unit_test::message_of([&] { frame(6, 9); }),
                 testing::HasSubstr("while launching 'do_nothing' with 2 groups of 1"));
-    EXPECT_THAT(test::message_of([&] { frame(6, 9); }), // while capturing
+    EXPECT_THAT(unit_test::message_of([&] { frame(6, 9); }), // while capturing
                 testing::HasSubstr("while launching 'do_nothing' with 2 groups of 1"));
     unsetenv("STUB_LAUNCH");
     EXPECT_EQ(frame(7, 9), answer(7));

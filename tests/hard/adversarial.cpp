@@ -12,7 +12,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 #ifdef TANDEM_SANITIZED // sanitized host kernels exist for two geometries only
 constexpr std::array tested{8, 18};

@@ -16,7 +16,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 std::string specification(const HardFamily& family) {
     if (family.scene != nullptr) return fmt::format("hard:{}", family.name);

@@ -15,8 +15,8 @@ namespace tandem {
 namespace {
 
 using namespace hard_test;
+using support::failure;
 using testing::HasSubstr;
-using testing_support::failure;
 
 #ifdef TANDEM_SANITIZED
 constexpr std::uint64_t tried = 48;

@@ -69,7 +69,7 @@ void prepare(Device& device, const Traversal& traversal, std::span<const Assignm
 /// Compiles the test of an explicit pair list, and the packing of frames in device memory.
 void prepare_pair_list(Device& device, Precision precision) {
     const auto scene = make_scene("hard:touch:pairs=2,together=2");
-    const testing_support::PreparedTrees on_device(device, scene, {.precision = precision}, 32, 128);
+    const support::PreparedTrees on_device(device, scene, {.precision = precision}, 32, 128);
     const PairList list(on_device.trees, std::vector<Pair>{{0, 0, 1, 0}, {0, 1, 1, 1}});
     const PackStage pack(on_device.bodies, {128, 1});
 }
@@ -78,10 +78,10 @@ void prepare_pair_list(Device& device, Precision precision) {
 void prepare_contacts(Device& device) {
     const auto& traversal = algorithm("chunked");
     for (const std::string precision : {"float", "double"})
-        for (const auto& [rule, word] : testing_support::contact_rules())
+        for (const auto& [rule, word] : support::contact_rules())
             for (const std::string decision : {"fp32", "recheck", "fp64", "exact"})
                 if (rule == ContactRule::sat || decision == "fp32"
-                    || (testing_support::long_form() && decision == "recheck"))
+                    || (support::long_form() && decision == "recheck"))
                     prepare(device, traversal, traversal.presets().front().values,
                             {{"precision", precision}, {"contact_rule", word}, {"decision", decision}});
 }
@@ -191,7 +191,7 @@ TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
             return defines.contains(name) && defines.at(name) == value;
         };
         const bool budgeted = !is("PRECISION", "64") && !is("COUNT_WORK", "1");
-        if (!budgeted && !testing_support::long_form()) continue; // only printed
+        if (!budgeted && !support::long_form()) continue; // only printed
         const auto& image = for_hopper(kernel_source(file), defines);
         for (const auto& name : names) {
             const auto use = use_of(image.log, name);
@@ -293,7 +293,7 @@ TEST(Nvrtc, AnUnknownNewerArchitectureGetsPtx) {
     EXPECT_THROW(nvrtc()->compile(kernel_source("algorithms/answer/digest.cl"), {}, 10), DeviceError);
 }
 
-using NvrtcCache = testing_support::FolderTest;
+using NvrtcCache = support::FolderTest;
 
 /// Cached images equal newly compiled ones; source, defines and architecture distinguish them.
 TEST_F(NvrtcCache, CachedImagesBelongToTheirProgram) {

@@ -42,7 +42,7 @@ TEST(OpenclFaults, CodesOfOutOfMemory) {
     EXPECT_EQ(outcome(-4, [&] { device->clear(words, 64); }), Outcome::has_no_memory);
     EXPECT_EQ(outcome(-5, [&] { device->clear(words, 64); }), Outcome::fails);
     device->clear(words, 64);
-    EXPECT_EQ(test::downloaded<std::uint32_t>(*device, words, 16), std::vector<std::uint32_t>(16, 0));
+    EXPECT_EQ(unit_test::downloaded<std::uint32_t>(*device, words, 16), std::vector<std::uint32_t>(16, 0));
 }
 
 // One vendor reports 256 for kernels that it compiled for groups of 992 and can run in them.
@@ -52,7 +52,7 @@ TEST(OpenclFaults, ACompiledGroupSizeOverridesTheReportedMaximum) {
     const auto words = device->allocate(64, "words");
     const std::array<Argument, 1> arguments{words};
     opencl_shim_report_group_size(16);
-    const auto kernel = test::compile(*device, "do_nothing", {{"GROUP_SIZE", "64"}});
+    const auto kernel = unit_test::compile(*device, "do_nothing", {{"GROUP_SIZE", "64"}});
     opencl_shim_report_group_size(0);
     device->launch(kernel, {4, 64}, arguments);
     EXPECT_THROW(device->launch(kernel, {4, 65}, arguments), DeviceError);
@@ -66,7 +66,7 @@ std::vector<std::uint32_t> every_command(Device& device) {
     const auto words = device.allocate(count * 4, "words");
     device.upload(words, bytes_of(std::vector<std::uint32_t>(count, 1)));
     device.clear(words, 32);
-    const auto kernel = test::compile(device, "do_nothing");
+    const auto kernel = unit_test::compile(device, "do_nothing");
     const std::array<Argument, 1> arguments{words};
     device.launch(kernel, {4, 1}, arguments);
     device.upload(words, bytes_of(std::vector<std::uint32_t>{2, 3}));
@@ -74,7 +74,7 @@ std::vector<std::uint32_t> every_command(Device& device) {
     device.upload(words, bytes_of(std::vector<std::uint32_t>{6, 7}), 24);
     device.clear(words, count * 2, count * 2);
     device.upload(words, bytes_of(std::vector<std::uint32_t>(count / 4, 8)), count * 3);
-    return test::downloaded<std::uint32_t>(device, words, count);
+    return unit_test::downloaded<std::uint32_t>(device, words, count);
 }
 
 class EveryCall : public testing::TestWithParam<Clocks> {};
@@ -113,7 +113,7 @@ TEST_P(EveryCall, LeavesADeviceThatCanBeDestroyed) {
         const auto device = open_device();
         device->set_clocks(GetParam());
         opencl_shim_fail(call, out_of_resources);
-        EXPECT_EQ(test::message_of([&] { run(*device); }) == "no error", call == calls) << call;
+        EXPECT_EQ(unit_test::message_of([&] { run(*device); }) == "no error", call == calls) << call;
     }
     opencl_shim_fail(0, 0);
 }

@@ -21,7 +21,7 @@ std::unique_ptr<Ranks> job;
 
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 /// The rank's own device: host, or a GPU each if TANDEM_TEST_RANKS_ON is cuda.
 Device& own_device() {

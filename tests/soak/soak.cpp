@@ -23,7 +23,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 std::int64_t resident_bytes() {
     std::int64_t size = 0, resident = 0;

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <set>
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// All devices, with guarded buffers: a frame fails if a kernel writes past the end of a buffer. The address
 /// sanitizer detects this without guards.
@@ -126,4 +126,4 @@ inline std::string text(const SettingTexts& settings) {
     return result;
 }
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

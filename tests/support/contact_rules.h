@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 struct NamedRule {
     ContactRule rule;
@@ -30,4 +30,4 @@ inline std::vector<ContactRule> canonical_contact_rules() {
     return rules;
 }
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

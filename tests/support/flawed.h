@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// Overlapping boxes: bodies 0 (fixed) and 1 are rigid and share a mesh; body 2 is deformable, has its own
 /// mesh and moves a little in every frame. A side has `cells` cubes of six tetrahedra each.
@@ -75,4 +75,4 @@ inline bool is_skipped(const Frame& frame, const Pair& pair) {
     return contains(pair.body_a, pair.tet_a) || contains(pair.body_b, pair.tet_b);
 }
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

@@ -10,7 +10,7 @@
 #include <string>
 #include <unistd.h>
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// A test with its own temporary folder.
 class FolderTest : public testing::Test {
@@ -46,4 +46,4 @@ std::string failure_of(Act act) {
     return "no error";
 }
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

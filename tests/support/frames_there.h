@@ -6,7 +6,7 @@
 #include "algorithms/device_frame.h"
 #include "backends/upload.h"
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// A frame as rows tx ty tz qw qx qy qz, with quaternions that are not normalized, and the equivalent host
 /// frame. With `floats`, all numbers are representable as float.
@@ -50,4 +50,4 @@ struct Rows {
     Frame host;
 };
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <malloc.h>
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// Bytes of heap in use; 0 under a sanitizer, which replaces the heap.
 inline std::size_t heap() {
@@ -12,4 +12,4 @@ inline std::size_t heap() {
     return use.uordblks + use.hblkhd;
 }
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

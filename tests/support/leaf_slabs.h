@@ -9,7 +9,7 @@
 #include <cstring>
 #include <limits>
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// A scene of two bodies with one tetrahedron per pair: the first body has every a, the second every b.
 /// Without poses the bodies are deformable and the corners are world vertices. With poses the corners are
@@ -198,4 +198,4 @@ private:
     double offset_, unit_;
 };
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

@@ -3,7 +3,7 @@
 
 #include "tests/support/cells.h"
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// Limits a device's memory to what is allocated plus `more` bytes, for the lifetime of the object.
 class Limited {
@@ -49,4 +49,4 @@ struct Answer {
     bool operator==(const Answer&) const = default;
 };
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// How one of two tetrahedra is nested in the other.
 enum class Nesting {
@@ -145,4 +145,4 @@ inline double translation_along(const OraclePair& pair, const std::array<double,
     return static_cast<double>(high - low);
 }
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

@@ -3,7 +3,7 @@
 
 #include "tests/support/oracle_touch.h"
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// Families of random pairs that are close to each other and whose relation is not known.
 enum class Family {
@@ -66,4 +66,4 @@ inline OraclePair random_pair(Family family, Random& random) {
     });
 }
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// Two tetrahedra whose coordinates are representable as float.
 struct OraclePair {
@@ -160,4 +160,4 @@ private:
     double least_stretch_ = 1; ///< lower bound for the map's determinant
 };
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

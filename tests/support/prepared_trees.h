@@ -4,7 +4,7 @@
 #include "algorithms/bodies/bodies.h"
 #include "algorithms/hierarchy/chunk_trees.h"
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// A scene's bodies and their chunk trees on a device, without a session.
 struct PreparedTrees {
@@ -40,4 +40,4 @@ private:
     }
 };
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

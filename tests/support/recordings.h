@@ -6,7 +6,7 @@
 #include "scenes/recording/writer.h"
 #include "tests/support/scenes.h"
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// A recording of a fixed, a deformable and two rigid bodies, with small frames.
 struct SmallRecording {
@@ -47,4 +47,4 @@ inline std::size_t readable_frames(const Recording& recording, const Scene& scen
     return recording.frames();
 }
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

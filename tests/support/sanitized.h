@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// Whether the build is sanitized. The library then contains host kernels for k = 8 and 18 only, and
 /// everything is slow, so tests use a subset of the pairs.
@@ -13,4 +13,4 @@ constexpr bool sanitized() {
 #endif
 }
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

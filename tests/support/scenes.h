@@ -6,7 +6,7 @@
 #include "base/random.h"
 #include "scenes/scene.h"
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// Message of make_scene() for a specification that it rejects.
 inline std::string failure(const std::string& specification) {
@@ -151,4 +151,4 @@ inline Scene breathing(std::size_t bodies) {
     return scene;
 }
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <thread>
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// Ranks that are threads of this process: the collective calls of Ranks without MPI. Each call copies from
 /// the memory of the other threads between two barriers.
@@ -84,4 +84,4 @@ private:
     std::barrier<> barrier_;
 };
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

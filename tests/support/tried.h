@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fstream>
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 /// Appends a line to the file that TANDEM_TRIED names, if it is set: `count` `unit`s of `what` were tried on
 /// `where`, and `lost` answers or records were lost. tests/program.py has the same function.
@@ -24,4 +24,4 @@ inline void tried(std::string_view what, std::uint64_t count, std::string_view u
         what, count, unit, where, lost, line.substr(at, line.find(',', at) - at));
 }
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

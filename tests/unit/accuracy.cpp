@@ -9,7 +9,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 using Point = std::array<double, 3>;
 
 const TetraCorners unit{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

@@ -16,7 +16,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 using testing::HasSubstr;
 
 /// The crowd moved away from the origin, where rounding matters.

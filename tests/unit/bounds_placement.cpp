@@ -18,7 +18,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 using oracle::posed_corners;
 using oracle::posed_point;
 

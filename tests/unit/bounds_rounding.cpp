@@ -14,7 +14,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 const auto all_k = sanitized() ? std::vector{8, 18} : std::vector{6, 8, 12, 14, 16, 18, 20, 24, 26};
 const std::uint64_t usual_draws = sanitized() ? 14000 : 140000;

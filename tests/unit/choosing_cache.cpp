@@ -13,13 +13,13 @@
 namespace tandem {
 namespace {
 
+using support::bytes_of;
+using support::write_bytes;
 using testing::HasSubstr;
-using testing_support::bytes_of;
-using testing_support::write_bytes;
 
-class ChoosingCache : public testing_support::FolderTest {
+class ChoosingCache : public support::FolderTest {
 protected:
-    Cell cell_ = undecided_cell({}, {}, {&testing_support::device("host")});
+    Cell cell_ = undecided_cell({}, {}, {&support::device("host")});
     Scene scene_ = make_scene("pile:bodies=4,frames=1");
     nlohmann::ordered_json question_ = question_of(cell_, scene_, 100);
     std::string warning_;

@@ -13,7 +13,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-DeviceGroup on_host() { return {&testing_support::device("host")}; }
+DeviceGroup on_host() { return {&support::device("host")}; }
 
 std::vector<Cell> of(const SettingTexts& given, std::vector<std::string> presets = {}) {
     Request request;
@@ -76,7 +76,7 @@ TEST(ChoosingCandidates, HaveOneAnswer) {
 }
 
 TEST(ChoosingCandidates, SettingsOfNoCandidateAreRefused) {
-    EXPECT_EQ(testing_support::declares(*algorithms().front(), "axes"), true);
+    EXPECT_EQ(support::declares(*algorithms().front(), "axes"), true);
     EXPECT_THROW(of({{"axes", "coordinate"}}), InputError);
     EXPECT_THROW(of({{"k", "10"}}), InputError);
 }

@@ -38,12 +38,12 @@ GpuCondition shared_gpu(std::uint64_t throttle, unsigned processes) {
 }
 
 /// A machine of four cores; this process may run on cores 0 and 2. Times in seconds.
-class Conditions : public testing_support::FolderTest {
+class Conditions : public support::FolderTest {
 protected:
     void write(const std::string& file, const std::string& text) const {
         const auto target = path(file);
         std::filesystem::create_directories(std::filesystem::path(target).parent_path());
-        testing_support::write_bytes(target, text);
+        support::write_bytes(target, text);
     }
 
     /// `busy` seconds of `elapsed` on each of the two cores; the other two are busy all the time.

@@ -12,10 +12,10 @@
 
 #include <cstdlib>
 
-namespace tandem::test {
+namespace tandem::unit_test {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 /// Errors of one rule over overlapping pairs.
 struct Errors {
@@ -73,7 +73,7 @@ void print(const char* family, const std::string& rule, const Errors& e) {
 
 TEST(ContactsAccuracy, SatFindsTheLeastTranslation) {
     for (const auto family : {Family::generic, Family::far_origin, Family::sliver, Family::scale_ratio})
-        for (const auto& [rule, name_of_rule] : testing_support::contact_rules()) {
+        for (const auto& [rule, name_of_rule] : support::contact_rules()) {
             const bool bounded = rule == ContactRule::sat || rule == ContactRule::restricted;
             if (!bounded && !printing()) continue;
             const auto errors = errors_of(rule, family);
@@ -85,7 +85,7 @@ TEST(ContactsAccuracy, SatFindsTheLeastTranslation) {
     if (!printing()) return;
     TouchMaker maker(3);
     NestedMaker nested(3);
-    for (const auto& [rule, name_of_rule] : testing_support::contact_rules()) {
+    for (const auto& [rule, name_of_rule] : support::contact_rules()) {
         print("nested copies", name_of_rule, errors_of(rule, [&] { return maker.nested(); }));
         print("nested, touching", name_of_rule,
               errors_of(rule, [&] { return nested.make(Nesting::on_faces); }));
@@ -105,4 +105,4 @@ TEST(ContactsAccuracy, OfGenericPairsSatHasTheBestNormalAndClipTheNextBest) {
 }
 
 } // namespace
-} // namespace tandem::test
+} // namespace tandem::unit_test

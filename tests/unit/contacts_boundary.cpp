@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace tandem::test {
+namespace tandem::unit_test {
 namespace {
 
 template<class Real>
@@ -220,4 +220,4 @@ TYPED_TEST(ContactsBoundary, GrowthOfConcentricPairsUsesTheLeastTranslation) {
 }
 
 } // namespace
-} // namespace tandem::test
+} // namespace tandem::unit_test

@@ -10,10 +10,10 @@
 #include <cstdlib>
 #include <map>
 
-namespace tandem::test {
+namespace tandem::unit_test {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 /// Results of one decision over a set of pairs.
 struct Score {
@@ -122,9 +122,8 @@ TEST(ContactsDecision, VerdictsAreNeverWrongInEitherPrecision) {
     for (const auto& [name, pairs] : families())
         for (const auto& pair : pairs) {
             const auto truth = relation(pair.a, pair.b);
-            const unsigned verdicts[] = {
-                contact_reference::certain_verdict(narrowed(pair.a), narrowed(pair.b)),
-                contact_reference::certain_verdict(pair.a, pair.b)};
+            const unsigned verdicts[] = {narrow_phase::certain_verdict(narrowed(pair.a), narrowed(pair.b)),
+                                         narrow_phase::certain_verdict(pair.a, pair.b)};
             for (unsigned i = 0; i < 2; ++i) {
                 ++certain[i][verdicts[i]];
                 EXPECT_TRUE(verdicts[i] != 1 || truth == Relation::disjoint) << name;
@@ -141,15 +140,15 @@ TEST(ContactsDecision, VerdictsDoNotDependOnTheOrderOfCornersAndTetrahedra) {
     for (const auto& [name, pairs] : families())
         for (std::size_t i = 0; i < pairs.size(); i += 10) {
             auto [a, b] = pairs[i];
-            const auto in_float = contact_reference::certain_verdict(narrowed(a), narrowed(b));
-            const auto in_double = contact_reference::certain_verdict(a, b);
+            const auto in_float = narrow_phase::certain_verdict(narrowed(a), narrowed(b));
+            const auto in_double = narrow_phase::certain_verdict(a, b);
             ++seen[in_float];
             std::sort(a.begin(), a.end());
             do {
                 std::rotate(b.begin(), b.begin() + 1, b.end());
-                ASSERT_EQ(contact_reference::certain_verdict(narrowed(a), narrowed(b)), in_float) << name;
-                ASSERT_EQ(contact_reference::certain_verdict(narrowed(b), narrowed(a)), in_float) << name;
-                ASSERT_EQ(contact_reference::certain_verdict(b, a), in_double) << name;
+                ASSERT_EQ(narrow_phase::certain_verdict(narrowed(a), narrowed(b)), in_float) << name;
+                ASSERT_EQ(narrow_phase::certain_verdict(narrowed(b), narrowed(a)), in_float) << name;
+                ASSERT_EQ(narrow_phase::certain_verdict(b, a), in_double) << name;
             } while (std::next_permutation(a.begin(), a.end()));
         }
     for (const auto count : seen) EXPECT_GT(count, 100u);
@@ -162,8 +161,8 @@ TEST(ContactsDecision, CertificatesAreNeverWrongInAnyOrder) {
             auto [a, b] = pairs[i];
             const auto truth = relation(a, b);
             const auto check = [&] {
-                const unsigned verdicts[] = {contact_reference::certificate(narrowed(a), narrowed(b)),
-                                             contact_reference::certificate(a, b)};
+                const unsigned verdicts[] = {narrow_phase::certificate(narrowed(a), narrowed(b)),
+                                             narrow_phase::certificate(a, b)};
                 for (unsigned wide = 0; wide < 2; ++wide) {
                     ++certain[wide][verdicts[wide]];
                     ASSERT_TRUE(verdicts[wide] != 1 || truth == Relation::disjoint) << name;
@@ -204,4 +203,4 @@ TEST(ContactsDecision, FlatAndUnusableTetrahedraAreDecidedExactly) {
 }
 
 } // namespace
-} // namespace tandem::test
+} // namespace tandem::unit_test

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace tandem::test {
+namespace tandem::unit_test {
 namespace {
 
 template<class Real>
@@ -205,4 +205,4 @@ TYPED_TEST(ContactsInvariance, ContactsLieInBothTetrahedra) {
 }
 
 } // namespace
-} // namespace tandem::test
+} // namespace tandem::unit_test

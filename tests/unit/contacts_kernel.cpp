@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <string>
 
-namespace tandem::test {
+namespace tandem::unit_test {
 namespace {
 
 /// Results of the reference, per pair and in total.
@@ -68,7 +68,7 @@ std::vector<TetrahedronPair<Real>> random_pairs(std::size_t count) {
 /// Pairs of floats that touch or nearly touch, for which the error bounds of the decision matter.
 template<class Real>
 void add_close_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
-    using namespace testing_support;
+    using namespace support;
     Random random(5);
     TouchMaker maker(6);
     for (unsigned i = 0; i < 200; ++i)
@@ -95,7 +95,7 @@ void add_concentric_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
 /// Pairs of which one contains the other; shared features are shared exactly.
 template<class Real>
 void add_nested_pairs(std::vector<TetrahedronPair<Real>>& pairs) {
-    using namespace testing_support;
+    using namespace support;
     NestedMaker maker(7);
     for (unsigned i = 0; i < 100 * static_cast<unsigned>(Nesting::count); ++i) {
         const auto pair = maker.make(static_cast<Nesting>(i % static_cast<unsigned>(Nesting::count)));
@@ -208,7 +208,7 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReference) {
     const auto count = static_cast<std::uint32_t>(pairs.size());
     std::vector<ContactSettings> cases{
         {opposing, recheck}, {clip, recheck}, {restricted, recheck}, {consistent, recheck}, {sat, fp64}};
-    for (const auto& [rule, name] : testing_support::contact_rules()) // another test has the default rule
+    for (const auto& [rule, name] : support::contact_rules()) // another test has the default rule
         if (rule != opposing) cases.push_back({rule, fp32});
     for (const auto settings : cases) {
         const Expected<TypeParam> expected(pairs, settings);
@@ -274,4 +274,4 @@ TYPED_TEST(ContactsKernel, ProcessesExistingPairsOnly) {
 }
 
 } // namespace
-} // namespace tandem::test
+} // namespace tandem::unit_test

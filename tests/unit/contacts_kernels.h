@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <string>
 
-namespace tandem::test {
+namespace tandem::unit_test {
 
 /// Pair and feature of a contact.
 struct PairFeature {
@@ -178,4 +178,4 @@ private:
         undecided_by_double_, open_, meeting_;
 };
 
-} // namespace tandem::test
+} // namespace tandem::unit_test

@@ -9,10 +9,10 @@
 
 #include <gtest/gtest.h>
 
-namespace tandem::test {
+namespace tandem::unit_test {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 template<class Real>
 class ContactsNested : public testing::Test {
@@ -83,4 +83,4 @@ TYPED_TEST(ContactsNested, GrowthHasTheTranslationAlongItsNormal) {
 }
 
 } // namespace
-} // namespace tandem::test
+} // namespace tandem::unit_test

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace tandem::test {
+namespace tandem::unit_test {
 
 /// Two tetrahedra and the boundary bits of their faces.
 template<class Real>
@@ -99,4 +99,4 @@ private:
     std::mt19937 random_{20240611};
 };
 
-} // namespace tandem::test
+} // namespace tandem::unit_test

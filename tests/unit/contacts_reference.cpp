@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tandem::test {
+namespace tandem::unit_test {
 namespace {
 
 template<class Real>
@@ -177,4 +177,4 @@ TYPED_TEST(ContactsReference, DigestDependsOnEveryPart) {
 }
 
 } // namespace
-} // namespace tandem::test
+} // namespace tandem::unit_test

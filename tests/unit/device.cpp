@@ -8,8 +8,8 @@
 namespace tandem {
 namespace {
 
-using test::devices;
-using test::message_of;
+using unit_test::devices;
+using unit_test::message_of;
 
 TEST(Registry, HasHostAndOpencl) {
     const auto backends = discover();
@@ -87,7 +87,7 @@ std::string refusal_of(const Call& call) {
 TEST(Device, RefusesCommandsOutsideAnyStage) {
     for (auto* device : devices()) {
         const auto words = device->allocate(64, "words");
-        const auto kernel = test::compile(*device, "do_nothing");
+        const auto kernel = unit_test::compile(*device, "do_nothing");
         const std::array<Argument, 1> arguments{words};
         std::vector<std::uint32_t> values(16, 1);
         const auto bytes = std::as_writable_bytes(std::span(values));

@@ -6,11 +6,11 @@
 namespace tandem {
 namespace {
 
-using testing_support::heap;
+using support::heap;
 
 class Frames {
 public:
-    explicit Frames(Device& device) : device_(device), nothing_(test::compile(device, "do_nothing")) {}
+    explicit Frames(Device& device) : device_(device), nothing_(unit_test::compile(device, "do_nothing")) {}
 
     void run(std::size_t count) {
         const StageScope scope(device_, Stage::traverse);
@@ -32,7 +32,7 @@ private:
 };
 
 TEST(DeviceCost, NothingIsKeptWithoutClocks) {
-    for (auto* device : test::devices()) {
+    for (auto* device : unit_test::devices()) {
         ASSERT_EQ(device->clocks(), Clocks::off);
         Frames frames(*device);
         frames.run(1000);
@@ -49,7 +49,7 @@ TEST(DeviceCost, NothingIsKeptWithoutClocks) {
 }
 
 TEST(DeviceCost, SwitchingClocksDropsWhatWasRecorded) {
-    for (auto* device : test::devices()) {
+    for (auto* device : unit_test::devices()) {
         Frames frames(*device);
         device->set_clocks(Clocks::on);
         frames.run(3);
@@ -69,7 +69,7 @@ TEST(DeviceCost, SwitchingClocksDropsWhatWasRecorded) {
 /// is traced as blocked.
 TEST(DeviceCost, CopiesOfUploadsAreBounded) {
     constexpr std::size_t words = std::size_t{1} << 18;
-    for (auto* device : test::devices()) {
+    for (auto* device : unit_test::devices()) {
         const StageScope scope(*device, Stage::write);
         const auto buffer = device->allocate(words * 4, "a MiB");
         device->set_clocks(Clocks::on);
@@ -80,7 +80,7 @@ TEST(DeviceCost, CopiesOfUploadsAreBounded) {
             device->upload(buffer, bytes_of(values));
         }
         EXPECT_LT(heap(), before + (std::size_t{100} << 20)) << device->info().id;
-        EXPECT_EQ(test::downloaded<std::uint32_t>(*device, buffer, words), values);
+        EXPECT_EQ(unit_test::downloaded<std::uint32_t>(*device, buffer, words), values);
         std::size_t waits = 0;
         for (const auto& event : device->finish().events)
             waits += event.command == Command::upload && event.blocked ? 1 : 0;
@@ -90,14 +90,14 @@ TEST(DeviceCost, CopiesOfUploadsAreBounded) {
 }
 
 TEST(DeviceCost, KernelPropertiesAreReportedOnce) {
-    for (auto* device : test::devices()) {
-        for (int i = 0; i < 3; ++i) test::compile(*device, "do_nothing");
+    for (auto* device : unit_test::devices()) {
+        for (int i = 0; i < 3; ++i) unit_test::compile(*device, "do_nothing");
         const auto facts = device->take_kernels();
         EXPECT_EQ(std::count_if(facts.begin(), facts.end(), [](auto& f) { return f.entry == "do_nothing"; }),
                   1)
             << device->info().id;
         EXPECT_TRUE(device->take_kernels().empty());
-        test::compile(*device, "do_nothing");
+        unit_test::compile(*device, "do_nothing");
         const auto again = device->take_kernels();
         ASSERT_EQ(again.size(), 1u);
         EXPECT_EQ(again[0].compile_ms, 0);

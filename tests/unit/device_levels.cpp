@@ -19,7 +19,7 @@ struct Answer {
 };
 
 Answer answer_of(Device& on, const std::string& algorithm_name, const SettingTexts& given) {
-    const auto scene = testing_support::boxes_scene(5, 4);
+    const auto scene = support::boxes_scene(5, 4);
     const auto& traversal = algorithm(algorithm_name);
     const std::array devices{&on};
     const auto settings =

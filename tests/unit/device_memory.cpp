@@ -8,9 +8,9 @@
 namespace tandem {
 namespace {
 
-using test::devices;
-using test::message_of;
 using testing::HasSubstr;
+using unit_test::devices;
+using unit_test::message_of;
 
 TEST(DeviceMemory, ALimitIsEnforcedAndReported) {
     for (auto* device : devices()) {
@@ -86,7 +86,7 @@ void copy_eight_words(Device& device, const Buffer& to) {
     const auto from = device.allocate(64, "source");
     device.clear(from, 64);
     const std::array<Argument, 3> arguments{from, to, std::uint64_t{8}};
-    device.launch(test::compile(device, "copy_words"), {1, 1}, arguments);
+    device.launch(unit_test::compile(device, "copy_words"), {1, 1}, arguments);
 }
 
 std::string defect_of(Device& device) {
@@ -145,7 +145,7 @@ TEST(DeviceGuards, AreNotTraced) {
 TEST(DeviceGroups, ThatAreTooLargeAreRefused) {
     for (auto* device : devices()) {
         const StageScope scope(*device, Stage::traverse);
-        const auto kernel = test::compile(*device, "do_nothing");
+        const auto kernel = unit_test::compile(*device, "do_nothing");
         const auto words = device->allocate(64, "words");
         const std::array<Argument, 1> arguments{words};
         const auto reported = kernel.facts().max_group_size;

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tandem::test {
+namespace tandem::unit_test {
 
 /// All available devices.
 inline std::vector<Device*> devices() {
@@ -46,4 +46,4 @@ std::vector<T> downloaded(Device& device, const Buffer& buffer, std::size_t coun
     return values;
 }
 
-} // namespace tandem::test
+} // namespace tandem::unit_test

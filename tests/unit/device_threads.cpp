@@ -21,7 +21,7 @@ constexpr int rounds = 400;
 class Rows {
 public:
     explicit Rows(std::uint32_t pairs) : pairs_(pairs) {
-        kernel_ = test::compile(*device_, "scan_seeds", {});
+        kernel_ = unit_test::compile(*device_, "scan_seeds", {});
         std::vector<std::uint32_t> status(STATUS_WORDS, 0);
         status[STATUS_BODY_PAIRS] = pairs;
         device_->upload(status_, bytes_of(status));
@@ -41,7 +41,7 @@ public:
         device_->upload(seeds_, bytes_of(counts_));
         const std::array<Argument, 3> arguments{seeds_, 2 * pairs_, status_};
         device_->launch(kernel_, {levels, 1}, arguments);
-        const auto starts = test::downloaded<std::uint64_t>(*device_, seeds_, counts_.size());
+        const auto starts = unit_test::downloaded<std::uint64_t>(*device_, seeds_, counts_.size());
         std::size_t sum = 0;
         for (std::uint32_t level = 0; level < levels; ++level)
             sum += std::equal(sums_[level].begin(), sums_[level].end(),
@@ -81,7 +81,7 @@ public:
     std::size_t wrong() {
         const std::array<Argument, 5> arguments{vertices_, world_, bodies_, poses_, 1u};
         device_->launch(kernel_, {1, 1}, arguments);
-        return test::downloaded<float>(*device_, world_, 4).front() == distance_ ? 0 : 1;
+        return unit_test::downloaded<float>(*device_, world_, 4).front() == distance_ ? 0 : 1;
     }
 
 private:

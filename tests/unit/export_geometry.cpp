@@ -109,12 +109,12 @@ TEST(ExportGeometry, PartsHaveTheirSizes) {
                               .contacts = [](const Frame&) { return std::vector<ContactPoint>(5); }};
     const auto json = nlohmann::json::parse(geometry_json(scene, std::array<std::size_t, 1>{1}, parts));
     const auto bytes = [](const nlohmann::json& text) {
-        return read::decode_base64(text.get<std::string>(), text.get<std::string>().size())->size();
+        return base64::decode(text.get<std::string>(), text.get<std::string>().size())->size();
     };
     const auto& mesh = json["meshes"][0];
     EXPECT_EQ(bytes(mesh["chunks"]) * 3 * sizeof(std::uint16_t), bytes(mesh["triangles"]));
     EXPECT_EQ(bytes(mesh["points"]) % (3 * sizeof(std::uint16_t)), 0u);
-    EXPECT_EQ(read::decode_base64(mesh["chunks"].get<std::string>(), 1), "\7");
+    EXPECT_EQ(base64::decode(mesh["chunks"].get<std::string>(), 1), "\7");
     EXPECT_EQ(bytes(json["poses"][0]), scene.bodies.size() * 7 * sizeof(std::uint16_t));
     EXPECT_EQ(bytes(json["body_meshes"]), scene.bodies.size() * sizeof(std::uint32_t));
     EXPECT_EQ(bytes(json["contacts"][0]["points"]), 5 * 3 * sizeof(std::uint16_t));

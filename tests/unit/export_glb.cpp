@@ -12,7 +12,7 @@ namespace tandem {
 
 namespace {
 
-using namespace testing_support;
+using namespace support;
 using testing::HasSubstr;
 using Json = nlohmann::json;
 

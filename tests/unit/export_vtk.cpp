@@ -13,7 +13,7 @@ namespace tandem {
 
 namespace {
 
-using namespace testing_support;
+using namespace support;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -24,7 +24,7 @@ std::vector<T> array_of(const std::string& file, const std::string& name) {
     EXPECT_NE(tag, std::string::npos) << name;
     const auto text = std::string_view(file).substr(file.find('>', tag) + 1);
     const auto words = [&](std::size_t count) {
-        const auto bytes = *read::decode_base64(text, count * 8);
+        const auto bytes = *base64::decode(text, count * 8);
         std::vector<std::uint64_t> result(count);
         std::memcpy(result.data(), bytes.data(), count * 8);
         return result;
@@ -32,7 +32,7 @@ std::vector<T> array_of(const std::string& file, const std::string& name) {
     const auto header = words(3 + words(1)[0]);
     std::size_t stored = 0;
     for (std::size_t i = 3; i < header.size(); ++i) stored += header[i];
-    const auto data = read::decode_base64(text, header.size() * 8 + stored)->substr(header.size() * 8);
+    const auto data = base64::decode(text, header.size() * 8 + stored)->substr(header.size() * 8);
     std::string bytes;
     for (std::size_t i = 3, at = 0; i < header.size(); at += header[i++]) {
         std::string part(i + 1 == header.size() && header[2] > 0 ? header[2] : header[1], '\0');
@@ -131,17 +131,17 @@ TEST_F(ExportVtk, Collection) {
 }
 
 TEST(Base64, RoundTrips) {
-    EXPECT_EQ(read::encode_base64("light work."), "bGlnaHQgd29yay4=");
-    EXPECT_EQ(read::encode_base64("light work"), "bGlnaHQgd29yaw==");
-    EXPECT_EQ(read::encode_base64("light wor"), "bGlnaHQgd29y");
-    EXPECT_EQ(read::encode_base64("f"), "Zg==");
-    EXPECT_EQ(read::encode_base64("foobar"), "Zm9vYmFy");
-    EXPECT_EQ(read::encode_base64("\xff\xfe\xfd"), "//79");
-    EXPECT_EQ(read::encode_base64(""), "");
+    EXPECT_EQ(base64::encode("light work."), "bGlnaHQgd29yay4=");
+    EXPECT_EQ(base64::encode("light work"), "bGlnaHQgd29yaw==");
+    EXPECT_EQ(base64::encode("light wor"), "bGlnaHQgd29y");
+    EXPECT_EQ(base64::encode("f"), "Zg==");
+    EXPECT_EQ(base64::encode("foobar"), "Zm9vYmFy");
+    EXPECT_EQ(base64::encode("\xff\xfe\xfd"), "//79");
+    EXPECT_EQ(base64::encode(""), "");
     std::string bytes;
     for (int i = 0; i < 256; ++i) {
         bytes.push_back(static_cast<char>(255 - i));
-        EXPECT_EQ(read::decode_base64(read::encode_base64(bytes), bytes.size()), bytes);
+        EXPECT_EQ(base64::decode(base64::encode(bytes), bytes.size()), bytes);
     }
 }
 

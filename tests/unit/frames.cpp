@@ -19,7 +19,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 constexpr std::size_t frame_count = 24;
 constexpr std::size_t idle_vertices = 40000; ///< vertices of no tetrahedron: memory without work

@@ -22,7 +22,7 @@ std::vector<Subdomain> subdomains_of(const Scene& scene, const Frame& frame) {
     Partitioner partitioner(scene, {.k = 18}, rank_count);
     partitioner.partition(balls, std::vector<double>(rank_count, 1));
     std::vector<Subdomain> subdomains(rank_count);
-    testing_support::ThreadJob(rank_count).run([&](Ranks& ranks) {
+    support::ThreadJob(rank_count).run([&](Ranks& ranks) {
         const auto rank = static_cast<std::size_t>(ranks.rank());
         GhostExchange ghost_exchange(scene, {.k = 18}, ranks);
         GhostExchange::Traffic traffic;

@@ -11,7 +11,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 TEST(OracleContact, ACornerInside) {
     const auto truth = contact_truth(unit, moved(unit, 0.25, 0.25, 0.25));
@@ -23,7 +23,7 @@ TEST(OracleContact, ACornerInside) {
     EXPECT_EQ(truth->volume, 1.0 / 384);
     EXPECT_EQ(truth->depth_squared, 1.0 / 48);
     EXPECT_EQ(truth->depth, std::sqrt(1.0 / 48));
-    const double third = oracle::nearest_root(mpq_class(1, 3));
+    const double third = geometry::nearest_root(mpq_class(1, 3));
     for (const auto& normal : truth->normals) EXPECT_EQ(normal, (std::array{third, third, third}));
     EXPECT_GE(truth->normals.size(), 1u);
 }
@@ -34,7 +34,7 @@ TEST(OracleContact, Identical) {
     EXPECT_EQ(truth->vertices.size(), 4u);
     EXPECT_EQ(truth->volume, 1.0 / 6);
     EXPECT_EQ(truth->depth_squared, 1.0 / 3); // its minimal width, between a corner and the opposite face
-    const double third = oracle::nearest_root(mpq_class(1, 3));
+    const double third = geometry::nearest_root(mpq_class(1, 3));
     EXPECT_THAT(truth->normals, testing::UnorderedElementsAre(std::array{third, third, third},
                                                               std::array{-third, -third, -third}));
 }
@@ -78,7 +78,7 @@ TEST(OracleContact, TheIntersectionOfNestedPairsIsTheInnerOne) {
     TouchMaker make(1);
     for (int round = 0; round < 100; ++round) {
         const auto [a, b] = make.nested();
-        const auto exact = oracle::exact_contact(a, b, 0);
+        const auto exact = geometry::exact_contact(a, b, 0);
         ASSERT_TRUE(exact);
         EXPECT_EQ(exact->vertices.size(), 4u);
         EXPECT_EQ(exact->volume * 6, mpq_class(std::abs(TouchMaker::determinant(b))));
@@ -96,8 +96,8 @@ TEST(OracleContact, VolumesAddUp) {
         const auto [a, b] = random_pair(family, random);
         auto first = a, second = a;
         for (unsigned k = 0; k < 3; ++k) first[0][k] = second[1][k] = (a[0][k] + a[1][k]) / 2;
-        const auto whole = oracle::exact_contact(a, b, 0);
-        const auto p = oracle::exact_contact(first, b, 0), q = oracle::exact_contact(second, b, 0);
+        const auto whole = geometry::exact_contact(a, b, 0);
+        const auto p = geometry::exact_contact(first, b, 0), q = geometry::exact_contact(second, b, 0);
         if (!whole || !p || !q) continue;
         overlapping += whole->relation == Relation::overlapping;
         EXPECT_EQ(p->volume + q->volume, whole->volume);
@@ -157,14 +157,14 @@ TEST(OracleRounding, AsTheProcessorRounds) {
         };
         const double x = number(), y = number(); // zero has a chance of 2^-53
         const mpq_class p(x), q(y);
-        ASSERT_EQ(oracle::nearest(p * q), x * y) << x << ' ' << y;
-        ASSERT_EQ(oracle::nearest(p / q), x / y) << x << ' ' << y;
-        ASSERT_EQ(oracle::nearest(p), x);
-        ASSERT_EQ(oracle::nearest_root(abs(p)), std::sqrt(std::fabs(x))) << x;
+        ASSERT_EQ(geometry::nearest(p * q), x * y) << x << ' ' << y;
+        ASSERT_EQ(geometry::nearest(p / q), x / y) << x << ' ' << y;
+        ASSERT_EQ(geometry::nearest(p), x);
+        ASSERT_EQ(geometry::nearest_root(abs(p)), std::sqrt(std::fabs(x))) << x;
     }
-    EXPECT_EQ(oracle::nearest(0), 0);
-    EXPECT_EQ(oracle::nearest_root(0), 0);
-    EXPECT_EQ(oracle::nearest(mpq_class(1, 1) << 2000), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(geometry::nearest(0), 0);
+    EXPECT_EQ(geometry::nearest_root(0), 0);
+    EXPECT_EQ(geometry::nearest(mpq_class(1, 1) << 2000), std::numeric_limits<double>::infinity());
 }
 
 } // namespace

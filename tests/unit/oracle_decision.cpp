@@ -9,7 +9,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 /// Expects the same answer from every starting tier, for both orders of the pair.
 void expect(const OraclePair& pair, Relation relation, const char* name) {

@@ -9,7 +9,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 TetraCorners point(double x, double y, double z) { return {{{x, y, z}, {x, y, z}, {x, y, z}, {x, y, z}}}; }
 
@@ -82,8 +82,8 @@ TEST(OracleDegenerate, ProgramAgreesWithFacets) {
     Random random(2);
     TouchMaker make(2);
     const auto same = [](const OraclePair& pair) {
-        const auto lattice = oracle::big_lattice(pair.a, pair.b);
-        return oracle::hulls_meet(lattice.a, lattice.b) == (relation(pair.a, pair.b) != Relation::disjoint);
+        const auto lattice = geometry::big_lattice(pair.a, pair.b);
+        return geometry::hulls_meet(lattice.a, lattice.b) == (relation(pair.a, pair.b) != Relation::disjoint);
     };
     for (unsigned family = 0; family < static_cast<unsigned>(Family::count); ++family)
         for (int i = 0; i < 200; ++i) ASSERT_TRUE(same(random_pair(static_cast<Family>(family), random)));

@@ -13,7 +13,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 const unsigned parts = sanitized() ? 1 : 15;
 constexpr unsigned families = static_cast<unsigned>(Family::count);
@@ -61,19 +61,19 @@ TEST_P(OracleFilter, CertifiesNegativeGapsOnly) {
     unsigned certified = 0;
     for (unsigned i = 0; i < 1000; ++i) {
         const auto [a, b] = random_pair(family(), random);
-        const auto filtered = oracle::filter(a, b);
-        const auto lattice = oracle::big_lattice(a, b);
-        const bool solid_a = oracle::orientation(lattice.a) != 0,
-                   solid_b = oracle::orientation(lattice.b) != 0;
+        const auto filtered = geometry::filter(a, b);
+        const auto lattice = geometry::big_lattice(a, b);
+        const bool solid_a = geometry::orientation(lattice.a) != 0,
+                   solid_b = geometry::orientation(lattice.b) != 0;
         ASSERT_LE(filtered.volume[0], solid_a);
         ASSERT_LE(filtered.volume[1], solid_b);
         if (filtered.disjoint || !solid_a || !solid_b) continue;
-        oracle::for_each_facet(lattice.a, lattice.b, oracle::all_facets & ~filtered.unsure,
-                               [&](const auto& facet) {
-                                   ++certified;
-                                   EXPECT_LT(facet.gap, 0);
-                                   return true;
-                               });
+        geometry::for_each_facet(lattice.a, lattice.b, geometry::all_facets & ~filtered.unsure,
+                                 [&](const auto& facet) {
+                                     ++certified;
+                                     EXPECT_LT(facet.gap, 0);
+                                     return true;
+                                 });
     }
     EXPECT_GT(certified, 0u);
 }

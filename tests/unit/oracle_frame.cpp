@@ -13,7 +13,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 /// Every pair of tetrahedra of different bodies that are not both fixed.
 std::vector<Pair> all_pairs(const Scene& scene) {

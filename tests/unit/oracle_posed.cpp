@@ -17,7 +17,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 using oracle::Posed;
 using oracle::posed_corners;
 

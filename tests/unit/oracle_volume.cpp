@@ -13,7 +13,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 using Point = std::array<double, 3>;
 
 TetraCorners with_apex(const Point& apex) { return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, apex}}; }
@@ -48,8 +48,8 @@ TEST(OracleVolume, SlantedPlanesAreDecidedByIntegers) {
     for (int i = 0; i < 2000; ++i) {
         const double lift = i % 2 == 0 ? 0 : 0x1p-50;
         const TetraCorners corners{on_plane(0), on_plane(0), on_plane(0), on_plane(lift)};
-        unsure += oracle::certain_orientation(corners) == 0 ? 1 : 0;
-        const bool in_plane = oracle::orientation(oracle::big_lattice(corners, corners).a) == 0;
+        unsure += geometry::certain_orientation(corners) == 0 ? 1 : 0;
+        const bool in_plane = geometry::orientation(geometry::big_lattice(corners, corners).a) == 0;
         EXPECT_EQ(in_plane, lift == 0) << i; // three random points are not collinear
         EXPECT_EQ(has_volume(corners), !in_plane) << i;
     }

@@ -11,7 +11,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 using Vector = Eigen::Vector3d;
 
 /// Multiples of 2^-20, which an added integer does not round.

@@ -12,7 +12,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 TEST(Partitioner, EveryPairBelongsToOneSubdomainWithBothBodies) {
     const auto scene = procession(40, 2, 0.05);

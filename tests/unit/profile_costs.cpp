@@ -12,7 +12,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 /// Settings that, besides presets, reach every kernel: decisions, and a balance by one group.
 const std::vector<SettingTexts> variants{{},

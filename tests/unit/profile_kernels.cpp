@@ -122,7 +122,7 @@ TEST(ProfileKernels, UncountedWorkIsUnknown) {
     EXPECT_FALSE(kernels.front().bound());
 }
 
-class ProfileCeilings : public testing_support::FolderTest {};
+class ProfileCeilings : public support::FolderTest {};
 
 TEST_F(ProfileCeilings, MatchTheDevice) {
     const auto path = this->path("ceilings.jsonl");

@@ -13,7 +13,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 /// Enough bodies for several threads; every other one is deformable.
 Scene mixed_scene() {

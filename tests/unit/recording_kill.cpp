@@ -9,7 +9,7 @@ namespace tandem {
 
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 constexpr std::size_t most_frames = 20000;
 

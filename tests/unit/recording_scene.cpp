@@ -9,7 +9,7 @@ namespace tandem {
 
 namespace {
 
-using namespace testing_support;
+using namespace support;
 using testing::HasSubstr;
 using testing::MatchesRegex;
 

@@ -8,19 +8,19 @@ namespace tandem {
 
 namespace {
 
-using namespace testing_support;
+using namespace support;
 
 /// A box and a soft beam that fall on a fixed plate.
-test::World falling() {
-    test::World world({0.4, 0.3});
+unit_test::World falling() {
+    unit_test::World world({0.4, 0.3});
     world.dynamics.stepping.step = 0.004;
     world.dynamics.solver.warm_start = true;
-    world.add(test::box({6, 1, 6}), test::at(0, -0.5, 0), true);
-    world.add(test::box({1, 1, 1}), test::at(0, 0.51, 0));
+    world.add(unit_test::box({6, 1, 6}), unit_test::at(0, -0.5, 0), true);
+    world.add(unit_test::box({1, 1, 1}), unit_test::at(0, 0.51, 0));
     Elastic elastic;
     elastic.young = 2e5;
     elastic.poisson = 0.3;
-    auto mesh = test::beam({1, 0.5, 0.5}, {2, 1, 1});
+    auto mesh = unit_test::beam({1, 0.5, 0.5}, {2, 1, 1});
     for (auto& v : mesh.vertices) v += Eigen::Vector3d(1, 0.01, 0);
     world.add_soft(std::move(mesh), elastic);
     return world;
@@ -29,7 +29,7 @@ test::World falling() {
 /// The loop of writer.h, up to `steps` steps with a checkpoint after every tenth; no checkpoint at the end.
 std::vector<std::byte> simulate(const std::string& file, const Scene& scene, bool resume, std::size_t steps) {
     const auto header = recording_of("falling.json", scene, scene.dynamics->stepping.step);
-    const auto detect = test::detector(scene);
+    const auto detect = unit_test::detector(scene);
     Simulation simulation(scene);
     auto writer = resume ? RecordingWriter::resume(file, header) : RecordingWriter::create(file, header);
     if (const auto checkpoint = writer.restore())

@@ -16,7 +16,7 @@
 namespace tandem {
 namespace {
 
-using namespace testing_support;
+using namespace support;
 using testing::ElementsAre;
 
 /// Cells of a small scene on the host, and their outcomes.

@@ -15,8 +15,8 @@ namespace tandem {
 
 namespace {
 
+using support::failure;
 using testing::HasSubstr;
-using testing_support::failure;
 
 /// Number of coordinates that are not exact in single precision.
 std::size_t not_single(const Mesh& mesh) {

@@ -14,8 +14,8 @@ namespace tandem {
 
 namespace {
 
+using support::failure;
 using testing::HasSubstr;
-using testing_support::failure;
 
 struct Row {
     std::string scene;

@@ -8,7 +8,7 @@ namespace tandem {
 
 namespace {
 
-using namespace test;
+using namespace unit_test;
 
 constexpr double pi = 3.14159265358979323846;
 

@@ -9,7 +9,7 @@ namespace tandem {
 
 namespace {
 
-using namespace test;
+using namespace unit_test;
 
 // Motions with known results under default settings: within 2 % of each. A bounce or stop can be early or
 // late by half a step's motion, so the tests are sensitive to settings rather than to steps.

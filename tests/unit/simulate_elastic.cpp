@@ -14,7 +14,7 @@ namespace tandem::simulate {
 
 namespace {
 
-using namespace test;
+using namespace unit_test;
 using Law = Elastic::Law;
 using Positions = std::vector<Eigen::Vector3d>;
 

@@ -10,7 +10,7 @@ namespace tandem {
 
 namespace {
 
-using namespace test;
+using namespace unit_test;
 
 /// 27 randomly rotated boxes that fall onto each other.
 World heap(Surface surface) {

@@ -14,7 +14,7 @@ namespace tandem::simulate {
 
 namespace {
 
-using namespace test;
+using namespace unit_test;
 
 Eigen::Vector3d any_direction(Random& random) { return random.direction(); }
 

@@ -10,7 +10,7 @@ namespace tandem {
 
 namespace {
 
-using namespace test;
+using namespace unit_test;
 
 /// Momenta of all bodies; the angular one about the origin.
 struct Momenta {

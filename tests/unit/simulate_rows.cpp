@@ -10,7 +10,7 @@ namespace tandem::simulate {
 
 namespace {
 
-using namespace test;
+using namespace unit_test;
 
 TEST(SimulateRows, FactorsAreResponsesToUnitImpulses) {
     Problem problem;

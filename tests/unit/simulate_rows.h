@@ -3,7 +3,7 @@
 
 #include "scenes/simulate/problem.h"
 
-namespace tandem::test {
+namespace tandem::unit_test {
 
 /// A contact row between node 0 and node 1, at the given arms.
 inline simulate::ContactRow row_between(const Eigen::Vector3d& arm_a, const Eigen::Vector3d& arm_b,
@@ -21,4 +21,4 @@ inline simulate::ContactRow row_between(const Eigen::Vector3d& arm_a, const Eige
     return row;
 }
 
-} // namespace tandem::test
+} // namespace tandem::unit_test

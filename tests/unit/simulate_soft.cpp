@@ -8,7 +8,7 @@ namespace tandem {
 
 namespace {
 
-using namespace test;
+using namespace unit_test;
 using Law = Elastic::Law;
 
 Elastic rubber(Law law = Law::corotational) {

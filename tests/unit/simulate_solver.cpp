@@ -10,7 +10,7 @@ namespace tandem::simulate {
 
 namespace {
 
-using namespace test;
+using namespace unit_test;
 
 SolverSettings exact(SolverSettings::Method method) {
     return {.method = method, .iterations = 5000, .absolute_tolerance = 1e-10, .relative_tolerance = 0};

@@ -11,7 +11,7 @@ namespace tandem {
 
 namespace {
 
-using namespace test;
+using namespace unit_test;
 
 /// Rigid, fixed and deformable bodies in contact.
 World mixed() {

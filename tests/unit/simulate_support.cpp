@@ -8,7 +8,7 @@
 #include <map>
 #include <tuple>
 
-namespace tandem::test {
+namespace tandem::unit_test {
 
 namespace {
 
@@ -207,4 +207,4 @@ Detect detector(const Scene& scene, const ContactSettings& settings) {
 
 void no_contacts(const Frame&, std::vector<ContactPoint>& contacts) { contacts.clear(); }
 
-} // namespace tandem::test
+} // namespace tandem::unit_test

@@ -4,7 +4,7 @@
 #include "algorithms/narrow_phase/contact_settings.h"
 #include "scenes/simulate/simulation.h"
 
-namespace tandem::test {
+namespace tandem::unit_test {
 
 /// Six faces and a centre: 9 vertices, 12 tetrahedra. `corners` in the order of binary x + 2 y + 4 z.
 Mesh hexahedron(const std::array<Eigen::Vector3d, 8>& corners);
@@ -37,4 +37,4 @@ constexpr ContactSettings least_translation{ContactRule::sat, DecisionPrecision:
 Detect detector(const Scene& scene, const ContactSettings& settings = {});
 void no_contacts(const Frame&, std::vector<ContactPoint>& contacts);
 
-} // namespace tandem::test
+} // namespace tandem::unit_test

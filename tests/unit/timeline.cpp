@@ -95,7 +95,7 @@ TEST(Timeline, WorksWithoutDeviceTimes) {
     EXPECT_EQ(on_lane(json, 1).size(), 8u);
 }
 
-class TimelineFiles : public testing_support::FolderTest {};
+class TimelineFiles : public support::FolderTest {};
 
 TEST_F(TimelineFiles, AreCompleteOrAbsent) {
     const auto path = this->path("trace.json");

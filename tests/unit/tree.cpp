@@ -12,7 +12,7 @@
 namespace tandem {
 namespace {
 
-using testing_support::tetrahedra_at;
+using support::tetrahedra_at;
 
 TEST(Morton, InterleavesXFirst) {
     EXPECT_EQ(morton_code(0, 0, 0), 0u);

@@ -14,8 +14,8 @@
 namespace tandem {
 namespace {
 
-using testing_support::shaken_box;
-using testing_support::tetrahedra_at;
+using support::shaken_box;
+using support::tetrahedra_at;
 
 using Order = std::vector<std::uint32_t>;
 using Positions = std::vector<Eigen::Vector3d>;

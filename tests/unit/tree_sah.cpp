@@ -11,7 +11,7 @@
 namespace tandem {
 namespace {
 
-using testing_support::tetrahedra_at;
+using support::tetrahedra_at;
 
 /// Sum of the areas of the boxes of all runs.
 double area_of_runs(const Mesh& mesh, const std::vector<std::uint32_t>& order, std::size_t run) {
@@ -36,7 +36,7 @@ TEST(SahOrder, IsAPermutationOfAnyMesh) {
         EXPECT_EQ(order, all);
     };
     Random random(3);
-    for (const std::uint32_t cells : {1u, 2u, 3u, 7u}) check(testing_support::shaken_box(cells, random));
+    for (const std::uint32_t cells : {1u, 2u, 3u, 7u}) check(support::shaken_box(cells, random));
     check(tetrahedra_at({{0, 0, 0}}));
     check(tetrahedra_at(std::vector<Eigen::Vector3d>(100, {1, 1, 1}))); // all at one position
     check(tetrahedra_at({{0, 0, 0}, {1e-310, 0, 0}}, 1e-310));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/narrow_phase/reference_axes.h"
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 namespace {
 
@@ -84,4 +84,4 @@ std::vector<Contact<Real>> clip_contacts(const ReferencePair<Real>& pair, const 
 
 TANDEM_REFERENCE_OF(clip)
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

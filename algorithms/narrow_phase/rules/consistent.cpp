@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/narrow_phase/reference_corners.h"
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 namespace {
 
@@ -40,4 +40,4 @@ std::vector<Contact<Real>> consistent_contacts(const ReferencePair<Real>& pair,
 
 TANDEM_REFERENCE_OF(consistent)
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/narrow_phase/reference_axes.h"
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 namespace {
 
@@ -55,4 +55,4 @@ std::vector<Contact<Real>> growth_contacts(const ReferencePair<Real>& pair, cons
 
 TANDEM_REFERENCE_OF(growth)
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

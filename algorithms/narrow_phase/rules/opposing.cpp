@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/narrow_phase/reference_faces.h"
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 template<class Real>
 std::vector<Contact<Real>> opposing_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries) {
@@ -12,4 +12,4 @@ std::vector<Contact<Real>> opposing_contacts(const ReferencePair<Real>& pair, co
 
 TANDEM_REFERENCE_OF(opposing)
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/narrow_phase/reference_faces.h"
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 template<class Real>
 std::vector<Contact<Real>> published_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries) {
@@ -29,4 +29,4 @@ std::vector<Contact<Real>> published_contacts(const ReferencePair<Real>& pair, c
 
 TANDEM_REFERENCE_OF(published)
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/narrow_phase/reference_axes.h"
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 template<class Real>
 std::vector<Contact<Real>> restricted_contacts(const ReferencePair<Real>& pair,
@@ -13,4 +13,4 @@ std::vector<Contact<Real>> restricted_contacts(const ReferencePair<Real>& pair,
 
 TANDEM_REFERENCE_OF(restricted)
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

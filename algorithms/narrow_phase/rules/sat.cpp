@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/narrow_phase/reference_axes.h"
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 template<class Real>
 std::vector<Contact<Real>> sat_contacts(const ReferencePair<Real>& pair, const Boundaries&) {
@@ -11,4 +11,4 @@ std::vector<Contact<Real>> sat_contacts(const ReferencePair<Real>& pair, const B
 
 TANDEM_REFERENCE_OF(sat)
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/narrow_phase/reference_corners.h"
 
-namespace tandem::contact_reference {
+namespace tandem::narrow_phase {
 
 template<class Real>
 std::vector<Contact<Real>> vertex_contacts(const ReferencePair<Real>& pair, const Boundaries& boundaries) {
@@ -21,4 +21,4 @@ std::vector<Contact<Real>> vertex_contacts(const ReferencePair<Real>& pair, cons
 
 TANDEM_REFERENCE_OF(vertex)
 
-} // namespace tandem::contact_reference
+} // namespace tandem::narrow_phase

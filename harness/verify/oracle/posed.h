@@ -9,6 +9,8 @@
 
 namespace tandem::oracle {
 
+using namespace geometry;
+
 /// The image of a point under a pose, without rounding. The rotation of q / |q| is M(q) / (q . q), which is
 /// rational in the four numbers of q. q need not have unit length; it must be finite and not zero.
 Vector<mpq_class> posed_point(const Pose& pose, const Vector<double>& point);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scenes/describe_settings.h"
+#include "scenes/description/describe_settings.h"
 
 #include "scenes/dynamics_settings.h"
 

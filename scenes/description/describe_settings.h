@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "scenes/describe.h"
+#include "scenes/description/describe.h"
 
 namespace tandem::description {
 

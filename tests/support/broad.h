@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tandem::testing_support {
+namespace tandem::support {
 
 constexpr std::uint32_t guard = 0xabcdabcd;
 
@@ -127,4 +127,4 @@ private:
     Buffer status_;
 };
 
-} // namespace tandem::testing_support
+} // namespace tandem::support

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scenes/builtin.h"
-#include "scenes/describe_dynamics.h"
+#include "scenes/description/describe_dynamics.h"
 #include "base/digest.h"
 #include "scenes/digest.h"
 #include "base/error.h"

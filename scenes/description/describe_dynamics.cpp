@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "scenes/describe_dynamics.h"
+#include "scenes/description/describe_dynamics.h"
 
-#include "scenes/describe_settings.h"
+#include "scenes/description/describe_settings.h"
 #include "base/error.h"
 #include "scenes/motion.h"
 #include "scenes/overlap.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scenes/describe.h"
+#include "scenes/description/describe.h"
 
 #include "base/error.h"
 
