@@ -2,6 +2,7 @@
 #include "harness/sampling/statistics.h"
 
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -34,30 +35,10 @@ std::vector<double> bootstrap_medians(const std::vector<double>& samples) {
     return medians;
 }
 
-/// The probability that a variable of Student's distribution lies within tan(angle) sqrt(freedom) of 0
-/// (Abramowitz and Stegun 1964, 26.7.3 and 26.7.4).
-double within(double angle, std::size_t freedom) {
-    const double cosine = std::cos(angle);
-    const bool odd = freedom % 2 == 1;
-    double term = odd ? cosine : 1;
-    double sum = freedom == 1 ? 0 : term;
-    for (std::size_t i = odd ? 3 : 2; i < freedom; i += 2) {
-        const auto n = static_cast<double>(i);
-        term *= cosine * cosine * (n - 1) / n;
-        sum += term;
-    }
-    return odd ? 2 * std::numbers::inv_pi * (angle + std::sin(angle) * sum) : std::sin(angle) * sum;
-}
-
 /// t with 97.5 % of Student's distribution below it.
 double student_quantile(std::size_t freedom) {
-    double low = 0;
-    double high = std::numbers::pi / 2;
-    for (int halving = 0; halving < 60; ++halving) {
-        const double middle = (low + high) / 2;
-        (within(middle, freedom) < 0.95 ? low : high) = middle;
-    }
-    return std::tan(low) * std::sqrt(static_cast<double>(freedom));
+    const boost::math::students_t distribution(static_cast<double>(freedom));
+    return boost::math::quantile(boost::math::complement(distribution, 0.025));
 }
 
 Summary summary_of(std::vector<double> sorted) {
