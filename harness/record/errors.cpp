@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "harness/verify/flaws.h"
 #include "harness/record/parts.h"
 #include "harness/sampling/statistics.h"
+#include "harness/verify/flaws.h"
 
 #include <algorithm>
 #include <span>
@@ -10,84 +10,208 @@ namespace tandem::record_parts {
 
 namespace {
 
-Json spread_json(const std::vector<double>& samples) {
-    const auto s = spread(samples);
-    return s ? Json{{"median", s->median}, {"p99", s->p99}, {"max", s->maximum}} : Json();
+const Fields<Spread>& spread_fields() {
+    static const Fields<Spread> fields{{"median", number_from(0), "", &Spread::median},
+                                       {"p99", number_from(0), "", &Spread::p99},
+                                       {"max", number_from(0), "", &Spread::maximum}};
+    return fields;
 }
 
-/// Null where contacts were not compared with exact ones.
-Json contact_errors_json(const AnswerErrors& e) {
-    if (!e.contacts) return nullptr;
-    const auto& c = *e.contacts;
-    return {{"complete", e.every_contact},
-            {"overlapping", c.overlapping},
-            {"unanswered", c.unanswered},
-            {"not_finite", c.not_finite},
-            {"depth_relative", spread_json(c.depth_relative)},
-            {"depth_ulps", spread_json(c.depth_ulps)},
-            {"normal_degrees", spread_json(c.normal_degrees)},
-            {"point", spread_json(c.point)},
-            {"hausdorff", spread_json(c.hausdorff)},
-            {"volume_relative", spread_json(c.volume_relative)},
-            {"no_volume", c.no_volume}};
+/// A field with the spread of samples of compared contacts.
+Field<AnswerErrors> spread_field(const std::string& name, const std::string& meaning,
+                                 std::vector<double> ContactErrors::*samples) {
+    static const auto type =
+        definition("spread", nullable(spread_fields().type("over samples; null without any")));
+    return {name, type, meaning, [samples](const AnswerErrors& e) {
+                const auto s = spread((*e.contacts).*samples);
+                return s ? spread_fields().write(*s) : Json();
+            }};
 }
 
-Json drift_json(const AnswerErrors& e) {
-    if (!e.drift) return nullptr;
-    const auto& d = *e.drift;
-    return {{"vertices", d.vertices},
-            {"median", d.median},
-            {"p99", d.p99},
-            {"max", d.max},
-            {"of_bound", d.of_bound}};
+Fields<AnswerErrors> contact_counts() {
+    return {
+        {"complete", boolean(), "all overlapping pairs of all frames; false: a sample of them",
+         &AnswerErrors::every_contact},
+        {"overlapping", count(), "pairs looked at", [](auto& e) { return e.contacts->overlapping; }},
+        {"unanswered", count(), "of these without a contact", [](auto& e) { return e.contacts->unanswered; }},
+        {"not_finite", count(), "contacts with a number that is not finite",
+         [](auto& e) { return e.contacts->not_finite; }}};
 }
 
-Json truth_json(const AnswerErrors& e) {
-    const auto upper = e.missed_upper95();
-    const auto ratio = e.candidate_ratio();
-    Json json{{"frames", e.frames},
-              {"candidates", e.pairs.candidates},
-              {"false", e.pairs.disjoint},
-              {"touching", e.pairs.touching},
-              {"overlapping", e.pairs.overlapping},
-              {"invalid", e.pairs.invalid},
-              {"missed_touching", e.pairs.missed_touching},
-              {"missed_overlapping", e.pairs.missed_overlapping},
-              {"missed_upper95", upper ? Json(*upper) : Json()},
-              {"candidate_ratio", ratio ? Json(*ratio) : Json()},
-              {"invalid_tetrahedra", e.invalid_tetrahedra}};
-    for (unsigned tier = 0; tier < tier_count; ++tier)
-        json["decided"][tier_names[tier]] = e.decided.tiers[tier];
-    json["decisions"] = e.decisions ? Json(*e.decisions) : Json();
-    json["contacts"] = contact_errors_json(e);
-    json["drift"] = drift_json(e);
-    return json;
+Fields<AnswerErrors> contact_spreads() {
+    auto volume = spread_field("volume_relative",
+                               "|hull - exact| / exact: volume of the contact points' convex hull against "
+                               "that of the exact intersection, "
+                               "whose vertices the points of every rule are; 1 where the points span none; "
+                               "records from before it have "
+                               "none",
+                               &ContactErrors::volume_relative);
+    volume.occurrence.optional = true;
+    return {spread_field("depth_relative",
+                         "|deepest - exact| / exact, the exact depth that of the least translation",
+                         &ContactErrors::depth_relative),
+            spread_field("depth_ulps",
+                         "|deepest - exact| / (u L): u half the distance from 1 to the next number of the "
+                         "precision, L the longest edge",
+                         &ContactErrors::depth_ulps),
+            spread_field("normal_degrees", "angle of the deepest contact's normal to the nearest optimal one",
+                         &ContactErrors::normal_degrees),
+            spread_field("point", "farthest contact point from the exact intersection / L",
+                         &ContactErrors::point),
+            spread_field("hausdorff",
+                         "Hausdorff distance of contact points and the exact intersection's vertices / L",
+                         &ContactErrors::hausdorff),
+            volume};
+}
+
+/// Fields of answers that have contacts.
+const Fields<AnswerErrors>& contact_fields() {
+    static const auto fields =
+        contact_counts()
+            .with(contact_spreads())
+            .with({{"no_volume",
+                    count(),
+                    "answered pairs whose exact volume rounds to 0, which have no relative error of it",
+                    [](auto& e) { return e.contacts->no_volume; },
+                    {.optional = true}}});
+    return fields;
+}
+
+const Fields<Drift>& drift_fields() {
+    static const Fields<Drift> fields{{"vertices", count(), "", &Drift::vertices},
+                                      {"median", number_from(0), "", &Drift::median},
+                                      {"p99", number_from(0), "", &Drift::p99},
+                                      {"max", number_from(0), "", &Drift::max},
+                                      {"of_bound", number_from(0),
+                                       "largest share of its proven bound that a vertex uses; at most 1",
+                                       &Drift::of_bound}};
+    return fields;
+}
+
+const Fields<DecisionCounts>& tier_fields() {
+    static const auto fields = [] {
+        std::vector<Field<DecisionCounts>> tiers;
+        for (unsigned i = 0; i < tier_count; ++i)
+            tiers.push_back({tier_names[i], count(), "", [i](const auto& d) { return d.tiers[i]; }});
+        return Fields<DecisionCounts>(std::move(tiers));
+    }();
+    return fields;
+}
+
+Fields<AnswerErrors> pair_fields() {
+    return {{"frames", integer_from(1), "frames compared", &AnswerErrors::frames},
+            {"candidates", count(), "candidate pairs", [](auto& e) { return e.pairs.candidates; }},
+            {"false", count(), "candidate pairs that are disjoint", [](auto& e) { return e.pairs.disjoint; }},
+            {"touching", count(), "candidate pairs with common points, none inside both",
+             [](auto& e) { return e.pairs.touching; }},
+            {"overlapping", count(), "candidate pairs with a point inside both",
+             [](auto& e) { return e.pairs.overlapping; }},
+            {"invalid", count(), "candidate pairs with a coordinate that is not finite",
+             [](auto& e) { return e.pairs.invalid; }},
+            {"missed_touching", count(), "touching pairs that are no candidates",
+             [](auto& e) { return e.pairs.missed_touching; }},
+            {"missed_overlapping", count(), "overlapping pairs that are no candidates",
+             [](auto& e) { return e.pairs.missed_overlapping; }},
+            {"missed_upper95", nullable(number_from(0)).with("maximum", 1),
+             "with 95 % confidence the share of meeting pairs missed is at most this, when none was missed: "
+             "3 / n; "
+             "null otherwise",
+             &AnswerErrors::missed_upper95},
+            {"candidate_ratio", nullable(number_from(0)),
+             "candidates per pair that meets; null when none does", &AnswerErrors::candidate_ratio},
+            {"invalid_tetrahedra", count(),
+             "tetrahedra with a coordinate that is not finite, over all frames",
+             &AnswerErrors::invalid_tetrahedra}};
+}
+
+Type three_of(const Type& type) { return array_of(type).with("minItems", 3).with("maxItems", 3); }
+
+const Fields<AnswerErrors>& truth_fields() {
+    static const auto fields = pair_fields().with(
+        {{"decided", tier_fields().type("pairs whose boxes meet, by which tier of the oracle decided them"),
+          "", [](auto& e) { return tier_fields().write(e.decided); }},
+         {"decisions", nullable(three_of(three_of(count()))),
+          "rows: exactly disjoint (candidates only), touching, overlapping; columns: answered by no contact, "
+          "contacts of depth 0, a contact inside; null without contacts",
+          &AnswerErrors::decisions},
+         {"contacts",
+          nullable(
+              contact_fields().type("contacts of overlapping pairs against their exact intersections, one "
+                                    "sample a pair; null when not asked for")),
+          "", [](auto& e) { return e.contacts ? contact_fields().write(e) : Json(); }},
+         {"drift",
+          nullable(drift_fields().type("how far the first frame's vertices are from where the poses put them "
+                                       "exactly, in ulps of a vertex's "
+                                       "largest coordinate; null when contacts were not asked for")),
+          "", [](auto& e) { return e.drift ? drift_fields().write(*e.drift) : Json(); }}});
+    return fields;
 }
 
 /// Most bodies that a record lists; "flawed_bodies" is their full number.
 constexpr std::size_t most_flawed_bodies = 16;
 
-Json inputs_json(const Flaws& flaws) {
-    Json bodies = Json::array();
-    for (const auto& body : std::span(flaws.bodies).first(std::min(flaws.bodies.size(), most_flawed_bodies)))
-        bodies.push_back({{"body", body.body},
-                          {"degenerate", body.degenerate},
-                          {"non_finite", body.non_finite},
-                          {"frame", body.frame},
-                          {"first", body.first}});
-    return {{"handling", name_of(flaws.handling)},
-            {"degenerate_elements", flaws.degenerate},
-            {"non_finite_elements", flaws.non_finite},
-            {"flawed_bodies", flaws.bodies.size()},
-            {"bodies", bodies}};
+const Fields<FlawedBody>& flawed_body_fields() {
+    static const Fields<FlawedBody> fields{
+        {"body", count(), "its number", &FlawedBody::body},
+        {"degenerate", count(), "its tetrahedra of zero volume, over all frames", &FlawedBody::degenerate},
+        {"non_finite", count(), "its tetrahedra that are not finite, over all frames",
+         &FlawedBody::non_finite},
+        {"frame", count(), "the first frame with any of them", &FlawedBody::frame},
+        {"first", array_of(count()).with("minItems", 1).with("maxItems", most_named_flaws),
+         "the first of them in that frame, by number", &FlawedBody::first}};
+    return fields;
+}
+
+const Fields<Flaws>& input_fields() {
+    static const Fields<Flaws> fields{
+        {"handling", one_of({"flat", "skip", "reject"}),
+         "--degenerate. flat: those of zero volume take part; skip: no flawed one does, in the answer, the "
+         "reference or the truth; reject: there are none",
+         [](auto& f) { return name_of(f.handling); }},
+        {"degenerate_elements", count(), "tetrahedra of zero volume, over all bodies and frames",
+         &Flaws::degenerate},
+        {"non_finite_elements", count(),
+         "tetrahedra with a coordinate that is not finite, over all bodies and frames", &Flaws::non_finite},
+        {"flawed_bodies", count(), "bodies with any of them", [](auto& f) { return f.bodies.size(); }},
+        {"bodies", array_of(flawed_body_fields().type("one body")).with("maxItems", most_flawed_bodies),
+         "the first of these bodies, by number", [](auto& f) {
+             const auto shown = std::min(f.bodies.size(), most_flawed_bodies);
+             return array_json(flawed_body_fields(), std::span(f.bodies).first(shown));
+         }}};
+    return fields;
+}
+
+const Fields<CellRecord>& one_error() {
+    static const Fields<CellRecord> fields{
+        {"degenerate_pairs", count(),
+         "candidate pairs without contacts because a tetrahedron has no certain volume, over all frames",
+         [](auto& r) { return r.m.degenerate; }},
+        {"inputs",
+         input_fields().type(
+             "flawed tetrahedra of the frames as they were given: of exactly zero volume, or with "
+             "a coordinate that is not finite; records from before it have none"),
+         "",
+         [](auto& r) { return input_fields().write(r.range.flaws()); },
+         {.optional = true}},
+        {"truth",
+         nullable(truth_fields().type("against the exact truth, every pair of every frame decided, by the "
+                                      "vertices that setting placement "
+                                      "names (rounded: the cell's, moved in its precision; exact: the "
+                                      "scene's, moved without rounding; "
+                                      "decisions and contacts were judged by the cell's before there was a "
+                                      "setting origin); null when not "
+                                      "asked for; records from before it have none")),
+         "",
+         [](auto& r) { return r.m.errors ? truth_fields().write(*r.m.errors) : Json(); },
+         {.optional = true}}};
+    return fields;
 }
 
 } // namespace
 
-Json error_json(const Measurement& m, const Flaws& flaws) {
-    return {{"degenerate_pairs", m.degenerate},
-            {"inputs", inputs_json(flaws)},
-            {"truth", m.errors ? truth_json(*m.errors) : Json()}};
+Fields<CellRecord> error_fields() {
+    return {{"error", nullable(one_error().type("how far the answer is from the geometric truth")), "",
+             [](auto& r) { return r.is_measured() ? one_error().write(r) : Json(); }}};
 }
 
 } // namespace tandem::record_parts

@@ -11,9 +11,13 @@ namespace nlohmann {
 /// An empty optional is null in JSON.
 template<class T>
 struct adl_serializer<std::optional<T>> {
-    static void to_json(json& to, const std::optional<T>& value) { to = value ? json(*value) : json(); }
-    static void from_json(const json& from, std::optional<T>& value) {
-        value = from.is_null() ? std::nullopt : std::optional<T>(from.get<T>());
+    template<class Json>
+    static void to_json(Json& to, const std::optional<T>& value) {
+        to = value ? Json(*value) : Json();
+    }
+    template<class Json>
+    static void from_json(const Json& from, std::optional<T>& value) {
+        value = from.is_null() ? std::nullopt : std::optional<T>(from.template get<T>());
     }
 };
 

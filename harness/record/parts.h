@@ -1,29 +1,45 @@
 // SPDX-License-Identifier: MIT
-// The parts of a cell's record; only make_record() uses them.
+// The parts of a cell's record: their fields, as record.cpp joins them.
 #pragma once
 
+#include "harness/record/environment.h"
+#include "harness/record/types.h"
 #include "harness/sampling/rounds.h"
-
-#include <nlohmann/json.hpp>
 
 namespace tandem::record_parts {
 
-using Json = nlohmann::ordered_json;
+/// What the fields of a record are taken from.
+struct CellRecord {
+    const Cell& cell;
+    const Scene& scene;
+    const FrameRange& range;
+    const Measurement& m;
+    const Outcome& outcome;
+    const Sampling& sampling;
 
-/// Adds the fields from "total_ns" to "host_work". A failed cell has only what was measured before the
-/// failure.
-void add_times(Json& record, const Measurement& m, bool measured);
+    /// Whether the cell finished. A failed cell has only what was measured before the failure.
+    bool is_measured() const { return outcome.failure.empty(); }
+};
 
-/// The work of each of several devices, frame by frame; null for one device.
-Json partition_json(const Measurement& m, const Cell& cell);
+/// A device of a cell. `clock`: by what its times were taken; empty for a device without times.
+struct RecordedDevice {
+    DeviceInfo info;
+    std::optional<std::string> clock;
+};
 
-/// How the cell was sampled, with outliers and drift as measures of quality.
-Json sampling_json(const Measurement& m, const Cell& cell, const Outcome& outcome, const Sampling& sampling);
+const Fields<Scene>& scene_fields();
+const Fields<RecordedDevice>& device_fields();
+const Fields<Environment>& environment_fields();
 
-/// The condition of the machine in the cell's rounds; null when no round has samples.
-Json conditions_json(const Measurement& m);
-
-/// Errors against the truth, and the flaws of the input.
-Json error_json(const Measurement& m, const Flaws& flaws);
+/// "sampling" and "conditions".
+Fields<CellRecord> sampling_fields();
+/// From "total_ns" to "host_work".
+Fields<CellRecord> time_fields();
+/// "partition": the work of each of several devices, frame by frame.
+Fields<CellRecord> partition_fields();
+/// From "work" to "agreement".
+Fields<CellRecord> answer_fields();
+/// "error": errors against the truth, and the flaws of the input.
+Fields<CellRecord> error_fields();
 
 } // namespace tandem::record_parts

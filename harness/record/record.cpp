@@ -1,207 +1,166 @@
 // SPDX-License-Identifier: MIT
 #include "harness/record/record.h"
 
-#include "backends/hardware.h"
 #include "harness/plans/choosing/choice.h"
-#include "harness/record/environment.h"
 #include "harness/plans/key.h"
-#include "harness/sampling/ranks/rank_team.h"
 #include "harness/record/parts.h"
+#include "harness/record/schema.h"
+#include "harness/sampling/ranks/rank_team.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <set>
 
-namespace tandem {
+namespace tandem::record_parts {
 
 namespace {
 
-using record_parts::Json;
-
-std::string hex(std::uint64_t value) { return fmt::format("{:016x}", value); }
-
-/// Negative numbers and empty text mean unknown, which is null in a record.
-Json known(std::int64_t value) { return value < 0 ? Json(nullptr) : Json(value); }
-
-Json known(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
-
-Json digest_json(const Digest& digest) {
-    return {{"count", digest.count}, {"a", hex(digest.a)}, {"b", hex(digest.b)}};
+/// The settings that the device used. A cell that failed earlier has only the requested ones.
+const Settings& settings_of(const CellRecord& r) {
+    return r.m.settings.empty() ? r.cell.settings : r.m.settings;
 }
 
 /// Requested values of the settings that the devices changed.
-Json asked_json(const SettingTexts& requested, const SettingTexts& actual) {
+Json asked_json(const CellRecord& r) {
+    const auto actual = settings_of(r).texts();
     Json json = Json::object();
-    for (const auto& [name, value] : requested) {
+    for (const auto& [name, value] : r.cell.settings.texts()) {
         const auto found = actual.find(name);
         if (found == actual.end() || found->second != value) json[name] = value;
     }
     return json;
 }
 
-} // namespace
-
-Json record_scene(const Scene& scene) {
-    std::size_t inverted = 0;
-    std::size_t degenerate = 0;
-    for (const auto& body : scene.bodies) {
-        inverted += scene.meshes[body.mesh].inverted;
-        degenerate += scene.meshes[body.mesh].degenerate;
-    }
-    return {{"name", scene.name},
-            {"key", scene.key},
-            {"digest", hex(scene.digest)},
-            {"units", scene.units},
-            {"bodies", scene.bodies.size()},
-            {"vertices", vertex_count(scene)},
-            {"tetrahedra", tetrahedron_count(scene)},
-            {"inverted", inverted},
-            {"degenerate", degenerate}};
-}
-
-Json record_device(const DeviceInfo& info) {
-    return {{"id", info.id},
-            {"name", info.name},
-            {"driver", info.driver},
-            {"compiler", info.compiler},
-            {"hardware", info.hardware.empty() ? Json() : Json(hardware_digest(info.hardware))},
-            {"kind", info.is_gpu ? "gpu" : "cpu"},
-            {"compute_units", info.compute_units},
-            {"memory_bytes", info.global_bytes}};
-}
-
-Json record_timed_device(const Device& device) {
-    auto json = record_device(device.info());
-    json["clock"] = device.clock();
-    return json;
-}
-
-Json record_devices(const DeviceGroup& devices) {
-    Json json = Json::array();
-    for (const auto* device : devices) json.push_back(record_timed_device(*device));
-    return json;
-}
-
-namespace {
-
-Json kernels_json(const std::vector<KernelFacts>& kernels) {
-    Json json = Json::array();
-    for (const auto& kernel : kernels)
-        json.push_back({{"entry", kernel.entry},
-                        {"defines", kernel.defines},
-                        {"compile_ms", kernel.compile_ms},
-                        {"registers", known(kernel.registers)},
-                        {"local_bytes", known(kernel.local_bytes)},
-                        {"spill_bytes", known(kernel.spill_bytes)}});
-    return json;
-}
-
-} // namespace
-
-Json record_environment() {
-    const auto e = environment();
-    return {{"commit", known(e.commit)},       {"dirty", e.dirty},           {"date", e.date},
-            {"processor", known(e.processor)}, {"cores", e.cores},           {"memory_bytes", e.memory},
-            {"compiler", e.compiler},          {"sources", sources_digest()}};
-}
-
-namespace {
-
-/// Null when nothing was compared (--no-check).
-Json agreement_json(const Measurement& m, const Scene& scene) {
-    const auto& a = m.agreement;
-    if (a.frames == 0) return nullptr;
-    return {{"reference", reference_method(scene) == Method::brute_force ? "brute force" : "sweep"},
-            {"frames", a.frames},
-            {"missing", a.missing},
-            {"extra", a.extra},
-            {"contact_frames_wrong", a.contact_frames_wrong},
-            {"digest", digest_json(a.digest)},
-            {"contact_digest", digest_json(a.contact_digest)}};
-}
-
-/// Values by the names that the algorithm declares; null for a counter without a value.
-Json counters_json(const Measurement& m, const Traversal& algorithm) {
-    Json json = Json::object();
-    for (const auto& counter : algorithm.counters()) {
-        const auto found = m.work.find(counter.name);
-        json[std::string(counter.name)] = found == m.work.end() ? Json() : Json(found->second);
-    }
-    return json;
-}
-
-Json work_json(const Measurement& m, const Traversal& algorithm) {
-    return {{"body_pairs", m.body_pairs},
-            {"candidate_pairs", m.candidate_pairs},
-            {"contacts", m.contacts},
-            {"digest", digest_json(m.agreement.digest)},
-            {"contact_digest", digest_json(m.agreement.contact_digest)},
-            {"counters", counters_json(m, algorithm)},
-            {"rejected", m.rejected},
-            {"undecided_by_filter", m.undecided_by_filter},
-            {"undecided_by_double", m.undecided_by_double},
-            {"retries", m.retries},
-            {"batches", m.batches},
-            {"submissions", m.submissions}};
-}
-
-std::string status_of(const Measurement& m, const std::string& failure) {
-    if (!failure.empty()) return "failed";
-    return m.agreement.ok() ? "ok" : "wrong";
+std::string status_of(const CellRecord& r) {
+    if (!r.is_measured()) return "failed";
+    return r.m.agreement.ok() ? "ok" : "wrong";
 }
 
 /// Takes clocks from the breakdowns: another process may have measured them, an isolated child or an earlier
 /// run, with a different clock than this one.
-Json devices_json(const Measurement& m, const Cell& cell) {
-    auto json = record_devices(cell.devices);
-    if (cell.team != nullptr) // only rank 0 has a device with a clock in this process
-        for (std::size_t rank = 1; rank < cell.team->devices().size(); ++rank)
-            json.push_back(record_device(cell.team->devices()[rank]));
-    for (std::size_t i = 0; i < json.size(); ++i) {
+Json devices_json(const CellRecord& r) {
+    std::vector<RecordedDevice> devices;
+    for (const auto* device : r.cell.devices) devices.push_back({device->info(), device->clock()});
+    if (r.cell.team != nullptr) // only rank 0 has a device with a clock in this process
+        for (std::size_t rank = 1; rank < r.cell.team->devices().size(); ++rank)
+            devices.push_back({r.cell.team->devices()[rank], {}});
+    for (std::size_t i = 0; i < devices.size(); ++i) {
         std::set<std::string> clocks;
-        for (const auto& replay : m.breakdowns)
+        for (const auto& replay : r.m.breakdowns)
             if (i < replay.clocks.size()) clocks.insert(replay.clocks[i]);
-        if (!clocks.empty()) json[i]["clock"] = fmt::format("{}", fmt::join(clocks, "; "));
+        if (!clocks.empty()) devices[i].clock = fmt::format("{}", fmt::join(clocks, "; "));
     }
-    return json;
+    return array_json(device_fields(), devices);
+}
+
+/// Which run it was, and how it ended.
+Fields<CellRecord> run_fields() {
+    return {{"schema", constant(record_schema),
+             "version of this schema; scripts/convert_records brings records of versions 1 to 3 to it",
+             [](auto&) { return record_schema; }},
+            {"key",
+             text(),
+             "algorithm|back end:model, driver of each device joined by +|scene with "
+             "parameters@digest|first:last|"
+             "settings; first:last,degenerate=skip where tetrahedra were skipped; records of equal keys are "
+             "comparable: "
+             "the same thing was measured on the same model of device with the same driver",
+             [](auto& r) { return key_of(r.cell, settings_of(r), r.scene, r.range); },
+             {.column = "key"}},
+            {"session",
+             nullable(pattern_of_digest()),
+             "of all records that one run of the program wrote: their cells took turns; null in records from "
+             "before it",
+             [](auto&) { return session_id(); },
+             {.column = "session"}},
+            {"command", nullable(text()), "command line of that run; null when unknown",
+             [](auto&) { return known_or_null(without_folders(command_line())); }},
+            {"status",
+             one_of({"ok", "wrong", "failed"}),
+             "ok: no difference from the reference, or not compared (agreement null); wrong: an answer or a "
+             "timed sample "
+             "differs; failed: the cell did not finish; it has the samples that were taken before",
+             status_of,
+             {.column = "status"}},
+            {"failure",
+             nullable(text()),
+             "why the cell did not finish; null unless status is failed",
+             [](auto& r) { return known_or_null(r.outcome.failure); },
+             {.column = "failure"}}};
+}
+
+/// What was measured.
+Fields<CellRecord> subject_fields() {
+    return {{"algorithm",
+             text(),
+             "name, as 'tandem algorithms' lists it",
+             [](auto& r) { return r.cell.algorithm->name(); },
+             {.column = "algorithm"}},
+            {"preset",
+             text(),
+             "preset of the algorithm that the settings started from",
+             [](auto& r) { return r.cell.preset; },
+             {.column = "preset"}},
+            {"settings", settings_type(),
+             "every setting of the algorithm as the device took it, such as group_size 1 on host; 'tandem "
+             "algorithms' "
+             "explains each",
+             [](auto& r) { return settings_of(r).texts(); }},
+            {"asked", settings_type(),
+             "settings that the devices did not take as they were asked for, as they were", asked_json},
+            {"chosen",
+             nullable(choice_type(
+                 "how algorithm and settings were chosen; null where the user named them; records from "
+                 "before it have none")),
+             "",
+             [](auto& r) { return r.cell.chosen ? choice_json(*r.cell.chosen) : Json(); },
+             {.optional = true}},
+            {"scene", scene_fields().type("what was collided"), "",
+             [](auto& r) { return scene_fields().write(r.scene); }},
+            {"frames", frames_fields().type("range of frames that a sample replays once"), "",
+             [](auto& r) {
+                 return frames_fields().write({r.range.first(), r.range.last()});
+             }},
+            {"devices", array_of(device_fields().type("one device")).with("minItems", 1),
+             "devices the cell ran on", devices_json},
+            {"ranks",
+             nullable(integer_from(2)),
+             "ranks of a job that shared the frames, started by a launcher of MPI, each with one of devices, "
+             "in their "
+             "order; null where one process did them; records from before it have none",
+             [](auto& r) { return r.cell.team != nullptr ? Json(r.cell.team->devices().size()) : Json(); },
+             {.optional = true}}};
+}
+
+const Fields<CellRecord>& record_fields() {
+    static const auto fields =
+        run_fields()
+            .with(subject_fields())
+            .with(sampling_fields())
+            .with(time_fields())
+            .with(partition_fields())
+            .with(answer_fields())
+            .with(error_fields())
+            .with({{"environment",
+                    environment_fields().type("where, when and with what the record was made; no host name"),
+                    "", [](auto&) { return environment_fields().write(environment()); }}});
+    return fields;
 }
 
 } // namespace
 
-Json make_record(const Cell& cell, const Scene& scene, const FrameRange& range, const Measurement& m,
-                 const Outcome& outcome, const Sampling& sampling) {
-    const auto& failure = outcome.failure;
-    // The settings that the device used. A cell that failed earlier has only the requested ones.
-    const auto& settings = m.settings.empty() ? cell.settings : m.settings;
-    Json json;
-    json["schema"] = record_schema;
-    json["key"] = key_of(cell, settings, scene, range);
-    json["session"] = session_id();
-    json["command"] = known(without_folders(command_line()));
-    json["status"] = status_of(m, failure);
-    json["failure"] = known(failure);
-    json["algorithm"] = cell.algorithm->name();
-    json["preset"] = cell.preset;
-    json["settings"] = settings.texts();
-    json["asked"] = asked_json(cell.settings.texts(), settings.texts());
-    json["chosen"] = cell.chosen ? choice_json(*cell.chosen) : Json();
-    json["scene"] = record_scene(scene);
-    json["frames"] = {{"first", range.first()}, {"last", range.last()}};
-    json["devices"] = devices_json(m, cell);
-    json["ranks"] = cell.team != nullptr ? Json(cell.team->devices().size()) : Json();
-    const bool measured = failure.empty();
-    json["sampling"] = record_parts::sampling_json(m, cell, outcome, sampling);
-    json["conditions"] = record_parts::conditions_json(m);
-    record_parts::add_times(json, m, measured);
-    json["partition"] = record_parts::partition_json(m, cell);
-    json["work"] = measured ? work_json(m, *cell.algorithm) : Json();
-    json["kernels"] = kernels_json(m.kernels);
-    json["preparation"] =
-        measured ? Json{{"host_ns", m.prepare_ns}, {"device_bytes", m.device_bytes}} : Json();
-    json["agreement"] = agreement_json(m, scene);
-    json["error"] = measured ? record_parts::error_json(m, range.flaws()) : Json();
-    json["environment"] = record_environment();
-    return json;
+Type record_type() {
+    return with_record_rules(record_fields().type(
+        "One measured cell: algorithm x settings x scene x devices. One object a line; unknown is null."));
+}
+
+} // namespace tandem::record_parts
+
+namespace tandem {
+
+nlohmann::ordered_json make_record(const Cell& cell, const Scene& scene, const FrameRange& range,
+                                   const Measurement& m, const Outcome& outcome, const Sampling& sampling) {
+    return record_parts::record_fields().write({cell, scene, range, m, outcome, sampling});
 }
 
 } // namespace tandem

@@ -10,104 +10,219 @@ namespace tandem::record_parts {
 
 namespace {
 
-Json statistics_json(const Summary& s) {
-    return {{"median", s.median}, {"q1", s.q1}, {"q3", s.q3}, {"low", s.low}, {"high", s.high}};
+/// Samples with statistics, if there are any.
+struct Times {
+    std::vector<std::int64_t> samples;
+    std::optional<Summary> statistics = {};
+    std::vector<std::uint32_t> rounds = {}; ///< by sample
+    Json frames = Json::array();
+};
+
+Field<Times> samples_field(const std::string& meaning) {
+    return {"samples", samples(), meaning, &Times::samples};
+}
+
+Field<Times> statistic(const std::string& name, const std::string& meaning, double Summary::*member) {
+    return {name,
+            number_from(0),
+            meaning,
+            [member](const Times& t) { return t.statistics ? Json((*t.statistics).*member) : absent(); },
+            {.optional = true}};
+}
+
+Fields<Times> statistics_fields() {
+    return {
+        statistic("median", "median of the samples, nanoseconds", &Summary::median),
+        statistic("q1", "first quartile, nanoseconds (Hyndman and Fan 1996, definition 7)", &Summary::q1),
+        statistic("q3", "third quartile, nanoseconds (definition 7)", &Summary::q3),
+        statistic("low",
+                  "lower end of the 95 % percentile-bootstrap interval of the median, nanoseconds; expanded "
+                  "for few "
+                  "rounds (harness/sampling/statistics.h) since commits of 2026-11-23, of ten rounds a sixth "
+                  "narrower before",
+                  &Summary::low),
+        statistic("high", "upper end of that interval, nanoseconds", &Summary::high)};
+}
+
+const Fields<Times>& total_fields() {
+    static const auto fields =
+        Fields<Times>{
+            samples_field("one a replay, in order; empty for tandem check and for a failed cell"),
+            {"rounds", counts(),
+             "the round of each sample, from 0; where the session was not prepared anew for each, as before "
+             "schema 3, each sample is a round",
+             &Times::rounds}}
+            .with(statistics_fields())
+            .with({{"frames", array_of(samples().with("description", "one replay")),
+                    "[replay][frame] the parts of each sample in nanoseconds", &Times::frames}});
+    return fields;
+}
+
+const Fields<Times>& replays_fields() {
+    static const auto fields =
+        Fields<Times>{samples_field("")}
+            .with(statistics_fields())
+            .with({{"frames", samples(), "nanoseconds of each frame, the median of the replays",
+                    &Times::frames}});
+    return fields;
+}
+
+const Fields<Times>& summary_fields() {
+    static const auto fields = Fields<Times>{samples_field("")}.with(statistics_fields());
+    return fields;
+}
+
+Type replays_type() {
+    return definition("replays",
+                      summarised(replays_fields().type("one sample a replay, the sum of its frames, their "
+                                                       "statistics, and the median of each frame")));
+}
+
+Type summary_type() {
+    return definition("summary",
+                      summarised(summary_fields().type("samples, one a replay, and their statistics")));
 }
 
 /// The samples, then statistics over their rounds.
 Json total_json(const Measurement& m) {
-    const auto totals = m.totals();
-    const auto rounds = m.rounds();
-    Json json{{"samples", totals}, {"rounds", rounds}};
-    if (!totals.empty()) json.update(statistics_json(summarise(totals, rounds)));
-    json["frames"] = Json::array();
-    for (const auto& sample : m.samples) json["frames"].push_back(sample.frame_ns);
-    return json;
+    Times times{.samples = m.totals(), .rounds = m.rounds()};
+    if (!times.samples.empty()) times.statistics = summarise(times.samples, times.rounds);
+    for (const auto& sample : m.samples) times.frames.push_back(sample.frame_ns);
+    return total_fields().write(times);
 }
 
 /// Sums over the frames of each instrumented replay with statistics, and the median of each frame.
-/// `values_of(replay)` returns one value a frame.
+/// `values_of(replay)` returns one value a frame. There is a replay.
 template<class ValuesOf>
 Json replays_json(const Measurement& m, const ValuesOf& values_of) {
-    std::vector<std::int64_t> sums;
+    Times times;
     std::vector<std::vector<std::int64_t>> by_frame;
     for (const auto& replay : m.breakdowns) {
         const std::vector<std::int64_t> frames = values_of(replay);
         by_frame.resize(frames.size());
         for (std::size_t i = 0; i < frames.size(); ++i) by_frame[i].push_back(frames[i]);
-        sums.push_back(std::accumulate(frames.begin(), frames.end(), std::int64_t{0}));
+        times.samples.push_back(std::accumulate(frames.begin(), frames.end(), std::int64_t{0}));
     }
-    Json json{{"samples", sums}};
-    if (sums.empty()) return json;
-    json.update(statistics_json(summarise(sums)));
-    json["frames"] = Json::array();
-    for (const auto& samples : by_frame)
-        json["frames"].push_back(static_cast<std::int64_t>(std::llround(summarise(samples).median)));
-    return json;
+    times.statistics = summarise(times.samples);
+    for (const auto& values : by_frame)
+        times.frames.push_back(static_cast<std::int64_t>(std::llround(summarise(values).median)));
+    return replays_fields().write(times);
 }
 
-/// One value of one stage.
-Json stage_times_json(const Measurement& m, std::size_t stage, std::int64_t StageSample::*member) {
-    return replays_json(m, [&](const InstrumentedReplay& replay) {
-        std::vector<std::int64_t> values;
-        for (const auto& frame : replay.stages) values.push_back(frame[stage].*member);
-        return values;
-    });
+/// A stage of the instrumented replays. Counts come from the last replay, times from all replays.
+struct StageTimes {
+    const Measurement& m;
+    std::size_t stage;
+    StageSample last;
+
+    Json times(std::int64_t StageSample::*member) const {
+        return replays_json(m, [&](const InstrumentedReplay& replay) {
+            std::vector<std::int64_t> values;
+            for (const auto& frame : replay.stages) values.push_back(frame[stage].*member);
+            return values;
+        });
+    }
+};
+
+const Fields<StageTimes>& stage_fields() {
+    static const Fields<StageTimes> fields{
+        {"device_ns", replays_type(),
+         "nanoseconds of its commands by the device's own clock; 0 where it ran nothing there",
+         [](auto& s) { return s.times(&StageSample::device_ns); }},
+        {"host_ns", replays_type(),
+         "nanoseconds of the host inside its calls and its host work, waiting included",
+         [](auto& s) { return s.times(&StageSample::host_ns); }},
+        {"launches", count(), "kernel launches, over all frames of a replay",
+         [](auto& s) { return s.last.launches; }},
+        {"waits", count(), "times the host blocked on the device, over all frames of a replay",
+         [](auto& s) { return s.last.waits; }},
+        {"bytes", count(), "bytes of uploads and downloads, over all frames of a replay",
+         [](auto& s) { return s.last.bytes; }}};
+    return fields;
 }
 
-/// Counts come from the last replay, times from all replays.
-Json stages_json(const Measurement& m) {
+/// Meanings of the stages, in the order of stage_names.
+constexpr std::array<const char*, stage_names.size()> stage_meanings{
+    "vertices into the world",
+    "bounds of every node",
+    "body pairs, by the host or, with broad = device, by kernels",
+    "node pairs that walks start from",
+    "walks in tandem to the candidate pairs",
+    "redistribution of work between launches",
+    "decision and contacts of the candidate pairs",
+    "reduction of contacts",
+    "response to contacts",
+    "host work before the device's",
+    "host work after the device's",
+    "device to host",
+    "host to device",
+    "messages between ranks of a job"};
+
+/// Absent for a stage that takes no time.
+Json stage_json(const Measurement& m, std::size_t stage) {
+    if (std::ranges::all_of(m.breakdowns, [&](const auto& r) { return r.totals()[stage].host_ns == 0; }))
+        return absent();
+    return stage_fields().write({m, stage, m.breakdowns.back().totals()[stage]});
+}
+
+const Fields<Measurement>& stages_fields() {
+    static const auto fields = [] {
+        const auto type = definition("stage", stage_fields().type("one stage"));
+        std::vector<Field<Measurement>> stages;
+        for (std::size_t i = 0; i < stage_names.size(); ++i)
+            stages.push_back({std::string(stage_names[i]),
+                              type,
+                              stage_meanings[i],
+                              [i](const Measurement& m) { return stage_json(m, i); },
+                              {.optional = true}});
+        return Fields<Measurement>(std::move(stages));
+    }();
+    return fields;
+}
+
+/// An entry of a map of the last instrumented replay.
+template<class Sample>
+struct Named {
+    const Sample& last;
+    std::vector<std::int64_t> samples; ///< one a replay; 0 for a replay without the entry
+
+    Json times() const {
+        return summary_fields().write({.samples = samples, .statistics = summarise(samples)});
+    }
+};
+
+/// One object for each entry of the map `sums` of the last replay.
+template<class Sample>
+Json named_json(const Measurement& m, const Fields<Named<Sample>>& fields,
+                std::map<std::string, Sample> InstrumentedReplay::*sums, std::int64_t Sample::*time) {
     Json json = Json::object();
     if (m.breakdowns.empty()) return json;
-    const auto last = m.breakdowns.back().totals();
-    for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
-        const auto& sum = last[stage];
-        if (std::ranges::all_of(m.breakdowns, [&](const auto& r) { return r.totals()[stage].host_ns == 0; }))
-            continue;
-        json[std::string(stage_names[stage])] = {
-            {"device_ns", stage_times_json(m, stage, &StageSample::device_ns)},
-            {"host_ns", stage_times_json(m, stage, &StageSample::host_ns)},
-            {"launches", sum.launches},
-            {"waits", sum.waits},
-            {"bytes", sum.bytes}};
+    for (const auto& [name, last] : m.breakdowns.back().*sums) {
+        Named<Sample> named{last, {}};
+        for (const auto& replay : m.breakdowns) {
+            const auto found = (replay.*sums).find(name);
+            named.samples.push_back(found == (replay.*sums).end() ? 0 : found->second.*time);
+        }
+        json[name] = fields.write(named);
     }
     return json;
 }
 
-/// Samples of a named entry of the map `sums`, one a replay; 0 for a replay without the entry.
-template<class Sums, class Time>
-Json named_times_json(const Measurement& m, const std::string& name, Sums sums, Time time) {
-    std::vector<std::int64_t> times;
-    for (const auto& replay : m.breakdowns) {
-        const auto found = (replay.*sums).find(name);
-        times.push_back(found == (replay.*sums).end() ? 0 : found->second.*time);
-    }
-    Json samples{{"samples", times}};
-    samples.update(statistics_json(summarise(times)));
-    return samples;
+const Fields<Named<KernelSample>>& kernel_time_fields() {
+    static const Fields<Named<KernelSample>> fields{
+        {"launches", count(), "in one replay", [](auto& k) { return k.last.launches; }},
+        {"device_ns", summary_type(), "nanoseconds by the device's own clock, one sample a replay",
+         [](auto& k) { return k.times(); }}};
+    return fields;
 }
 
-/// Times by kernel entry point; counts as in stages_json.
-Json kernel_times_json(const Measurement& m) {
-    Json json = Json::object();
-    if (m.breakdowns.empty()) return json;
-    for (const auto& [entry, last] : m.breakdowns.back().kernels)
-        json[entry] = {{"launches", last.launches},
-                       {"device_ns",
-                        named_times_json(m, entry, &InstrumentedReplay::kernels, &KernelSample::device_ns)}};
-    return json;
-}
-
-/// Times by name of the host work; counts as in stages_json.
-Json host_work_json(const Measurement& m) {
-    Json json = Json::object();
-    if (m.breakdowns.empty()) return json;
-    for (const auto& [name, last] : m.breakdowns.back().host_work)
-        json[name] = {
-            {"stage", stage_names[static_cast<std::size_t>(last.stage)]},
-            {"times", last.times},
-            {"host_ns", named_times_json(m, name, &InstrumentedReplay::host_work, &HostWorkSample::host_ns)}};
-    return json;
+const Fields<Named<HostWorkSample>>& host_work_fields() {
+    static const Fields<Named<HostWorkSample>> fields{
+        {"stage", one_of(stage_names), "stage that it is within",
+         [](auto& w) { return stage_names[static_cast<std::size_t>(w.last.stage)]; }},
+        {"times", count(), "in one replay", [](auto& w) { return w.last.times; }},
+        {"host_ns", summary_type(), "nanoseconds, one sample a replay", [](auto& w) { return w.times(); }}};
+    return fields;
 }
 
 /// Null when a command has no device times.
@@ -117,16 +232,56 @@ Json device_span_json(const Measurement& m) {
     return m.breakdowns.empty() ? Json() : replays_json(m, [](const auto& replay) { return replay.span_ns; });
 }
 
+Json breakdown_json(const Measurement& m) {
+    return m.breakdowns.empty() ? Json()
+                                : replays_json(m, [](const auto& replay) { return replay.frame_ns; });
+}
+
+/// Times as they were sampled.
+Fields<CellRecord> span_fields() {
+    return {
+        {"total_ns",
+         nullable(summarised(total_fields().type(
+             "host nanoseconds of replays in which nothing but the span of each frame was timed: the "
+             "headline. A "
+             "sample is one replay, the sum of its frames; statistics are of the medians of rounds"))),
+         "", [](auto& r) { return r.is_measured() || !r.m.samples.empty() ? total_json(r.m) : Json(); }},
+        {"breakdown_ns", nullable(replays_type()),
+         "host nanoseconds of replays with timestamps on every command, one a round, which 'stages' divides; "
+         "longer than total_ns",
+         [](auto& r) { return breakdown_json(r.m); }},
+        {"device_span_ns", nullable(replays_type()),
+         "device nanoseconds of those replays, the sum over frames from the begin of the first command to "
+         "the end "
+         "of the last; less the sum of device_ns it is the time between commands; null when the backend "
+         "tells no "
+         "times",
+         [](auto& r) { return device_span_json(r.m); }}};
+}
+
 } // namespace
 
-void add_times(Json& record, const Measurement& m, bool measured) {
-    record["total_ns"] = measured || !m.samples.empty() ? total_json(m) : Json();
-    record["breakdown_ns"] =
-        m.breakdowns.empty() ? Json() : replays_json(m, [](const auto& replay) { return replay.frame_ns; });
-    record["device_span_ns"] = device_span_json(m);
-    record["stages"] = stages_json(m);
-    record["kernel_times"] = kernel_times_json(m);
-    record["host_work"] = host_work_json(m);
+Fields<CellRecord> time_fields() {
+    return span_fields().with(
+        {{"stages",
+          stages_fields().type("what those replays spent, by stage; a stage that did not occur is left out"),
+          "", [](auto& r) { return r.m.breakdowns.empty() ? Json::object() : stages_fields().write(r.m); }},
+         {"kernel_times", map_of(kernel_time_fields().type("one kernel"), "^[a-z][a-z0-9_]*$"),
+          "what those replays spent, by entry point of kernels; records from before schema 3 have none",
+          [](auto& r) {
+              return named_json(r.m, kernel_time_fields(), &InstrumentedReplay::kernels,
+                                &KernelSample::device_ns);
+          }},
+         {"host_work",
+          map_of(host_work_fields().type("one kind of work"), "^[a-z][a-z ]*$"),
+          "what the host did by itself in those replays, by name; each is within a stage as well; records "
+          "from "
+          "before it have none",
+          [](auto& r) {
+              return named_json(r.m, host_work_fields(), &InstrumentedReplay::host_work,
+                                &HostWorkSample::host_ns);
+          },
+          {.optional = true}}});
 }
 
 } // namespace tandem::record_parts

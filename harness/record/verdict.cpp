@@ -3,7 +3,9 @@
 
 #include "harness/record/environment.h"
 #include "harness/record/record.h"
+#include "harness/record/schema.h"
 #include "harness/record/table/columns.h"
+#include "harness/record/types.h"
 #include "harness/sampling/ranks/rank_team.h"
 #include "harness/sampling/statistics.h"
 
@@ -17,8 +19,6 @@
 namespace tandem {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// What cells must share to be compared, besides scene, frames and devices.
 constexpr std::array compared_settings{"k", "axes", "precision", "rounding", "placement", "origin", "output"};
@@ -134,34 +134,127 @@ std::string verdict_sentence(const Verdict& verdict, std::span<const Row> rows,
     return text;
 }
 
-Json verdict_record(const Verdict& verdict, std::span<const Row> rows, const Scene& scene,
-                    const FrameRange& range) {
-    const auto& first = rows[verdict.cells.front().row];
-    Json devices = Json::array(), bounds = Json::object(), cells = Json::array();
-    for (const auto& info : infos_of(*first.cell)) devices.push_back(info.id);
-    const auto settings = first.measurement->settings.texts();
+} // namespace tandem
+
+namespace tandem::record_parts {
+
+namespace {
+
+/// What the fields of a line are taken from.
+struct VerdictLine {
+    const Verdict& verdict;
+    std::span<const Row> rows;
+    const Scene& scene;
+    const FrameRange& range;
+
+    const Row& first() const { return rows[verdict.cells.front().row]; }
+};
+
+struct RankedRow {
+    const RankedCell& cell;
+    const Row& row;
+
+    /// Null for fewer than two rounds.
+    template<class Value>
+    Json with_interval(Value value) const {
+        return cell.has_interval() ? Json(value) : Json();
+    }
+};
+
+const Fields<RankedRow>& ranked_fields() {
+    static const Fields<RankedRow> fields{
+        {"key", text(), "of the cell's record", [](auto& r) { return r.row.key; }},
+        {"chosen", boolean(), "the cell is one of --algorithm auto",
+         [](auto& r) { return r.row.cell->chosen != nullptr; }},
+        {"median_ns", number_above(0), "nanoseconds of a replay of all frames, median of the rounds' medians",
+         [](auto& r) { return r.cell.median_ns; }},
+        {"rounds", count(), "rounds in which both this cell and the fastest were measured",
+         [](auto& r) { return r.cell.rounds; }},
+        {"ratio", number_above(0),
+         "time of this cell to that of the fastest: median of the ratios of those rounds",
+         [](auto& r) { return r.cell.ratio.value; }},
+        {"low", nullable(number_above(0)), "lower end of its 95 % interval; null for fewer than two rounds",
+         [](auto& r) { return r.with_interval(r.cell.ratio.low); }},
+        {"high", nullable(number_above(0)), "upper end",
+         [](auto& r) { return r.with_interval(r.cell.ratio.high); }},
+        {"told_apart", nullable(boolean()), "whether the interval excludes 1; null without one",
+         [](auto& r) { return r.with_interval(r.cell.is_told_apart()); }}};
+    return fields;
+}
+
+const Fields<Scene>& verdict_scene_fields() {
+    static const Fields<Scene> fields{{"key", text(), "name and every parameter", &Scene::key},
+                                      {"digest", hex(), "64-bit digest of meshes, bodies and motion",
+                                       [](auto& s) { return hex_text(s.digest); }}};
+    return fields;
+}
+
+Json device_ids_json(const VerdictLine& v) {
+    Json ids = Json::array();
+    for (const auto& info : infos_of(*v.first().cell)) ids.push_back(info.id);
+    return ids;
+}
+
+Json bounds_json(const VerdictLine& v) {
+    Json bounds = Json::object();
+    const auto settings = v.first().measurement->settings.texts();
     for (const auto* name : compared_settings)
         if (const auto found = settings.find(name); found != settings.end()) bounds[name] = found->second;
-    for (const auto& cell : verdict.cells) {
-        const bool is_known = cell.has_interval();
-        cells.push_back({{"key", rows[cell.row].key},
-                         {"chosen", rows[cell.row].cell->chosen != nullptr},
-                         {"median_ns", cell.median_ns},
-                         {"rounds", cell.rounds},
-                         {"ratio", cell.ratio.value},
-                         {"low", is_known ? Json(cell.ratio.low) : Json()},
-                         {"high", is_known ? Json(cell.ratio.high) : Json()},
-                         {"told_apart", is_known ? Json(cell.is_told_apart()) : Json()}});
-    }
-    return {{"schema", record_schema},
-            {"kind", "verdict"},
-            {"session", session_id()},
-            {"scene", {{"key", scene.key}, {"digest", fmt::format("{:016x}", scene.digest)}}},
-            {"frames", {{"first", range.first()}, {"last", range.last()}}},
-            {"devices", devices},
-            {"bounds", bounds},
-            {"answers_differ", verdict.answers_differ},
-            {"cells", cells}};
+    return bounds;
+}
+
+Json ranked_json(const VerdictLine& v) {
+    std::vector<RankedRow> rows;
+    for (const auto& cell : v.verdict.cells) rows.push_back({cell, v.rows[cell.row]});
+    return array_json(ranked_fields(), rows);
+}
+
+const Fields<VerdictLine>& verdict_fields() {
+    static const Fields<VerdictLine> fields{
+        {"schema", constant(record_schema), "version of this schema, which is that of records of cells",
+         [](auto&) { return record_schema; }},
+        {"kind", constant("verdict"), "distinguishes this line from a record of a cell",
+         [](auto&) { return "verdict"; }},
+        {"session", pattern_of_digest(), "of the run, as in the records of its cells",
+         [](auto&) { return session_id(); }},
+        {"scene", verdict_scene_fields().type("what was collided"), "",
+         [](auto& v) { return verdict_scene_fields().write(v.scene); }},
+        {"frames", frames_fields().type("range of frames that a sample replays once"), "",
+         [](auto& v) {
+             return frames_fields().write({v.range.first(), v.range.last()});
+         }},
+        {"devices", array_of(text()).with("minItems", 1), "ids of the devices of each cell", device_ids_json},
+        {"bounds", map_of(any_text().with("description", "value of the setting"), ""),
+         "the settings that all cells share because they determine the work: k, axes, precision, rounding, "
+         "placement, "
+         "origin and output, as far as the algorithms have them",
+         bounds_json},
+        {"answers_differ", boolean(),
+         "the cells were not checked, and found different candidate pairs: none is the fastest",
+         [](auto& v) { return v.verdict.answers_differ; }},
+        {"cells", array_of(ranked_fields().type("")).with("minItems", 2), "the fastest first", ranked_json}};
+    return fields;
+}
+
+} // namespace
+
+Type verdict_type() {
+    return verdict_fields().type("Which of several comparable cells is the fastest, and which others are "
+                                 "told apart from it. 'tandem run' "
+                                 "appends one behind the records of the cells that it measured together, for "
+                                 "each set of at least two cells of "
+                                 "equal scene, frames, devices and bounds with a correct answer and "
+                                 "candidate pairs. One object a line; "
+                                 "unknown is null. Other lines of the file are records of cells.");
+}
+
+} // namespace tandem::record_parts
+
+namespace tandem {
+
+nlohmann::ordered_json verdict_record(const Verdict& verdict, std::span<const Row> rows, const Scene& scene,
+                                      const FrameRange& range) {
+    return record_parts::verdict_fields().write({verdict, rows, scene, range});
 }
 
 } // namespace tandem

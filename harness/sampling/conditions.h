@@ -51,6 +51,14 @@ struct Thresholds {
 std::optional<std::string> disturbance(const Condition& before, const Condition& after,
                                        const Thresholds& thresholds = {});
 
+namespace record_parts {
+
+struct Type;
+/// The type of conditions_json().
+Type condition_type();
+
+} // namespace record_parts
+
 /// JSON with units in the names. Unknown values are null; so is a device without any known value.
 nlohmann::ordered_json condition_json(const Condition& condition);
 /// The same form for one or more readings of the same devices. A constant value appears once, a varying one

@@ -1,11 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""Makes one row of a record of a cell, for 'tandem export --csv' and for Records.cells. Needs only the standard library."""
+"""Makes one row of a record of a cell, for 'tandem export --csv' and for Records.cells. Needs only the standard library.
 
-FIRST_COLUMNS = (
+Columns that are fields of a record come from their declarations in harness/, by fields.json. The others are computed here."""
+import json
+import pathlib
+
+_FIELDS = json.loads((pathlib.Path(__file__).parent / "fields.json").read_text(encoding="utf-8"))["columns"]
+_PATHS = {field["column"]: tuple(field["path"]) for field in _FIELDS}
+TYPES = {field["column"]: field["type"] for field in _FIELDS}  # integer, number, boolean or text; of the columns that are fields
+_ORDER = (
     "status", "failure", "algorithm", "preset", "device", "device_name", "driver", "scene", "scene_digest", "bodies", "tetrahedra",
     "first_frame", "last_frame", "ms", "ms_low", "ms_high", "samples", "rounds", "converged", "disturbed", "device_span_ms",
     "launches", "waits", "candidate_pairs", "contacts", "missing", "extra", "contact_frames_wrong", "pairs_missed",
     "device_bytes", "commit", "dirty", "date", "session", "key")
+FIRST_COLUMNS = (*_ORDER, *(name for name in _PATHS if name not in _ORDER))
 GROUPS = ("stage_", "count_", "set_")  # prefixes of further columns
 TIMES = ("ms", "ms_low", "ms_high", "device_span_ms")
 
@@ -56,12 +64,8 @@ def _total(numbers):
 def row(record):
     """Values by column; None for missing fields. Launches, waits, pairs, contacts and counters are sums over all frames. Raises one of
     lines.FIELD_ERRORS if the record does not match its schema."""
-    made = {name: record.get(name) for name in ("status", "failure", "algorithm", "preset", "session", "key")}
+    made = {name: at(record, *path) for name, path in _PATHS.items()}
     made |= {"device": _of_devices(record, "id"), "device_name": _of_devices(record, "name"), "driver": _of_devices(record, "driver")}
-    made |= {"scene": at(record, "scene", "key"), "scene_digest": at(record, "scene", "digest")}
-    made |= {name: at(record, "scene", name) for name in ("bodies", "tetrahedra")}
-    made |= {"first_frame": record["frames"]["first"], "last_frame": record["frames"]["last"]}
-    made |= {name: at(record, "environment", name) for name in ("commit", "dirty", "date")}
     made |= _times(record) | _stages(record) | _answer(record)
     return made | {f"set_{name}": value for name, value in (record.get("settings") or {}).items()}
 
@@ -71,7 +75,6 @@ def _times(record):
     disturbed = at(record, "conditions", "disturbed")
     made = interval("ms", record.get("total_ns"), frames)
     made["samples"] = None if samples is None else len(samples)
-    made |= {name: at(record, "sampling", name) for name in ("rounds", "converged")}
     made["disturbed"] = bool(disturbed) if isinstance(disturbed, list) else None
     made["device_span_ms"] = milliseconds(at(record, "device_span_ns", "median"), frames)
     return made
@@ -90,9 +93,7 @@ def _stages(record):
 
 def _answer(record):
     made = {name: _total(at(record, "work", name)) for name in ("candidate_pairs", "contacts")}
-    made |= {name: at(record, "agreement", name) for name in ("missing", "extra", "contact_frames_wrong")}
     truth = at(record, "error", "truth")
     if isinstance(truth, dict):
         made["pairs_missed"] = truth["missed_touching"] + truth["missed_overlapping"]
-    made["device_bytes"] = at(record, "preparation", "device_bytes")
     return made | {f"count_{name}": value for name, value in (at(record, "work", "counters") or {}).items()}

@@ -10,9 +10,10 @@ from . import cell_rows, lines
 from .cell_rows import at, interval
 from .verdicts import RecordedVerdicts, TimedCell, verdict_of
 
-WHOLE = ("bodies", "tetrahedra", "first_frame", "last_frame", "samples", "rounds", "launches", "waits", "candidate_pairs",
-         "contacts", "missing", "extra", "contact_frames_wrong", "pairs_missed", "device_bytes")
-TRUTHS = ("converged", "disturbed", "dirty", "partial")
+# Types of columns that are no fields of a record; cell_rows.TYPES has the others.
+WHOLE = ("samples", "launches", "waits", "candidate_pairs", "contacts", "pairs_missed")
+TRUTHS = ("disturbed", "partial")
+FIELD_TYPES = {"integer": "Int64", "number": "float64", "boolean": "boolean"}
 PARTS = ("samples", "stages", "kernels", "frames", "errors")  # the tables besides cells
 SPREADS = ("median", "p99", "max")
 WORDS = ("status", "algorithm", "preset", "device", "device_name", "driver", "scene")
@@ -137,6 +138,7 @@ def _cells(rows):
     stages, counters, settings = ([name for name in names if name.startswith(group)] for group in cell_rows.GROUPS)
     table = pandas.DataFrame(rows, columns=[*names, "file", "partial"])
     kinds = {name: "Int64" for name in (*WHOLE, *counters)} | {name: "float64" for name in (*cell_rows.TIMES, *stages)}
+    kinds |= {name: FIELD_TYPES[kind] for name, kind in cell_rows.TYPES.items() if kind in FIELD_TYPES}
     kinds |= {name: "boolean" for name in TRUTHS} | {name: "category" for name in (*WORDS, "file")}
     table = table.astype(kinds)
     table["date"] = pandas.to_datetime(table["date"], utc=True)

@@ -34,6 +34,14 @@ struct Choice {
     std::optional<double> margin() const;
 };
 
+namespace record_parts {
+
+struct Type;
+/// The type of choice_json().
+Type choice_type(const std::string& meaning);
+
+} // namespace record_parts
+
 /// "chosen" of results/record.schema.json.
 nlohmann::ordered_json choice_json(const Choice& choice);
 
