@@ -32,7 +32,7 @@ Fields<AnswerErrors> contact_counts() {
     return {
         {"complete", boolean(), "all overlapping pairs of all frames; false: a sample of them",
          &AnswerErrors::every_contact},
-        {"overlapping", count(), "pairs looked at", [](auto& e) { return e.contacts->overlapping; }},
+        {"overlapping", count(), "pairs compared", [](auto& e) { return e.contacts->overlapping; }},
         {"unanswered", count(), "of these without a contact", [](auto& e) { return e.contacts->unanswered; }},
         {"not_finite", count(), "contacts with a number that is not finite",
          [](auto& e) { return e.contacts->not_finite; }}};
