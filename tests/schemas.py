@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """schemas.py RECORD_SCHEMA SOURCE: files that are made of the declarations of fields, and what readers take from them."""
+import csv
 import json
 import pathlib
 import shutil
@@ -29,7 +30,7 @@ def table_of(package, records):
     """The header and the first row of `tandem export --csv` by the package in a folder, with the standard library only."""
     code = f"import sys; sys.path.insert(0, {str(package)!r}); from tandem.commands.export_csv import main; sys.exit(main(['--records', {str(records)!r}]))"
     text = subprocess.run([sys.executable, "-S", "-I", "-c", code], capture_output=True, text=True, check=True).stdout
-    return [line.split(",") for line in text.splitlines()[:2]]
+    return list(csv.reader(text.splitlines()[:2]))
 
 
 class Schemas(unittest.TestCase):
