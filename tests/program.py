@@ -15,6 +15,8 @@ import unittest
 
 import jsonschema
 
+from validate_records import problems_of_record
+
 if len(sys.argv) != 3:
     sys.exit(sys.modules["__main__"].__doc__)
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
@@ -106,8 +108,7 @@ class Case(unittest.TestCase):
         """The records of cells in a file, checked against their schema, without verdicts."""
         records = cells_of(path.read_text())
         for record in records:
-            problems = ["/".join(map(str, e.absolute_path)) + ": " + e.message for e in self.validator.iter_errors(record)]
-            self.assertEqual(problems, [])
+            self.assertEqual(problems_of_record(record), [])
         return records
 
     def rounds_of_two_samples(self, record):
