@@ -103,9 +103,9 @@ class Paper(unittest.TestCase):
         self.assertIn("missing", (self.folder / "figure7.csv").read_text())
 
     def test_a_simulation_resumes_after_a_signal(self):
-        step = self.number("sim-colosseum")
+        step = self.number("sim-tower")
         running = subprocess.Popen([PROGRAM, "paper", *map(str, self.host), "--steps", step, "--measure-only"], stderr=subprocess.PIPE, text=True)
-        recording = self.folder / "colosseum.frames.checkpoint"
+        recording = self.folder / "tower.frames.checkpoint"
         until = time.monotonic() + 60
         while not recording.exists() and time.monotonic() < until:
             time.sleep(0.05)
@@ -114,24 +114,20 @@ class Paper(unittest.TestCase):
         self.assertEqual(running.returncode, 3)
         paper(*self.host, "--steps", step, "--measure-only")
         self.assertEqual(self.steps()[-1]["exit"], 0)
-        lines = [json.loads(line) for line in (self.folder / "records/sim-colosseum.jsonl").read_text().splitlines()]
-        self.assertEqual(sorted({line["step"] for line in lines if line["kind"] == "step"}), list(range(60)))
+        lines = [json.loads(line) for line in (self.folder / "records/sim-tower.jsonl").read_text().splitlines()]
+        self.assertEqual(sorted({line["step"] for line in lines if line["kind"] == "step"}), list(range(150)))
 
-    def test_committed_tables_figures_and_verdicts_equal_the_records(self):
+    def test_committed_tables_equal_the_records_and_markup_is_escaped(self):
         shutil.copytree(COMMITTED, self.folder)
         for name in FILES:
             (self.folder / name).unlink()
+        steps = self.steps()
+        steps[0]["says"], steps[0]["command"], steps[0]["exit"] = "<img src=x onerror=alert(1)>", "tandem </code><script>", 3
+        (self.folder / "steps.jsonl").write_text("".join(json.dumps(step) + "\n" for step in steps))
         output = paper("-o", self.folder, "--draw-only").stdout
         self.assertIn("7 tables", output)
         for name in (name for name in FILES if name.endswith(".csv") and name not in RENDERED):
             self.assertEqual((self.folder / name).read_text(), (COMMITTED / name).read_text(), name)
-
-    def test_markup_in_records_is_escaped(self):
-        shutil.copytree(COMMITTED, self.folder)
-        steps = self.steps()
-        steps[0]["says"], steps[0]["command"], steps[0]["exit"] = "<img src=x onerror=alert(1)>", "tandem </code><script>", 3
-        (self.folder / "steps.jsonl").write_text("".join(json.dumps(step) + "\n" for step in steps))
-        paper("-o", self.folder, "--draw-only")
         page = (self.folder / "index.html").read_text()
         self.assertNotIn("<img src=x", page)
         self.assertNotIn("<script", page)

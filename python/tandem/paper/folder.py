@@ -134,6 +134,7 @@ class Folder:
             raise lines.RecordError(f"{path}: has no steps.jsonl; make it with 'tandem paper -o {path}'")
         self.steps = steps
         self.failed = [name for name, step in steps.items() if step["exit"] != 0]
+        self._cases = {}
 
     def _json_lines(self, name):
         path = self.path / name
@@ -153,6 +154,11 @@ class Folder:
     def cases(self, step):
         """MeasuredCells from the last record of each cell of a step, also of a step that did not complete. Cells of one scene, algorithm, preset and
         settings with different frames form one entry."""
+        if step not in self._cases:
+            self._cases[step] = self._read_cases(step)
+        return list(self._cases[step])
+
+    def _read_cases(self, step):
         path = self.path / "records" / f"{step}.jsonl"
         if not path.exists() or path.stat().st_size == 0:
             return []
