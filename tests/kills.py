@@ -14,7 +14,7 @@ import unittest
 
 from program import LONG, PROGRAM, Case, sets, tandem, tried
 
-KILLS = 200 if LONG else 10  # per command
+KILLS = 200 if LONG else 6  # per command
 CAPACITIES = {name: 4096 for name in ("pair_capacity", "contact_capacity", "tile_pair_capacity", "seed_capacity")}
 PLAN = {"plan": "to be killed", "scenes": ["plates:count=2", "pile:bodies=2,frames=1", "pile:bodies=3,frames=1"], "frames": 0,
         "devices": ["host", "opencl:0"] if LONG else "host", "algorithms": ["chunked", "tiled"], "settings": {"k": [6, 8]},
