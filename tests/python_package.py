@@ -7,6 +7,7 @@ import csv
 import dataclasses
 import io
 import json
+import lzma
 import math
 import os
 import pathlib
@@ -21,7 +22,7 @@ import zipfile
 import matplotlib
 import pandas
 
-from program import PROGRAM, SOURCE
+from program import LONG, PROGRAM, SOURCE
 
 matplotlib.use("agg")
 H200 = SOURCE / "results/h200"
@@ -64,7 +65,10 @@ def text_of(value):
 
 class Reading(unittest.TestCase):
     def test_cells_equal_the_table_of_export(self):
-        for path in sorted([*H200.glob("*.jsonl"), *(SOURCE / "results/cpu").glob("*.jsonl")]):
+        for committed in sorted([*H200.glob("*.jsonl"), *(SOURCE / "results/cpu").glob("*.jsonl")]):
+            path = pathlib.Path(FOLDER.name) / committed.name
+            lines = committed.read_text().splitlines(keepends=True)
+            path.write_text("".join(lines if LONG else lines[::-(-len(lines) // 20)]))
             done = subprocess.run([PROGRAM, "export", path, "--csv"], capture_output=True, text=True)
             if done.returncode != 0:  # not records of cells
                 with self.assertRaises(tandem.RecordError, msg=path.name):
@@ -119,10 +123,12 @@ class Reading(unittest.TestCase):
                 self.assertEqual({"median": row.median, "p99": row.p99, "max": row.max}, truth["contacts"][row.error])
 
     def test_several_files_and_packed_ones(self):
-        one, other = H200 / "seeds.jsonl", H200 / "accuracy-hard.jsonl.xz"
+        one, packed = H200 / "tiled.jsonl", H200 / "plates.jsonl"
+        other = pathlib.Path(FOLDER.name) / "plates.jsonl.xz"
+        other.write_bytes(lzma.compress(packed.read_bytes(), preset=0))
         cells = tandem.read([one, other]).cells
         self.assertEqual(list(cells["file"].unique()), [str(one), str(other)])
-        self.assertEqual(len(cells), len(tandem.read(one).cells) + len(tandem.read(other).cells))
+        self.assertEqual(len(cells), len(tandem.read(one).cells) + len(tandem.read(packed).cells))
 
     def test_every_result_occurs_once(self):
         """An interrupted cell, its continuation in another session, copies, and two contradicting records."""

@@ -251,7 +251,7 @@ class Pages(Case):
         empty.write_text("")
         self.write("other.jsonl", [{**self.plan[0], "schema": 5}])
         text.write_text("no record\n")
-        cut.write_bytes(lzma.compress((RECORDS / "plan.jsonl").read_bytes())[:1000])
+        cut.write_bytes(lzma.compress((RECORDS / "plan.jsonl").read_bytes()[:99_000])[:1000])
         page = self.work / "none.html"
         self.bad("empty.jsonl: is empty", "report", empty, "-o", page)
         self.bad(["other.jsonl:1:", "schema 5"], "report", other, "-o", page)
@@ -261,8 +261,9 @@ class Pages(Case):
         self.write("profile.jsonl", [{**json.loads((RECORDS / "profile.jsonl").read_text().splitlines()[0]), "schema": 7}])
         self.bad("schema 7", "report", self.work / "profile.jsonl", "-o", page)
         self.assertFalse(page.exists())
-        self.bad("nowhere", "report", RECORDS / "plan.jsonl", "-o", self.work / "nowhere/page.html", code=3)
-        self.bad("is not a regular file", "report", RECORDS / "plan.jsonl", "-o", self.work, code=3)
+        good = self.write("good.jsonl", self.plan[:1])
+        self.bad("nowhere", "report", good, "-o", self.work / "nowhere/page.html", code=3)
+        self.bad("is not a regular file", "report", good, "-o", self.work, code=3)
         self.bad("unknown scene", "view", "plate", "-o", page)
 
     def test_more_cells_than_a_page_shows(self):
