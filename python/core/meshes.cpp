@@ -14,7 +14,7 @@ namespace {
 
 static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double) && sizeof(Tetrahedron) == 4 * sizeof(uint32_t));
 
-Mesh make(const Points& vertices, const Corners& tetrahedra, const std::string& name) {
+Mesh mesh_of(const Points& vertices, const Corners& tetrahedra, const std::string& name) {
     const nb::gil_scoped_release released;
     Mesh mesh;
     mesh.name = name;
@@ -50,7 +50,7 @@ void bind_meshes(nb::module_& module) {
         .def_ro("name", &Mesh::name)
         .def_ro("inverted", &Mesh::inverted)
         .def_ro("degenerate", &Mesh::degenerate);
-    module.def("make_mesh", &make, nb::arg("vertices"), nb::arg("tetrahedra"), nb::arg("name"),
+    module.def("make_mesh", &mesh_of, nb::arg("vertices"), nb::arg("tetrahedra"), nb::arg("name"),
                "Implementation of tandem.make_mesh, which checks its input.");
     module.def(
         "read_mesh", &read_mesh, nb::arg("path"), nb::call_guard<nb::gil_scoped_release>(),
