@@ -66,9 +66,16 @@ def has_lanes(text):
     return re.search(r"^(?!#define|//).*\bFOR_LANES\b", text, re.M) is not None
 
 
-def host_variant(kernels, geometry, geometries, identifier, level, levels):
+def is_of_higher_levels(defines, higher_k):
+    """Whether levels above the lowest contain this variant: only those that are measured most. The lowest level has all of them."""
+    k = [pair[2:] for pair in defines if pair.startswith("K=")]
+    return not {"PRECISION=64", "SLABS=1"} & set(defines) and (not higher_k or set(k) <= set(higher_k))
+
+
+def host_variant(kernels, geometry, geometries, identifier, level, is_wanted):
     """Code of the kernels of one geometry. A kernel that names only some of its defines is in the first geometry with these values.
-    `level`: x86-64-v2, -v3 or -v4, for which the file is compiled, one of `levels`; 0: any processor."""
+    `level`: x86-64-v2, -v3 or -v4, for which the file is compiled; 0: any processor. `is_wanted`: whether the level has a variant
+    with these defines."""
     out, rows = [], []
     variants = [(name, text, choice) for name, text in kernels.items() for choice in choices(text)]
     for index, (name, text, choice) in enumerate(variants):
@@ -76,8 +83,7 @@ def host_variant(kernels, geometry, geometries, identifier, level, levels):
         if geometry != next(g for g in geometries if named(text, g) == own):
             continue
         own = own + choice
-        # Higher levels contain only the variants that are measured most. The lowest level has all of them.
-        if level and level != min(levels) and ("PRECISION=64" in own or "SLABS=1" in own):
+        if not is_wanted(own):
             continue
         fixed = dict(pair.split("=") for pair in own)
         defaults = {key: value for key, value in DEFAULT.findall(text) if key not in fixed and key != "GROUP_SIZE"}
@@ -123,6 +129,7 @@ def main():
     parser.add_argument("--each", type=int, default=1, help="geometries per file")
     parser.add_argument("--kernels", nargs="+")
     parser.add_argument("--levels", nargs="*", type=int, default=[], help="levels of x86-64 for which files with lanes are compiled")
+    parser.add_argument("--higher-k", nargs="*", default=[], help="values of K at levels above the lowest; left out: all")
     parser.add_argument("--own", default="", help="the target that contains the kernels; left out for the library")
     parser.add_argument("--flatten", help="only print this kernel file with its headers")
     arguments = parser.parse_args()
@@ -138,11 +145,14 @@ def main():
         own = re.sub(r"\W", "_", arguments.own)
         names = ["_".join(filter(None, ["host", own, f"v{level}" if level else "", re.sub(r"\W", "_", geometry)]))
                  for geometry in arguments.geometries]
-        variants = [host_variant(these, geometry, arguments.geometries, name, level, arguments.levels)
+        has_all = level in (0, min(arguments.levels, default=0))
+        variants = [host_variant(these, geometry, arguments.geometries, name, level,
+                                 lambda own, has_all=has_all: has_all or is_of_higher_levels(own, arguments.higher_k))
                     for geometry, name in zip(arguments.geometries, names)]
         for part, first in enumerate(range(0, len(variants), arguments.each)):
+            these_variants = variants[first:first + arguments.each]
             write(arguments.out / (f"host_v{level}_{part}.cpp" if level else f"host_{part}.cpp"),
-                  "\n".join(['#include "backends/host/dialect.h"', *variants[first:first + arguments.each]]))
+                  "\n".join(['#include "backends/host/dialect.h"', *these_variants] if any(these_variants) else []))
         identifiers += [name for name, variant in zip(names, variants) if variant]
     write(arguments.out / "host_table.cpp", host_table(identifiers, arguments.own))
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 set(TANDEM_LEVELS 2 3 4 CACHE STRING "Levels of x86-64 that host kernels with lanes are compiled for; native: the level of this processor")
+set(TANDEM_HIGHER_K "" CACHE STRING "Values of k that host kernels of the levels above the lowest are compiled for; empty: all. Other values use the lowest level")
 
 # Sets `result` to the levels of TANDEM_LEVELS without duplicates, with `native` replaced by the level of this processor.
 function(tandem_levels result)
@@ -73,7 +74,7 @@ function(tandem_kernels target)
   endforeach()
   add_custom_command(OUTPUT ${generated}
     COMMAND ${Python3_EXECUTABLE} ${script} --root ${PROJECT_SOURCE_DIR} --out ${out} --geometries ${geometries}
-            --each ${each} --levels ${levels} --kernels ${kernels} ${own}
+            --each ${each} --levels ${levels} --higher-k ${TANDEM_HIGHER_K} --kernels ${kernels} ${own}
     DEPENDS ${script} ${files} ${headers} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     COMMENT "Flattening kernels" VERBATIM)
   target_sources(${target} PRIVATE ${generated})
