@@ -67,7 +67,7 @@ std::vector<TetrahedronPair<Real>> random_pairs(std::size_t count) {
 }
 
 /// How many pairs of each kind are added: the short form tries each kind as well.
-unsigned pairs_of_a_kind() { return testing_support::long_form() ? 200 : 50; }
+unsigned pairs_of_a_kind() { return support::long_form() ? 200 : 50; }
 
 /// Pairs of floats that touch or nearly touch, for which the error bounds of the decision matter.
 template<class Real>
