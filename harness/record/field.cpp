@@ -112,8 +112,7 @@ void ObjectType::add(const std::string& name, const Type& type, const std::strin
     properties[name] = meaning.empty() ? type.schema : type.with("description", meaning).schema;
     if (!occurrence.optional) type_.schema["required"].push_back(name);
     add_definitions(type_.definitions, type.definitions);
-    if (!occurrence.column.empty())
-        type_.columns.push_back({occurrence.column, {name}, column_type(type), meaning});
+    if (!occurrence.column.empty()) type_.columns.push_back({occurrence.column, {name}, column_type(type)});
     for (auto column : type.columns) {
         column.path.insert(column.path.begin(), name);
         type_.columns.push_back(std::move(column));

@@ -19,7 +19,6 @@ struct FieldColumn {
     std::string name;
     std::vector<std::string> path;
     std::string type; ///< "integer", "number", "boolean" or "text"
-    std::string meaning;
 };
 
 /// The type of a field: a JSON Schema.

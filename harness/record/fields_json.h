@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Converts structures to JSON field by field, with every number exact. Child processes and files kept between
-// runs use this form. Records have writers of their own.
+// runs use this form. field.h declares the fields of records.
 #pragma once
 
 #include <nlohmann/json.hpp>
