@@ -37,7 +37,7 @@ namespace {
 
 constexpr std::size_t least_large = 64 << 10;
 constexpr int most_frames = 48;
-constexpr std::size_t most_sites = 1 << 16;
+constexpr std::size_t most_sites = 1 << 16, most_stacks = 1 << 18;
 
 char family[16];
 long at = 0;
@@ -45,7 +45,7 @@ bool keeps_failing = false; ///< later calls fail as well
 int log_file = -1;
 std::atomic<bool> armed{false};
 std::atomic<long> calls{0};
-std::atomic<std::uint64_t> sites[most_sites];
+std::atomic<std::uint64_t> sites[most_sites], stacks[most_stacks];
 thread_local bool inside = false;
 
 template<class Function>
@@ -70,10 +70,16 @@ struct CallSite {
     std::uint64_t site = 0;
 };
 
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) { return (hash ^ value) * 0x9E3779B97F4A7C15u; }
+
+std::uint64_t hash_of(void* const* frames, int count) {
+    std::uint64_t hash = 0;
+    for (int i = 0; i < count; ++i) hash = mixed(hash, reinterpret_cast<std::uintptr_t>(frames[i]));
+    return hash;
+}
+
 /// The calling library, and a hash of the first three return addresses in its code.
-CallSite call_site() {
-    void* frames[most_frames];
-    const int count = backtrace(frames, most_frames);
+CallSite call_site(void* const* frames, int count) {
     CallSite found;
     const void* base = nullptr;
     int taken = 0;
@@ -89,7 +95,7 @@ CallSite call_site() {
         if (info.dli_fbase != base) continue;
         const auto offset =
             static_cast<std::uint64_t>(static_cast<char*>(frames[i]) - static_cast<char*>(info.dli_fbase));
-        found.site = (found.site ^ offset) * 0x9E3779B97F4A7C15u;
+        found.site = mixed(found.site, offset);
         ++taken;
     }
     return found;
@@ -111,14 +117,16 @@ void log_stack() {
     if (log_file >= 0) backtrace_symbols_fd(frames, backtrace(frames, most_frames), log_file);
 }
 
-bool first_of_site(std::uint64_t site) {
-    const auto key = site | 1; // 0 marks a free slot
-    for (std::size_t i = key % most_sites, tried = 0; tried < most_sites; ++tried, i = (i + 1) % most_sites) {
+/// Whether the table has not had this hash; `when_full` where it cannot tell.
+template<std::size_t size>
+bool is_new(std::atomic<std::uint64_t> (&table)[size], std::uint64_t hash, bool when_full) {
+    const auto key = hash | 1; // 0 marks a free slot
+    for (std::size_t i = (key >> 8) % size, tried = 0; tried < size; ++tried, i = (i + 1) % size) {
         std::uint64_t expected = 0;
-        if (sites[i].compare_exchange_strong(expected, key)) return true;
+        if (table[i].compare_exchange_strong(expected, key)) return true;
         if (expected == key) return false;
     }
-    return false;
+    return when_full;
 }
 
 /// Whether this call is the failing one.
@@ -128,8 +136,13 @@ bool fails(const char* name) {
     if (at != 0 && number > at && keeps_failing) return true;
     if (at != 0 && number != at) return false;
     inside = true;
-    const auto caller = call_site();
-    if (at != 0 || first_of_site(caller.site)) log_call(number, caller);
+    void* frames[most_frames];
+    const int count = backtrace(frames, most_frames);
+    // Equal stacks have one site, and dladdr() takes most of the time.
+    if (at != 0 || is_new(stacks, hash_of(frames, count), true)) {
+        const auto caller = call_site(frames, count);
+        if (at != 0 || is_new(sites, caller.site, false)) log_call(number, caller);
+    }
     if (at != 0) log_stack();
     inside = false;
     return at != 0;

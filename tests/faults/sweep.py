@@ -23,8 +23,8 @@ CALLS = {"open": "open", "write": "write", "fsync": "fsync", "rename": "rename",
          "large": "all large malloc from one on", "malloc": "malloc"}
 CELLS = ("plan", "check", "accuracy")  # commands with several cells
 LIBRARYS_WORDS = r"std::|::at\b|basic_string|bad_alloc|json\.exception|vector::"
-SHORT = 5  # runs per command and family in the short form, except malloc
-SHORT_MALLOC = 10
+SHORT = 8  # runs per command and family in the short form, except malloc
+SHORT_MALLOC = 16
 HANGS = 60  # seconds until a run counts as hung
 OURS = PROGRAM.name
 # Message of glibc before it aborts because a thread's first object with a destructor finds no memory.
@@ -75,7 +75,7 @@ class Sweep(Case):
         return {"run": (("run", *cell, *tiled, "--repeat", 1, "--truth", "contacts", "--out", out, "--dump-pairs", folder / "pairs.csv", "--trace", folder / "trace.json"), out),
                 "plan": (("run", self.plan, "--out", out), out),
                 "check": (("check", *cell, "--algorithm", "chunked", "--preset", "grouped,published", *sets({name: 4096 for name in ("pair_capacity", "contact_capacity", "seed_capacity")})), None),
-                "accuracy": (("accuracy", "pile:bodies=2,frames=1", "--device", "host", "--set", "k=8", "--set", "contact_rule=sat", "--set", "decision=fp32",
+                "accuracy": (("accuracy", *cell, "--set", "contact_rule=sat", "--set", "decision=fp32",
                               "--set", "precision=float", "--set", "rounding=safe", *tiled, "--repeat", 1, "--out", out), out),
                 "simulate": (("simulate", "arch:segments=2", "--steps", 2, "--device", "host", "-o", folder / "a.frames", "--record", out, "--quiet",
                               "--dynamics", "absolute_tolerance=1"), out),
