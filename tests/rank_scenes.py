@@ -120,7 +120,7 @@ class RankScenes(Case):
         """Each rank's clock has its own pace and sleeps at random; rank 0 decides everything that depends on clocks."""
         common = ["run", PILE, "--algorithm", "chunked,tiled", "--device", "host", *CAPACITIES, "--truth", "none", "--seconds", 0.8, "--noise", 1e-9]
         digests = set()
-        for seed in range(20 if LONG else 6):
+        for seed in range(20 if LONG else 3):
             ranks, out = (2, 4)[seed % 2], self.work / f"skewed{seed}.jsonl"
             skew = ["env", f"LD_PRELOAD={SKEWED_CLOCKS}", f"SKEW_SEED={seed}"]
             status, text, errors = launch(job(*([skew] * ranks))(*common, "--out", out), timeout=60)

@@ -113,7 +113,9 @@ class Running(Case):
             words = ["run", "--mesh", self.good, "--mesh", self.good, "--device", "host", "--algorithm", "chunked,tiled", "--truth", "none", "--no-count",
                      "--noise", "0.0001%", "--seconds", "1000", "--out", out]
             process = subprocess.Popen([str(PROGRAM), *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            time.sleep(3)
+            left, end = self.work / f"{out.name}.unfinished", time.monotonic() + 60
+            while not (left.exists() and left.read_text().count("\n") >= 8) and time.monotonic() < end:  # several rounds of both cells
+                time.sleep(0.02)
             process.send_signal(number)
             if number == signal.SIGTERM:  # Slurm sends two when the time limit is reached
                 time.sleep(0.002)
