@@ -8,8 +8,6 @@
 
 namespace tandem::oracle {
 
-using namespace geometry;
-
 /// Minima along x, y and z, then maxima.
 using Box = std::array<double, 6>;
 
