@@ -62,6 +62,9 @@ Verdict verdict_of(std::span<const Row> rows, const std::vector<std::size_t>& gr
         cell.median_ns = median;
         verdict.answers_differ |= m.agreement.digest != fastest.agreement.digest;
     }
+    // By the ratios that the sentence states: those of medians can differ in order.
+    std::stable_sort(verdict.cells.begin() + 1, verdict.cells.end(),
+                     [](const auto& a, const auto& b) { return a.ratio.value < b.ratio.value; });
     return verdict;
 }
 
@@ -232,7 +235,8 @@ const Fields<VerdictLine>& verdict_fields() {
         {"answers_differ", boolean(),
          "the cells were not checked, and found different candidate pairs: none is the fastest",
          [](auto& v) { return v.verdict.answers_differ; }},
-        {"cells", array_of(ranked_fields().type("")).with("minItems", 2), "the fastest first", ranked_json}};
+        {"cells", array_of(ranked_fields().type("")).with("minItems", 2),
+         "the fastest first, the others by their ratio", ranked_json}};
     return fields;
 }
 

@@ -76,7 +76,9 @@ def computed(cells):
         return Verdict()
     first, *rest = order
     is_in_pairs = len(cells[first].rounds) > 1
-    ranked = [Ranked(first, ONE, is_in_pairs), *(_compared(number, cells[first], cells[number]) for number in rest)]
+    # By the ratios that a sentence states: those of medians can differ in order.
+    others = sorted((_compared(number, cells[first], cells[number]) for number in rest), key=lambda one: one.ratio.value)
+    ranked = [Ranked(first, ONE, is_in_pairs), *others]
     return Verdict(tuple(ranked), len(answers) > 1)
 
 
