@@ -77,8 +77,8 @@ def computed(cells):
     first, *rest = order
     is_in_pairs = len(cells[first].rounds) > 1
     # By the ratios that a sentence states: those of medians can differ in order.
-    others = sorted((_compared(number, cells[first], cells[number]) for number in rest), key=lambda one: one.ratio.value)
-    ranked = [Ranked(first, ONE, is_in_pairs), *others]
+    slower = sorted((_compared(number, cells[first], cells[number]) for number in rest), key=lambda one: one.ratio.value)
+    ranked = [Ranked(first, ONE, is_in_pairs), *slower]
     return Verdict(tuple(ranked), len(answers) > 1)
 
 
