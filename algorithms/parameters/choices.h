@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Enumerations of the common settings. A kernel gets the number of an enumerator in the define of the
 // setting. choices.clh names these numbers for kernels; choices.cpp does not compile when the two files
-// differ.
+// differ. Contact rules have one list for both, contact_rules.clh.
 #pragma once
 
 #include "algorithms/parameters/contact_rules.clh"
