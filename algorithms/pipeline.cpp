@@ -149,6 +149,7 @@ FrameResult Pipeline::counts() const {
     result.count = status.counter(STATUS_PAIRS);
     result.contacts = status.counter(STATUS_CONTACTS);
     result.degenerate = status.counter(STATUS_DEGENERATE);
+    result.without_boundary = status.counter(STATUS_WITHOUT_BOUNDARY);
     result.rejected = status.counter(STATUS_REJECTED);
     result.undecided_by_filter = status.counter(STATUS_UNDECIDED_BY_FILTER);
     result.undecided_by_double = status.counter(STATUS_UNDECIDED_BY_DOUBLE);

@@ -103,6 +103,7 @@ struct KernelFacts {
     std::int64_t registers = -1;      ///< of a work-item
     std::int64_t local_bytes = -1;    ///< of a work-group
     std::int64_t spill_bytes = -1;    ///< stores and loads of a work-item
+    std::int64_t stack_bytes = -1;    ///< of a work-item's private arrays that are not in registers
     std::int64_t max_group_size = -1; ///< work-items; launch() refuses more
     /// Largest fraction of a compute unit's work-items that groups of GROUP_SIZE can fill, given registers
     /// and local memory; negative when the backend does not report it.

@@ -30,6 +30,7 @@ EntryUse use_of(std::string_view log, std::string_view entry) {
     const auto part = log.substr(begin, end == std::string_view::npos ? end : end - begin);
     EntryUse use;
     use.registers = number_before(part, "registers", 0);
+    use.stack_bytes = number_before(part, "bytes stack frame", 0);
     const auto stores = number_before(part, "bytes spill stores", 0);
     const auto loads = number_before(part, "bytes spill loads", 0);
     if (stores >= 0 && loads >= 0) use.spill_bytes = stores + loads;

@@ -10,6 +10,7 @@ namespace tandem {
 struct EntryUse {
     std::int64_t registers = -1;
     std::int64_t spill_bytes = -1; ///< stores and loads together
+    std::int64_t stack_bytes = -1; ///< stack frame of a work-item, in device memory
 };
 
 /// Finds `entry` in the assembler's verbose log, which NVRTC and NVIDIA's OpenCL return.

@@ -63,7 +63,7 @@ class RankScenes(Case):
             (record,) = self.records(self.work / name)
             for field in ("status", "agreement", "error", "scene", "frames", "algorithm"):
                 self.assertEqual(record[field], one[field], field)
-            for field in ("body_pairs", "candidate_pairs", "contacts", "digest", "contact_digest", "rejected"):
+            for field in ("body_pairs", "candidate_pairs", "contacts", "digest", "contact_digest", "without_boundary", "rejected"):
                 self.assertEqual(record["work"][field], one["work"][field], field)
             self.assertEqual((record["ranks"], len(record["devices"])), (ranks, ranks))
             device_work = record["partition"]["devices"]

@@ -33,7 +33,7 @@ def changed(record, path, change):
 
 MAPS = {"settings", "defines", "counters", "kernel_times", "host_work"}
 NULLABLE = {"chosen", "failure", "agreement", "commit", "hardware", "device_span_ns", "session", "command", "registers", "local_bytes",
-            "spill_bytes", "missed_upper95", "candidate_ratio", "decisions", "depth_relative", "depth_ulps", "normal_degrees", "point",
+            "spill_bytes", "stack_bytes", "missed_upper95", "candidate_ratio", "decisions", "depth_relative", "depth_ulps", "normal_degrees", "point",
             "hausdorff", "volume_relative"}
 OF_CONDITION = ("cores", "quota_cores", "own_cores", "other_cores", "governor", "mhz", "throttled_periods", "pressure_percent")
 OF_SAMPLING = ("cells", "seed", "repeat", "noise", "seconds", "spent_seconds", "converged", "drift")
@@ -43,8 +43,8 @@ NULLABLE_PATHS = {("environment", "processor"), ("environment", "sources"), ("co
                   ("error", "truth"), ("error", "truth", "contacts"), ("error", "truth", "drift"),
                   *(("work", name) for name in ("undecided_by_filter", "undecided_by_double", "batches"))}
 # Fields that records of earlier versions lack.
-SINCE = {"chosen", "truth", "inputs", "volume_relative", "no_volume"}
-SINCE_PATHS = {("devices", 0, "clock"), ("work", "digest"), ("work", "contact_digest"), ("work", "submissions"), ("sampling", "continued"),
+SINCE = {"stack_bytes", "chosen", "truth", "inputs", "volume_relative", "no_volume"}
+SINCE_PATHS = {("devices", 0, "clock"), ("work", "digest"), ("work", "contact_digest"), ("work", "submissions"), ("work", "without_boundary"), ("sampling", "continued"),
                ("host_work",), ("ranks",), ("partition",)}
 
 

@@ -39,6 +39,7 @@ FrameCounts& FrameCounts::operator+=(const FrameCounts& other) {
     body_pairs += other.body_pairs;
     contacts += other.contacts;
     degenerate += other.degenerate;
+    without_boundary += other.without_boundary;
     rejected += other.rejected;
     undecided_by_filter += other.undecided_by_filter;
     undecided_by_double += other.undecided_by_double;

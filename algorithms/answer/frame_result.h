@@ -77,6 +77,7 @@ struct FrameCounts {
     std::uint64_t count = 0;               ///< candidate pairs
     std::uint64_t body_pairs = 0;          ///< passed to run(), or found
     std::uint64_t contacts = 0;            ///< contact points; 0 unless output=pairs
+    std::uint64_t without_boundary = 0;    ///< pairs without the boundary faces that the contact rule needs
     std::uint64_t degenerate = 0;          ///< pairs without contacts because a tetrahedron has no volume
     std::uint64_t rejected = 0;            ///< pairs with a separating axis
     std::uint64_t undecided_by_filter = 0; ///< by the certified filter (decision=recheck, exact)

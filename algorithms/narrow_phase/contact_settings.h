@@ -24,6 +24,12 @@ constexpr unsigned traits_of(ContactRule rule) {
     return traits[static_cast<unsigned>(rule)];
 }
 
+/// Number of the two tetrahedra of a pair that must have boundary faces for the rule to make contacts.
+constexpr unsigned boundaries_needed(ContactRule rule) {
+    const unsigned traits = traits_of(rule);
+    return (traits & TANDEM_BOTH_BOUNDARY) != 0 ? 2 : (traits & TANDEM_ONE_BOUNDARY) != 0 ? 1 : 0;
+}
+
 /// Contact settings of resolved settings; the defaults when contact_rule=none.
 ContactSettings contact_settings_of(const Settings& settings);
 

@@ -17,8 +17,8 @@ constexpr std::uint64_t least_waiting = 1024;
 
 /// Groups are no larger than the local memory of this stage's kernels allows. They use 2048 / `divisor`
 /// work-items per compute unit of a GPU.
-LaunchShape shape_for(LaunchShape shape, std::uint32_t divisor) {
-    constexpr std::uint32_t largest = 128;
+LaunchShape shape_for(LaunchShape shape, Precision precision, std::uint32_t divisor) {
+    const std::uint32_t largest = precision == Precision::fp64 ? 64 : 128;
     const auto items = std::uint64_t{shape.groups} * shape.group_size / divisor;
     const auto size = std::min(shape.group_size, largest);
     return {size, static_cast<std::uint32_t>(std::max<std::uint64_t>(1, items / size))};
@@ -28,13 +28,15 @@ LaunchShape shape_for(LaunchShape shape, std::uint32_t divisor) {
 
 ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings, LaunchShape shape,
                            Launches launches)
-    : bodies_(bodies), shape_(shape_for(shape, 1)), few_shape_(shape_for(shape, 2)) {
+    : bodies_(bodies), shape_(shape_for(shape, bodies.geometry().precision, 1)),
+      few_shape_(shape_for(shape, bodies.geometry().precision, 2)) {
     auto& device = bodies.device();
     auto defines = row_defines(bodies.geometry(), shape_.group_size);
     define(defines, parameters::pair_layout, bodies_.pair_layout());
     define(defines, parameters::contact_rule, settings.rule);
+    defines["BOUNDARY_NEEDED"] = std::to_string(boundaries_needed(settings.rule));
     if (settings.decision != DecisionPrecision::fp32)
-        decision_ = std::make_unique<DecisionStage>(bodies, settings.decision, shape);
+        decision_ = std::make_unique<DecisionStage>(bodies, settings, shape);
     const auto& last = kernel_source("algorithms/narrow_phase/contacts.cl");
     if (launches == Launches::apart) {
         defines["DECIDED"] = decision_ && !decides_open() ? "1" : "0";
@@ -86,13 +88,12 @@ void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first
     device.launch(certify_, grid, certify);
     if (decides_open())
         decision_->launch_open(answer.pairs.buffer(), first, end, waiting_.buffer(LIST_OPEN), status);
-    const std::array<Argument, 11> separate{answer.pairs.buffer(),
+    const std::array<Argument, 10> separate{answer.pairs.buffer(),
                                             first,
                                             bodies_.owners(),
                                             bodies_.poses(),
                                             bodies_.tetrahedra(),
                                             bodies_.vertices(),
-                                            bodies_.boundary(),
                                             verdicts(),
                                             waiting_.buffer(LIST_OPEN),
                                             waiting_.buffer(LIST_MEETING),

@@ -12,42 +12,72 @@
 #define AT_ONCE 0
 #endif
 
-// State of a pair after certificate and tests.
-DEVICE int try_pair(const Candidates* all, uint index) {
+// State of a pair. `pair`: as in try_all.
+DEVICE int try_pair(const Candidates* all, uint index, int apart, LOCAL Encounter* pair) {
+    if (lacks_boundary(all, index)) return WITHOUT_BOUNDARY;
+    if (apart) return REJECTED;
     int edge = -1;
     const int state = try_certificate(all, index, &edge);
-    return state == OPEN ? try_all(all, index, edge) : state;
+    return state == OPEN ? try_all(all, index, edge, pair) : state;
 }
 
-// Words of a group's local memory. IN_STORAGE, BESIDE: numbers of contacts in the storage and outside it, 0
-// between steps. ROWS: number of rows to write from the storage. FIRST_ROW: the first of them in the answer.
-#define IN_STORAGE 0
-#define BESIDE 1
-#define ROWS 2
-#define FIRST_ROW 3
+// Features of a group's pairs wait in a queue, so that all work-items have one, however many a pair has. An
+// entry is the number of a work-item, whose pair it is, and that of a feature.
+#define QUEUED 8 // features of a work-item that enter at a time
+#define FEATURE_BITS 6
+#define FEATURE_OF(entry) ((int)((entry) & ((1u << FEATURE_BITS) - 1u)))
+#define OWNER_OF(entry) ((entry) >> FEATURE_BITS)
 
-// Reserves consecutive rows for the contacts of a group and writes them. The whole group must call it.
-DEVICE void write_together(const ContactBatch* batch, uint index, const BatchStorage* storage,
-                           LOCAL uint* group, const Sink* sink) {
-    const uint staged = batch->count != 0u ? staged_of(batch) : 0u;
-    const uint unstored = batch->count - staged;
-    const uint before = staged != 0u ? LOCAL_ATOMIC_ADD(group + IN_STORAGE, staged) : 0u;
-    const uint before_unstored = unstored != 0u ? LOCAL_ATOMIC_ADD(group + BESIDE, unstored) : 0u;
-    for (uint i = 0; i < staged; ++i)
-        storage->in_order[before + i] = (unsigned short)(i * GROUP_SIZE + LOCAL_ID);
+// Words of a group's local memory. They are 0 between calls of make_contacts.
+#define QUEUE_END GROUP_OWN         // number of entries in the queue
+#define UNFINISHED (GROUP_OWN + 1)  // number of work-items with features that are not in the queue yet
+#define NEW_CONTACTS (GROUP_OWN + 2)
+#define FIRST_ROW (GROUP_OWN + 3) // of the new contacts in the answer
+
+// Moves features of the work-item, one bit each, to the queue; returns the rest.
+DEVICE ulong enqueue(ulong features, LOCAL unsigned short* queue, LOCAL uint* group) {
+    const uint all = COUNT_ONES(features) + COUNT_ONES(features >> 32);
+    const uint count = all < QUEUED ? all : QUEUED;
+    const uint before = count != 0u ? LOCAL_ATOMIC_ADD(group + QUEUE_END, count) : 0u;
+    for (uint i = 0; i < count; ++i, features &= features - 1)
+        queue[before + i] = (unsigned short)(LOCAL_ID << FEATURE_BITS | (uint)lowest(features));
+    if (features != 0) LOCAL_ATOMIC_ADD(group + UNFINISHED, 1u);
+    return features;
+}
+
+// The row of the work-item's contact, if it has one. The whole group must call it. It also empties the queue.
+DEVICE ulong row_in_answer(int has_contact, LOCAL uint* group, GLOBAL uint* status) {
+    const uint before = has_contact ? LOCAL_ATOMIC_ADD(group + NEW_CONTACTS, 1u) : 0u;
     BARRIER;
     if (LOCAL_ID == 0u) {
-        const uint count = group[IN_STORAGE] + group[BESIDE];
-        group[ROWS] = group[IN_STORAGE];
-        group[FIRST_ROW] = count != 0u ? counter_add(sink->status + STATUS_CONTACTS, count) : 0u;
-        group[IN_STORAGE] = group[BESIDE] = 0u;
+        const uint count = group[NEW_CONTACTS];
+        group[FIRST_ROW] = count != 0u ? counter_add(status + STATUS_CONTACTS, count) : 0u;
+        group[NEW_CONTACTS] = group[QUEUE_END] = group[UNFINISHED] = 0u;
     }
     BARRIER;
-    const uint rows = group[ROWS];
-    const ulong slot = group[FIRST_ROW];
-    write_staged(storage, rows, slot, sink);
-    if (unstored != 0u) write_unstored(batch, staged, index, slot + rows + before_unstored, sink);
-    BARRIER;
+    return (ulong)group[FIRST_ROW] + before;
+}
+
+// Makes the contacts of a group's pairs. `features`: of the work-item's own pair. The whole group must call
+// it.
+DEVICE void make_contacts(ulong features, LOCAL const MeetingPair* pairs, LOCAL unsigned short* queue,
+                          LOCAL uint* group, const Sink* sink) {
+    uint unfinished = 0;
+    do {
+        features = enqueue(features, queue, group);
+        BARRIER;
+        const uint end = group[QUEUE_END];
+        unfinished = group[UNFINISHED];
+        BARRIER;
+        for (uint start = 0; start < end; start += GROUP_SIZE) {
+            const uint entry = start + LOCAL_ID < end ? queue[start + LOCAL_ID] : 0u;
+            LOCAL const MeetingPair* pair = pairs + OWNER_OF(entry);
+            Touch touch;
+            const int has_contact = start + LOCAL_ID < end && touch_of(pair, FEATURE_OF(entry), &touch);
+            const ulong row = row_in_answer(has_contact, group, sink->status);
+            if (has_contact && row < sink->capacity) write_touch(pair, FEATURE_OF(entry), &touch, row, sink);
+        }
+    } while (unfinished != 0u);
 }
 
 // `meeting`: read unless AT_ONCE. `first`, `pair_capacity` and `verdicts`: as in certify_pairs, if AT_ONCE.
@@ -58,13 +88,8 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
                               GLOBAL const uint* meeting, GLOBAL uint* contact_ids,
                               GLOBAL real* contact_values, uint contact_capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, group, GROUP_WORDS);
-    LOCAL_ARRAY(RealRow, touches, STAGED * GROUP_SIZE);
-    LOCAL_ARRAY(RealRow, origins, GROUP_SIZE);
-    LOCAL_ARRAY(RealRow, normals, GROUP_SIZE);
-    LOCAL_ARRAY(uint, pairs, GROUP_SIZE);
-    LOCAL_ARRAY(unsigned short, in_order, STAGED* GROUP_SIZE);
-    LOCAL_ARRAY(uchar, features, STAGED * GROUP_SIZE);
-    const BatchStorage storage = {touches, features, origins, normals, pairs, in_order};
+    LOCAL_ARRAY(MeetingPair, pairs, GROUP_SIZE);
+    LOCAL_ARRAY(unsigned short, queue, QUEUED* GROUP_SIZE);
     const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
     const Sink sink = {contact_ids, contact_values, status, contact_capacity};
     const ulong count =
@@ -72,22 +97,18 @@ KERNEL void generate_contacts(GLOBAL const uint* found, uint first, uint pair_ca
     ulong start = (AT_ONCE ? (ulong)first : 0u) + GROUP_ID * (uint)GROUP_SIZE;
     begin_group(group);
     do {
-        uint index = 0;
-        int state = STEPPED;
+        ulong features = 0;
         if (start + LOCAL_ID < count) {
-            index = AT_ONCE ? (uint)(start + LOCAL_ID) : meeting[start + LOCAL_ID];
-            state = MEETING;
+            const uint index = AT_ONCE ? (uint)(start + LOCAL_ID) : meeting[start + LOCAL_ID];
+            int state = MEETING;
             if (AT_ONCE) {
                 const int apart = DECIDED && verdicts[index] == VERDICT_APART;
-                state = apart ? REJECTED : try_pair(&all, index);
+                state = try_pair(&all, index, apart, &pairs[LOCAL_ID].pair);
                 count_state(state, group);
-                if (state == MEETING && has_no_normal(&all, index)) state = STEPPED;
             }
+            if (state == MEETING) features = prepare_contacts(&all, index, pairs + LOCAL_ID);
         }
-        ContactBatch batch;
-        batch.count = 0u;
-        if (state == MEETING) batch_contacts(&all, index, &batch, &storage);
-        write_together(&batch, index, &storage, group, &sink);
+        make_contacts(features, pairs, queue, group, &sink);
         start += GLOBAL_COUNT;
     } while (start < count);
     if (AT_ONCE) end_group(group, status);

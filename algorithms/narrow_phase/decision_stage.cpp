@@ -32,10 +32,11 @@ std::vector<std::uint8_t> verdicts_of(const std::vector<std::byte>& bytes) {
 
 } // namespace
 
-DecisionStage::DecisionStage(const Bodies& bodies, DecisionPrecision decision, LaunchShape shape)
-    : bodies_(bodies), decision_(decision), shape_(shape) {
+DecisionStage::DecisionStage(const Bodies& bodies, const ContactSettings& settings, LaunchShape shape)
+    : bodies_(bodies), decision_(settings.decision), shape_(shape) {
     auto defines = row_defines(bodies.geometry(), shape.group_size);
     define(defines, parameters::pair_layout, bodies.pair_layout());
+    defines["BOUNDARY_NEEDED"] = std::to_string(boundaries_needed(settings.rule));
     auto& device = bodies.device();
     std::vector<Column> columns{{"verdicts", 1}, {"pairs undecided in double", 4}};
     if (uses_certificates()) columns.push_back({"pairs undecided by the filter", 4});
@@ -47,10 +48,10 @@ DecisionStage::DecisionStage(const Bodies& bodies, DecisionPrecision decision, L
         filter_open_ = device.compile(filter, "filter_pairs", defines);
         defines.erase("OVER_OPEN");
     }
-    defines["RECHECK_ALL"] = decision == DecisionPrecision::fp64 ? "1" : "0";
+    defines["RECHECK_ALL"] = decision_ == DecisionPrecision::fp64 ? "1" : "0";
     const auto& source = kernel_source("algorithms/narrow_phase/recheck.cl");
     recheck_ = device.compile(source, "recheck_pairs", defines);
-    if (decision != DecisionPrecision::exact) return;
+    if (decision_ != DecisionPrecision::exact) return;
     gather_ = device.compile(source, "gather_corners", defines);
     settle_ = device.compile(source, "settle_pairs", defines);
 }
@@ -88,13 +89,14 @@ void DecisionStage::recheck(const Buffer& found, std::uint64_t first, std::uint6
 /// Launches either kernel; `own` has the arguments in which they differ.
 void DecisionStage::decide(const Kernel& kernel, const Buffer& found, std::uint64_t first, std::uint64_t end,
                            const std::array<Argument, 3>& own, const Status& status) {
-    const std::array<Argument, 11> arguments{found,
+    const std::array<Argument, 12> arguments{found,
                                              static_cast<std::uint32_t>(first),
                                              static_cast<std::uint32_t>(end),
                                              bodies_.owners(),
                                              bodies_.poses(),
                                              bodies_.tetrahedra(),
                                              bodies_.vertices(),
+                                             bodies_.boundary(),
                                              own[0],
                                              own[1],
                                              own[2],

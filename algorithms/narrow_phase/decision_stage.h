@@ -11,10 +11,11 @@ namespace tandem {
 
 /// Decides with certainty which candidate pairs in a buffer meet: settings decision=recheck, fp64 and exact.
 /// STATUS_UNDECIDED_BY_FILTER counts the pairs that the filter could not decide, STATUS_UNDECIDED_BY_DOUBLE
-/// those that double could not.
+/// those that double could not. Pairs without the boundary faces that the contact rule needs get no verdict
+/// and are not counted.
 class DecisionStage {
 public:
-    DecisionStage(const Bodies& bodies, DecisionPrecision decision, LaunchShape shape);
+    DecisionStage(const Bodies& bodies, const ContactSettings& settings, LaunchShape shape);
 
     /// Whether pairs with a certificate need no verdict. decision=fp64 has no certificates.
     bool uses_certificates() const { return decision_ != DecisionPrecision::fp64; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The certified filter in the cell's precision: a verdict for every pair, and a list of those it cannot
-// decide. Each pair first gets a certificate, from this kernel or, with OVER_OPEN, from certify_pairs before
+// The certified filter in the cell's precision: a verdict for every pair that has the boundary faces that the
+// contact rule needs, and a list of those it cannot decide. Each pair first gets a certificate, from this kernel or, with OVER_OPEN, from certify_pairs before
 // it.
 #include "backends/portable.h"
 
@@ -28,13 +28,14 @@ DEVICE int filtered(const Candidates* all, uint index) {
 // `undecided_by_filter` has capacity for every pair.
 KERNEL void filter_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* owners,
                          GLOBAL const real* poses, GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
-                         GLOBAL const uint* open, GLOBAL uchar* verdicts, GLOBAL uint* undecided_by_filter,
+                         GLOBAL const uchar* boundary, GLOBAL const uint* open, GLOBAL uchar* verdicts, GLOBAL uint* undecided_by_filter,
                          GLOBAL uint* status) {
-    const Candidates all = {found, owners, poses, tetrahedra, vertices, 0};
+    const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
     const ulong count =
         OVER_OPEN ? status[STATUS_WAITING + LIST_OPEN] : stored(status + STATUS_PAIRS, pair_capacity);
     for (ulong i = (OVER_OPEN ? 0u : (ulong)first) + GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         const uint index = OVER_OPEN ? first + PAIR_OF_OPEN(open[i]) : (uint)i;
+        if (OVER_OPEN == 0 && lacks_boundary(&all, index)) continue;
         const int verdict = filtered(&all, index);
         verdicts[index] = (uchar)verdict;
         if (verdict == VERDICT_OPEN)

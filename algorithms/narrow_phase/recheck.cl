@@ -15,15 +15,16 @@
 // decide either; it has capacity for every pair.
 KERNEL void recheck_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* owners,
                           GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
-                          GLOBAL const real* vertices, GLOBAL uchar* verdicts,
+                          GLOBAL const real* vertices, GLOBAL const uchar* boundary, GLOBAL uchar* verdicts,
                           GLOBAL const uint* undecided_by_filter, GLOBAL uint* undecided_by_double,
                           GLOBAL uint* status) {
-    const Candidates all = {found, owners, poses, tetrahedra, vertices, 0};
+    const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
     const uint pairs = stored(status + STATUS_PAIRS, pair_capacity);
     const ulong count = RECHECK_ALL ? pairs : status[STATUS_UNDECIDED_BY_FILTER];
     for (ulong i = (RECHECK_ALL ? (ulong)first : 0u) + GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
         const uint index = RECHECK_ALL ? (uint)i : undecided_by_filter[i];
         if (index < first) continue;
+        if (RECHECK_ALL != 0 && lacks_boundary(&all, index)) continue;
         Point a[4];
         Point b[4];
         load_pair(&all, index, a, b);

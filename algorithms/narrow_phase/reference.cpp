@@ -145,6 +145,11 @@ template<class Real>
 std::vector<Contact<Real>> reference_contacts(const Corners<Real>& a, const Corners<Real>& b,
                                               unsigned boundary_a, unsigned boundary_b, ContactCounts& counts,
                                               const ContactSettings& settings) {
+    const unsigned with_faces = (boundary_a != 0 ? 1 : 0) + (boundary_b != 0 ? 1 : 0);
+    if (with_faces < boundaries_needed(settings.rule)) {
+        ++counts.without_boundary;
+        return {};
+    }
     if (decided_apart(a, b, settings.decision, counts)) {
         ++counts.rejected;
         return {};

@@ -38,6 +38,7 @@ struct ContactCounts {
     std::uint64_t rejected = 0;            ///< found apart
     std::uint64_t undecided_by_filter = 0; ///< left open by the certified filter
     std::uint64_t undecided_by_double = 0; ///< left open by double
+    std::uint64_t without_boundary = 0;    ///< lack boundary faces that the rule needs; in no other count
 
     bool operator==(const ContactCounts&) const = default;
 };

@@ -9,31 +9,27 @@
 // DECIDED; pairs not known to be apart then count as meeting.
 KERNEL void separate_pairs(GLOBAL const uint* found, uint first, GLOBAL const uint* owners,
                            GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
-                           GLOBAL const real* vertices, GLOBAL const uchar* boundary,
-                           GLOBAL const uchar* verdicts, GLOBAL const uint* open, GLOBAL uint* meeting,
+                           GLOBAL const real* vertices, GLOBAL const uchar* verdicts,
+                           GLOBAL const uint* open, GLOBAL uint* meeting,
                            GLOBAL uint* status) {
     LOCAL_ARRAY(uint, group, GROUP_WORDS);
-    const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
+    LOCAL_ARRAY(Encounter, pairs, GROUP_SIZE);
+    const Candidates all = {found, owners, poses, tetrahedra, vertices, 0};
     const uint count = status[STATUS_WAITING + LIST_OPEN];
     uint start = GROUP_ID * (uint)GROUP_SIZE;
     begin_group(group);
     do {
         int state = STEPPED;
         uint index = 0;
-        int has_normal = 0;
         if (start + LOCAL_ID < count) {
             const uint word = open[start + LOCAL_ID];
             index = first + PAIR_OF_OPEN(word);
-            // Read before the tests. Otherwise the pair's members would occupy registers during the tests,
-            // and registers are few.
-            has_normal = !has_no_normal(&all, index);
             const int apart = DECIDED && verdicts[index] == VERDICT_APART;
-            state = apart ? REJECTED : try_all(&all, index, EDGE_OF_OPEN(word));
+            state = apart ? REJECTED : try_all(&all, index, EDGE_OF_OPEN(word), pairs + LOCAL_ID);
         }
         count_state(state, group);
-        const int meets = state == MEETING && has_normal;
-        const uint slot = local_index(meets ? LIST_MEETING : NO_LIST, group, status);
-        if (meets) meeting[slot] = index;
+        const uint slot = local_index(state == MEETING ? LIST_MEETING : NO_LIST, group, status);
+        if (state == MEETING) meeting[slot] = index;
         start += GLOBAL_COUNT;
     } while (start < count);
     end_group(group, status);

@@ -44,7 +44,9 @@ std::shared_ptr<CudaKernel> Modules::compile(const Queue& queue, const KernelSou
     kernel->facts.registers = attribute(function_registers);
     kernel->facts.local_bytes = attribute(function_shared_bytes);
     kernel->facts.max_group_size = attribute(function_max_threads);
-    kernel->facts.spill_bytes = use_of(loaded.image.log, entry).spill_bytes;
+    const auto use = use_of(loaded.image.log, entry);
+    kernel->facts.spill_bytes = use.spill_bytes;
+    kernel->facts.stack_bytes = use.stack_bytes;
     kernel->facts.occupancy = occupancy(kernel->function, defines);
     return kernel;
 }

@@ -82,6 +82,7 @@ void Programs::read_facts(OpenclKernel& kernel, cl_program program, std::string_
         const auto use = use_of(build_log(program, device_), entry);
         facts.registers = use.registers;
         facts.spill_bytes = use.spill_bytes;
+        facts.stack_bytes = use.stack_bytes;
     }
     facts.local_bytes =
         static_cast<std::int64_t>(kernel_value<cl_ulong>(kernel.kernel, device_, CL_KERNEL_LOCAL_MEM_SIZE));

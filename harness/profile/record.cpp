@@ -41,6 +41,7 @@ Json kernel_json(const KernelProfile& kernel) {
             {"registers", known(facts.registers)},
             {"local_bytes", known(facts.local_bytes)},
             {"spill_bytes", known(facts.spill_bytes)},
+            {"stack_bytes", known(facts.stack_bytes)},
             {"occupancy", facts.occupancy < 0 ? Json() : Json(facts.occupancy)},
             {"defines", facts.defines},
             {"bytes", known(kernel.bytes)},

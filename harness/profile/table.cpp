@@ -90,6 +90,7 @@ std::vector<std::pair<const char*, Text>> columns_of() {
             {"registers", fact(&KernelFacts::registers)},
             {"local", fact(&KernelFacts::local_bytes)},
             {"spills", fact(&KernelFacts::spill_bytes)},
+            {"stack", fact(&KernelFacts::stack_bytes)},
             {"occupancy", occupancy}};
 }
 

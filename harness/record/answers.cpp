@@ -55,6 +55,13 @@ Fields<CellRecord> effort_fields() {
          "algorithms' "
          "has the unit and the meaning of each; null where it was not counted (--no-count)",
          counters_json},
+        {"without_boundary",
+         count(),
+         "candidate pairs without the boundary faces that the contact rule needs, over all frames; rejected "
+         "and undecided_* leave them out; records from before it have none, and their rejected and undecided_* "
+         "include such pairs",
+         [](auto& r) { return r.m.without_boundary; },
+         {.optional = true}},
         {"rejected", count(), "candidate pairs that were told apart, over all frames",
          [](auto& r) { return r.m.rejected; }},
         {"undecided_by_filter", known_count(),
@@ -103,7 +110,13 @@ const Fields<KernelFacts>& kernel_fields() {
          "bytes of local memory a work-group; null when the backend does not tell",
          [](auto& k) { return known_or_null(k.local_bytes); }},
         {"spill_bytes", known_count(), "bytes spilled a work-item; null when the backend does not tell",
-         [](auto& k) { return known_or_null(k.spill_bytes); }}};
+         [](auto& k) { return known_or_null(k.spill_bytes); }},
+        {"stack_bytes",
+         known_count(),
+         "bytes of a work-item's private arrays in device memory; null when the backend does not tell; records "
+         "from before it have none",
+         [](auto& k) { return known_or_null(k.stack_bytes); },
+         {.optional = true}}};
     return fields;
 }
 

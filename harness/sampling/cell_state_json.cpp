@@ -8,7 +8,7 @@ namespace tandem {
 
 TANDEM_FIELDS(Digest, count, a, b)
 TANDEM_FIELDS(StageSample, device_ns, host_ns, launches, waits, bytes)
-TANDEM_FIELDS(KernelFacts, entry, defines, compile_ms, registers, local_bytes, spill_bytes, max_group_size,
+TANDEM_FIELDS(KernelFacts, entry, defines, compile_ms, registers, local_bytes, spill_bytes, stack_bytes, max_group_size,
               occupancy)
 TANDEM_FIELDS(KernelSample, device_ns, launches, stage, groups, group_size, facts)
 TANDEM_FIELDS(HostWorkSample, host_ns, times, stage)
@@ -62,6 +62,7 @@ void each_checked(State& state, const Each& each) {
     each("candidate_pairs", m.candidate_pairs);
     each("contacts", m.contacts);
     each("degenerate", m.degenerate);
+    each("without_boundary", m.without_boundary);
     each("rejected", m.rejected);
     each("undecided_by_filter", m.undecided_by_filter);
     each("undecided_by_double", m.undecided_by_double);

@@ -107,6 +107,7 @@ void LocalSampler::add_counts(const FrameResult& result) {
     out_.candidate_pairs.push_back(result.count);
     out_.contacts.push_back(result.contacts);
     out_.degenerate += result.degenerate;
+    out_.without_boundary += result.without_boundary;
     out_.rejected += result.rejected;
     out_.undecided_by_filter += result.undecided_by_filter;
     out_.undecided_by_double += result.undecided_by_double;

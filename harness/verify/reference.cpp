@@ -230,6 +230,7 @@ void add_contacts(const Scene& scene, const std::vector<Bounds<Real>>& bounds, s
     answer.contact_digest.a += digest.a;
     answer.contact_digest.b += digest.b;
     answer.degenerate += counts.degenerate;
+    answer.without_boundary += counts.without_boundary;
     answer.rejected += counts.rejected;
     answer.undecided_by_filter += counts.undecided_by_filter;
     answer.undecided_by_double += counts.undecided_by_double;

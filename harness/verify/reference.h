@@ -15,6 +15,7 @@ struct ReferenceAnswer {
     Digest digest;
     std::uint64_t contacts = 0;
     std::uint64_t degenerate = 0;
+    std::uint64_t without_boundary = 0;
     std::uint64_t rejected = 0;
     std::uint64_t undecided_by_filter = 0, undecided_by_double = 0;
     Digest contact_digest;

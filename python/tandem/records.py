@@ -30,7 +30,7 @@ class Records:
         or on the host for a stage without device time. `count_NAME` is a counter of work, `set_NAME` a setting.
     samples: one row per replay: cell, sample, round, ms per frame. Rounds are independent of each other, samples of one round are not.
     stages: one row per stage: cell, stage, device_ms and host_ms per frame with intervals, launches, waits, bytes.
-    kernels: one row per kernel: cell, kernel, device_ms per frame with its interval, launches, registers, local_bytes, spill_bytes.
+    kernels: one row per kernel: cell, kernel, device_ms per frame with its interval, launches, registers, local_bytes, spill_bytes, stack_bytes.
         A kernel with several compiled variants has the largest value of each.
     frames: one row per frame: cell, frame, ms (its median over replays), body_pairs, candidate_pairs, contacts.
     errors: one row per error of a cell that was compared with the exact truth: cell, error, median, p99, max. For false_share (fraction of
@@ -89,7 +89,7 @@ class _Cell:
         used = {}
         for kernel in self.record.get("kernels") or []:
             row = used.setdefault(kernel["entry"], {})
-            for what in ("registers", "local_bytes", "spill_bytes"):
+            for what in ("registers", "local_bytes", "spill_bytes", "stack_bytes"):
                 known = [value for value in (row.get(what), kernel.get(what)) if value is not None]
                 row[what] = max(known, default=None)
         times = self.record.get("kernel_times") or {}
@@ -174,6 +174,6 @@ def read(files):
     device = ("device_ms", "device_ms_low", "device_ms_high")
     return Records(_cells(rows["cells"]), _table(rows["samples"], ("sample", "round"), (), ("ms",)),
                    _table(rows["stages"], ("launches", "waits", "bytes"), ("stage",), (*device, "host_ms", "host_ms_low", "host_ms_high")),
-                   _table(rows["kernels"], ("launches", "registers", "local_bytes", "spill_bytes"), ("kernel",), device),
+                   _table(rows["kernels"], ("launches", "registers", "local_bytes", "spill_bytes", "stack_bytes"), ("kernel",), device),
                    _table(rows["frames"], ("frame", "body_pairs", "candidate_pairs", "contacts"), (), ("ms",)),
                    _table(rows["errors"], (), ("error",), SPREADS), verdicts)

@@ -30,6 +30,7 @@ protected:
         EXPECT_EQ(result.contact_digest(), right.contact_digest);
         EXPECT_EQ(result.download(), right.pairs);
         EXPECT_EQ(result.degenerate, right.degenerate);
+        EXPECT_EQ(result.without_boundary, right.without_boundary);
         EXPECT_EQ(result.rejected, right.rejected);
         EXPECT_EQ(result.undecided_by_filter, right.undecided_by_filter);
         EXPECT_EQ(result.undecided_by_double, right.undecided_by_double);

@@ -157,6 +157,7 @@ void expect_right(Device& on, const Traversal& traversal, const Scene& scene, co
         EXPECT_EQ(result.digest(), expected.digest);
         EXPECT_EQ(result.contact_digest(), expected.contact_digest);
         EXPECT_EQ(result.degenerate, expected.degenerate);
+        EXPECT_EQ(result.without_boundary, expected.without_boundary);
         EXPECT_EQ(result.rejected, expected.rejected);
         pairs += result.count;
         contacts += result.contacts;

@@ -81,6 +81,7 @@ protected:
                                         contact_settings_of(settings));
         const auto result = run_among_all(*session, scene, frame);
         EXPECT_EQ(result.contact_digest(), expected.contact_digest);
+        EXPECT_EQ(result.without_boundary, expected.without_boundary);
         EXPECT_EQ(result.rejected, expected.rejected);
         EXPECT_EQ(result.degenerate, expected.degenerate);
         EXPECT_EQ(result.undecided_by_filter, expected.undecided_by_filter);

@@ -39,12 +39,13 @@ inline std::size_t least_bytes(Device& on, const Traversal& traversal, const Sce
 /// The parts of a frame's answer that must not depend on memory.
 struct Answer {
     Digest pairs, contacts;
-    std::array<std::uint64_t, 4> counts{};
+    std::array<std::uint64_t, 5> counts{};
 
     explicit Answer(const FrameResult& result)
         : pairs(result.digest()),
           contacts(result.contact_digest()),
-          counts{result.degenerate, result.rejected, result.undecided_by_filter, result.undecided_by_double} {
+          counts{result.without_boundary, result.degenerate, result.rejected, result.undecided_by_filter,
+                 result.undecided_by_double} {
     }
     bool operator==(const Answer&) const = default;
 };

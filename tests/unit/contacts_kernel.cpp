@@ -163,6 +163,7 @@ TYPED_TEST(ContactsKernel, EqualsTheReferenceBitForBit) {
     ASSERT_GT(expected.total, pairs.size() / 4);
     ASSERT_GT(expected.counts.degenerate, 1000u);
     ASSERT_GT(expected.counts.rejected, 1000u);
+    ASSERT_GT(expected.counts.without_boundary, 500u);
     const auto count = static_cast<std::uint32_t>(pairs.size());
     for (auto& device : this->devices)
         for (const auto group_size : this->group_sizes(*device)) {
@@ -172,6 +173,7 @@ TYPED_TEST(ContactsKernel, EqualsTheReferenceBitForBit) {
             ASSERT_EQ(outcome.counter(STATUS_CONTACTS), expected.total);
             EXPECT_EQ(outcome.counter(STATUS_DEGENERATE), expected.counts.degenerate);
             EXPECT_EQ(outcome.counter(STATUS_REJECTED), expected.counts.rejected);
+            EXPECT_EQ(outcome.counter(STATUS_WITHOUT_BOUNDARY), expected.counts.without_boundary);
             EXPECT_EQ(outcome.digest_a(),
                       expected.digest_a); // covers every bit of every value
             EXPECT_EQ(outcome.digest_b(), expected.digest_b);
@@ -195,6 +197,7 @@ TYPED_TEST(ContactsKernel, EqualsTheReferenceAtEveryScale) {
         const auto outcome = kernels.run(0, count, 0, count, static_cast<std::uint32_t>(expected.total));
         EXPECT_EQ(outcome.counter(STATUS_DEGENERATE), expected.counts.degenerate);
         EXPECT_EQ(outcome.counter(STATUS_REJECTED), expected.counts.rejected);
+        EXPECT_EQ(outcome.counter(STATUS_WITHOUT_BOUNDARY), expected.counts.without_boundary);
         ASSERT_EQ(outcome.counter(STATUS_CONTACTS), expected.total);
         EXPECT_EQ(outcome.digest_a(), expected.digest_a);
         EXPECT_EQ(by_pair(outcome, expected.total, pairs.size()), expected.contacts);
@@ -211,25 +214,27 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReference) {
     add_hard_pairs(pairs);
     const auto count = static_cast<std::uint32_t>(pairs.size());
     std::vector<ContactSettings> cases{
-        {opposing, recheck}, {clip, recheck}, {restricted, recheck}, {consistent, recheck}, {sat, fp64}};
+        {opposing, recheck}, {clip, recheck}, {restricted, recheck}, {consistent, recheck}, {sat, fp64}, {vertex, fp64}};
     for (const auto& [rule, name] : support::contact_rules()) // another test has the default rule
         if (rule != opposing) cases.push_back({rule, fp32});
     for (const auto settings : cases) {
         const Expected<TypeParam> expected(pairs, settings);
         ASSERT_GT(expected.total, pairs.size() / 20);
         ASSERT_GT(expected.counts.rejected, pairs.size() / 40);
+        EXPECT_EQ(expected.counts.without_boundary > 0, boundaries_needed(settings.rule) > 0);
         for (auto& device : this->devices) {
             SCOPED_TRACE(device->info().id + " rule " + std::to_string(static_cast<int>(settings.rule))
                          + " decision " + std::to_string(static_cast<int>(settings.decision)));
             ContactKernels<TypeParam> kernels(*device, pairs, this->group_sizes(*device).back());
-            // One combination decides before it tries certificates; the others decide what certificates leave
+            // Two combinations decide before they try certificates; the others decide what certificates leave
             // undecided.
-            if (settings.decision == recheck && settings.rule == clip)
+            if (settings.decision == recheck && (settings.rule == clip || settings.rule == consistent))
                 kernels.set_launches(ContactStage::Launches::at_once);
             const auto outcome =
                 kernels.run(0, count, 0, count, static_cast<std::uint32_t>(expected.total), settings);
             EXPECT_EQ(outcome.counter(STATUS_DEGENERATE), expected.counts.degenerate);
             EXPECT_EQ(outcome.counter(STATUS_REJECTED), expected.counts.rejected);
+            EXPECT_EQ(outcome.counter(STATUS_WITHOUT_BOUNDARY), expected.counts.without_boundary);
             EXPECT_EQ(outcome.counter(STATUS_UNDECIDED_BY_FILTER), expected.counts.undecided_by_filter);
             EXPECT_EQ(outcome.counter(STATUS_UNDECIDED_BY_DOUBLE), expected.counts.undecided_by_double);
             ASSERT_EQ(outcome.counter(STATUS_CONTACTS), expected.total);
@@ -269,6 +274,7 @@ TYPED_TEST(ContactsKernel, ProcessesExistingPairsOnly) {
             const auto outcome = kernels.run(100, 400, 0, 700, capacity);
             EXPECT_EQ(outcome.counter(STATUS_CONTACTS), expected.total);
             EXPECT_EQ(outcome.counter(STATUS_REJECTED), expected.counts.rejected);
+            EXPECT_EQ(outcome.counter(STATUS_WITHOUT_BOUNDARY), expected.counts.without_boundary);
             EXPECT_EQ(outcome.counter(STATUS_DEGENERATE), expected.counts.degenerate);
             EXPECT_EQ(kernels.run(100, 700, 0, 400, capacity).counter(STATUS_CONTACTS), expected.total);
             EXPECT_EQ(kernels.run(100, 3, 1, 400, capacity).counter(STATUS_CONTACTS), expected.total);

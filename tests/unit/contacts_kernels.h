@@ -81,6 +81,8 @@ public:
                              ContactSettings settings = {}) {
         Defines defines{{"PRECISION", sizeof(Real) == 8 ? "64" : "32"},
                         {"GROUP_SIZE", std::to_string(group_size_)}};
+        const Defines digesting = defines;
+        defines["BOUNDARY_NEEDED"] = std::to_string(boundaries_needed(settings.rule));
         ContactOutcome<Real> outcome{std::vector<std::uint32_t>(STATUS_WORDS),
                                      std::vector<PairFeature>(capacity + 8, {~0u, ~0u}),
                                      std::vector<Real>(8 * (capacity + 8), Real(-7))};
@@ -88,7 +90,6 @@ public:
         outcome.status[STATUS_PAIRS + 1] = high;
         const Buffer status = uploaded(outcome.status), rows = uploaded(outcome.rows),
                      values = uploaded(outcome.values);
-        const Defines digesting = defines;
         const bool at_once = launches_ == ContactStage::Launches::at_once;
         if (at_once || settings.decision == DecisionPrecision::fp64)
             decide(defines, settings.decision, first, pair_capacity, status, false);
@@ -129,9 +130,8 @@ private:
         defines["DECIDED"] = decision == DecisionPrecision::fp64 ? "1" : "0";
         launch("certify.cl", "certify_pairs", defines, certify);
         if (decides_open) decide(defines, decision, first, pair_capacity, status, true);
-        const std::array<Argument, 11> separate{found_,      first,     bodies_,   poses_,
-                                                tetrahedra_, vertices_, boundary_, verdicts_,
-                                                open_,       meeting_,  status};
+        const std::array<Argument, 10> separate{found_,    first,     bodies_, poses_,   tetrahedra_,
+                                                vertices_, verdicts_, open_,   meeting_, status};
         defines["DECIDED"] = decision == DecisionPrecision::fp32 ? "0" : "1";
         launch("separate.cl", "separate_pairs", defines, separate);
     }
@@ -140,22 +140,32 @@ private:
     void decide(Defines defines, DecisionPrecision decision, std::uint32_t first, std::uint32_t pair_capacity,
                 const Buffer& status, bool open) {
         if (decision == DecisionPrecision::fp32) return;
-        const std::array<Argument, 11> filter{
-            found_, first,     pair_capacity,        bodies_, poses_, tetrahedra_, vertices_,
-            open_,  verdicts_, undecided_by_filter_, status};
+        const std::array<Argument, 12> filter{found_,
+                                              first,
+                                              pair_capacity,
+                                              bodies_,
+                                              poses_,
+                                              tetrahedra_,
+                                              vertices_,
+                                              boundary_,
+                                              open_,
+                                              verdicts_,
+                                              undecided_by_filter_,
+                                              status};
         defines.erase("CONTACT_RULE");
         defines.erase("DECIDED");
         auto filtering = defines;
         filtering["OVER_OPEN"] = open ? "1" : "0";
         if (decision != DecisionPrecision::fp64) launch("filter.cl", "filter_pairs", filtering, filter);
         defines["RECHECK_ALL"] = decision == DecisionPrecision::fp64 ? "1" : "0";
-        const std::array<Argument, 11> recheck{found_,
+        const std::array<Argument, 12> recheck{found_,
                                                first,
                                                pair_capacity,
                                                bodies_,
                                                poses_,
                                                tetrahedra_,
                                                vertices_,
+                                               boundary_,
                                                verdicts_,
                                                undecided_by_filter_,
                                                undecided_by_double_,
