@@ -28,7 +28,8 @@ LaunchShape shape_for(LaunchShape shape, Precision precision, std::uint32_t divi
 
 ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings, LaunchShape shape,
                            Launches launches)
-    : bodies_(bodies), shape_(shape_for(shape, bodies.geometry().precision, 1)),
+    : bodies_(bodies),
+      shape_(shape_for(shape, bodies.geometry().precision, 1)),
       few_shape_(shape_for(shape, bodies.geometry().precision, 2)) {
     auto& device = bodies.device();
     auto defines = row_defines(bodies.geometry(), shape_.group_size);

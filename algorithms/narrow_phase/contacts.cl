@@ -29,8 +29,8 @@ DEVICE int try_pair(const Candidates* all, uint index, int apart, LOCAL Encounte
 #define OWNER_OF(entry) ((entry) >> FEATURE_BITS)
 
 // Words of a group's local memory. They are 0 between calls of make_contacts.
-#define QUEUE_END GROUP_OWN         // number of entries in the queue
-#define UNFINISHED (GROUP_OWN + 1)  // number of work-items with features that are not in the queue yet
+#define QUEUE_END GROUP_OWN        // number of entries in the queue
+#define UNFINISHED (GROUP_OWN + 1) // number of work-items with features that are not in the queue yet
 #define NEW_CONTACTS (GROUP_OWN + 2)
 #define FIRST_ROW (GROUP_OWN + 3) // of the new contacts in the answer
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The certified filter in the cell's precision: a verdict for every pair that has the boundary faces that the
-// contact rule needs, and a list of those it cannot decide. Each pair first gets a certificate, from this kernel or, with OVER_OPEN, from certify_pairs before
-// it.
+// contact rule needs, and a list of those it cannot decide. Each pair first gets a certificate, from this
+// kernel or, with OVER_OPEN, from certify_pairs before it.
 #include "backends/portable.h"
 
 #define CERTAIN_IN_DOUBLE 0
@@ -28,8 +28,8 @@ DEVICE int filtered(const Candidates* all, uint index) {
 // `undecided_by_filter` has capacity for every pair.
 KERNEL void filter_pairs(GLOBAL const uint* found, uint first, uint pair_capacity, GLOBAL const uint* owners,
                          GLOBAL const real* poses, GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
-                         GLOBAL const uchar* boundary, GLOBAL const uint* open, GLOBAL uchar* verdicts, GLOBAL uint* undecided_by_filter,
-                         GLOBAL uint* status) {
+                         GLOBAL const uchar* boundary, GLOBAL const uint* open, GLOBAL uchar* verdicts,
+                         GLOBAL uint* undecided_by_filter, GLOBAL uint* status) {
     const Candidates all = {found, owners, poses, tetrahedra, vertices, boundary};
     const ulong count =
         OVER_OPEN ? status[STATUS_WAITING + LIST_OPEN] : stored(status + STATUS_PAIRS, pair_capacity);

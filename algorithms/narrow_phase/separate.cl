@@ -9,9 +9,8 @@
 // DECIDED; pairs not known to be apart then count as meeting.
 KERNEL void separate_pairs(GLOBAL const uint* found, uint first, GLOBAL const uint* owners,
                            GLOBAL const real* poses, GLOBAL const uint* tetrahedra,
-                           GLOBAL const real* vertices, GLOBAL const uchar* verdicts,
-                           GLOBAL const uint* open, GLOBAL uint* meeting,
-                           GLOBAL uint* status) {
+                           GLOBAL const real* vertices, GLOBAL const uchar* verdicts, GLOBAL const uint* open,
+                           GLOBAL uint* meeting, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, group, GROUP_WORDS);
     LOCAL_ARRAY(Encounter, pairs, GROUP_SIZE);
     const Candidates all = {found, owners, poses, tetrahedra, vertices, 0};

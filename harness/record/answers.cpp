@@ -58,7 +58,8 @@ Fields<CellRecord> effort_fields() {
         {"without_boundary",
          count(),
          "candidate pairs without the boundary faces that the contact rule needs, over all frames; rejected "
-         "and undecided_* leave them out; records from before it have none, and their rejected and undecided_* "
+         "and undecided_* leave them out; records from before it have none, and their rejected and "
+         "undecided_* "
          "include such pairs",
          [](auto& r) { return r.m.without_boundary; },
          {.optional = true}},
@@ -113,7 +114,8 @@ const Fields<KernelFacts>& kernel_fields() {
          [](auto& k) { return known_or_null(k.spill_bytes); }},
         {"stack_bytes",
          known_count(),
-         "bytes of a work-item's private arrays in device memory; null when the backend does not tell; records "
+         "bytes of a work-item's private arrays in device memory; null when the backend does not tell; "
+         "records "
          "from before it have none",
          [](auto& k) { return known_or_null(k.stack_bytes); },
          {.optional = true}}};

@@ -8,8 +8,8 @@ namespace tandem {
 
 TANDEM_FIELDS(Digest, count, a, b)
 TANDEM_FIELDS(StageSample, device_ns, host_ns, launches, waits, bytes)
-TANDEM_FIELDS(KernelFacts, entry, defines, compile_ms, registers, local_bytes, spill_bytes, stack_bytes, max_group_size,
-              occupancy)
+TANDEM_FIELDS(KernelFacts, entry, defines, compile_ms, registers, local_bytes, spill_bytes, stack_bytes,
+              max_group_size, occupancy)
 TANDEM_FIELDS(KernelSample, device_ns, launches, stage, groups, group_size, facts)
 TANDEM_FIELDS(HostWorkSample, host_ns, times, stage)
 TANDEM_FIELDS(DeviceWork, bodies, body_pairs, pairs, ns, exchange_ns, exchange_bytes, messages)

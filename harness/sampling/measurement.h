@@ -105,7 +105,8 @@ struct Measurement {
     std::vector<RoundConditions> conditions; ///< of every round with samples
     std::vector<std::uint32_t> continued;    ///< first rounds of later runs that resumed the cell
     std::vector<std::uint64_t> body_pairs, candidate_pairs, contacts; ///< [frame]
-    std::uint64_t without_boundary = 0, degenerate = 0, rejected = 0, undecided_by_filter = 0, undecided_by_double = 0;
+    std::uint64_t without_boundary = 0, degenerate = 0, rejected = 0, undecided_by_filter = 0,
+                  undecided_by_double = 0;
     std::uint64_t retries = 0, batches = 0;      ///< of the checking replay
     std::vector<std::vector<DeviceWork>> shared; ///< [frame][device] of the last sample; empty on one device
     std::uint64_t submissions = 0;               ///< calls that submitted work, in the last sample

@@ -45,8 +45,7 @@ struct Answer {
         : pairs(result.digest()),
           contacts(result.contact_digest()),
           counts{result.without_boundary, result.degenerate, result.rejected, result.undecided_by_filter,
-                 result.undecided_by_double} {
-    }
+                 result.undecided_by_double} {}
     bool operator==(const Answer&) const = default;
 };
 

@@ -213,8 +213,8 @@ TYPED_TEST(ContactsKernel, EveryRuleAndDecisionEqualsTheReference) {
     add_nested_pairs(pairs);
     add_hard_pairs(pairs);
     const auto count = static_cast<std::uint32_t>(pairs.size());
-    std::vector<ContactSettings> cases{
-        {opposing, recheck}, {clip, recheck}, {restricted, recheck}, {consistent, recheck}, {sat, fp64}, {vertex, fp64}};
+    std::vector<ContactSettings> cases{{opposing, recheck},   {clip, recheck}, {restricted, recheck},
+                                       {consistent, recheck}, {sat, fp64},     {vertex, fp64}};
     for (const auto& [rule, name] : support::contact_rules()) // another test has the default rule
         if (rule != opposing) cases.push_back({rule, fp32});
     for (const auto settings : cases) {

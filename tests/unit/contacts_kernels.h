@@ -140,18 +140,9 @@ private:
     void decide(Defines defines, DecisionPrecision decision, std::uint32_t first, std::uint32_t pair_capacity,
                 const Buffer& status, bool open) {
         if (decision == DecisionPrecision::fp32) return;
-        const std::array<Argument, 12> filter{found_,
-                                              first,
-                                              pair_capacity,
-                                              bodies_,
-                                              poses_,
-                                              tetrahedra_,
-                                              vertices_,
-                                              boundary_,
-                                              open_,
-                                              verdicts_,
-                                              undecided_by_filter_,
-                                              status};
+        const std::array<Argument, 12> filter{
+            found_, first,     pair_capacity,        bodies_, poses_, tetrahedra_, vertices_, boundary_,
+            open_,  verdicts_, undecided_by_filter_, status};
         defines.erase("CONTACT_RULE");
         defines.erase("DECIDED");
         auto filtering = defines;
