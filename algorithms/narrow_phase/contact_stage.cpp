@@ -15,11 +15,10 @@ constexpr std::uint64_t most_waiting = std::uint64_t{1} << OPEN_PAIR_BITS;
 /// Minimum capacity of the lists when memory is short.
 constexpr std::uint64_t least_waiting = 1024;
 
-/// Groups are no larger than the local memory of this stage's kernels allows. They use 2048 / `divisor`
-/// work-items per compute unit of a GPU.
-LaunchShape shape_for(LaunchShape shape, Precision precision, std::uint32_t divisor) {
+/// Groups are no larger than the local memory of this stage's kernels allows.
+LaunchShape shape_for(LaunchShape shape, Precision precision) {
     const std::uint32_t largest = precision == Precision::fp64 ? 64 : 128;
-    const auto items = std::uint64_t{shape.groups} * shape.group_size / divisor;
+    const auto items = std::uint64_t{shape.groups} * shape.group_size;
     const auto size = std::min(shape.group_size, largest);
     return {size, static_cast<std::uint32_t>(std::max<std::uint64_t>(1, items / size))};
 }
@@ -28,9 +27,10 @@ LaunchShape shape_for(LaunchShape shape, Precision precision, std::uint32_t divi
 
 ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings, LaunchShape shape,
                            Launches launches)
-    : bodies_(bodies),
-      shape_(shape_for(shape, bodies.geometry().precision, 1)),
-      few_shape_(shape_for(shape, bodies.geometry().precision, 2)) {
+    : bodies_(bodies), shape_(shape_for(shape, bodies.geometry().precision)), few_shape_(shape_) {
+    // More groups than run at once: pairs take unlike times, and a group that ends makes room for another.
+    if (bodies.device().info().is_gpu) shape_.groups *= 2;
+    few_shape_.groups = std::max(1u, few_shape_.groups / 2);
     auto& device = bodies.device();
     auto defines = row_defines(bodies.geometry(), shape_.group_size);
     define(defines, parameters::pair_layout, bodies_.pair_layout());
