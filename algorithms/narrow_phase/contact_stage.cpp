@@ -28,8 +28,6 @@ LaunchShape shape_for(LaunchShape shape, Precision precision) {
 ContactStage::ContactStage(const Bodies& bodies, const ContactSettings& settings, LaunchShape shape,
                            Launches launches)
     : bodies_(bodies), shape_(shape_for(shape, bodies.geometry().precision)), few_shape_(shape_) {
-    // More groups than run at once: pairs take unlike times, and a group that ends makes room for another.
-    if (bodies.device().info().is_gpu) shape_.groups *= 2;
     few_shape_.groups = std::max(1u, few_shape_.groups / 2);
     auto& device = bodies.device();
     auto defines = row_defines(bodies.geometry(), shape_.group_size);
@@ -69,11 +67,21 @@ void ContactStage::reserve(std::uint64_t pairs) {
     }
 }
 
+/// More groups than run at once where a GPU has many pairs for each: pairs take unlike times, and a group
+/// that ends makes room for another.
+LaunchShape ContactStage::apart_shape() const {
+    auto shape = shape_;
+    const std::uint64_t many = 4 * std::uint64_t{shape.groups} * shape.group_size;
+    if (bodies_.device().info().is_gpu && expected_ && *expected_ >= many) shape.groups *= 2;
+    return shape;
+}
+
 /// Lists the pairs that meet among first..end - 1. Both lists must be empty before.
 void ContactStage::find_meeting(const AnswerBuffers& answer, std::uint32_t first, std::uint32_t end,
                                 const Status& status) {
     auto& device = bodies_.device();
-    const Grid grid{shape_.groups, shape_.group_size};
+    const auto shape = apart_shape();
+    const Grid grid{shape.groups, shape.group_size};
     const std::array<Argument, 12> certify{answer.pairs.buffer(),
                                            first,
                                            end,
@@ -149,7 +157,7 @@ void ContactStage::launch(const AnswerBuffers& answer, std::uint64_t first, std:
         const auto begin = static_cast<std::uint32_t>(from);
         const auto to = static_cast<std::uint32_t>(std::min(end, from + waiting_.capacity()));
         find_meeting(answer, begin, to, status);
-        generate(generate_, shape_, answer, begin, to, status);
+        generate(generate_, apart_shape(), answer, begin, to, status);
         waiting = true;
     }
 }

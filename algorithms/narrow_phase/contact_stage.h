@@ -32,6 +32,7 @@ public:
 
 private:
     void reserve(std::uint64_t pairs);
+    LaunchShape apart_shape() const;
     void find_meeting(const AnswerBuffers& answer, std::uint32_t first, std::uint32_t end,
                       const Status& status);
     void generate(const Kernel& kernel, LaunchShape shape, const AnswerBuffers& answer, std::uint32_t first,

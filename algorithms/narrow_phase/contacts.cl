@@ -78,6 +78,7 @@ DEVICE void make_contacts(ulong features, LOCAL const MeetingPair* pairs, LOCAL 
             if (has_contact && row < sink->capacity) write_touch(pair, FEATURE_OF(entry), &touch, row, sink);
         }
     } while (unfinished != 0u);
+    BARRIER; // the next pairs replace those that others have just written contacts of
 }
 
 // `meeting`: read unless AT_ONCE. `first`, `pair_capacity` and `verdicts`: as in certify_pairs, if AT_ONCE.
