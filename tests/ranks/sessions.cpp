@@ -9,6 +9,7 @@
 #include "tests/ranks/job.h"
 #include "tests/support/cells.h"
 #include "tests/support/scenes.h"
+#include "tests/ranks/failures.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -387,13 +388,12 @@ int main(int argc, char** argv) {
     testing::InitGoogleTest(&argc, argv);
     MPI_Init(nullptr, nullptr);
     tandem::job = tandem::mpi_ranks(MPI_COMM_WORLD);
-    if (!tandem::job->is_first()) { // one report; failures of the others end the job
+    if (!tandem::job->is_first()) { // one report, and the failures of the others
         auto& listeners = testing::UnitTest::GetInstance()->listeners();
         delete listeners.Release(listeners.default_result_printer());
+        listeners.Append(new tandem::FailuresOfARank(tandem::job->rank()));
     }
     const int failed = RUN_ALL_TESTS();
-    if (failed != 0 && !tandem::job->is_first())
-        fmt::print(stderr, "rank {}: a test failed\n", tandem::job->rank());
     tandem::job.reset();
     MPI_Finalize();
     return failed;
