@@ -9,6 +9,7 @@
 #include "algorithms/traversal.h"
 #include "backends/ptxas_log.h"
 #include "scenes/builtin.h"
+#include "tests/nvrtc/ceiling.h"
 #include "tests/nvrtc/compiling_device.h"
 #include "tests/support/contact_rules.h"
 #include "tests/support/folder.h"
@@ -190,13 +191,13 @@ TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
         const auto is = [&defines = defines](const std::string& name, const std::string& value) {
             return defines.contains(name) && defines.at(name) == value;
         };
-        const bool budgeted = !is("PRECISION", "64") && !is("COUNT_WORK", "1");
+        const bool budgeted = !is_double(defines) && !is("COUNT_WORK", "1");
         if (!budgeted && !support::long_form()) continue; // only printed
         const auto& image = for_hopper(kernel_source(file), defines);
         for (const auto& name : names) {
             const auto use = use_of(image.log, name);
             fmt::print("{:<40} {:<20} {:>3} registers {:>4} bytes spilled{}\n", file, name, use.registers,
-                       use.spill_bytes, is("PRECISION", "64") ? " (double)" : "");
+                       use.spill_bytes, is_double(defines) ? " (double)" : "");
             if (!budgeted) continue;
             const int budget = name == "generate_contacts"    ? 128
                                : name == "separate_pairs"     ? 96
@@ -210,58 +211,50 @@ TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
     }
 }
 
-/// Bytes of a work-item in device memory that a kernel may have, in float. Only rules that search axes or cut
-/// polygons have private arrays there, and decisions.
-int most_private_bytes(const std::string& name, const Defines& defines) {
-    if (name == "filter_pairs") return 200;
-    if (name == "recheck_pairs") return 400;
-    if (name != "generate_contacts") return 0;
-    switch (static_cast<ContactRule>(std::stoi(defines.at("CONTACT_RULE")))) {
-    case ContactRule::clip:
-        return 512;
-    case ContactRule::sat:
-    case ContactRule::restricted:
-    case ContactRule::growth:
-        return 96;
-    default:
-        return 0;
-    }
-}
-
-/// The budget of registers is a quarter of a multiprocessor's work-items for contacts by any rule, three
-/// eighths for certificates, nearly half for the filter after them, and three sixteenths for the decision in
-/// double.
-TEST(Nvrtc, ContactRulesAndDecisionsKeepTheirBudget) {
+TEST(Nvrtc, ContactRulesAndDecisionsKeepTheirCeiling) {
     CompilingDevice device;
     prepare_contacts(device);
     if (!can_compile(device.requested())) return;
-    const std::map<std::string, int> budgets{{"certify_pairs", 80},
-                                             {"separate_pairs", 96},
-                                             {"generate_contacts", 128},
-                                             {"filter_pairs", 72},
-                                             {"recheck_pairs", 168}};
+    for_each(device.requested(), [&](const KernelSource& source, const Defines& defines,
+                                     const std::set<std::string>& names) {
+        const auto& image = for_hopper(source, defines);
+        for (const auto& name : names) {
+            const auto most = ceiling(name, defines);
+            if (!most) continue;
+            const auto use = use_of(image.log, name);
+            EXPECT_LE(use.registers, most->registers) << name << text_of(defines);
+            EXPECT_GE(use.stack_bytes, 0) << name << text_of(defines);
+            EXPECT_GE(use.spill_bytes, 0) << name << text_of(defines);
+            EXPECT_LE(use.stack_bytes + use.spill_bytes, most->private_bytes) << name << text_of(defines);
+        }
+    });
     std::set<std::string> seen;
-    for_each(device.requested(),
-             [&](const KernelSource& source, const Defines& defines, const std::set<std::string>& names) {
-                 if (defines.contains("PRECISION") && defines.at("PRECISION") == "64") return;
-                 const auto& image = for_hopper(source, defines);
-                 for (const auto& name : names) {
-                     // Without a list it starts with its own certificates.
-                     const bool certifies = name == "filter_pairs" && !defines.contains("OVER_OPEN");
-                     const auto budget = budgets.find(certifies ? "certify_pairs" : name);
-                     if (budget == budgets.end()) continue;
-                     const auto use = use_of(image.log, name);
-                     EXPECT_LE(use.registers, budget->second) << name << text_of(defines);
-                     EXPECT_LE(use.stack_bytes + use.spill_bytes, most_private_bytes(name, defines))
-                         << name << text_of(defines);
-                     EXPECT_GE(use.stack_bytes, 0) << name << text_of(defines);
-                     const auto most_spilled = most_private_bytes(name, defines) > 400 ? 64 : 0; // rule clip
-                     EXPECT_LE(use.spill_bytes, most_spilled) << name << text_of(defines);
-                     EXPECT_GE(use.spill_bytes, 0) << name << text_of(defines);
-                 }
-             });
-    for (const auto& [program, names] : device.requested()) seen.insert(names.begin(), names.end());
-    for (const auto& [name, budget] : budgets) EXPECT_TRUE(seen.contains(name)) << name;
+    for (const auto& [program, names] : device.requested())
+        for (const auto& name : names)
+            if (ceiling(name, program.second)) seen.insert(name);
+    EXPECT_EQ(seen.size(), 5u);
+}
+
+/// Private arrays are in device memory: they were most of the stage's traffic.
+TEST(Nvrtc, ContactsByBoundaryFacesHaveNoStack) {
+    CompilingDevice device;
+    for (const std::string rule : {"opposing", "published"})
+        prepare(device, algorithm("chunked"), {}, {{"contact_rule", rule}});
+    if (!can_compile(device.requested())) return;
+    std::atomic<int> checked = 0;
+    for (const int architecture : {80, 90})
+        for_each(device.requested(),
+                 [&](const KernelSource& source, const Defines& defines, const std::set<std::string>& names) {
+                     if (!defines.contains("CONTACT_RULE")) return;
+                     const auto log = nvrtc()->compile(source, defines, architecture).log;
+                     for (const auto& name : names) {
+                         const auto use = use_of(log, name);
+                         EXPECT_EQ(use.stack_bytes, 0) << name << text_of(defines);
+                         EXPECT_EQ(use.spill_bytes, 0) << name << text_of(defines);
+                         ++checked;
+                     }
+                 });
+    EXPECT_EQ(checked, 2 * 2 * 3); // certify_pairs, separate_pairs and generate_contacts
 }
 
 TEST(Nvrtc, NoFusedMultiplyAdd) {

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/narrow_phase/contact_settings.h"
+#include "backends/device.h"
+
+#include <optional>
+#include <string>
+
+namespace tandem {
+
+inline bool is_double(const Defines& defines) {
+    return defines.contains("PRECISION") && defines.at("PRECISION") == "64";
+}
+
+/// What a kernel may use, for each precision.
+struct Ceiling {
+    int registers;
+    int private_bytes; ///< of a work-item in device memory: stack and spills
+};
+
+/// Ceiling of the kernel that makes contacts: a quarter of a multiprocessor's work-items in float. Only rules
+/// that search axes or cut polygons have private arrays in device memory.
+inline Ceiling contacts_ceiling(ContactRule rule, bool in_double) {
+    const int registers = in_double ? 192 : 128;
+    switch (rule) {
+    case ContactRule::clip:
+        return {registers, in_double ? 1024 : 512};
+    case ContactRule::sat:
+    case ContactRule::restricted:
+    case ContactRule::growth:
+        return {registers, in_double ? 192 : 96};
+    case ContactRule::vertex:
+        return {registers, in_double ? 0 : 16}; // spills that NVRTC chooses in the layout `slots`
+    default:
+        return {registers, 0};
+    }
+}
+
+/// Ceiling of a kernel of the contact stage. In float it is three eighths of a multiprocessor's work-items
+/// for certificates, nearly half for the filter after them, and three sixteenths for the decision in double.
+inline std::optional<Ceiling> ceiling(const std::string& name, const Defines& defines) {
+    const bool in_double = is_double(defines);
+    if (name == "certify_pairs") return in_double ? Ceiling{128, 0} : Ceiling{80, 0};
+    if (name == "separate_pairs") return in_double ? Ceiling{240, 0} : Ceiling{96, 0};
+    if (name == "recheck_pairs") return Ceiling{168, 400};
+    if (name == "generate_contacts")
+        return contacts_ceiling(static_cast<ContactRule>(std::stoi(defines.at("CONTACT_RULE"))), in_double);
+    if (name != "filter_pairs") return std::nullopt;
+    const bool certifies = !defines.contains("OVER_OPEN"); // without a list it starts with its certificates
+    if (in_double) return Ceiling{certifies ? 168 : 132, 400};
+    return Ceiling{certifies ? 80 : 72, 200};
+}
+
+} // namespace tandem
