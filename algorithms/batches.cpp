@@ -157,7 +157,7 @@ void BatchRun::make_contacts(HostPart& host, std::uint64_t pairs) {
 
 /// Moves a walked part's pairs and contacts to the host.
 void BatchRun::finish_part() {
-    if (pipeline_.output != Output::pairs) {
+    if (!has_pairs(pipeline_.output)) {
         add_counts();
         return;
     }
@@ -182,7 +182,7 @@ void BatchRun::run_batch(const Batch& batch) {
         walk(batch);
         const auto pairs = pipeline_.status.counter(STATUS_PAIRS);
         const std::uint64_t capacity = answer_->pairs.capacity();
-        if (pipeline_.output != Output::pairs || pairs <= capacity) {
+        if (!has_pairs(pipeline_.output) || pairs <= capacity) {
             finish_part();
             return;
         }

@@ -33,6 +33,15 @@ private:
     std::size_t count_ = 0;
 };
 
+/// Number of vertices of the walked tetrahedra.
+std::size_t vertices_of(const Mesh& mesh, Walked walked) {
+    if (walked == Walked::all) return mesh.vertices.size();
+    std::set<std::uint32_t> vertices;
+    for (const auto id : walked_tetrahedra(mesh, walked))
+        vertices.insert(mesh.tetrahedra[id].begin(), mesh.tetrahedra[id].end());
+    return vertices.size();
+}
+
 double total(const std::vector<Marks>& all) {
     return std::accumulate(all.begin(), all.end(), 0.0,
                            [](double sum, const Marks& marks) { return sum + marks.count(); });
@@ -54,17 +63,18 @@ SceneFacts::SceneFacts(const Scene& scene, const Settings& settings) {
     real = number(real_bytes(geometry));
     pose_bytes = number(pose_reals(geometry)) * real;
     row_bytes = 4 * number(words_of(settings[parameters::pair_layout]));
-    pair_bytes = settings[parameters::output] == Output::pairs ? row_bytes : 0;
+    pair_bytes = has_pairs(settings[parameters::output]) ? row_bytes : 0;
+    const auto walked = walked_of(settings);
     std::set<std::uint32_t> meshes, shared; // meshes with counted tetrahedra, and with counted vertices
     for (const auto& body : scene.bodies) {
         if (body.fixed && !published) continue;
         const auto& mesh = scene.meshes[body.mesh];
-        tetrahedra.push_back(static_cast<std::uint32_t>(mesh.tetrahedra.size()));
+        tetrahedra.push_back(static_cast<std::uint32_t>(count_walked(mesh, walked)));
         const bool first = meshes.insert(body.mesh).second;
         if (first) mesh_tetrahedra.push_back(tetrahedra.back());
-        if (first || published) tetrahedron_rows += number(mesh.tetrahedra.size());
+        if (first || published) tetrahedron_rows += number(tetrahedra.back());
         if (body.deformable || published || shared.insert(body.mesh).second)
-            vertex_rows += number(mesh.vertices.size());
+            vertex_rows += number(vertices_of(mesh, walked));
     }
     moving = number(tetrahedra.size());
 }

@@ -33,7 +33,7 @@ Foundation build(const Traversal& traversal, Device& device, const Scene& scene,
                  LaunchShape shape) {
     const auto sharing = is_published(settings) ? Bodies::Sharing::none : Bodies::Sharing::by_mesh;
     Foundation built{std::make_shared<Bodies>(device, scene, geometry_of(settings), sharing,
-                                              settings[parameters::builder],
+                                              MeshOrder{settings[parameters::builder], walked_of(settings)},
                                               settings[parameters::pair_layout]),
                      {}};
     built.stages = traversal.build({device, scene, settings, *built.bodies, shape});
@@ -106,18 +106,16 @@ Pipeline::Pipeline(const Traversal& traversal, Device& on, const Scene& scene, S
     settings.set(parameters::pair_layout(bodies->pair_layout()));
     body_pairs = std::make_unique<BodyPairs>(BuildContext{on, scene, settings, *bodies, shape},
                                              *stages.hierarchy, writes_of(settings));
-    const bool contacting =
-        output == Output::pairs && settings[parameters::contact_rule] != ContactRule::none;
+    const bool contacting = has_pairs(output) && settings[parameters::contact_rule] != ContactRule::none;
     const auto launches =
         is_published(settings) ? ContactStage::Launches::at_once : ContactStage::Launches::apart;
     if (contacting)
         contacts = std::make_unique<ContactStage>(*bodies, contact_settings_of(settings), shape, launches);
     tools = std::make_shared<AnswerTools>(bodies, shape, contacting);
     if (!answers || !answers->fits(bodies->pair_layout()))
-        answers =
-            std::make_shared<AnswerPool>(on, bodies->pair_layout(), real_bytes(bodies->geometry()),
-                                         output == Output::pairs ? settings[parameters::pair_capacity] : 1,
-                                         contacting ? settings[parameters::contact_capacity] : 0);
+        answers = std::make_shared<AnswerPool>(on, bodies->pair_layout(), real_bytes(bodies->geometry()),
+                                               has_pairs(output) ? settings[parameters::pair_capacity] : 1,
+                                               contacting ? settings[parameters::contact_capacity] : 0);
     compile(false);
 }
 
@@ -161,7 +159,7 @@ FrameResult Pipeline::counts() const {
 }
 
 void Pipeline::add_part(FrameResult& result, std::shared_ptr<AnswerBuffers> buffers) const {
-    if (output == Output::pairs)
+    if (has_pairs(output))
         result.parts.push_back(device_part(tools, std::move(buffers), result.count, result.contacts));
 }
 

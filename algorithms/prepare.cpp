@@ -101,6 +101,10 @@ Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info, con
     if (settings[tandem::parameters::broad] == Broad::device && is_published(settings))
         throw InputError("setting broad=device does not go with residency=published, whose bounds are on the "
                          "host; choose broad=sphere");
+    if (settings[tandem::parameters::output] == Output::contacts
+        && settings[tandem::parameters::contact_rule] == ContactRule::none)
+        throw InputError("setting output=contacts needs a contact rule; leave contact_rule out, or choose "
+                         "output=pairs");
     do_fit(fitting, info, scene);
     do_check(fitting, info);
     return fitting;

@@ -98,7 +98,7 @@ bool ResidentSession::grow(AnswerBuffers& answer) {
     bool again = pipeline_.stages.walker->grow(status);
     again |= pipeline_.body_pairs->grow(status);
     if (const auto found = status.counter(STATUS_PAIRS);
-        pipeline_.output == Output::pairs && found > answer.pairs.capacity()) {
+        has_pairs(pipeline_.output) && found > answer.pairs.capacity()) {
         answer.pairs.grow(found);
         again = true;
     }

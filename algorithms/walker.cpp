@@ -6,7 +6,7 @@
 namespace tandem {
 
 void WalkBuild::add_to(Defines& defines) const {
-    define(defines, parameters::output, output);
+    define(defines, parameters::output, has_pairs(output) ? Output::pairs : output);
     define(defines, parameters::pair_layout, pair_layout);
     defines["COUNT_WORK"] = counting ? "1" : "0";
     defines["WINDOWED"] = windowed ? "1" : "0";

@@ -19,13 +19,7 @@ constexpr std::uint64_t most_blocks = (std::uint64_t{1} << 32) / Bodies::block_s
 
 } // namespace
 
-std::vector<std::uint32_t> inverse(std::span<const std::uint32_t> order) {
-    std::vector<std::uint32_t> positions(order.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i) positions[order[i]] = i;
-    return positions;
-}
-
-Bodies::Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sharing sharing, Builder builder,
+Bodies::Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sharing sharing, MeshOrder order,
                PairLayout pair_layout)
     : device_(device),
       scene_(scene),
@@ -33,7 +27,7 @@ Bodies::Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sha
       sharing_(sharing),
       pair_layout_(sharing == Sharing::by_mesh ? pair_layout : PairLayout::items) {
     for (const auto& mesh : scene.meshes) {
-        meshes_.push_back(ordered(mesh, builder));
+        meshes_.push_back(ordered(mesh, order));
         if (geometry.placement == Placement::exact) mesh_reaches_.push_back(reach_of(mesh.vertices));
     }
     lay_out();
@@ -113,6 +107,27 @@ Bodies::SlotOwner Bodies::slot_owner(std::uint32_t slot) const {
     const auto next = std::upper_bound(first_blocks_.begin(), first_blocks_.end(), slot / block_slots);
     const auto i = static_cast<std::size_t>(next - first_blocks_.begin()) - 1;
     return {slot_order_[i], static_cast<std::uint32_t>(slot - first_blocks_[i] * block_slots)};
+}
+
+std::uint32_t Bodies::position_of(std::size_t body, std::uint32_t tetrahedron) const {
+    const auto number = scene_.bodies[body].mesh;
+    positions_.resize(meshes_.size());
+    auto& positions = positions_[number];
+    if (positions.empty()) {
+        positions.assign(scene_.meshes[number].tetrahedra.size(), OrderedMesh::unused);
+        const auto& ids = meshes_[number].ids;
+        for (std::uint32_t i = 0; i < ids.size(); ++i) positions[ids[i]] = i;
+    }
+    return positions[tetrahedron];
+}
+
+std::vector<std::uint32_t> Bodies::positions_of(std::size_t body,
+                                                std::span<const std::uint32_t> tetrahedra) const {
+    std::vector<std::uint32_t> result;
+    for (const auto tetrahedron : tetrahedra)
+        if (const auto position = position_of(body, tetrahedron); position != OrderedMesh::unused)
+            result.push_back(position);
+    return result;
 }
 
 std::vector<std::byte> Bodies::shared_vertices() const {

@@ -35,7 +35,7 @@ public:
     /// Uploads constant data. `scene` must outlive this. `pair_layout` is a request; see pair_layout().
     /// Throws DeviceError for more than 2^32 vertices or tetrahedra, OutOfMemory if they do not fit.
     Bodies(Device& device, const Scene& scene, const Geometry& geometry, Sharing sharing,
-           Builder builder = Builder::morton, PairLayout pair_layout = PairLayout::slots);
+           MeshOrder order = {}, PairLayout pair_layout = PairLayout::slots);
 
     /// Enqueues the upload of a frame's poses, and vertices of deformable bodies. `all`: also if no rigid
     /// body moves, as the first frame needs it. For Sharing::by_mesh; the published data path has its own
@@ -59,6 +59,12 @@ public:
     const OrderedMesh& mesh(std::size_t body) const { return meshes_[scene_.bodies[body].mesh]; }
     /// The same by the number of the mesh in the scene.
     const OrderedMesh& ordered_mesh(std::size_t number) const { return meshes_[number]; }
+    /// Position of a tetrahedron of the body's mesh in the order of the device; OrderedMesh::unused if it is
+    /// not walked.
+    std::uint32_t position_of(std::size_t body, std::uint32_t tetrahedron) const;
+    /// Positions of those of these tetrahedra that are walked.
+    std::vector<std::uint32_t> positions_of(std::size_t body,
+                                            std::span<const std::uint32_t> tetrahedra) const;
     /// Number of rows in vertices(): of meshes if they are shared, of bodies if not.
     std::uint64_t vertex_total() const { return vertex_total_; }
     /// Format of candidate pairs: items if slots are not requested, exceed 2^32, or with Sharing::none.
@@ -100,6 +106,8 @@ private:
     Geometry geometry_;
     Sharing sharing_;
     std::vector<OrderedMesh> meshes_;
+    /// By mesh: tetrahedron -> position, or OrderedMesh::unused; computed on first use.
+    mutable std::vector<std::vector<std::uint32_t>> positions_;
     std::vector<double> mesh_reaches_; ///< by mesh: reach_of; with placement=exact only
     std::vector<BodyRow> rows_;
     PairLayout pair_layout_;
@@ -117,8 +125,5 @@ private:
     std::vector<Run> runs_;
     Buffer row_table_, blocks_, tetrahedra_, ids_, boundary_, vertices_, poses_;
 };
-
-/// positions[order[i]] = i.
-std::vector<std::uint32_t> inverse(std::span<const std::uint32_t> order);
 
 } // namespace tandem

@@ -8,7 +8,7 @@ namespace tandem {
 RepartitionLoop::RepartitionLoop(const Scene& scene, const Settings& settings, std::size_t subdomains)
     : partitioner_(scene, geometry_of(settings), subdomains),
       balancer_(subdomains),
-      has_pairs_(settings[parameters::output] == Output::pairs) {}
+      has_pairs_(has_pairs(settings[parameters::output])) {}
 
 bool RepartitionLoop::add_sample(const FrameResult& result, const CountPairs& count_pairs) {
     std::vector<double> work;

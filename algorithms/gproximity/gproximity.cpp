@@ -14,12 +14,12 @@ namespace tandem {
 
 namespace {
 
-/// Leaves of one chunk over all tetrahedra of the largest mesh, so that each body has a plain hierarchy.
-std::uint32_t whole_mesh(const Scene& scene) {
-    std::uint32_t most = 2;
-    for (const auto& mesh : scene.meshes)
-        most = std::max(most, static_cast<std::uint32_t>(mesh.tetrahedra.size()));
-    return std::bit_ceil(most);
+/// Leaves of one chunk over all walked tetrahedra of the largest mesh, so that each body has a plain
+/// hierarchy.
+std::uint32_t whole_mesh(const Scene& scene, const Settings& settings) {
+    std::size_t most = 2;
+    for (const auto& mesh : scene.meshes) most = std::max(most, count_walked(mesh, walked_of(settings)));
+    return std::bit_ceil(static_cast<std::uint32_t>(most));
 }
 
 class Gproximity : public Traversal {
@@ -47,7 +47,7 @@ private:
 
     std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const override {
         const SceneFacts s(scene, settings);
-        auto costs = chunk_tree_costs(s, whole_mesh(scene));
+        auto costs = chunk_tree_costs(s, whole_mesh(scene, settings));
         costs.push_back({"scatter_roots", [](const FrameFacts& f) { return 12 * f.body_pairs; },
                          no_operations, "writes an item for each body pair"});
         costs.push_back(walk_cost(s, "traverse_queues"));
@@ -58,8 +58,8 @@ private:
     }
 
     AlgorithmStages do_build(const BuildContext& context) const override {
-        auto trees =
-            std::make_unique<ChunkTrees>(context.bodies, whole_mesh(context.scene), context.shape.group_size);
+        auto trees = std::make_unique<ChunkTrees>(context.bodies, whole_mesh(context.scene, context.settings),
+                                                  context.shape.group_size);
         std::unique_ptr<Walker> walker;
         if (context.settings[tandem::parameters::residency] == Residency::published)
             walker = std::make_unique<PublishedQueueWalker>(*trees, context);

@@ -30,8 +30,10 @@ ChunkTrees::ChunkTrees(const Bodies& bodies, std::uint32_t leaves, std::uint32_t
       leaves_(leaves),
       group_size_(group_size),
       shape_(refit_shape(bodies.geometry(), group_size)) {
-    for (const auto& mesh : bodies.scene().meshes)
-        mesh_levels_.push_back(chunk_levels(static_cast<std::uint32_t>(mesh.tetrahedra.size()), leaves));
+    for (std::size_t mesh = 0; mesh < bodies.scene().meshes.size(); ++mesh) {
+        const auto tetrahedra = static_cast<std::uint32_t>(bodies.ordered_mesh(mesh).ids.size());
+        mesh_levels_.push_back(chunk_levels(tetrahedra, leaves));
+    }
     lay_out();
     plan_strips();
     strips_kernel_ = compile("refit_strips");
@@ -204,12 +206,10 @@ void ChunkTrees::mask_skipped(const Frame& frame) {
     {
         const HostWork work(device_, Stage::preprocess, "skipped tetrahedra");
         MaskedElementsPlan plan(leaves_, first_top_level_);
-        positions_.resize(mesh_levels_.size());
         for (std::size_t body = 0; body < frame.skipped.size(); ++body) {
-            if (frame.skipped[body].empty()) continue;
-            const auto mesh = bodies_.scene().bodies[body].mesh;
-            if (positions_[mesh].empty()) positions_[mesh] = inverse(bodies_.mesh(body).ids);
-            plan.add(trees_[body].nodes, mesh_levels_[mesh], frame.skipped[body], positions_[mesh]);
+            auto items = bodies_.positions_of(body, frame.skipped[body]);
+            if (items.empty()) continue;
+            plan.add(trees_[body].nodes, mesh_levels_[bodies_.scene().bodies[body].mesh], std::move(items));
         }
         masked_ = plan.take();
         skipped_ = frame.skipped;

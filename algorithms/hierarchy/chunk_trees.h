@@ -78,9 +78,7 @@ private:
     std::uint64_t slots_ = 0;
     bool fresh_ = true;                               ///< whether the next refit includes fixed bodies
     std::vector<std::vector<std::uint32_t>> skipped_; ///< by body: tetrahedra that the last frame skips
-    /// By mesh: the inverse of its ids, computed on first use.
-    std::vector<std::vector<std::uint32_t>> positions_;
-    MaskedElements masked_; ///< plan for skipped_
+    MaskedElements masked_;                           ///< plan for skipped_
     Buffer nodes_, volumes_, tree_table_, level_table_, job_table_, body_order_;
     Buffer masked_rows_, masked_starts_;
     Kernel strips_kernel_, tops_kernel_, empty_kernel_;

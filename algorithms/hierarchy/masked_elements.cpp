@@ -62,11 +62,8 @@ std::vector<std::uint32_t> MaskedElementsPlan::add_level(std::uint32_t first_slo
 }
 
 void MaskedElementsPlan::add(std::uint32_t first_slot, std::span<const Level> levels,
-                             std::span<const std::uint32_t> skipped,
-                             std::span<const std::uint32_t> positions) {
+                             std::vector<std::uint32_t> items) {
     ++result_.bodies;
-    std::vector<std::uint32_t> items;
-    for (const auto tetrahedron : skipped) items.push_back(positions[tetrahedron]);
     for (std::uint32_t index = 0; index < end_; ++index)
         if (index < levels.size())
             items = add_level(first_slot, levels, index, items);

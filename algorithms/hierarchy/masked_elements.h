@@ -21,10 +21,9 @@ class MaskedElementsPlan {
 public:
     MaskedElementsPlan(std::uint32_t leaves, std::uint32_t end) : leaves_(leaves), end_(end) {}
 
-    /// Adds a body with at least one skipped tetrahedron. `first_slot` is its first node slot; positions[t]
-    /// is the position of tetrahedron t in the builder's order.
-    void add(std::uint32_t first_slot, std::span<const Level> levels, std::span<const std::uint32_t> skipped,
-             std::span<const std::uint32_t> positions);
+    /// Adds a body with at least one skipped tetrahedron. `first_slot` is its first node slot; `items` are
+    /// the positions of its skipped tetrahedra in the builder's order.
+    void add(std::uint32_t first_slot, std::span<const Level> levels, std::vector<std::uint32_t> items);
     /// Returns the collected rows and completes their starts.
     MaskedElements take();
 

@@ -80,6 +80,18 @@ std::vector<std::uint32_t> order_of(const Mesh& mesh, Builder builder) {
     throw std::invalid_argument("unknown builder");
 }
 
+/// Order of the tetrahedra with boundary faces alone, so that a builder's runs are full.
+std::vector<std::uint32_t> boundary_order(const Mesh& mesh, Builder builder) {
+    auto walked = walked_tetrahedra(mesh, Walked::boundary);
+    Mesh part;
+    part.vertices = mesh.vertices;
+    part.tetrahedra.reserve(walked.size());
+    for (const auto id : walked) part.tetrahedra.push_back(mesh.tetrahedra[id]);
+    auto order = order_of(part, builder);
+    for (auto& position : order) position = walked[position];
+    return order;
+}
+
 } // namespace
 
 std::uint64_t morton_code(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
@@ -127,9 +139,33 @@ std::vector<std::uint32_t> hilbert_order(const std::vector<Eigen::Vector3d>& poi
 
 std::vector<std::uint32_t> hilbert_order(const Mesh& mesh) { return hilbert_order(centroids(mesh)); }
 
-OrderedMesh ordered(const Mesh& mesh, Builder builder) {
+std::size_t count_walked(const Mesh& mesh, Walked walked) {
+    if (walked == Walked::all) return mesh.tetrahedra.size();
+    const auto inner = static_cast<std::size_t>(std::ranges::count(mesh.boundary, std::uint8_t{0}));
+    return inner == mesh.tetrahedra.size() ? inner : mesh.tetrahedra.size() - inner;
+}
+
+std::size_t count_walked(const Scene& scene, Walked walked) {
+    std::vector<std::size_t> counts;
+    for (const auto& mesh : scene.meshes) counts.push_back(count_walked(mesh, walked));
+    std::size_t sum = 0;
+    for (const auto& body : scene.bodies) sum += counts[body.mesh];
+    return sum;
+}
+
+std::vector<std::uint32_t> walked_tetrahedra(const Mesh& mesh, Walked walked) {
+    std::vector<std::uint32_t> result;
+    result.reserve(count_walked(mesh, walked));
+    const bool takes_all = count_walked(mesh, walked) == mesh.tetrahedra.size();
+    for (std::uint32_t i = 0; i < mesh.tetrahedra.size(); ++i)
+        if (takes_all || mesh.boundary[i] != 0) result.push_back(i);
+    return result;
+}
+
+OrderedMesh ordered(const Mesh& mesh, MeshOrder order) {
     OrderedMesh result;
-    result.ids = order_of(mesh, builder);
+    result.ids =
+        order.walked == Walked::all ? order_of(mesh, order.builder) : boundary_order(mesh, order.builder);
     result.numbers.assign(mesh.vertices.size(), OrderedMesh::unused);
     for (const auto id : result.ids) {
         result.boundary.push_back(mesh.boundary[id]);

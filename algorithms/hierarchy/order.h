@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/parameters/choices.h"
-#include "scenes/mesh.h"
+#include "scenes/scene.h"
 
 #include <cstdint>
 #include <span>
@@ -33,18 +33,36 @@ std::vector<std::uint32_t> hilbert_order(const Mesh& mesh);
 /// Centroids of a mesh's tetrahedra. They may overflow where coordinates are near the largest numbers.
 std::vector<Eigen::Vector3d> centroids(const Mesh& mesh);
 
+/// The tetrahedra of a mesh that a session walks.
+enum class Walked {
+    all,
+    boundary ///< those with boundary faces; all of a mesh in which none has them, since no tree is empty
+};
+
+/// Numbers of the walked tetrahedra, ascending.
+std::vector<std::uint32_t> walked_tetrahedra(const Mesh& mesh, Walked walked);
+std::size_t count_walked(const Mesh& mesh, Walked walked);
+/// Summed over the bodies of a scene.
+std::size_t count_walked(const Scene& scene, Walked walked);
+
+/// How a mesh is laid out on a device.
+struct MeshOrder {
+    Builder builder = Builder::morton;
+    Walked walked = Walked::all;
+};
+
 /// A mesh in device layout: tetrahedra in a builder's order, vertices renumbered by first use.
 struct OrderedMesh {
     std::vector<std::uint32_t> tetrahedra; ///< 4 vertex numbers each, in the new numbering
-    std::vector<std::uint32_t> ids;        ///< position -> tetrahedron in input order
+    std::vector<std::uint32_t> ids;        ///< position -> tetrahedron in input order; walked ones only
     std::vector<std::uint32_t> vertices;   ///< new vertex number -> vertex in input order
     std::vector<std::uint32_t> numbers;    ///< vertex in input order -> new number, or `unused`
     std::vector<std::uint8_t> boundary;    ///< as Mesh::boundary, by position
 
-    static constexpr std::uint32_t unused = 0xffffffff; ///< number of a vertex without tetrahedra
+    static constexpr std::uint32_t unused = 0xffffffff; ///< number of a vertex without walked tetrahedra
 };
 
 /// Orders a mesh that complete_mesh has checked.
-OrderedMesh ordered(const Mesh& mesh, Builder builder = Builder::morton);
+OrderedMesh ordered(const Mesh& mesh, MeshOrder order = {});
 
 } // namespace tandem

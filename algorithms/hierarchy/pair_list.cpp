@@ -16,14 +16,12 @@ constexpr std::uint32_t found = 15; ///< all answer bits of pair_list.cl
 PairList::PairList(const ChunkTrees& trees, std::span<const Pair> pairs)
     : trees_(trees), count_(static_cast<std::uint32_t>(pairs.size())) {
     auto& device = trees.bodies().device();
-    std::vector<std::vector<std::uint32_t>> order;
-    for (std::uint32_t body = 0; body < trees.bodies().count(); ++body)
-        order.push_back(inverse(trees.bodies().mesh(body).ids));
     std::vector<std::uint32_t> rows;
     rows.reserve(4 * pairs.size());
     for (const auto& pair : pairs)
-        rows.insert(rows.end(), {pair.body_a, pair.body_b, order[pair.body_a][pair.tet_a],
-                                 order[pair.body_b][pair.tet_b]});
+        rows.insert(rows.end(),
+                    {pair.body_a, pair.body_b, trees.bodies().position_of(pair.body_a, pair.tet_a),
+                     trees.bodies().position_of(pair.body_b, pair.tet_b)});
     const StageScope scope(device, Stage::write);
     pairs_ = device.allocate(rows.size() * 4, "listed pairs");
     device.upload(pairs_, bytes_of(rows));

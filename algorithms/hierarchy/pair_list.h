@@ -13,7 +13,7 @@ namespace tandem {
 /// of the walks. The result is what a walk would find if it reached exactly these pairs.
 class PairList {
 public:
-    /// `pairs`: in input order, at most 2^32 - 1. `trees` must outlive this object.
+    /// `pairs`: of walked tetrahedra, in input order, at most 2^32 - 1. `trees` must outlive this object.
     PairList(const ChunkTrees& trees, std::span<const Pair> pairs);
 
     /// Returns one byte per pair, for the frame of the last refit. It is 1 if the leaf k-DOPs overlap by both

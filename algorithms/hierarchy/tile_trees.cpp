@@ -213,9 +213,8 @@ void TileTrees::upload_taking_part(const Frame& frame) {
             for (std::uint32_t item = 0; item < items; ++item)
                 words[first + item / lanes] |= 1u << item % lanes;
             if (frame.skipped.empty() || frame.skipped[body].empty()) continue;
-            const auto positions = inverse(bodies_.mesh(body).ids);
-            for (const auto tetrahedron : frame.skipped[body])
-                words[first + positions[tetrahedron] / lanes] &= ~(1u << positions[tetrahedron] % lanes);
+            for (const auto item : bodies_.positions_of(body, frame.skipped[body]))
+                words[first + item / lanes] &= ~(1u << item % lanes);
         }
     }
     const StageScope scope(device_, Stage::write);

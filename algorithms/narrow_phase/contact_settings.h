@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/hierarchy/order.h"
 #include "algorithms/parameters/contact_rules.clh"
 #include "algorithms/parameters/table.h"
 
 namespace tandem {
 
-/// How contacts of a candidate pair are made, and how it is decided whether the pair meets.
+/// How contacts of a candidate pair are made, how it is decided whether the pair meets, and the tetrahedra
+/// that pairs are found of.
 struct ContactSettings {
     ContactRule rule = ContactRule::opposing;
     DecisionPrecision decision = DecisionPrecision::fp32;
+    Walked walked = Walked::all;
 
     bool operator==(const ContactSettings&) const = default;
 };
@@ -29,6 +32,10 @@ constexpr unsigned boundaries_needed(ContactRule rule) {
     const unsigned traits = traits_of(rule);
     return (traits & TANDEM_BOTH_BOUNDARY) != 0 ? 2 : (traits & TANDEM_ONE_BOUNDARY) != 0 ? 1 : 0;
 }
+
+/// The tetrahedra that sessions with these settings walk. With output=contacts, a rule whose contacts need
+/// boundary faces of both tetrahedra leaves out the others. residency=published walks everything.
+Walked walked_of(const Settings& settings);
 
 /// Contact settings of resolved settings; the defaults when contact_rule=none.
 ContactSettings contact_settings_of(const Settings& settings);

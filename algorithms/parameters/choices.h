@@ -85,7 +85,15 @@ enum class PairLayout {
 };
 
 /// Output of a walk.
-enum class Output { pairs, count, digest };
+enum class Output {
+    pairs, ///< candidate pairs and their contacts
+    count,
+    digest,
+    contacts ///< as pairs, without the tetrahedra that cannot make contacts (walked_of)
+};
+
+/// Whether an answer has pairs, and contacts with a contact rule.
+constexpr bool has_pairs(Output output) { return output == Output::pairs || output == Output::contacts; }
 
 /// Rule that makes contacts of a colliding pair: one of contact_rules.clh, or none.
 enum class ContactRule {

@@ -132,9 +132,14 @@ inline constexpr Setting<Submission> submission{
 inline constexpr Setting<Output> output{
     "output",
     Output::pairs,
-    {{"pairs", Output::pairs}, {"count", Output::count}, {"digest", Output::digest}},
+    {{"pairs", Output::pairs},
+     {"count", Output::count},
+     {"digest", Output::digest},
+     {"contacts", Output::contacts}},
     "OUTPUT",
-    "output of a walk; contacts need pairs"};
+    "output of a walk: pairs: candidate pairs, and contacts; count, digest: only these of the pairs; "
+    "contacts: as pairs, but with contact_rule=opposing and published, which use boundary faces of both "
+    "tetrahedra, only tetrahedra with boundary faces are walked: the contacts are the same"};
 inline constexpr Setting<PairLayout> pair_layout{
     "pair_layout",
     PairLayout::slots,

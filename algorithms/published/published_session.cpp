@@ -90,7 +90,7 @@ void PublishedSession::walk(const AnswerBuffers& answer) {
 bool PublishedSession::grow(AnswerBuffers& answer) {
     bool again = pipeline_.stages.walker->grow(pipeline_.status);
     const auto found = pipeline_.status.counter(STATUS_PAIRS);
-    if (pipeline_.output == Output::pairs && found > answer.pairs.capacity()) {
+    if (has_pairs(pipeline_.output) && found > answer.pairs.capacity()) {
         answer.pairs.grow(found);
         again = true;
     }

@@ -95,7 +95,8 @@ private:
         if (settings[tandem::parameters::slabs] != Slabs::usual) return;
         const bool needs_scene = info.is_gpu && settings[tandem::parameters::k] > 12;
         if (needs_scene && scene == nullptr) return;
-        const bool all = needs_scene ? tetrahedron_count(*scene) <= most_with_all_slabs : info.is_gpu;
+        const bool all =
+            needs_scene ? count_walked(*scene, walked_of(settings)) <= most_with_all_slabs : info.is_gpu;
         settings.set(tandem::parameters::slabs(all ? Slabs::all : Slabs::three));
     }
 

@@ -93,7 +93,7 @@ void export_chunks(const ExportOptions& options, const Scene& scene) {
     DumpFile file(options.chunks, chunks_header);
     std::size_t tetrahedra = 0, chunks = 0;
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-        const auto order = ordered(scene.meshes[i], builder).ids;
+        const auto order = ordered(scene.meshes[i], {builder}).ids;
         file.chunks(i, scene.meshes[i], order, leaves);
         tetrahedra += order.size();
         chunks += chunk_levels(static_cast<std::uint32_t>(order.size()), leaves).front().chunks;

@@ -26,7 +26,7 @@ constexpr std::uint64_t most_examined_pairs = std::uint64_t{1} << 27;
 
 /// Counts the data that the candidate pairs of the mean frame touch, in a separate replay.
 void count_touched(profile::Profile& profile, const Cell& cell, const Job& job, const Measurement& m) {
-    if (m.candidate_pairs.empty() || m.settings[parameters::output] != Output::pairs
+    if (m.candidate_pairs.empty() || !has_pairs(m.settings[parameters::output])
         || *std::ranges::max_element(m.candidate_pairs) > most_examined_pairs)
         return;
     auto& facts = profile.facts;

@@ -43,7 +43,7 @@ void LocalSampler::begin_session() {
 }
 
 bool LocalSampler::makes_contacts() const {
-    return out_.settings[parameters::output] == Output::pairs
+    return has_pairs(out_.settings[parameters::output])
            && out_.settings[parameters::contact_rule] != ContactRule::none;
 }
 

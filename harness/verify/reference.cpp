@@ -236,6 +236,30 @@ void add_contacts(const Scene& scene, const std::vector<Bounds<Real>>& bounds, s
     answer.undecided_by_double += counts.undecided_by_double;
 }
 
+/// Whether each mesh has a boundary face.
+std::vector<bool> have_boundary(const Scene& scene) {
+    std::vector<bool> result;
+    for (const auto& mesh : scene.meshes)
+        result.push_back(std::ranges::any_of(mesh.boundary, [](auto faces) { return faces != 0; }));
+    return result;
+}
+
+} // namespace
+
+std::vector<Pair> of_boundary(const Scene& scene, std::vector<Pair> pairs) {
+    const auto has_boundary = have_boundary(scene);
+    const auto is_inner = [&](std::uint32_t body, std::uint32_t tetrahedron) {
+        const auto mesh = scene.bodies[body].mesh;
+        return has_boundary[mesh] && scene.meshes[mesh].boundary[tetrahedron] == 0;
+    };
+    std::erase_if(pairs, [&](const Pair& pair) {
+        return is_inner(pair.body_a, pair.tet_a) || is_inner(pair.body_b, pair.tet_b);
+    });
+    return pairs;
+}
+
+namespace {
+
 template<class Real>
 ReferenceAnswer answer_in(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
                           Method method, const ContactSettings& settings) {
@@ -258,6 +282,7 @@ ReferenceAnswer answer_in(const Scene& scene, const Frame& frame, const Geometry
     });
     ReferenceAnswer answer;
     for (const auto& part : found) answer.pairs.insert(answer.pairs.end(), part.begin(), part.end());
+    if (settings.walked == Walked::boundary) answer.pairs = of_boundary(scene, std::move(answer.pairs));
     answer.digest = digest_of(answer.pairs);
     if (!contacts) return answer;
     std::mutex mutex;

@@ -26,10 +26,15 @@ enum class Method {
     sweep        ///< sorts the tetrahedra of overlapping bodies along the first direction
 };
 
-/// Finds every pair of tetrahedra of different bodies (not both fixed) whose leaf k-DOPs overlap. Runs on all
-/// cores, and shares no code with kernels, hierarchies or broad phase.
+/// Finds every pair of tetrahedra of different bodies (not both fixed) whose leaf k-DOPs overlap, and filters
+/// them if settings.walked is not all. Runs on all cores, and shares no code with kernels, hierarchies or
+/// broad phase.
 ReferenceAnswer reference(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
                           Method method, const ContactSettings& settings = {});
+
+/// The pairs whose tetrahedra are walked by Walked::boundary, in the same order: both have boundary faces, or
+/// are of a mesh without any.
+std::vector<Pair> of_boundary(const Scene& scene, std::vector<Pair> pairs);
 
 /// Brute force for small scenes, sweep otherwise.
 Method reference_method(const Scene& scene);

@@ -37,7 +37,7 @@ Digest Answer::contact_digest() const {
 
 void Answer::check_pairs_kept() const {
     const auto& settings = collider_->settings();
-    if (settings[parameters::output] != Output::pairs)
+    if (!has_pairs(settings[parameters::output]))
         throw InputError(fmt::format("setting output={} keeps no pairs; make the collider with output=pairs",
                                      settings.text("output")));
 }

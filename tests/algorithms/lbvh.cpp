@@ -164,9 +164,9 @@ void StoredTrees::flag_skipped(const Frame& frame) {
     {
         const HostWork work(device_, Stage::preprocess, "skipped tetrahedra");
         for (std::size_t body = 0; body < frame.skipped.size(); ++body) {
-            const auto positions = inverse(bodies_.mesh(body).ids);
-            const auto first_leaf = trees_[body].nodes + positions.size() - 1;
-            for (const auto tetrahedron : frame.skipped[body]) flags[first_leaf + positions[tetrahedron]] = 1;
+            const auto positions = bodies_.positions_of(body, frame.skipped[body]);
+            const auto first_leaf = trees_[body].nodes + bodies_.row(body).tetrahedron_count - 1;
+            for (const auto position : positions) flags[first_leaf + position] = 1;
         }
     }
     needs_full_refit_ = true;

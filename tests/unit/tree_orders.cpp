@@ -108,8 +108,8 @@ TEST(TreeOrders, ArePermutationsOfAnyMesh) {
     EXPECT_TRUE(std::ranges::any_of(centroids(meshes.back()), [](const auto& c) { return c.hasNaN(); }));
     for (const auto builder : builders)
         for (const auto& mesh : meshes) {
-            auto order = ordered(mesh, builder).ids;
-            EXPECT_EQ(order, ordered(mesh, builder).ids); // and the same order every time
+            auto order = ordered(mesh, {builder}).ids;
+            EXPECT_EQ(order, ordered(mesh, {builder}).ids); // and the same order every time
             std::ranges::sort(order);
             EXPECT_EQ(order, counted(mesh.tetrahedra.size())) << static_cast<int>(builder) << mesh.name;
         }
@@ -119,14 +119,14 @@ TEST(TreeOrders, DifferFromEachOther) {
     Random random(4);
     const auto mesh = shuffled(shaken_box(5, random), 6);
     std::set<Order> different;
-    for (const auto builder : builders) different.insert(ordered(mesh, builder).ids);
+    for (const auto builder : builders) different.insert(ordered(mesh, {builder}).ids);
     EXPECT_EQ(different.size(), std::size(builders));
 }
 
 TEST(TreeOrders, TiesKeepInputOrder) {
     const auto mesh = tetrahedra_at(Positions(3000, {5, 5, 5}));
     for (const auto builder : builders)
-        EXPECT_EQ(ordered(mesh, builder).ids, counted(3000)) << static_cast<int>(builder);
+        EXPECT_EQ(ordered(mesh, {builder}).ids, counted(3000)) << static_cast<int>(builder);
 }
 
 TEST(TreeOrders, IncludeTetrahedraThatAreNotNumbers) {

@@ -154,11 +154,11 @@ void EmbreeTrees::run(const float* leaves, EmbreeTrees* trees) {
 /// Selects bodies that move or that skip other tetrahedra than before. Trees of the latter are built again,
 /// because a refit keeps the primitives of a tree.
 void EmbreeTrees::choose(const Frame& frame, bool all) {
-    static const std::vector<std::uint32_t> nothing;
     chosen_.clear();
     for (std::uint32_t body = 0; body < trees_.size(); ++body) {
         auto& tree = trees_[body];
-        const auto& skipped = frame.skipped.empty() ? nothing : frame.skipped[body];
+        const auto skipped = frame.skipped.empty() ? std::vector<std::uint32_t>{}
+                                                   : bodies().positions_of(body, frame.skipped[body]);
         if (skipped != tree.skipped) {
             tree.skipped = skipped;
             tree.scene.reset();

@@ -82,7 +82,7 @@ void EmbreeWalker::PairTask::write(std::span<const RTCCollision> pairs) const {
 }
 
 void EmbreeWalker::PairTask::emit(std::span<const RTCCollision> pairs) const {
-    if (walker.build_.output == Output::pairs) {
+    if (has_pairs(walker.build_.output)) {
         write(pairs);
         return;
     }
