@@ -11,7 +11,7 @@ struct BuildContext {
     Device& device;
     const Scene& scene;
     const Settings& settings; ///< Traversal::fitted
-    const Bodies& bodies;
+    const Bodies& bodies;     ///< whose tetrahedra are to be walked: those of the scene, or fewer (walked_of)
     LaunchShape shape;
 };
 

@@ -61,6 +61,29 @@ class Accuracy(Case):
         contacts = records[0]["error"]["truth"]["contacts"]
         self.assertEqual((contacts["complete"], contacts["overlapping"]), (False, 5))
 
+    def test_contacts_without_interior_tetrahedra(self):
+        out = self.work / "interior.jsonl"
+        common = ("run", "plates", "--frames", 20, "--device", "host", "--algorithm", "tiled", "--repeat", 1, "--quiet", "--out", out)
+        for output, truth in (("pairs", "contacts"), ("contacts", "contacts"), ("contacts", "")):
+            status, text, errors = tandem(*common, "--set", f"output={output}", *(["--truth", truth, "--truth-contacts", 50] if truth else []))
+            self.assertEqual((status, errors), (0, []), text)
+        pairs, contacts, default = self.records(out)
+        self.assertEqual(pairs["work"]["contact_digest"], contacts["work"]["contact_digest"])
+        self.assertLess(contacts["work"]["candidate_pairs"][0], pairs["work"]["candidate_pairs"][0])
+        self.assertEqual(pairs["work"]["walked_tetrahedra"], pairs["scene"]["tetrahedra"])
+        self.assertLess(contacts["work"]["walked_tetrahedra"], pairs["work"]["walked_tetrahedra"])
+        self.assertEqual(contacts["work"]["without_boundary"], 0)
+        self.assertNotEqual(pairs["key"], contacts["key"])
+        for record in (pairs, contacts, default):
+            self.assertEqual((record["status"], record["agreement"]["missing"], record["agreement"]["extra"]), ("ok", 0, 0))
+        truth = contacts["error"]["truth"]
+        self.assertEqual(truth["missed_touching"] + truth["missed_overlapping"], 0)
+        self.assertEqual(truth["candidates"], contacts["work"]["candidate_pairs"][0])
+        self.assertEqual(truth["contacts"]["overlapping"], 50)
+        self.assertLess(truth["overlapping"], pairs["error"]["truth"]["overlapping"])
+        self.assertIsNone(default["error"]["truth"])  # the default truth is of all pairs
+        self.assertGreater(pairs["preparation"]["device_bytes"], contacts["preparation"]["device_bytes"])
+
     def test_check_shows_missed_and_false(self):
         _, text = self.run_two("check", "--algorithm", "chunked", "--preset", "grouped", command="check")
         head, row = text.splitlines()[-3:-1]

@@ -57,6 +57,15 @@ class BadInput(Case):
         self.bad("the nearest is 'jack'", "run", "pile:mesh=jak")
         self.bad("absent.json", "run", self.work / "absent.json")
 
+    def test_what_needs_all_pairs_refuses_output_contacts(self):
+        common = ("plates", "--frames", 0, "--device", "host", "--set", "output=contacts")
+        csv = self.work / "interior.csv"
+        self.bad("--truth pairs needs all candidate pairs", "run", *common, "--truth", "pairs")
+        self.bad("--dump-pairs needs all candidate pairs", "run", *common, "--dump-pairs", csv)
+        self.bad("accuracy needs all candidate pairs", "accuracy", *common)
+        self.bad("needs a contact rule", "run", *common, "--set", "contact_rule=none")
+        self.assertFalse(csv.exists())
+
     def test_errors_that_quote_a_file_are_one_line(self):
         scene = self.work / "controls.json"
         scene.write_text('{"meshes": {"a\\n\\u001b[31mb": {"builtin": "jac"}}, "bodies": []}')

@@ -76,6 +76,17 @@ class RankScenes(Case):
                 self.assertEqual((self.work / f"all{kind}.csv").read_text(), (self.work / f"one{kind}.csv").read_text())
             self.assertRegex(text, rf"rank {ranks - 1}, host")
 
+    def test_contacts_without_interior_tetrahedra_equal_one_process(self):
+        out = self.work / "interior.jsonl"
+        common = ("run", "plates", "--frames", "0:1", "--repeat", 1, "--device", "host", "--algorithm", "tiled", "--truth", "none", "--out", out)
+        self.assertEqual(tandem(*common)[0], 0)
+        status, text, errors = launch(of(2)(*common, "--set", "output=contacts"))
+        self.assertEqual((status, errors), (0, []), text)
+        one, two = (record["work"] for record in self.records(out))
+        self.assertEqual((one["contacts"], one["contact_digest"]), (two["contacts"], two["contact_digest"]))
+        self.assertLess(two["walked_tetrahedra"], one["walked_tetrahedra"])
+        self.assertLess(sum(two["candidate_pairs"]), sum(one["candidate_pairs"]))
+
     def test_a_scene_of_twice_the_memory_of_a_rank(self):
         scene = ["pile:bodies=160,density=0.001,frames=1", "--repeat", 1, "--truth", "none", *CELL]
         status, _, errors = tandem("run", *scene, "--memory", 1 << 20)

@@ -138,8 +138,8 @@ inline constexpr Setting<Output> output{
      {"contacts", Output::contacts}},
     "OUTPUT",
     "output of a walk: pairs: candidate pairs, and contacts; count, digest: only these of the pairs; "
-    "contacts: as pairs, but with contact_rule=opposing and published, which use boundary faces of both "
-    "tetrahedra, only tetrahedra with boundary faces are walked: the contacts are the same"};
+    "contacts: as pairs, without interior tetrahedra if contact_rule=opposing or published, whose contacts "
+    "are the same"};
 inline constexpr Setting<PairLayout> pair_layout{
     "pair_layout",
     PairLayout::slots,

@@ -117,8 +117,17 @@ void check_outputs(const RunOptions& options, std::span<const Cell> cells) {
     if (options.profile > 0 && (dumps || !options.out.empty() || !options.trace.empty()))
         throw InputError("--profile only replays frames; leave out --out, --trace and dumps");
     for (const auto& cell : cells) {
-        if (dumps && cell.settings[parameters::output] != Output::pairs)
+        if (dumps && !has_pairs(cell.settings[parameters::output]))
             throw InputError("dumps need pairs; leave output out or set output=pairs");
+        const bool leaves_out = cell.settings[parameters::output] == Output::contacts;
+        if (leaves_out && !options.dump_pairs.empty())
+            throw InputError(
+                "--dump-pairs needs all candidate pairs, and output=contacts may leave some out; "
+                "set output=pairs");
+        if (leaves_out && options.truth_is_given && options.truth == TruthAmount::pairs)
+            throw InputError(
+                "--truth pairs needs all candidate pairs, and output=contacts may leave some out; "
+                "set output=pairs, or choose --truth contacts");
         if (!options.dump_contacts.empty() && cell.settings[parameters::contact_rule] == ContactRule::none)
             throw InputError("--dump-contacts needs contacts; leave contact_rule out");
     }

@@ -43,6 +43,7 @@ struct RunOptions {
     bool check_afresh = false;              ///< compute references and truths again, ignore stored ones
     bool count = true;                      ///< replay once more with kernels that count their work
     TruthAmount truth = TruthAmount::pairs; ///< compare answers with the exact truth
+    bool truth_is_given = false;            ///< whether `truth` is not the default
     std::size_t truth_contacts = 0;         ///< exact contacts of at most this many pairs a frame; 0: all
     Degenerate degenerate = Degenerate::flat; ///< how flawed tetrahedra are handled
     std::optional<std::size_t> threads;       ///< threads of device host, as setting threads

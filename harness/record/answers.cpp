@@ -26,9 +26,15 @@ Json counters_json(const CellRecord& r) {
     return json;
 }
 
-/// What was found.
+/// What was walked and found.
 Fields<CellRecord> found_fields() {
     return {
+        {"walked_tetrahedra",
+         count(),
+         "tetrahedra in the hierarchies, summed over bodies; output=contacts may leave out interior ones; "
+         "records from before it have none and walked all",
+         [](auto& r) { return r.m.walked_tetrahedra; },
+         {.optional = true}},
         {"body_pairs", counts(), "body pairs of the broad phase, by frame",
          [](auto& r) { return r.m.body_pairs; }},
         {"candidate_pairs", counts(), "pairs of tetrahedra whose leaf k-DOPs overlap, by frame",
@@ -52,43 +58,37 @@ Fields<CellRecord> effort_fields() {
     return {
         {"counters", map_of(known_count().with("description", "one counter"), "^[a-z][a-z0-9_]*$"),
          "what the algorithm counts of its own work, over all frames, from a counting build; 'tandem "
-         "algorithms' "
-         "has the unit and the meaning of each; null where it was not counted (--no-count)",
+         "algorithms' has the unit and the meaning of each; null where it was not counted (--no-count)",
          counters_json},
         {"without_boundary",
          count(),
          "candidate pairs without the boundary faces that the contact rule needs, over all frames; rejected "
          "and undecided_* leave them out; records from before it have none, and their rejected and "
-         "undecided_* "
-         "include such pairs",
+         "undecided_* include such pairs",
          [](auto& r) { return r.m.without_boundary; },
          {.optional = true}},
         {"rejected", count(), "candidate pairs that were told apart, over all frames",
          [](auto& r) { return r.m.rejected; }},
         {"undecided_by_filter", known_count(),
          "candidate pairs that the certified filter could not decide (decision=recheck, exact), over all "
-         "frames; "
-         "null in records from before it was counted",
+         "frames; null in records from before it was counted",
          [](auto& r) { return r.m.undecided_by_filter; }},
         {"undecided_by_double", known_count(),
          "candidate pairs that double could not decide (decision=recheck, fp64, exact), over all frames; "
-         "null in "
-         "records from before it was counted",
+         "null in records from before it was counted",
          [](auto& r) { return r.m.undecided_by_double; }},
         {"retries", count(),
          "walks that ran again because a buffer was too small, over the frames of the checking replay",
          [](auto& r) { return r.m.retries; }},
         {"batches", nullable(integer_from(0)),
          "parts that frames ran in, over the frames of the checking replay: as many as frames unless memory "
-         "was "
-         "short; null in records from before frames could be split",
+         "was short; null in records from before frames could be split",
          [](auto& r) { return r.m.batches; }},
         {"submissions",
          count(),
          "calls that handed transfers and kernels to the devices, over the frames of the last sample: one a "
          "command, and one for all that went together (submission=one); stages.*.launches counts kernels; "
-         "records "
-         "from before it have none",
+         "records from before it have none",
          [](auto& r) { return r.m.submissions; },
          {.optional = true}}};
 }
@@ -115,8 +115,7 @@ const Fields<KernelFacts>& kernel_fields() {
         {"stack_bytes",
          known_count(),
          "bytes of a work-item's private arrays in device memory; null when the backend does not tell; "
-         "records "
-         "from before it have none",
+         "records from before it have none",
          [](auto& k) { return known_or_null(k.stack_bytes); },
          {.optional = true}}};
     return fields;
@@ -161,8 +160,7 @@ const Fields<CellRecord>& agreement_fields() {
          {.column = "contact_frames_wrong"}},
         {"digest", digest_type(),
          "of the candidate pairs, summed over frames; equal for equal scene, frames, k, axes, precision, "
-         "rounding "
-         "and truth",
+         "rounding and truth",
          [](auto& r) { return digest_fields().write(r.m.agreement.digest); }},
         {"contact_digest", digest_type(), "of the contacts, summed over frames",
          [](auto& r) { return digest_fields().write(r.m.agreement.contact_digest); }}};

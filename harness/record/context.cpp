@@ -55,8 +55,7 @@ const Fields<RecordedDevice>& device_fields() {
         {"compiler", any_text(), "what compiled the kernels", [](auto& d) { return d.info.compiler; }},
         {"hardware", nullable(pattern_of_digest()),
          "which piece of hardware, never its UUID in clear: FNV-1a of 64 bits over the characters of its "
-         "UUID "
-         "(GPU-...) or PCI address; null when the backend does not tell",
+         "UUID (GPU-...) or PCI address; null when the backend does not tell",
          [](auto& d) { return d.info.hardware.empty() ? Json() : Json(hardware_digest(d.info.hardware)); }},
         {"kind", one_of({"cpu", "gpu"}), "cpu: for regression and checking only",
          [](auto& d) { return d.info.is_gpu ? "gpu" : "cpu"; }},
@@ -65,12 +64,9 @@ const Fields<RecordedDevice>& device_fields() {
         {"clock",
          text(),
          "by what its times in breakdown_ns, device_span_ns, stages and kernel_times were taken: CUPTI ... "
-         "activity "
-         "records (nothing but the commands), CUDA events (with what an event takes, in parentheses why not "
-         "by "
-         "CUPTI), OpenCL profiling, steady clock; several joined by ; where the rounds differ; records from "
-         "before "
-         "it have none",
+         "activity records (nothing but the commands), CUDA events (with what an event takes, in parentheses "
+         "why not by CUPTI), OpenCL profiling, steady clock; several joined by ; where the rounds differ; "
+         "records from before it have none",
          [](auto& d) { return d.clock ? Json(*d.clock) : absent(); },
          {.optional = true}}};
     return fields;

@@ -114,8 +114,7 @@ Fields<AnswerErrors> pair_fields() {
              [](auto& e) { return e.pairs.missed_overlapping; }},
             {"missed_upper95", nullable(number_from(0)).with("maximum", 1),
              "with 95 % confidence the share of meeting pairs missed is at most this, when none was missed: "
-             "3 / n; "
-             "null otherwise",
+             "3 / n; null otherwise",
              &AnswerErrors::missed_upper95},
             {"candidate_ratio", nullable(number_from(0)),
              "candidates per pair that meets; null when none does", &AnswerErrors::candidate_ratio},

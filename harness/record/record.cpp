@@ -55,38 +55,37 @@ Json devices_json(const CellRecord& r) {
 
 /// Which run it was, and how it ended.
 Fields<CellRecord> run_fields() {
-    return {{"schema", constant(record_schema),
-             "version of this schema; scripts/convert_records brings records of versions 1 to 3 to it",
-             [](auto&) { return record_schema; }},
-            {"key",
-             text(),
-             "algorithm|back end:model, driver of each device joined by +|scene with "
-             "parameters@digest|first:last|"
-             "settings; first:last,degenerate=skip where tetrahedra were skipped; records of equal keys are "
-             "comparable: "
-             "the same thing was measured on the same model of device with the same driver",
-             [](auto& r) { return key_of(r.cell, settings_of(r), r.scene, r.range); },
-             {.column = "key"}},
-            {"session",
-             nullable(pattern_of_digest()),
-             "of all records that one run of the program wrote: their cells took turns; null in records from "
-             "before it",
-             [](auto&) { return session_id(); },
-             {.column = "session"}},
-            {"command", nullable(text()), "command line of that run; null when unknown",
-             [](auto&) { return known_or_null(without_folders(command_line())); }},
-            {"status",
-             one_of({"ok", "wrong", "failed"}),
-             "ok: no difference from the reference, or not compared (agreement null); wrong: an answer or a "
-             "timed sample "
-             "differs; failed: the cell did not finish; it has the samples that were taken before",
-             status_of,
-             {.column = "status"}},
-            {"failure",
-             nullable(text()),
-             "why the cell did not finish; null unless status is failed",
-             [](auto& r) { return known_or_null(r.outcome.failure); },
-             {.column = "failure"}}};
+    return {
+        {"schema", constant(record_schema),
+         "version of this schema; scripts/convert_records brings records of versions 1 to 3 to it",
+         [](auto&) { return record_schema; }},
+        {"key",
+         text(),
+         "algorithm|back end:model, driver of each device joined by +|scene with "
+         "parameters@digest|first:last|"
+         "settings; first:last,degenerate=skip where tetrahedra were skipped; records of equal keys are "
+         "comparable: the same thing was measured on the same model of device with the same driver",
+         [](auto& r) { return key_of(r.cell, settings_of(r), r.scene, r.range); },
+         {.column = "key"}},
+        {"session",
+         nullable(pattern_of_digest()),
+         "of all records that one run of the program wrote: their cells took turns; null in records from "
+         "before it",
+         [](auto&) { return session_id(); },
+         {.column = "session"}},
+        {"command", nullable(text()), "command line of that run; null when unknown",
+         [](auto&) { return known_or_null(without_folders(command_line())); }},
+        {"status",
+         one_of({"ok", "wrong", "failed"}),
+         "ok: no difference from the reference, or not compared (agreement null); wrong: an answer or a "
+         "timed sample differs; failed: the cell did not finish; it has the samples that were taken before",
+         status_of,
+         {.column = "status"}},
+        {"failure",
+         nullable(text()),
+         "why the cell did not finish; null unless status is failed",
+         [](auto& r) { return known_or_null(r.outcome.failure); },
+         {.column = "failure"}}};
 }
 
 /// What was measured.
@@ -103,8 +102,7 @@ Fields<CellRecord> subject_fields() {
              {.column = "preset"}},
             {"settings", settings_type(),
              "every setting of the algorithm as the device took it, such as group_size 1 on host; 'tandem "
-             "algorithms' "
-             "explains each",
+             "algorithms' explains each",
              [](auto& r) { return settings_of(r).texts(); }},
             {"asked", settings_type(),
              "settings that the devices did not take as they were asked for, as they were", asked_json},
@@ -126,8 +124,7 @@ Fields<CellRecord> subject_fields() {
             {"ranks",
              nullable(integer_from(2)),
              "ranks of a job that shared the frames, started by a launcher of MPI, each with one of devices, "
-             "in their "
-             "order; null where one process did them; records from before it have none",
+             "in their order; null where one process did them; records from before it have none",
              [](auto& r) { return r.cell.team != nullptr ? Json(r.cell.team->devices().size()) : Json(); },
              {.optional = true}}};
 }

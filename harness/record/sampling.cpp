@@ -91,8 +91,7 @@ Fields<CellRecord> quality_fields() {
              [](auto& r) { return count_outliers(rounds_of(r)); }},
             {"drift", nullable(number()),
              "change of the rounds from first to last, relative to their median, where it has one direction "
-             "(Mann "
-             "1945, p < 0.01; Sen 1968); null where it has none",
+             "(Mann 1945, p < 0.01; Sen 1968); null where it has none",
              [](auto& r) { return drift(rounds_of(r)); }}};
 }
 

@@ -35,12 +35,12 @@ Fields<Times> statistics_fields() {
         statistic("median", "median of the samples, nanoseconds", &Summary::median),
         statistic("q1", "first quartile, nanoseconds (Hyndman and Fan 1996, definition 7)", &Summary::q1),
         statistic("q3", "third quartile, nanoseconds (definition 7)", &Summary::q3),
-        statistic("low",
-                  "lower end of the 95 % percentile-bootstrap interval of the median, nanoseconds; expanded "
-                  "for few "
-                  "rounds (harness/sampling/statistics.h) since commits of 2026-11-23, of ten rounds a sixth "
-                  "narrower before",
-                  &Summary::low),
+        statistic(
+            "low",
+            "lower end of the 95 % percentile-bootstrap interval of the median, nanoseconds; expanded for "
+            "few rounds (harness/sampling/statistics.h) since commits of 2026-11-23, of ten rounds a sixth "
+            "narrower before",
+            &Summary::low),
         statistic("high", "upper end of that interval, nanoseconds", &Summary::high)};
 }
 
@@ -241,10 +241,10 @@ Json breakdown_json(const Measurement& m) {
 Fields<CellRecord> span_fields() {
     return {
         {"total_ns",
-         nullable(summarised(total_fields().type(
-             "host nanoseconds of replays in which nothing but the span of each frame was timed: the "
-             "headline. A "
-             "sample is one replay, the sum of its frames; statistics are of the medians of rounds"))),
+         nullable(
+             summarised(total_fields().type("host nanoseconds of replays in which nothing but the span of "
+                                            "each frame was timed: the headline. A sample is one replay, the "
+                                            "sum of its frames; statistics are of the medians of rounds"))),
          "", [](auto& r) { return r.is_measured() || !r.m.samples.empty() ? total_json(r.m) : Json(); }},
         {"breakdown_ns", nullable(replays_type()),
          "host nanoseconds of replays with timestamps on every command, one a round, which 'stages' divides; "
@@ -252,10 +252,8 @@ Fields<CellRecord> span_fields() {
          [](auto& r) { return breakdown_json(r.m); }},
         {"device_span_ns", nullable(replays_type()),
          "device nanoseconds of those replays, the sum over frames from the begin of the first command to "
-         "the end "
-         "of the last; less the sum of device_ns it is the time between commands; null when the backend "
-         "tells no "
-         "times",
+         "the end of the last; less the sum of device_ns it is the time between commands; null when the "
+         "backend tells no times",
          [](auto& r) { return device_span_json(r.m); }}};
 }
 
@@ -275,8 +273,7 @@ Fields<CellRecord> time_fields() {
          {"host_work",
           map_of(host_work_fields().type("one kind of work"), "^[a-z][a-z ]*$"),
           "what the host did by itself in those replays, by name; each is within a stage as well; records "
-          "from "
-          "before it have none",
+          "from before it have none",
           [](auto& r) {
               return named_json(r.m, host_work_fields(), &InstrumentedReplay::host_work,
                                 &HostWorkSample::host_ns);

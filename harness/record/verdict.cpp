@@ -229,8 +229,7 @@ const Fields<VerdictLine>& verdict_fields() {
         {"devices", array_of(text()).with("minItems", 1), "ids of the devices of each cell", device_ids_json},
         {"bounds", map_of(any_text().with("description", "value of the setting"), ""),
          "the settings that all cells share because they determine the work: k, axes, precision, rounding, "
-         "placement, "
-         "origin and output, as far as the algorithms have them",
+         "placement, origin and output, as far as the algorithms have them",
          bounds_json},
         {"answers_differ", boolean(),
          "the cells were not checked, and found different candidate pairs: none is the fastest",

@@ -61,6 +61,7 @@ void each_checked(State& state, const Each& each) {
     each("body_pairs", m.body_pairs);
     each("candidate_pairs", m.candidate_pairs);
     each("contacts", m.contacts);
+    each("walked_tetrahedra", m.walked_tetrahedra);
     each("degenerate", m.degenerate);
     each("without_boundary", m.without_boundary);
     each("rejected", m.rejected);

@@ -89,6 +89,7 @@ void LocalSampler::add_errors(Truths& truths, std::size_t index, const FrameResu
     answer.pairs = digest;
     answer.contacts = contacts;
     answer.makes_contacts = makes_contacts();
+    answer.walked = walked_of(out_.settings);
     std::vector<Pair> pairs;
     std::vector<ContactPoint> points;
     if (cell_.team != nullptr) {
@@ -100,6 +101,11 @@ void LocalSampler::add_errors(Truths& truths, std::size_t index, const FrameResu
     answer.download_contacts = [&] { return cell_.team != nullptr ? points : result.download_contacts(); };
     if (!out_.errors) out_.errors.emplace();
     out_.errors->add(truths.errors(geometry_, index, answer, report));
+}
+
+/// The truth of pairs is of all pairs.
+bool LocalSampler::has_truth(const Truths& truths) const {
+    return truths.amount() == TruthAmount::contacts || out_.settings[parameters::output] != Output::contacts;
 }
 
 void LocalSampler::add_counts(const FrameResult& result) {
@@ -129,7 +135,7 @@ void LocalSampler::check_answer(std::size_t index, const FrameResult& result, co
                 digest = expected;
         compare(index, result, digest, contacts);
     }
-    if (options.truths != nullptr && result.has_pairs())
+    if (options.truths != nullptr && result.has_pairs() && has_truth(*options.truths))
         add_errors(*options.truths, index, result, digest, contacts,
                    [&](double fraction, std::uint64_t decided) {
                        options.progress(fmt::format("truth of {}: {:.0f} %, {} pairs decided", frame,
@@ -148,6 +154,7 @@ void LocalSampler::do_check(const CheckOptions& options) {
     begin_session();
     out_.prepare_ns = state_.prepare_ns;
     out_.settings = replays_->settings();
+    out_.walked_tetrahedra = count_walked(scene_, walked_of(out_.settings));
     geometry_ = geometry_of(out_.settings);
     const auto replay = replays_->timed(
         [&](std::size_t index, const FrameResult& result) { check_answer(index, result, options); });

@@ -29,6 +29,7 @@ private:
     void check_answer(std::size_t index, const FrameResult& result, const CheckOptions& options);
     void add_errors(Truths& truths, std::size_t index, const FrameResult& result, const Digest& digest,
                     const Digest& contacts, const Report& report);
+    bool has_truth(const Truths& truths) const;
     void add_counts(const FrameResult& result);
     void take_kernels();
 

@@ -105,6 +105,7 @@ struct Measurement {
     std::vector<RoundConditions> conditions; ///< of every round with samples
     std::vector<std::uint32_t> continued;    ///< first rounds of later runs that resumed the cell
     std::vector<std::uint64_t> body_pairs, candidate_pairs, contacts; ///< [frame]
+    std::uint64_t walked_tetrahedra = 0;                              ///< summed over the bodies
     std::uint64_t without_boundary = 0, degenerate = 0, rejected = 0, undecided_by_filter = 0,
                   undecided_by_double = 0;
     std::uint64_t retries = 0, batches = 0;      ///< of the checking replay

@@ -114,8 +114,8 @@ StoredTrees::StoredTrees(const Bodies& bodies, std::uint32_t group_size)
 std::vector<StoredTrees::Tree> StoredTrees::lay_out_meshes() {
     std::vector<Tree> mesh_trees;
     std::vector<std::uint32_t> children, depths;
-    for (const auto& mesh : bodies_.scene().meshes) {
-        const auto tree = halved(static_cast<std::uint32_t>(mesh.tetrahedra.size()));
+    for (std::size_t mesh = 0; mesh < bodies_.scene().meshes.size(); ++mesh) {
+        const auto tree = halved(static_cast<std::uint32_t>(bodies_.ordered_mesh(mesh).ids.size()));
         mesh_trees.push_back({0, static_cast<std::uint32_t>(children.size() / 2),
                               static_cast<std::uint32_t>(depths.size()),
                               static_cast<std::uint32_t>(tree.depths.size() - 1)});

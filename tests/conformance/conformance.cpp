@@ -29,6 +29,7 @@ const std::vector<SettingValues> settings_of_single_algorithms{
     {"seed_target", {"1000", "1048576"}},
     {"seed_capacity", {"1", "65536"}},
     {"builder", {"morton", "sah", "breadth", "hilbert", "median"}},
+    {"output", {"pairs", "contacts"}},
     {"slabs", {"three", "all"}},
     {"tile_pair_capacity", {"1", "65536"}},
     {"most_seeds", {"1", "256", "16384"}},
@@ -151,7 +152,8 @@ void expect_right(Device& on, const Traversal& traversal, const Scene& scene, co
     const auto geometry = geometry_of(settings);
     for (std::size_t i = 0; i < scene.frame_count; ++i) {
         const auto frame = scene.frame(i);
-        const auto expected = reference(scene, frame, geometry, true, Method::brute_force);
+        const auto expected =
+            reference(scene, frame, geometry, true, Method::brute_force, contact_settings_of(settings));
         const auto result = run_among_all(*session, scene, frame);
         EXPECT_EQ(result.download(), expected.pairs);
         EXPECT_EQ(result.digest(), expected.digest);

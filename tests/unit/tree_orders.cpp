@@ -115,6 +115,28 @@ TEST(TreeOrders, ArePermutationsOfAnyMesh) {
         }
 }
 
+/// Hulls of a mesh: interior tetrahedra are in no order, and vertices that only they use have no number.
+TEST(TreeOrders, ContainWalkedTetrahedraOnly) {
+    Random random(4);
+    const auto mesh = shuffled(shaken_box(5, random), 6);
+    const auto walked = walked_tetrahedra(mesh, Walked::boundary);
+    EXPECT_EQ(count_walked(mesh, Walked::boundary), walked.size());
+    EXPECT_LT(walked.size(), mesh.tetrahedra.size());
+    for (const auto id : walked) EXPECT_NE(mesh.boundary[id], 0);
+    EXPECT_EQ(std::ranges::count(mesh.boundary, 0) + walked.size(), mesh.tetrahedra.size());
+    for (const auto builder : builders) {
+        auto part = ordered(mesh, {builder, Walked::boundary});
+        EXPECT_LT(part.vertices.size(), mesh.vertices.size());
+        EXPECT_EQ(part.numbers.size(), mesh.vertices.size());
+        for (std::size_t i = 0; i < part.ids.size(); ++i)
+            for (std::size_t corner = 0; corner < 4; ++corner)
+                EXPECT_EQ(part.vertices[part.tetrahedra[4 * i + corner]],
+                          mesh.tetrahedra[part.ids[i]][corner]);
+        std::ranges::sort(part.ids);
+        EXPECT_EQ(part.ids, walked);
+    }
+}
+
 TEST(TreeOrders, DifferFromEachOther) {
     Random random(4);
     const auto mesh = shuffled(shaken_box(5, random), 6);

@@ -75,9 +75,13 @@ void add_run_options(CLI::App& app, RunOptions& options, std::vector<std::string
     app.add_option("--require", options.require, "devices or backends whose absence is an error")
         ->delimiter(',');
     app.add_option_function<std::string>(
-           "--truth", [&options](const std::string& text) { options.truth = parse_truth(text); },
+           "--truth",
+           [&options](const std::string& text) {
+               options.truth = parse_truth(text);
+               options.truth_is_given = true;
+           },
            "compare with the exact truth: none, pairs (all pairs of all frames) or contacts (also depths, "
-           "normals and points) (default: pairs)")
+           "normals and points) (default: pairs; none with output=contacts)")
         ->option_text("none|pairs|contacts");
     app.add_option("--truth-contacts", options.truth_contacts,
                    "maximum number of pairs per frame whose exact contacts are computed (default: all)")

@@ -172,6 +172,11 @@ int accuracy_command(const AccuracyOptions& options) {
     check_required(backends, options.run.require);
     const auto devices = open_devices(options.run, backends, request.devices);
     const auto cells = request.sets.empty() ? sweep(request, devices) : plan(request, devices);
+    for (const auto& cell : cells)
+        if (cell.settings[parameters::output] == Output::contacts)
+            throw InputError(
+                "accuracy needs all candidate pairs, and output=contacts may leave some out; set "
+                "output=pairs");
     auto scenes = options.scenes;
     // An empty name stands for --mesh; without meshes it causes the error message.
     if (scenes.empty()) scenes.emplace_back();

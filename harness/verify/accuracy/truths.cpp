@@ -3,6 +3,7 @@
 
 #include "algorithms/bodies/origin.h"
 #include "harness/verify/accuracy/answer_errors_json.h"
+#include "harness/verify/reference.h"
 #include "scenes/digest.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -46,20 +47,29 @@ const FrameTruth& Truths::truth_of(const FramePosition& position, const Report& 
     return truths_.emplace(position, std::move(truth)).first->second;
 }
 
-const ContactTruths& Truths::contact_truths_of(const FramePosition& position, const Report& report) {
-    if (const auto found = contact_truths_.find(position); found != contact_truths_.end())
-        return found->second;
+FrameTruth Truths::walked_truth_of(const FramePosition& position, Walked walked, const Report& report) {
+    auto truth = truth_of(position, report);
+    if (walked == Walked::all) return truth;
+    truth.touching = of_boundary(scene_, std::move(truth.touching));
+    truth.overlapping = of_boundary(scene_, std::move(truth.overlapping));
+    return truth;
+}
+
+const ContactTruths& Truths::contact_truths_of(const FramePosition& position, Walked walked,
+                                               const FrameTruth& truth) {
+    const std::pair key{position, walked};
+    if (const auto found = contact_truths_.find(key); found != contact_truths_.end()) return found->second;
     const auto& [positions, index] = position;
     const auto frame = range_.frame(index, positions.origin);
-    auto truths = contact_truths(scene_, *frame, positions.precision, truth_of(position, report),
-                                 most_contacts_, origin_of(scene_, positions.origin));
-    return contact_truths_.emplace(position, std::move(truths)).first->second;
+    auto truths = contact_truths(scene_, *frame, positions.precision, truth, most_contacts_,
+                                 origin_of(scene_, positions.origin));
+    return contact_truths_.emplace(key, std::move(truths)).first->second;
 }
 
 const AnswerErrors& Truths::errors(const Geometry& geometry, std::size_t index, const FrameAnswer& answer,
                                    const Report& report) {
     const FramePosition position{{geometry.precision, geometry.placement, geometry.origin}, index};
-    const std::tuple key{geometry.precision, geometry.origin, position,
+    const std::tuple key{geometry.precision, geometry.origin, position, answer.walked,
                          Numbers{answer.pairs.count, answer.pairs.a, answer.pairs.b, answer.contacts.count,
                                  answer.contacts.a, answer.contacts.b}};
     if (const auto found = errors_.find(key); found != errors_.end()) return found->second;
@@ -78,13 +88,13 @@ std::string Truths::cache_key(const Geometry& geometry, const FramePosition& pos
     const auto& [positions, index] = position;
     const auto& p = answer.pairs;
     const auto& c = answer.contacts;
-    return fmt::format("frame {:016x}{}, precision {}, origin {}, positions {} {}, amount {} {}, "
+    return fmt::format("frame {:016x}{}, precision {}, origin {}, positions {} {}, amount {} {}, walked {}, "
                        "pairs {} {:x} {:x}, contacts {} {} {:x} {:x}",
                        digest_of(*range_.frame(index)), index == 0 ? " first" : "",
                        static_cast<int>(geometry.precision), static_cast<int>(geometry.origin),
                        static_cast<int>(positions.precision), static_cast<int>(positions.placement),
-                       static_cast<int>(amount_), most_contacts_, p.count, p.a, p.b, answer.makes_contacts,
-                       c.count, c.a, c.b);
+                       static_cast<int>(amount_), most_contacts_, static_cast<int>(answer.walked), p.count,
+                       p.a, p.b, answer.makes_contacts, c.count, c.a, c.b);
 }
 
 const Drift& Truths::drift_of(const Geometry& geometry) {
@@ -97,7 +107,7 @@ const Drift& Truths::drift_of(const Geometry& geometry) {
 /// A download may throw; the caller then stores nothing, and the next cell tries again.
 AnswerErrors Truths::errors_of(const Geometry& geometry, const FramePosition& position,
                                const FrameAnswer& answer, const Report& report) {
-    const auto& truth = truth_of(position, report);
+    const auto truth = walked_truth_of(position, answer.walked, report);
     AnswerErrors errors;
     const auto pairs = answer.download();
     errors.frames = 1;
@@ -109,7 +119,7 @@ AnswerErrors Truths::errors_of(const Geometry& geometry, const FramePosition& po
     const auto contacts = answer.download_contacts();
     errors.decisions = decision_matrix(truth, pairs, contacts);
     if (amount_ != TruthAmount::contacts) return errors;
-    const auto& exact = contact_truths_of(position, report);
+    const auto& exact = contact_truths_of(position, answer.walked, truth);
     errors.every_contact = exact.every;
     errors.contacts =
         contact_errors(exact, contacts, geometry.precision == Precision::fp64 ? 0x1p-53 : 0x1p-24);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/traversal.h"
+#include "algorithms/hierarchy/order.h"
 #include "harness/verify/accuracy/answer_errors.h"
 #include "harness/plans/frames.h"
 #include "harness/verify/verification_cache.h"
@@ -23,7 +24,8 @@ enum class TruthAmount {
 struct FrameAnswer {
     Digest pairs, contacts;
     bool makes_contacts = false;
-    std::function<std::vector<Pair>()> download;                  ///< sorted
+    Walked walked = Walked::all;                 ///< pairs of other tetrahedra are in no error
+    std::function<std::vector<Pair>()> download; ///< sorted
     std::function<std::vector<ContactPoint>()> download_contacts; ///< sorted
 };
 
@@ -50,7 +52,9 @@ private:
     using FramePosition = std::pair<Positions, std::size_t>;
     using Numbers = std::array<std::uint64_t, 6>; ///< of the two digests
     const FrameTruth& truth_of(const FramePosition& position, const Report& report);
-    const ContactTruths& contact_truths_of(const FramePosition& position, const Report& report);
+    FrameTruth walked_truth_of(const FramePosition& position, Walked walked, const Report& report);
+    const ContactTruths& contact_truths_of(const FramePosition& position, Walked walked,
+                                           const FrameTruth& truth);
     std::string cache_key(const Geometry& geometry, const FramePosition& position,
                           const FrameAnswer& answer) const;
     AnswerErrors errors_of(const Geometry& geometry, const FramePosition& position, const FrameAnswer& answer,
@@ -63,9 +67,9 @@ private:
     std::size_t most_contacts_;
     VerificationCache cache_;
     std::map<FramePosition, FrameTruth> truths_;
-    std::map<FramePosition, ContactTruths> contact_truths_;
+    std::map<std::pair<FramePosition, Walked>, ContactTruths> contact_truths_;
     std::map<std::pair<Precision, Origin>, Drift> drifts_; ///< of the first frame
-    std::map<std::tuple<Precision, Origin, FramePosition, Numbers>, AnswerErrors> errors_;
+    std::map<std::tuple<Precision, Origin, FramePosition, Walked, Numbers>, AnswerErrors> errors_;
 };
 
 } // namespace tandem
