@@ -10,7 +10,8 @@
 namespace tandem {
 
 void ResidentSession::set_subdomain(const Subdomain& subdomain) {
-    stale_ = true; // new bodies of the subdomain have no poses on the device
+    stale_ = true;  // new bodies of the subdomain have no poses on the device
+    poses_.reset(); // the host packs the poses of the subdomain alone
     pipeline_.bodies->set_subdomain(subdomain);
     pipeline_.stages.hierarchy->take(subdomain, pipeline_.bodies->count());
     pipeline_.body_pairs->set_subdomain(subdomain);
@@ -27,10 +28,7 @@ void ResidentSession::upload_vertices(const Frame& frame) {
     is_uploaded_ = true;
 }
 
-void ResidentSession::do_reset() {
-    pipeline_.body_pairs->reset();
-    batches_ = 1;
-}
+void ResidentSession::do_reset() { batches_ = 1; }
 
 FrameResult ResidentSession::do_run_device_input(const DeviceFrame& frame,
                                                  std::optional<std::span<const BodyPair>> body_pairs) {
@@ -43,7 +41,10 @@ FrameResult ResidentSession::do_run_device_input(const DeviceFrame& frame,
 void ResidentSession::refresh(const Input& input) {
     const bool all = std::exchange(stale_, true);
     if (input.host != nullptr) {
-        pipeline_.bodies->update_poses(*input.host, all);
+        if (poses_)
+            poses_->launch(*input.host, all);
+        else
+            pipeline_.bodies->update_poses(*input.host, all);
         if (!std::exchange(is_uploaded_, false)) pipeline_.bodies->update_deformed(*input.host);
         pipeline_.stages.hierarchy->refit(*input.host, all);
         return;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/bodies/pack_stage.h"
+#include "algorithms/bodies/pose_stage.h"
 #include "algorithms/pipeline.h"
 #include "algorithms/distributed/subdomain.h"
 
@@ -20,6 +21,7 @@ public:
                     std::shared_ptr<AnswerPool> answers = nullptr)
         : scene_(scene),
           pipeline_(traversal, device, scene, std::move(fitted), std::move(answers)),
+          poses_(PoseStage::make(*pipeline_.bodies, pipeline_.shape)),
           devices_{&device} {}
     const std::shared_ptr<AnswerPool>& answers() const { return pipeline_.answers; }
     /// Sets the expected size of the next answer, so that its buffers are large enough for a single run.
@@ -73,6 +75,7 @@ private:
 
     const Scene& scene_;
     Pipeline pipeline_;
+    std::unique_ptr<PoseStage> poses_; ///< null: the host packs poses
     std::array<Device*, 1> devices_;
     std::unique_ptr<PackStage> pack_; ///< created by the first frame in the device's memory
     std::uint64_t batches_ = 1;       ///< initial number for the next frame

@@ -193,11 +193,15 @@ std::vector<std::byte> Bodies::packed_poses(const Frame& frame) const {
 
 /// Without moving rigid bodies, poses are uploaded with `all` only. With placement=exact the pose of a
 /// deformable body has its drift, which changes with its vertices.
-void Bodies::update_poses(const Frame& frame, bool all) {
+bool Bodies::changes_poses(bool all) const {
     const auto moves = [this](const Body& body) {
         return !body.fixed && (!body.deformable || geometry_.placement == Placement::exact);
     };
-    if (!all && std::none_of(scene_.bodies.begin(), scene_.bodies.end(), moves)) return;
+    return all || std::any_of(scene_.bodies.begin(), scene_.bodies.end(), moves);
+}
+
+void Bodies::update_poses(const Frame& frame, bool all) {
+    if (!changes_poses(all)) return;
     std::vector<std::byte> bytes;
     {
         const HostWork work(device_, Stage::preprocess, "pack poses");

@@ -43,6 +43,8 @@ public:
     void update(const Frame& frame, bool all = true);
     /// The two halves of update(). `waits`: wait for the upload of the vertices.
     void update_poses(const Frame& frame, bool all);
+    /// Whether update_poses() uploads anything.
+    bool changes_poses(bool all) const;
     void update_deformed(const Frame& frame, bool waits = false);
     /// From the next frame on, reads and uploads only bodies of this subdomain.
     void set_subdomain(const Subdomain& subdomain);
@@ -53,6 +55,7 @@ public:
     Device& device() const { return device_; }
     const Scene& scene() const { return scene_; }
     const Geometry& geometry() const { return geometry_; }
+    Sharing sharing() const { return sharing_; }
     std::uint32_t count() const { return static_cast<std::uint32_t>(rows_.size()); }
     const BodyRow& row(std::size_t body) const { return rows_[body]; }
     /// The body's mesh in the order of the device.

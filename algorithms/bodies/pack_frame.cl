@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Packs frames in the device's memory, in double or float, with the operations of pack.cpp, so that the bits
-// are the same. Rows out of range are counted and packed as if they were at the origin, so that later kernels
+// Packs frames in the device's memory, in double or float, and poses of frames in the host's, with the
+// operations of pack.cpp, so that the bits are the same. Rows out of range are counted and packed as if they were at the origin, so that later kernels
 // get finite numbers. The host then rejects the frame.
 #include "backends/portable.h"
 #include "algorithms/answer/status.clh"
@@ -79,6 +79,21 @@ KERNEL void pack_poses(GLOBAL real* poses, GLOBAL const void* rows, uint kind, G
             numbers[2] -= origin_z;
         }
         pack_pose((GLOBAL RealRow*)(poses + body * POSE_REALS), numbers, norm);
+    }
+}
+
+// A work-item packs one body of a frame in the host's memory: double rows, normalised once as in pose_rows.
+KERNEL void pack_unit_poses(GLOBAL real* poses, GLOBAL const double* rows, uint count) {
+    for (ulong body = GLOBAL_ID; body < count; body += GLOBAL_COUNT) {
+        GLOBAL const double* numbers = rows + body * POSE_NUMBERS;
+        const double t[3] = {numbers[0], numbers[1], numbers[2]};
+        const double w = numbers[3];
+        const double x = numbers[4];
+        const double y = numbers[5];
+        const double z = numbers[6];
+        const double length = SQUARE_ROOT((w * w + x * x) + (y * y + z * z));
+        write_pose((GLOBAL RealRow*)(poses + body * POSE_REALS), w / length, x / length, y / length,
+                   z / length, t);
     }
 }
 

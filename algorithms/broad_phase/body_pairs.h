@@ -40,8 +40,6 @@ public:
     /// buffer is too small for them, the host finds them; for a frame in the device's memory (`frame` = null)
     /// that is impossible and throws OutOfMemory.
     std::vector<BodyPair> list(const Frame* frame, const Status& status) const;
-    /// Makes the next search sort the bodies again, unless they have the order of a subdomain.
-    void reset() { sorted_ = !roles_.empty(); }
     /// From the next frame on, finds the pairs of this subdomain. `given` pairs are not filtered.
     void set_subdomain(const Subdomain& subdomain);
 

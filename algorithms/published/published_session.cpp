@@ -61,7 +61,7 @@ public:
           devices_{&device} {}
 
 private:
-    void do_reset() override { pipeline_.body_pairs->reset(); }
+    void do_reset() override {}
     FrameResult do_run(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) override;
     void do_count_work(bool on) override { pipeline_.count(on); }
     std::span<Device* const> do_devices() const override { return devices_; }

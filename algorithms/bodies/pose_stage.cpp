@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/bodies/pose_stage.h"
+
+#include "algorithms/sources.h"
+#include "backends/upload.h"
+
+#include <algorithm>
+
+namespace tandem {
+
+namespace {
+
+constexpr std::size_t numbers_per_pose = 7; ///< POSE_NUMBERS
+/// Bodies that a processor packs in about the time of a launch.
+constexpr std::uint32_t few_bodies = 256;
+
+} // namespace
+
+std::unique_ptr<PoseStage> PoseStage::make(const Bodies& bodies, LaunchShape shape) {
+    const auto& info = bodies.device().info();
+    const bool host_packs = info.id == "host" || bodies.count() < few_bodies || !info.has_double
+                            || bodies.geometry().placement == Placement::exact
+                            || bodies.sharing() == Bodies::Sharing::none;
+    return host_packs ? nullptr : std::unique_ptr<PoseStage>(new PoseStage(bodies, shape));
+}
+
+PoseStage::PoseStage(const Bodies& bodies, LaunchShape shape)
+    : bodies_(bodies),
+      grid_{std::clamp<std::uint64_t>((bodies.count() + shape.group_size - 1) / shape.group_size, 1,
+                                      shape.groups),
+            shape.group_size},
+      numbers_(numbers_per_pose * bodies.count()),
+      rows_(bodies.device().allocate(numbers_.size() * sizeof(double), "poses of the host")),
+      kernel_(bodies.device().compile(kernel_source("algorithms/bodies/pack_frame.cl"), "pack_unit_poses",
+                                      row_defines(bodies.geometry(), shape.group_size))) {}
+
+void PoseStage::launch(const Frame& frame, bool all) {
+    if (!bodies_.changes_poses(all)) return;
+    auto& device = bodies_.device();
+    {
+        const HostWork work(device, Stage::preprocess, "copy poses");
+        auto* to = numbers_.data();
+        for (const auto& [q, t] : frame.poses)
+            for (const double number : {t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()}) *to++ = number;
+    }
+    {
+        const StageScope scope(device, Stage::write);
+        device.upload(rows_, bytes_of(numbers_));
+    }
+    const StageScope scope(device, Stage::preprocess);
+    const std::array<Argument, 3> arguments{bodies_.poses(), rows_, bodies_.count()};
+    device.launch(kernel_, grid_, arguments);
+}
+
+} // namespace tandem
