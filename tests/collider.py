@@ -38,6 +38,13 @@ class Answers(ColliderCase):
         self.assertEqual(self.collider(output="digest").digest(POSES), answers[0].digest())
         self.assertEqual(self.collider(device="host+opencl:0").run(POSES).digest(), answers[0].digest())
 
+    def test_contacts_do_not_need_interior_tetrahedra(self):
+        whole, answer = self.collider().run(POSES), self.collider(output="contacts").run(POSES)
+        self.assertGreater(len(answer.contacts()), 0)
+        self.assertEqual(answer.contact_digest(), whole.contact_digest())
+        self.assertTrue((answer.contacts().points == whole.contacts().points).all())
+        self.assertTrue(set(map(tuple, answer.pairs())) <= set(map(tuple, whole.pairs())))
+
     def test_meshes_of_every_kind(self):
         expected = self.collider().pairs(POSES)
         self.assertGreater(len(expected), 10)
