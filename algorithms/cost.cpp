@@ -65,6 +65,8 @@ SceneFacts::SceneFacts(const Scene& scene, const Settings& settings) {
     row_bytes = 4 * number(words_of(settings[parameters::pair_layout]));
     pair_bytes = has_pairs(settings[parameters::output]) ? row_bytes : 0;
     const auto walked = walked_of(settings);
+    std::vector<std::size_t> vertices; // by mesh, of walked tetrahedra
+    for (const auto& mesh : scene.meshes) vertices.push_back(vertices_of(mesh, walked));
     std::set<std::uint32_t> meshes, shared; // meshes with counted tetrahedra, and with counted vertices
     for (const auto& body : scene.bodies) {
         if (body.fixed && !published) continue;
@@ -74,7 +76,7 @@ SceneFacts::SceneFacts(const Scene& scene, const Settings& settings) {
         if (first) mesh_tetrahedra.push_back(tetrahedra.back());
         if (first || published) tetrahedron_rows += number(tetrahedra.back());
         if (body.deformable || published || shared.insert(body.mesh).second)
-            vertex_rows += number(vertices_of(mesh, walked));
+            vertex_rows += number(vertices[body.mesh]);
     }
     moving = number(tetrahedra.size());
 }
@@ -114,8 +116,8 @@ std::vector<KernelCost> Traversal::do_costs(const Scene&, const Settings&) const
 std::vector<KernelCost> Traversal::costs(const Scene& scene, const Settings& settings) const {
     const SceneFacts facts(scene, settings);
     auto all = do_costs(scene, settings);
-    for (const auto& common :
-         {broad_costs(facts), contact_costs(facts), answer_costs(facts), published_costs(facts)})
+    for (const auto& common : {body_costs(facts), broad_costs(facts), contact_costs(facts),
+                               answer_costs(facts), published_costs(facts)})
         all.insert(all.end(), common.begin(), common.end());
     return all;
 }

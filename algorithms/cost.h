@@ -71,6 +71,7 @@ void add_touched(FrameFacts& facts, const Scene& scene, const Settings& settings
 KernelCost walk_cost(const SceneFacts& scene, std::string_view entry);
 
 /// Costs of the kernels that every algorithm may launch; each is defined in the folder of its kernels.
+std::vector<KernelCost> body_costs(const SceneFacts& scene);
 std::vector<KernelCost> broad_costs(const SceneFacts& scene);
 std::vector<KernelCost> contact_costs(const SceneFacts& scene);
 std::vector<KernelCost> answer_costs(const SceneFacts& scene);

@@ -21,7 +21,12 @@ std::unique_ptr<PoseStage> PoseStage::make(const Bodies& bodies, LaunchShape sha
     const bool host_packs = info.id == "host" || bodies.count() < few_bodies || !info.has_double
                             || bodies.geometry().placement == Placement::exact
                             || bodies.sharing() == Bodies::Sharing::none;
-    return host_packs ? nullptr : std::unique_ptr<PoseStage>(new PoseStage(bodies, shape));
+    if (host_packs) return nullptr;
+    try {
+        return std::unique_ptr<PoseStage>(new PoseStage(bodies, shape));
+    } catch (const OutOfMemory&) {
+        return nullptr;
+    }
 }
 
 PoseStage::PoseStage(const Bodies& bodies, LaunchShape shape)

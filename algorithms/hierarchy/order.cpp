@@ -155,8 +155,9 @@ std::size_t count_walked(const Scene& scene, Walked walked) {
 
 std::vector<std::uint32_t> walked_tetrahedra(const Mesh& mesh, Walked walked) {
     std::vector<std::uint32_t> result;
-    result.reserve(count_walked(mesh, walked));
-    const bool takes_all = count_walked(mesh, walked) == mesh.tetrahedra.size();
+    const auto count = count_walked(mesh, walked);
+    result.reserve(count);
+    const bool takes_all = count == mesh.tetrahedra.size();
     for (std::uint32_t i = 0; i < mesh.tetrahedra.size(); ++i)
         if (takes_all || mesh.boundary[i] != 0) result.push_back(i);
     return result;

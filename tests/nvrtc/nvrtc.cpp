@@ -9,7 +9,7 @@
 #include "algorithms/traversal.h"
 #include "backends/ptxas_log.h"
 #include "scenes/builtin.h"
-#include "tests/nvrtc/ceiling.h"
+#include "tests/nvrtc/budget.h"
 #include "tests/nvrtc/compiling_device.h"
 #include "tests/support/contact_rules.h"
 #include "tests/support/folder.h"
@@ -211,7 +211,7 @@ TEST(Nvrtc, DefaultFloatKernelsKeepTheirBudget) {
     }
 }
 
-TEST(Nvrtc, ContactRulesAndDecisionsKeepTheirCeiling) {
+TEST(Nvrtc, ContactRulesAndDecisionsKeepTheirBudget) {
     CompilingDevice device;
     prepare_contacts(device);
     if (!can_compile(device.requested())) return;
@@ -219,7 +219,7 @@ TEST(Nvrtc, ContactRulesAndDecisionsKeepTheirCeiling) {
                                      const std::set<std::string>& names) {
         const auto& image = for_hopper(source, defines);
         for (const auto& name : names) {
-            const auto most = ceiling(name, defines);
+            const auto most = budget_of(name, defines);
             if (!most) continue;
             const auto use = use_of(image.log, name);
             EXPECT_LE(use.registers, most->registers) << name << text_of(defines);
@@ -231,7 +231,7 @@ TEST(Nvrtc, ContactRulesAndDecisionsKeepTheirCeiling) {
     std::set<std::string> seen;
     for (const auto& [program, names] : device.requested())
         for (const auto& name : names)
-            if (ceiling(name, program.second)) seen.insert(name);
+            if (budget_of(name, program.second)) seen.insert(name);
     EXPECT_EQ(seen.size(), 5u);
 }
 

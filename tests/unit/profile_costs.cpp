@@ -72,6 +72,21 @@ TEST(ProfileCosts, EveryKernelOfAFrameHasAFloorOrAReason) {
         EXPECT_TRUE(launched.contains(entry)) << entry;
 }
 
+/// A device other than the host packs the poses of many bodies.
+TEST(ProfileCosts, ThePosesOfManyBodiesHaveAFloor) {
+    const auto scene = procession(300, 1, 0);
+    const auto& traversal = algorithm("tiled");
+    const auto cell =
+        make_cell(traversal, traversal.presets().front(), {{"contact_rule", "none"}}, {&device("opencl:0")});
+    const FrameRange range(scene, 0, 0);
+    Replays replays(cell, scene, range);
+    const auto kernels = replays.instrumented().kernels;
+    const auto costs = traversal.costs(scene, replays.settings());
+    EXPECT_TRUE(kernels.contains("pack_unit_poses"));
+    for (const auto& [entry, sample] : kernels)
+        EXPECT_EQ(std::ranges::count(costs, std::string_view(entry), &KernelCost::entry), 1) << entry;
+}
+
 TEST(ProfileCosts, EveryDeclaredKernelExists) {
     std::string texts;
     for (const auto& source : kernel_sources()) texts += source.text;

@@ -47,12 +47,16 @@ const FrameTruth& Truths::truth_of(const FramePosition& position, const Report& 
     return truths_.emplace(position, std::move(truth)).first->second;
 }
 
-FrameTruth Truths::walked_truth_of(const FramePosition& position, Walked walked, const Report& report) {
-    auto truth = truth_of(position, report);
-    if (walked == Walked::all) return truth;
-    truth.touching = of_boundary(scene_, std::move(truth.touching));
-    truth.overlapping = of_boundary(scene_, std::move(truth.overlapping));
-    return truth;
+const FrameTruth& Truths::walked_truth_of(const FramePosition& position, Walked walked,
+                                          const Report& report) {
+    const auto& whole = truth_of(position, report);
+    if (walked == Walked::all) return whole;
+    if (const auto found = boundary_truths_.find(position); found != boundary_truths_.end())
+        return found->second;
+    auto part = whole;
+    part.touching = of_boundary(scene_, std::move(part.touching));
+    part.overlapping = of_boundary(scene_, std::move(part.overlapping));
+    return boundary_truths_.emplace(position, std::move(part)).first->second;
 }
 
 const ContactTruths& Truths::contact_truths_of(const FramePosition& position, Walked walked,
@@ -107,7 +111,7 @@ const Drift& Truths::drift_of(const Geometry& geometry) {
 /// A download may throw; the caller then stores nothing, and the next cell tries again.
 AnswerErrors Truths::errors_of(const Geometry& geometry, const FramePosition& position,
                                const FrameAnswer& answer, const Report& report) {
-    const auto truth = walked_truth_of(position, answer.walked, report);
+    const auto& truth = walked_truth_of(position, answer.walked, report);
     AnswerErrors errors;
     const auto pairs = answer.download();
     errors.frames = 1;

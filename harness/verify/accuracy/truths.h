@@ -52,7 +52,7 @@ private:
     using FramePosition = std::pair<Positions, std::size_t>;
     using Numbers = std::array<std::uint64_t, 6>; ///< of the two digests
     const FrameTruth& truth_of(const FramePosition& position, const Report& report);
-    FrameTruth walked_truth_of(const FramePosition& position, Walked walked, const Report& report);
+    const FrameTruth& walked_truth_of(const FramePosition& position, Walked walked, const Report& report);
     const ContactTruths& contact_truths_of(const FramePosition& position, Walked walked,
                                            const FrameTruth& truth);
     std::string cache_key(const Geometry& geometry, const FramePosition& position,
@@ -67,6 +67,7 @@ private:
     std::size_t most_contacts_;
     VerificationCache cache_;
     std::map<FramePosition, FrameTruth> truths_;
+    std::map<FramePosition, FrameTruth> boundary_truths_; ///< of Walked::boundary
     std::map<std::pair<FramePosition, Walked>, ContactTruths> contact_truths_;
     std::map<std::pair<Precision, Origin>, Drift> drifts_; ///< of the first frame
     std::map<std::tuple<Precision, Origin, FramePosition, Walked, Numbers>, AnswerErrors> errors_;

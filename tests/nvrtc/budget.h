@@ -14,14 +14,14 @@ inline bool is_double(const Defines& defines) {
 }
 
 /// What a kernel may use, for each precision.
-struct Ceiling {
+struct Budget {
     int registers;
     int private_bytes; ///< of a work-item in device memory: stack and spills
 };
 
-/// Ceiling of the kernel that makes contacts: a quarter of a multiprocessor's work-items in float. Only rules
+/// Budget of the kernel that makes contacts: a quarter of a multiprocessor's work-items in float. Only rules
 /// that search axes or cut polygons have private arrays in device memory.
-inline Ceiling contacts_ceiling(ContactRule rule, bool in_double) {
+inline Budget contacts_budget(ContactRule rule, bool in_double) {
     const int registers = in_double ? 192 : 128;
     switch (rule) {
     case ContactRule::clip:
@@ -37,19 +37,19 @@ inline Ceiling contacts_ceiling(ContactRule rule, bool in_double) {
     }
 }
 
-/// Ceiling of a kernel of the contact stage. In float it is three eighths of a multiprocessor's work-items
+/// Budget of a kernel of the contact stage. In float it is three eighths of a multiprocessor's work-items
 /// for certificates, nearly half for the filter after them, and three sixteenths for the decision in double.
-inline std::optional<Ceiling> ceiling(const std::string& name, const Defines& defines) {
+inline std::optional<Budget> budget_of(const std::string& name, const Defines& defines) {
     const bool in_double = is_double(defines);
-    if (name == "certify_pairs") return in_double ? Ceiling{128, 0} : Ceiling{80, 0};
-    if (name == "separate_pairs") return in_double ? Ceiling{240, 0} : Ceiling{96, 0};
-    if (name == "recheck_pairs") return Ceiling{168, 400};
+    if (name == "certify_pairs") return in_double ? Budget{128, 0} : Budget{80, 0};
+    if (name == "separate_pairs") return in_double ? Budget{240, 0} : Budget{96, 0};
+    if (name == "recheck_pairs") return Budget{168, 400};
     if (name == "generate_contacts")
-        return contacts_ceiling(static_cast<ContactRule>(std::stoi(defines.at("CONTACT_RULE"))), in_double);
+        return contacts_budget(static_cast<ContactRule>(std::stoi(defines.at("CONTACT_RULE"))), in_double);
     if (name != "filter_pairs") return std::nullopt;
     const bool certifies = !defines.contains("OVER_OPEN"); // without a list it starts with its certificates
-    if (in_double) return Ceiling{certifies ? 168 : 132, 400};
-    return Ceiling{certifies ? 80 : 72, 200};
+    if (in_double) return Budget{certifies ? 168 : 132, 400};
+    return Budget{certifies ? 80 : 72, 200};
 }
 
 } // namespace tandem
