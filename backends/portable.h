@@ -60,10 +60,14 @@
 #define LANES_ARE_WARP 1
 #define LANES_THAT(condition) __ballot_sync(0xffffffffu, (condition))
 #define FROM_FIRST_LANE(value) __shfl_sync(0xffffffffu, (value), 0)
+#define FROM_LAST_LANE(value) __shfl_sync(0xffffffffu, (value), 31)
+#define FROM_LANE_BEFORE(value, distance) __shfl_up_sync(0xffffffffu, (value), (distance))
 #elif LANE_STEP == LANES && defined(__NV_CL_C_VERSION)
 #define LANES_ARE_WARP 1
 #define LANES_THAT(condition) lanes_that(condition)
-#define FROM_FIRST_LANE(value) from_first_lane(value)
+#define FROM_FIRST_LANE(value) from_lane((value), 0u)
+#define FROM_LAST_LANE(value) from_lane((value), 31u)
+#define FROM_LANE_BEFORE(value, distance) from_lane_before((value), (distance))
 #else
 #define LANES_ARE_WARP 0
 #endif
@@ -237,10 +241,16 @@ DEVICE uint lanes_that(int condition) {
     return all;
 }
 
-DEVICE uint from_first_lane(uint value) {
-    uint first;
-    asm volatile("shfl.sync.idx.b32 %0, %1, 0, 31, 0xffffffff;" : "=r"(first) : "r"(value));
-    return first;
+DEVICE uint from_lane(uint value, uint lane) {
+    uint other;
+    asm volatile("shfl.sync.idx.b32 %0, %1, %2, 31, 0xffffffff;" : "=r"(other) : "r"(value), "r"(lane));
+    return other;
+}
+
+DEVICE uint from_lane_before(uint value, uint distance) {
+    uint before;
+    asm volatile("shfl.sync.up.b32 %0, %1, %2, 0, 0xffffffff;" : "=r"(before) : "r"(value), "r"(distance));
+    return before;
 }
 #endif
 
@@ -269,6 +279,31 @@ DEVICE uint reserve_slot(LaneCounter* counter, int needs_slot) {
     return slot;
 #else
     return needs_slot ? LOCAL_ATOMIC_ADD(counter->word, 1u) : 0u;
+#endif
+}
+
+// Reserves `count` slots for each lane; returns the first.
+DEVICE uint reserve_slots(LaneCounter* counter, uint count) {
+#if LANES_ARE_WARP
+    uint sum = count; // of this lane and those before it
+    UNROLL for (uint distance = 1; distance < (uint)LANES; distance *= 2u) {
+        const uint before = FROM_LANE_BEFORE(sum, distance);
+        if (LANE_ID >= distance) sum += before;
+    }
+    const uint slot = counter->value + sum - count;
+    counter->value += FROM_LAST_LANE(sum);
+    return slot;
+#else
+    return count != 0u ? LOCAL_ATOMIC_ADD(counter->word, count) : 0u;
+#endif
+}
+
+// Adds the sum of the lanes' values; on a warp these are 0 or 1.
+DEVICE void add_lanes(LaneCounter* counter, uint value) {
+#if LANES_ARE_WARP
+    counter->value += COUNT_ONES(LANES_THAT(value != 0u));
+#else
+    if (value != 0u) LOCAL_ATOMIC_ADD(counter->word, value);
 #endif
 }
 

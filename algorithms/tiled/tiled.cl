@@ -24,21 +24,18 @@ DEVICE void write_candidates(const Team* team, uint waiting, GLOBAL const uint* 
     const ulong start = *team->place;
     for (uint i = LANE_ID; i < waiting; i += (uint)LANE_STEP)
         if (start + i < capacity) {
-            const uint a = team->pairs[2u * i];
-            const uint b = team->pairs[2u * i + 1u];
-            if (PAIR_LAYOUT == PAIR_SLOTS) {
-                const WordPair row = {a, b};
+            const WordPair row = team->pairs[i];
+            if (PAIR_LAYOUT == PAIR_SLOTS)
                 ((GLOBAL WordPair*)found)[start + i] = row;
-            } else {
-                ((GLOBAL WordRow*)found)[start + i] = items_of_slots(tiles, a, b);
-            }
+            else
+                ((GLOBAL WordRow*)found)[start + i] = items_of_slots(tiles, row.x, row.y);
         }
 }
 
 DEVICE void write_tile_pairs(const Team* team, uint waiting, GLOBAL uint* list, uint capacity) {
     const ulong start = *team->place;
-    for (uint i = LANE_ID; i < 2u * waiting; i += (uint)LANE_STEP)
-        if (start + i / 2u < capacity) list[start * TILE_PAIR_WORDS + i] = team->pairs[i];
+    for (uint i = LANE_ID; i < waiting; i += (uint)LANE_STEP)
+        if (start + i < capacity) ((GLOBAL WordPair*)list)[start + i] = team->pairs[i];
 }
 
 // Loads the boxes of a tile for a level above 0: number `upper` of the tiles with boxes of all directions. A
@@ -55,18 +52,38 @@ DEVICE void load_boxes(GLOBAL const real* uppers, uint upper, GLOBAL const real*
     }
 }
 
-// Marks lanes with items in the window of a windowed walk.
+// Leaves out lanes without items in the window of a windowed walk.
 DEVICE void lanes_in_window(GLOBAL const uint* status, const Tile* tile, uint level, uint* keeps) {
     const uint shift = tile->level == level ? 5u * level : 5u * (tile->level + 1u);
     FOR_LANES {
         const ulong first = tile->item + ((ulong)lane << shift);
-        keeps[part] = (uint)in_window(status, first, first + ((ulong)1 << shift));
+        keeps[part] &= (uint)in_window(status, first, first + ((ulong)1 << shift));
     }
 }
 
+// Whether a team may leave barriers out, because it is a warp or one work-item.
+#define IS_FREE (LANES_ARE_WARP || LANE_STEP == 1)
+
+// The boxes of both tiles are in box_a and box_b, those left in keeps_a and keeps_b.
+#define STORE_SHORTER(team, rows, directions, by_a)                                                                \
+    {                                                                                                        \
+        if (by_a)                                                                                            \
+            STORE_ROWS(team, rows, box_a, directions, keeps_a)                                               \
+        else                                                                                                 \
+            STORE_ROWS(team, rows, box_b, directions, keeps_b)                                               \
+    }
+
+#define FIND_IN_LONGER(team, rows, directions, by_a, hits)                                                   \
+    {                                                                                                        \
+        if (by_a)                                                                                            \
+            FIND_HITS(team, rows, box_b, directions, keeps_b, hits)                                          \
+        else                                                                                                 \
+            FIND_HITS(team, rows, box_a, directions, keeps_a, hits)                                          \
+    }
+
 DEVICE void count_tests(Tally* tally, uint rows, int is_seed) {
     if (!COUNT_WORK || LANE_ID != 0u) return;
-    tally->tests += (ulong)LANES * (rows + 1u);
+    tally->tests += (ulong)LANES * (rows + 2u);
     tally->seeds += is_seed ? 1u : 0u;
 }
 
@@ -88,37 +105,53 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
         const Tile b = tile_at(tiles, pair.b);
         const int highest = a.level > b.level ? a.level == level : b.level == level;
         const int tested = pair.is_any && highest; // other pairs start in another launch
-        uint keeps[LANE_PARTS];
-        FOR_LANES keeps[part] = 1u;
-        LANE_BOX(box, DIRECTIONS);
+        uint keeps_a[LANE_PARTS];
+        uint keeps_b[LANE_PARTS];
+        FOR_LANES keeps_a[part] = keeps_b[part] = (uint)tested;
+        LANE_BOX(box_a, DIRECTIONS);
+        LANE_BOX(box_b, DIRECTIONS);
         if (tested) {
-            GLOBAL const real* root = root_of(roots, pair.a);
-            load_boxes(uppers, pair.b - first_upper, root_of(roots, pair.b), &b, level, box);
-            COLLECT_ROWS(&team, box, DIRECTIONS, root)
-            load_boxes(uppers, pair.a - first_upper, root, &a, level, box);
-            if (WINDOWED) lanes_in_window(status, &a, level, keeps);
+            GLOBAL const real* root_a = root_of(roots, pair.a);
+            GLOBAL const real* root_b = root_of(roots, pair.b);
+            load_boxes(uppers, pair.a - first_upper, root_a, &a, level, box_a);
+            load_boxes(uppers, pair.b - first_upper, root_b, &b, level, box_b);
+            LEAVE_OUT_APART(box_a, DIRECTIONS, root_b, keeps_a)
+            LEAVE_OUT_APART(box_b, DIRECTIONS, root_a, keeps_b)
+            if (WINDOWED) lanes_in_window(status, &a, level, keeps_a);
         }
+        count_left(&team.left_a, keeps_a);
+        count_left(&team.left_b, keeps_b);
         LANE_BARRIER;
-        const uint rows = reserved_slots(&team.boxes);
+        const uint rows = row_count(&team);
+        const int by_a = rows_are_a(&team);
         if (tested) count_tests(&tally, rows, turns.next < turns.own);
+        if (IS_FREE && rows == 0u) {
+            begin_rows(&team);
+            take_turn(&turns);
+            continue;
+        }
+        if (rows != 0u) STORE_SHORTER(&team, rows, DIRECTIONS, by_a)
+        LANE_BARRIER;
         // The boxes of a tile are the tiles below, or the tile itself is its only box.
         const uint first_a = a.level == level ? a.boxes : pair.a;
         const uint first_b = b.level == level ? b.boxes : pair.b;
-        const uint step_a = a.level == level ? 1u : 0u;
-        const uint step_b = b.level == level ? 1u : 0u;
-        uint r = 0;
+        uint hits[LANE_PARTS];
+        FOR_LANES hits[part] = 0u;
+        FIND_IN_LONGER(&team, rows, DIRECTIONS, by_a, hits)
+        int more;
         do {
-            FIND_PAIRS(&team, rows, r, box, DIRECTIONS, keeps, first_a, step_a, first_b, step_b)
+            put_hits(&team, hits, first_a, first_b, by_a);
+            more = hits_left(hits);
             LANE_BARRIER;
             const uint waiting = reserved_slots(&team.found);
             const int now = waiting >= PAIRS_FLUSHED;
             reserve(&team, waiting, now, counter);
-            begin_count(&team.boxes, 0u);
+            begin_rows(&team);
             LANE_BARRIER;
             if (now) write_tile_pairs(&team, waiting, below, below_capacity);
             if (now) begin_count(&team.found, 0u);
             LANE_BARRIER;
-        } while (r < rows);
+        } while (more);
         take_turn(&turns);
     } while (turns.next < turn_count(&turns));
     const uint waiting = reserved_slots(&team.found);
@@ -195,8 +228,8 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
     Tally tally = empty_tally();
     Turns turns =
         first_turn(own_pairs(begins, pair_capacity, status), tile_pair_count(status, 0u, list_capacity));
-    LANE_BOX(box, LEAF_DIRECTIONS);
-    uint box_of = 0xffffffffu; // tile of `box`
+    LANE_BOX(box_a, LEAF_DIRECTIONS);
+    uint box_of = 0xffffffffu; // tile of `box_a`
     LANE_BARRIER;
     do { // runs at least once, as loops with barriers must
         const TilePair pair = tile_pair_at(&turns, pairs, tops, begins, roots, list);
@@ -204,26 +237,43 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
         const Tile b = tile_at(tiles, pair.b);
         const int tested =
             pair.is_any && a.level == 0u && b.level == 0u; // other pairs start in another launch
-        uint keeps[LANE_PARTS];
-        FOR_LANES keeps[part] = 1u;
+        uint keeps_a[LANE_PARTS];
+        uint keeps_b[LANE_PARTS];
+        FOR_LANES keeps_a[part] = keeps_b[part] = (uint)tested;
+        LANE_BOX(box_b, LEAF_DIRECTIONS);
         if (tested) {
-            GLOBAL const real* root = root_of(roots, pair.a);
-            LANE_BOX(box_b, LEAF_DIRECTIONS);
+            GLOBAL const real* root_a = root_of(roots, pair.a);
+            GLOBAL const real* root_b = root_of(roots, pair.b);
             load_leaves(leaves, pair.b, box_b);
-            if (box_of != pair.a) load_leaves(leaves, pair.a, box);
+            if (box_of != pair.a) load_leaves(leaves, pair.a, box_a);
             box_of = pair.a;
-            COLLECT_ROWS(&team, box_b, LEAF_DIRECTIONS, root)
-            if (WINDOWED) lanes_in_window(status, &a, 0u, keeps);
+            LEAVE_OUT_APART(box_a, LEAF_DIRECTIONS, root_b, keeps_a)
+            LEAVE_OUT_APART(box_b, LEAF_DIRECTIONS, root_a, keeps_b)
+            if (WINDOWED) lanes_in_window(status, &a, 0u, keeps_a);
         }
+        count_left(&team.left_a, keeps_a);
+        count_left(&team.left_b, keeps_b);
         LANE_BARRIER;
-        const uint rows = reserved_slots(&team.boxes);
+        const uint rows = row_count(&team);
+        const int by_a = rows_are_a(&team);
         if (tested) count_tests(&tally, rows, turns.next < turns.own);
-        uint r = 0;
+        if (IS_FREE && rows == 0u) {
+            begin_rows(&team);
+            take_turn(&turns);
+            continue;
+        }
+        if (rows != 0u) STORE_SHORTER(&team, rows, LEAF_DIRECTIONS, by_a)
+        LANE_BARRIER;
+        uint hits[LANE_PARTS];
+        FOR_LANES hits[part] = 0u;
+        FIND_IN_LONGER(&team, rows, LEAF_DIRECTIONS, by_a, hits)
+        int more;
         do {
-            FIND_PAIRS(&team, rows, r, box, LEAF_DIRECTIONS, keeps, pair.a * LANES, 1u, pair.b * LANES, 1u)
+            put_hits(&team, hits, pair.a * LANES, pair.b * LANES, by_a);
+            more = hits_left(hits);
             LANE_BARRIER;
             const uint candidates = reserved_slots(&team.found);
-            begin_count(&team.boxes, 0u);
+            begin_rows(&team);
             uint kept = candidates;
             if (!IS_DECIDED) {
                 uint next = reserved_slots(&team.kept);
@@ -249,8 +299,8 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
                     uint slot_b[LANE_PARTS];
                     FOR_LANES {
                         const uint at = next + lane < candidates ? next + lane : 0u;
-                        slot_a[part] = team.pairs[2u * at];
-                        slot_b[part] = team.pairs[2u * at + 1u];
+                        slot_a[part] = team.pairs[at].x;
+                        slot_b[part] = team.pairs[at].y;
                     }
                     LANE_BARRIER;
                     FOR_LANES {
@@ -264,7 +314,8 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
 #endif
                         if (OUTPUT == OUTPUT_PAIRS) {
                             const uint slot = reserve_slot(&team.kept, is_pair);
-                            if (is_pair) put_pair(&team, slot, slot_a[part], slot_b[part]);
+                            const WordPair kept_pair = {slot_a[part], slot_b[part]};
+                            if (is_pair) team.pairs[slot] = kept_pair;
                         } else if (is_pair) {
                             tally.count += 1;
                             const WordRow row = {a.body, b.body, a.item + lane_a, b.item + lane_b};
@@ -283,7 +334,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
             begin_count(&team.found, now ? 0u : kept);
             begin_count(&team.kept, now ? 0u : kept);
             LANE_BARRIER;
-        } while (r < rows);
+        } while (more);
         take_turn(&turns);
     } while (turns.next < turn_count(&turns));
     const uint kept = reserved_slots(&team.found);

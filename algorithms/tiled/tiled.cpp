@@ -31,9 +31,11 @@ std::uint64_t local_bytes(const Settings& settings, std::uint64_t teams, bool is
     const auto k = static_cast<std::uint64_t>(settings[parameters::k]);
     const std::uint64_t real = settings[parameters::precision] == Precision::fp64 ? 8 : 4;
     const auto leaf_words = settings[parameters::slabs] == Slabs::three ? std::min<std::uint64_t>(k, 6) : k;
-    const auto rows = [&](std::uint64_t reals) { return lanes * ((reals + 3) / 4 * 4 * real + words); };
+    const auto rows = [&](std::uint64_t reals) {
+        return lanes * ((reals + 3) / 4 * 4 * real + words) + 4 * words;
+    };
     const auto rest = k > leaf_words ? lanes * ((k - leaf_words) | 1) : 0;
-    const auto pairs = (2u * PAIR_CAPACITY(is_warp) + 4) * words;
+    const auto pairs = (2u * PAIR_CAPACITY(is_warp) + 6) * words;
     const auto leaves = rows(leaf_words) + pairs + (rest > 0 ? rest + std::max(rest, points) : 0) * real;
     const auto uppers = rows(k) + pairs;
     const auto refit = (points + (lanes + 1) * k) * real;
