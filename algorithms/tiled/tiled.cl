@@ -2,6 +2,9 @@
 // The tiled walk: a team of lanes tests 32 boxes of one body against 32 of the other at once, without a
 // stack. A launch processes the pairs of tiles of one level: those that the level above found, and those with
 // which body pairs start there. It finds the pairs of the next level or, at level 0, candidate pairs.
+// The walk waits for memory, so many groups at once pay; fewer registers than these make it use more memory.
+#define BOX_WORDS (K * PRECISION / 32)
+#define KERNEL_REGISTERS (BOX_WORDS <= 6 ? 40 : BOX_WORDS <= 12 ? 56 : BOX_WORDS <= 18 ? 72 : 255)
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
 #include "algorithms/tiled/turns.clh"
@@ -64,23 +67,6 @@ DEVICE void lanes_in_window(GLOBAL const uint* status, const Tile* tile, uint le
 // Whether a team may leave barriers out, because it is a warp or one work-item.
 #define IS_FREE (LANES_ARE_WARP || LANE_STEP == 1)
 
-// The boxes of both tiles are in box_a and box_b, those left in keeps_a and keeps_b.
-#define STORE_SHORTER(team, rows, directions, by_a)                                                                \
-    {                                                                                                        \
-        if (by_a)                                                                                            \
-            STORE_ROWS(team, rows, box_a, directions, keeps_a)                                               \
-        else                                                                                                 \
-            STORE_ROWS(team, rows, box_b, directions, keeps_b)                                               \
-    }
-
-#define FIND_IN_LONGER(team, rows, directions, by_a, hits)                                                   \
-    {                                                                                                        \
-        if (by_a)                                                                                            \
-            FIND_HITS(team, rows, box_b, directions, keeps_b, hits)                                          \
-        else                                                                                                 \
-            FIND_HITS(team, rows, box_a, directions, keeps_a, hits)                                          \
-    }
-
 DEVICE void count_tests(Tally* tally, uint rows, int is_seed) {
     if (!COUNT_WORK || LANE_ID != 0u) return;
     tally->tests += (ulong)LANES * (rows + 2u);
@@ -108,36 +94,40 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
         uint keeps_a[LANE_PARTS];
         uint keeps_b[LANE_PARTS];
         FOR_LANES keeps_a[part] = keeps_b[part] = (uint)tested;
-        LANE_BOX(box_a, DIRECTIONS);
-        LANE_BOX(box_b, DIRECTIONS);
+        LANE_BOX(box, DIRECTIONS);
         if (tested) {
             GLOBAL const real* root_a = root_of(roots, pair.a);
             GLOBAL const real* root_b = root_of(roots, pair.b);
-            load_boxes(uppers, pair.a - first_upper, root_a, &a, level, box_a);
-            load_boxes(uppers, pair.b - first_upper, root_b, &b, level, box_b);
-            LEAVE_OUT_APART(box_a, DIRECTIONS, root_b, keeps_a)
-            LEAVE_OUT_APART(box_b, DIRECTIONS, root_a, keeps_b)
+            load_boxes(uppers, pair.b - first_upper, root_b, &b, level, box);
+            LEAVE_OUT_APART(box, DIRECTIONS, root_a, keeps_b)
+            STORE_ROWS(&team, rows_b, box, DIRECTIONS, keeps_b)
+            load_boxes(uppers, pair.a - first_upper, root_a, &a, level, box);
+            LEAVE_OUT_APART(box, DIRECTIONS, root_b, keeps_a)
             if (WINDOWED) lanes_in_window(status, &a, level, keeps_a);
         }
         count_left(&team.left_a, keeps_a);
-        count_left(&team.left_b, keeps_b);
         LANE_BARRIER;
-        const uint rows = row_count(&team);
         const int by_a = rows_are_a(&team);
+        const uint rows = row_count(&team);
         if (tested) count_tests(&tally, rows, turns.next < turns.own);
         if (IS_FREE && rows == 0u) {
             begin_rows(&team);
             take_turn(&turns);
             continue;
         }
-        if (rows != 0u) STORE_SHORTER(&team, rows, DIRECTIONS, by_a)
+        if (by_a) {
+            STORE_ROWS(&team, rows_a, box, DIRECTIONS, keeps_a)
+            load_boxes(uppers, pair.b - first_upper, root_of(roots, pair.b), &b, level, box);
+            FOR_LANES keeps_a[part] = keeps_b[part];
+        }
+        end_rows(&team, rows);
         LANE_BARRIER;
         // The boxes of a tile are the tiles below, or the tile itself is its only box.
         const uint first_a = a.level == level ? a.boxes : pair.a;
         const uint first_b = b.level == level ? b.boxes : pair.b;
         uint hits[LANE_PARTS];
         FOR_LANES hits[part] = 0u;
-        FIND_IN_LONGER(&team, rows, DIRECTIONS, by_a, hits)
+        FIND_HITS(&team, rows, box, DIRECTIONS, keeps_a, hits)
         int more;
         do {
             put_hits(&team, hits, first_a, first_b, by_a);
@@ -228,8 +218,8 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
     Tally tally = empty_tally();
     Turns turns =
         first_turn(own_pairs(begins, pair_capacity, status), tile_pair_count(status, 0u, list_capacity));
-    LANE_BOX(box_a, LEAF_DIRECTIONS);
-    uint box_of = 0xffffffffu; // tile of `box_a`
+    LANE_BOX(box, LEAF_DIRECTIONS);
+    uint box_of = 0xffffffffu; // tile of `box`
     LANE_BARRIER;
     do { // runs at least once, as loops with barriers must
         const TilePair pair = tile_pair_at(&turns, pairs, tops, begins, roots, list);
@@ -240,33 +230,39 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
         uint keeps_a[LANE_PARTS];
         uint keeps_b[LANE_PARTS];
         FOR_LANES keeps_a[part] = keeps_b[part] = (uint)tested;
-        LANE_BOX(box_b, LEAF_DIRECTIONS);
         if (tested) {
-            GLOBAL const real* root_a = root_of(roots, pair.a);
-            GLOBAL const real* root_b = root_of(roots, pair.b);
+            LANE_BOX(box_b, LEAF_DIRECTIONS);
             load_leaves(leaves, pair.b, box_b);
-            if (box_of != pair.a) load_leaves(leaves, pair.a, box_a);
+            if (box_of != pair.a) load_leaves(leaves, pair.a, box);
             box_of = pair.a;
-            LEAVE_OUT_APART(box_a, LEAF_DIRECTIONS, root_b, keeps_a)
+            GLOBAL const real* root_a = root_of(roots, pair.a);
             LEAVE_OUT_APART(box_b, LEAF_DIRECTIONS, root_a, keeps_b)
+            STORE_ROWS(&team, rows_b, box_b, LEAF_DIRECTIONS, keeps_b)
+            GLOBAL const real* root_b = root_of(roots, pair.b);
+            LEAVE_OUT_APART(box, LEAF_DIRECTIONS, root_b, keeps_a)
             if (WINDOWED) lanes_in_window(status, &a, 0u, keeps_a);
         }
         count_left(&team.left_a, keeps_a);
-        count_left(&team.left_b, keeps_b);
         LANE_BARRIER;
-        const uint rows = row_count(&team);
         const int by_a = rows_are_a(&team);
+        const uint rows = row_count(&team);
         if (tested) count_tests(&tally, rows, turns.next < turns.own);
         if (IS_FREE && rows == 0u) {
             begin_rows(&team);
             take_turn(&turns);
             continue;
         }
-        if (rows != 0u) STORE_SHORTER(&team, rows, LEAF_DIRECTIONS, by_a)
+        if (by_a) {
+            STORE_ROWS(&team, rows_a, box, LEAF_DIRECTIONS, keeps_a)
+            load_leaves(leaves, pair.b, box);
+            box_of = pair.b;
+            FOR_LANES keeps_a[part] = keeps_b[part];
+        }
+        end_rows(&team, rows);
         LANE_BARRIER;
         uint hits[LANE_PARTS];
         FOR_LANES hits[part] = 0u;
-        FIND_IN_LONGER(&team, rows, LEAF_DIRECTIONS, by_a, hits)
+        FIND_HITS(&team, rows, box, LEAF_DIRECTIONS, keeps_a, hits)
         int more;
         do {
             put_hits(&team, hits, pair.a * LANES, pair.b * LANES, by_a);
