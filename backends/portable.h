@@ -111,14 +111,13 @@
 #define REAL_INFINITY ((real)INFINITY)
 
 #elif defined(__CUDACC__)
-// A source that defines KERNEL_REGISTERS before it includes this file asks for that many groups at once as have
-// room for so many registers a work-item.
+// A source that defines KERNEL_REGISTERS before it includes this file asks for that many groups at once as
+// have room for so many registers a work-item.
 #ifdef KERNEL_REGISTERS
 #define GROUPS_IN_REGISTERS (65536 / ((KERNEL_REGISTERS)*GROUP_SIZE))
 #define KERNEL                                                                                               \
-    extern "C" __global__ __launch_bounds__(GROUP_SIZE, GROUPS_IN_REGISTERS < 1    ? 1                       \
-                                                        : GROUPS_IN_REGISTERS > 16 ? 16                      \
-                                                                                   : GROUPS_IN_REGISTERS)
+    extern "C" __global__ __launch_bounds__(                                                                 \
+        GROUP_SIZE, GROUPS_IN_REGISTERS<1 ? 1 : GROUPS_IN_REGISTERS> 16 ? 16 : GROUPS_IN_REGISTERS)
 #else
 #define KERNEL extern "C" __global__ __launch_bounds__(GROUP_SIZE)
 #endif

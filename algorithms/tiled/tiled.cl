@@ -4,7 +4,8 @@
 // which body pairs start there. It finds the pairs of the next level or, at level 0, candidate pairs.
 // The walk waits for memory, so many groups at once pay; fewer registers than these make it use more memory.
 #define BOX_WORDS (K * PRECISION / 32)
-#define KERNEL_REGISTERS (BOX_WORDS <= 6 ? 40 : BOX_WORDS <= 12 ? 56 : BOX_WORDS <= 18 ? 72 : 255)
+#define KERNEL_REGISTERS                                                                                     \
+    (BOX_WORDS <= 6 ? 40 : BOX_WORDS <= 8 ? 56 : BOX_WORDS <= 12 ? 64 : BOX_WORDS <= 18 ? 72 : 255)
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
 #include "algorithms/tiled/turns.clh"
@@ -84,9 +85,13 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
     Tally tally = empty_tally();
     Turns turns =
         first_turn(own_pairs(begins, pair_capacity, status), tile_pair_count(status, level, capacity));
+    TilePair ahead = tile_pair_at(&turns, pairs, tops, begins, roots, list);
     LANE_BARRIER;
     do { // runs at least once, as loops with barriers must
-        const TilePair pair = tile_pair_at(&turns, pairs, tops, begins, roots, list);
+        const TilePair pair = ahead;
+        const int is_seed = turns.next < turns.own;
+        take_turn(&turns);
+        ahead = tile_pair_at(&turns, pairs, tops, begins, roots, list); // read before it is needed
         const Tile a = tile_at(tiles, pair.a);
         const Tile b = tile_at(tiles, pair.b);
         const int highest = a.level > b.level ? a.level == level : b.level == level;
@@ -109,10 +114,9 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
         LANE_BARRIER;
         const int by_a = rows_are_a(&team);
         const uint rows = row_count(&team);
-        if (tested) count_tests(&tally, rows, turns.next < turns.own);
+        if (tested) count_tests(&tally, rows, is_seed);
         if (IS_FREE && rows == 0u) {
             begin_rows(&team);
-            take_turn(&turns);
             continue;
         }
         if (by_a) {
@@ -142,7 +146,6 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
             if (now) begin_count(&team.found, 0u);
             LANE_BARRIER;
         } while (more);
-        take_turn(&turns);
     } while (turns.next < turn_count(&turns));
     const uint waiting = reserved_slots(&team.found);
     reserve(&team, waiting, 1, counter);
@@ -220,13 +223,17 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
         first_turn(own_pairs(begins, pair_capacity, status), tile_pair_count(status, 0u, list_capacity));
     LANE_BOX(box, LEAF_DIRECTIONS);
     uint box_of = 0xffffffffu; // tile of `box`
+    TilePair ahead = tile_pair_at(&turns, pairs, tops, begins, roots, list);
     LANE_BARRIER;
     do { // runs at least once, as loops with barriers must
-        const TilePair pair = tile_pair_at(&turns, pairs, tops, begins, roots, list);
+        const TilePair pair = ahead;
+        const int is_seed = turns.next < turns.own;
+        take_turn(&turns);
+        ahead = tile_pair_at(&turns, pairs, tops, begins, roots, list); // read before it is needed
         const Tile a = tile_at(tiles, pair.a);
         const Tile b = tile_at(tiles, pair.b);
-        const int tested =
-            pair.is_any && a.level == 0u && b.level == 0u; // other pairs start in another launch
+        // Other pairs start in another launch. Those that the level above found are of this one.
+        const int tested = pair.is_any && (!is_seed || (a.level == 0u && b.level == 0u));
         uint keeps_a[LANE_PARTS];
         uint keeps_b[LANE_PARTS];
         FOR_LANES keeps_a[part] = keeps_b[part] = (uint)tested;
@@ -246,10 +253,9 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
         LANE_BARRIER;
         const int by_a = rows_are_a(&team);
         const uint rows = row_count(&team);
-        if (tested) count_tests(&tally, rows, turns.next < turns.own);
+        if (tested) count_tests(&tally, rows, is_seed);
         if (IS_FREE && rows == 0u) {
             begin_rows(&team);
-            take_turn(&turns);
             continue;
         }
         if (by_a) {
@@ -331,7 +337,6 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
             begin_count(&team.kept, now ? 0u : kept);
             LANE_BARRIER;
         } while (more);
-        take_turn(&turns);
     } while (turns.next < turn_count(&turns));
     const uint kept = reserved_slots(&team.found);
     reserve(&team, kept, 1, status + STATUS_PAIRS);
