@@ -50,12 +50,13 @@ std::vector<KernelCost> chunk_tree_costs(const SceneFacts& scene, std::uint32_t 
 }
 
 /// Either kernel may build the tiles of level 1, so neither floor counts them.
-std::vector<KernelCost> tile_tree_costs(const SceneFacts& scene, double leaf_words) {
+std::vector<KernelCost> tile_tree_costs(const SceneFacts& scene, double leaf_words, bool touched) {
     const auto tiles = sum_of(scene.tetrahedra, [](double n) { return parts_of(n, tile_boxes); });
     const auto items = sum_of(scene.tetrahedra, [](double n) { return n; });
+    const double stored_words = touched ? 0 : leaf_words; // by every refit
     const auto leaf_bytes = leaf_inputs(scene) - scene.tetrahedron_rows * (corners * 4 - 4)
-                            + items * leaf_words * scene.real + tiles * scene.dop();
-    const auto leaf_operations = corners * leaf_words * items + (items - tiles) * scene.k;
+                            + items * stored_words * scene.real + tiles * scene.dop();
+    const auto leaf_operations = corners * stored_words * items + (items - tiles) * scene.k;
     const auto boxes = sum_of(scene.tetrahedra, [](double n) { // levels above 1: one box per tile below
         double sum = 0;
         auto below = parts_of(parts_of(n, tile_boxes), tile_boxes);
@@ -70,7 +71,13 @@ std::vector<KernelCost> tile_tree_costs(const SceneFacts& scene, double leaf_wor
         {"refit_leaf_tiles", [=](const FrameFacts&) { return leaf_bytes; },
          [=](const FrameFacts&) { return leaf_operations; },
          "reads a word of corners per tetrahedron, vertices and poses, writes bounds and roots of tiles; an "
-         "operation per corner and end of a leaf, k per tetrahedron for roots"},
+         "operation per corner and end of a leaf, k per tetrahedron for roots; with slabs=touched without "
+         "the "
+         "bounds, which not every frame writes"},
+        {"bound_touched_tiles",
+         [=, real = scene.real](const FrameFacts& f) { return leaf_words * real * f.touched; },
+         [=](const FrameFacts& f) { return corners * leaf_words * f.touched; },
+         "writes bounds of tetrahedra in candidate pairs; an operation per corner and end of a leaf"},
         {"refit_upper_tiles", [=](const FrameFacts&) { return upper_bytes; },
          [=, k = scene.k](const FrameFacts&) { return boxes * k; },
          "reads roots of tiles, writes them as boxes, above level 1; k operations per box"}};

@@ -13,6 +13,11 @@
 #define UNIT_BODY 3   // body whose volume is the last root, or NO_BODY
 #define NO_BODY 0xffffffffu
 
+// Tiles whose marks a team of bound_touched_tiles reads at once.
+#define TILES_A_TURN 8u
+
+DEVICE uint lowest_bit(uint bits) { return 31u - COUNT_LEADING_ZEROS(bits & (~bits + 1u)); }
+
 // The lanes' values of one word are adjacent. Words lie LANES + 1 reals apart, so that the values of one lane
 // use different banks, too.
 #define ROW (LANES + 1)
@@ -112,12 +117,13 @@ DEVICE void write_leaves(const Shapes* shapes, const Tile* tile, LOCAL const rea
 }
 
 // Level 0. `taking_part`: one word per tile, with a bit for each tetrahedron that exists and is not skipped.
+// `stored`: whether to store the leaves, too; otherwise bound_touched_tiles does.
 KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint first_upper, GLOBAL real* roots,
                              GLOBAL real* volumes, GLOBAL const uint* units, GLOBAL const uint* tiles,
                              GLOBAL const uint* taking_part, GLOBAL const uint* starts,
                              GLOBAL const uint* vertex_numbers, GLOBAL const uint* corners,
-                             GLOBAL const uint* bodies, GLOBAL const real* poses,
-                             GLOBAL const real* vertices) {
+                             GLOBAL const uint* bodies, GLOBAL const real* poses, GLOBAL const real* vertices,
+                             uint stored) {
     LOCAL_ARRAY(real, all_points, LANE_TEAMS * MOST_VERTICES * POINT_REALS);
     LOCAL_ARRAY(real, all_bounds, LANE_TEAMS * K * ROW);
     LOCAL_ARRAY(real, kept, LANES * ROOT_STRIDE);
@@ -142,7 +148,7 @@ KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint firs
             keep_vertices(&shapes, &tile, points, drift, bounds);
         else
             keep_tetrahedra(&shapes, &tile, points, drift, active, bounds);
-        if (has_tile)
+        if (has_tile && stored != 0u)
             write_leaves(&shapes, &tile, points, drift, active,
                          leaves + (ulong)number * (LEAF_WORDS * LANES));
         LANE_BARRIER;
@@ -151,6 +157,45 @@ KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint firs
     } while (i < count);
     BARRIER;
     finish_unit(unit, kept, uppers, first_upper, roots, volumes);
+}
+
+// Leaves of the tiles that the upper levels of the walk have marked. It clears the marks, one word per tile
+// and a multiple of TILES_A_TURN of them.
+KERNEL void bound_touched_tiles(GLOBAL real* leaves, GLOBAL uint* marks, uint tile_count,
+                                GLOBAL const uint* tiles, GLOBAL const uint* taking_part,
+                                GLOBAL const uint* starts, GLOBAL const uint* vertex_numbers,
+                                GLOBAL const uint* corners, GLOBAL const uint* bodies,
+                                GLOBAL const real* poses, GLOBAL const real* vertices) {
+    LOCAL_ARRAY(real, all_points, LANE_TEAMS * MOST_VERTICES * POINT_REALS);
+    const Shapes shapes = {starts, vertex_numbers, corners, bodies, poses, vertices};
+    LOCAL real* points = all_points + LANE_TEAM * (MOST_VERTICES * POINT_REALS);
+    const uint step = GROUP_COUNT * LANE_TEAMS * TILES_A_TURN;
+    uint first = (GROUP_ID * LANE_TEAMS + LANE_TEAM) * TILES_A_TURN;
+    do { // runs at least once: see refit_leaf_tiles
+        const uint start = first < tile_count ? first : 0u;
+        uint touched = 0;
+        UNROLL for (uint i = 0; i < TILES_A_TURN; i += 4u) {
+            const WordRow four = ((GLOBAL const WordRow*)marks)[(start + i) / 4u];
+            touched |= (four.x | four.y << 1 | four.z << 2 | four.w << 3) << i;
+        }
+        touched = first < tile_count ? touched : 0u;
+        LANE_BARRIER; // all have read the marks
+        for (uint i = LANE_ID; touched != 0u && i < TILES_A_TURN; i += (uint)LANE_STEP) marks[start + i] = 0u;
+        first += step;
+        if (TEAM_IS_FREE && touched == 0u) continue;
+        do { // at least once
+            const int has_tile = touched != 0u;
+            const uint number = start + (has_tile ? lowest_bit(touched) : 0u);
+            const Tile tile = tile_at(tiles, number);
+            load_vertices(&shapes, &tile, points);
+            LANE_BARRIER;
+            if (has_tile)
+                write_leaves(&shapes, &tile, points, drift_at(poses, tile.body), taking_part[number],
+                             leaves + (ulong)number * (LEAF_WORDS * LANES));
+            LANE_BARRIER;
+            touched &= touched - 1u;
+        } while (touched != 0u);
+    } while (first < tile_count);
 }
 
 // A higher level, whose boxes are the roots of the tiles below.

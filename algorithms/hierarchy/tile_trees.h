@@ -41,6 +41,15 @@ public:
     /// Defines for kernels that include tiles.clh.
     Defines defines(std::uint32_t group_size) const;
 
+    /// Pairs of tiles of level 0 that the last frame tested. With few of them and Slabs::touched, the next
+    /// refit leaves the bounds of tetrahedra to bound_touched().
+    void expect_tile_pairs(std::uint64_t pairs) { expected_pairs_ = pairs; }
+    /// Whether the walk shall mark tiles of level 0, one word each, and call bound_touched().
+    bool has_touched() const { return !stored_; }
+    const Buffer& marks() const { return marks_; }
+    /// Enqueues the bounds of the tetrahedra of all marked tiles, and clears the marks.
+    void bound_touched() const;
+
     /// Bounds of tetrahedra, one tile of level 0 after the other.
     const Buffer& leaves() const { return leaves_; }
     const Buffer& uppers() const { return uppers_; }         ///< boxes of all other tiles, K words of 32 each
@@ -81,7 +90,10 @@ private:
     std::uint32_t units_of_leaves() const;
     void upload_taking_part(const Frame& frame);
     void mask_skipped(const Frame& frame);
+    bool stores_leaves() const;
     std::uint32_t boxes_of(std::uint32_t body, std::uint32_t level) const;
+
+    static constexpr std::uint64_t most_pairs_unknown = ~std::uint64_t{0};
 
     const Bodies& bodies_;
     Device& device_;
@@ -100,10 +112,12 @@ private:
     std::vector<std::vector<std::uint32_t>> first_tiles_; ///< [body][level]: the first tile
     std::uint32_t tile_count_ = 0;
     std::vector<Step> steps_;
+    std::uint64_t expected_pairs_ = most_pairs_unknown;
+    bool stored_ = true;                              ///< whether the last refit stored all leaves
     bool fresh_ = true;                               ///< whether the next refit includes fixed bodies
     std::vector<std::vector<std::uint32_t>> skipped_; ///< by body: tetrahedra that the last frame skips
-    Buffer leaves_, uppers_, roots_, volumes_, tile_table_, tops_, taking_part_;
-    Kernel leaf_kernel_, upper_kernel_;
+    Buffer leaves_, uppers_, roots_, volumes_, tile_table_, tops_, taking_part_, marks_;
+    Kernel leaf_kernel_, upper_kernel_, touched_kernel_;
 };
 
 } // namespace tandem

@@ -75,7 +75,8 @@ enum class Builder {
 enum class Slabs {
     three, ///< the first three of the geometry; tests along the rest use vertices
     all,
-    usual ///< one of the above, chosen by device and k before kernels are compiled
+    touched, ///< all, made only for the tiles that a frame's walk touches if the last one touched few
+    usual    ///< one of the above, chosen by device and k before kernels are compiled
 };
 
 /// Format of a candidate pair in a device's memory (answer/pairs.clh).

@@ -71,11 +71,15 @@ inline constexpr auto builder =
 inline constexpr auto slabs =
     Setting<Slabs>{"slabs",
                    Slabs::usual,
-                   {{"three", Slabs::three}, {"all", Slabs::all}, {"usual", Slabs::usual}},
+                   {{"three", Slabs::three},
+                    {"all", Slabs::all},
+                    {"touched", Slabs::touched},
+                    {"usual", Slabs::usual}},
                    "SLABS",
-                   "directions with bounds in leaves: three of the k/2, with tests along the rest from the "
-                   "vertices of pairs that pass, or all; usual: all on GPUs up to k = 12 or 2^21 tetrahedra, "
-                   "three elsewhere"}
+                   "directions with bounds in leaves: three: three of the k/2, with tests along the rest from "
+                   "the vertices of pairs that pass; all; touched: all, made only for tiles that the walk "
+                   "touches if the last frame touched few; usual: three on processors, on GPUs all up to k = "
+                   "12, touched above"}
         .with_alternatives({Slabs::three, Slabs::all});
 
 #define TANDEM_CHOICE(word, traits, help) {#word, ContactRule::word},

@@ -36,10 +36,16 @@ DEVICE void write_candidates(const Team* team, uint waiting, GLOBAL const uint* 
         }
 }
 
-DEVICE void write_tile_pairs(const Team* team, uint waiting, GLOBAL uint* list, uint capacity) {
+// `marks`: set for both tiles if `marked`.
+DEVICE void write_tile_pairs(const Team* team, uint waiting, GLOBAL uint* list, uint capacity,
+                             GLOBAL uint* marks, uint marked) {
     const ulong start = *team->place;
-    for (uint i = LANE_ID; i < waiting; i += (uint)LANE_STEP)
-        if (start + i < capacity) ((GLOBAL WordPair*)list)[start + i] = team->pairs[i];
+    for (uint i = LANE_ID; i < waiting; i += (uint)LANE_STEP) {
+        if (start + i >= capacity) continue;
+        const WordPair pair = team->pairs[i];
+        ((GLOBAL WordPair*)list)[start + i] = pair;
+        if (marked != 0u) marks[pair.x] = marks[pair.y] = 1u;
+    }
 }
 
 // Loads the boxes of a tile for a level above 0: number `upper` of the tiles with boxes of all directions. A
@@ -65,9 +71,6 @@ DEVICE void lanes_in_window(GLOBAL const uint* status, const Tile* tile, uint le
     }
 }
 
-// Whether a team may leave barriers out, because it is a warp or one work-item.
-#define IS_FREE (LANES_ARE_WARP || LANE_STEP == 1)
-
 DEVICE void count_tests(Tally* tally, uint rows, int is_seed) {
     if (!COUNT_WORK || LANE_ID != 0u) return;
     tally->tests += (ulong)LANES * (rows + 2u);
@@ -75,11 +78,13 @@ DEVICE void count_tests(Tally* tally, uint rows, int is_seed) {
 }
 
 // Tests tiles of `level` or lower. Overlapping pairs go to `below`, the list of level - 1. `begins`: number
-// of tiles with which a body starts on this level, or 0.
+// of tiles with which a body starts on this level, or 0. `marks`: one word per tile of level 0; in a launch
+// of level 1 with `marked`, those of the pairs found become 1.
 KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL const real* roots,
                              GLOBAL const uint* tiles, GLOBAL const uint* tops, GLOBAL const uint* pairs,
                              uint pair_capacity, uint begins, uint level, GLOBAL const uint* list,
-                             uint capacity, GLOBAL uint* below, uint below_capacity, GLOBAL uint* status) {
+                             uint capacity, GLOBAL uint* below, uint below_capacity, GLOBAL uint* marks,
+                             uint marked, GLOBAL uint* status) {
     TEAM_ARRAYS(LANES * ROW_UNITS(DIRECTIONS))
     GLOBAL uint* counter = status + STATUS_TILE_PAIRS + 2u * (level - 1u);
     Tally tally = empty_tally();
@@ -90,7 +95,7 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
     do { // runs at least once, as loops with barriers must
         const TilePair pair = ahead;
         const int is_seed = turns.next < turns.own;
-        take_turn(&turns);
+        take_turn(&turns, status + STATUS_BATCHES + level);
         ahead = tile_pair_at(&turns, pairs, tops, begins, roots, list); // read before it is needed
         const Tile a = tile_at(tiles, pair.a);
         const Tile b = tile_at(tiles, pair.b);
@@ -115,7 +120,7 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
         const int by_a = rows_are_a(&team);
         const uint rows = row_count(&team);
         if (tested) count_tests(&tally, rows, is_seed);
-        if (IS_FREE && rows == 0u) {
+        if (TEAM_IS_FREE && rows == 0u) {
             begin_rows(&team);
             continue;
         }
@@ -142,7 +147,7 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
             reserve(&team, waiting, now, counter);
             begin_rows(&team);
             LANE_BARRIER;
-            if (now) write_tile_pairs(&team, waiting, below, below_capacity);
+            if (now) write_tile_pairs(&team, waiting, below, below_capacity, marks, marked);
             if (now) begin_count(&team.found, 0u);
             LANE_BARRIER;
         } while (more);
@@ -150,7 +155,7 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
     const uint waiting = reserved_slots(&team.found);
     reserve(&team, waiting, 1, counter);
     LANE_BARRIER;
-    write_tile_pairs(&team, waiting, below, below_capacity);
+    write_tile_pairs(&team, waiting, below, below_capacity, marks, marked);
     if (COUNT_WORK) counter_add_wide(status + STATUS_UPPER_TESTS, tally.tests);
     if (COUNT_WORK) flush(&tally, status);
 }
@@ -228,7 +233,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
     do { // runs at least once, as loops with barriers must
         const TilePair pair = ahead;
         const int is_seed = turns.next < turns.own;
-        take_turn(&turns);
+        take_turn(&turns, status + STATUS_BATCHES);
         ahead = tile_pair_at(&turns, pairs, tops, begins, roots, list); // read before it is needed
         const Tile a = tile_at(tiles, pair.a);
         const Tile b = tile_at(tiles, pair.b);
@@ -254,7 +259,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
         const int by_a = rows_are_a(&team);
         const uint rows = row_count(&team);
         if (tested) count_tests(&tally, rows, is_seed);
-        if (IS_FREE && rows == 0u) {
+        if (TEAM_IS_FREE && rows == 0u) {
             begin_rows(&team);
             continue;
         }

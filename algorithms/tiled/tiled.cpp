@@ -83,13 +83,13 @@ public:
     std::span<const Counter> counters() const override { return all_counters; }
 
 private:
-    /// Maximum number of tetrahedra for bounds along all directions. In larger scenes the refit loses what
-    /// the walk gains. Measured on an H200 (results/h200/README.md): with k = 14, 18 and 26 they saved 2 to
-    /// 12 % of whole frames of plates and jacks of up to 1.9 M tetrahedra. The colosseum did not change.
-    /// Funnel and glasses of 4.7 M and more became 8 and 3 % slower (k = 18); up to k = 12 these also became
-    /// 2 to 12 % faster. Two cores of a processor, where refit weighs more, took up to 2.3 times as long with
-    /// them (not recorded).
-    static constexpr std::size_t most_with_all_slabs = std::size_t{1} << 21;
+    /// Bounds along all directions on a GPU, unless they take a quarter of its memory.
+    static Slabs slabs_of_large_k(const Settings& settings, const DeviceInfo& info, const Scene& scene) {
+        const double real = settings[tandem::parameters::precision] == Precision::fp64 ? 8 : 4;
+        const auto bytes = static_cast<double>(count_walked(scene, walked_of(settings)))
+                           * static_cast<double>(settings[tandem::parameters::k]) * real;
+        return bytes > static_cast<double>(info.global_bytes) / 4 ? Slabs::three : Slabs::touched;
+    }
 
     void do_fit(Settings& settings, const DeviceInfo& info, const Scene* scene) const override {
         if (settings[tiled_parameters::most_seeds] == 0)
@@ -97,9 +97,10 @@ private:
         if (settings[tandem::parameters::slabs] != Slabs::usual) return;
         const bool needs_scene = info.is_gpu && settings[tandem::parameters::k] > 12;
         if (needs_scene && scene == nullptr) return;
-        const bool all =
-            needs_scene ? count_walked(*scene, walked_of(settings)) <= most_with_all_slabs : info.is_gpu;
-        settings.set(tandem::parameters::slabs(all ? Slabs::all : Slabs::three));
+        const auto chosen = needs_scene   ? slabs_of_large_k(settings, info, *scene)
+                            : info.is_gpu ? Slabs::all
+                                          : Slabs::three;
+        settings.set(tandem::parameters::slabs(chosen));
     }
 
     void do_check(const Settings& settings, const DeviceInfo& info) const override {
@@ -112,7 +113,7 @@ private:
     std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const override {
         const SceneFacts s(scene, settings);
         const auto words = leaf_words_of(settings);
-        auto costs = tile_tree_costs(s, words);
+        auto costs = tile_tree_costs(s, words, settings[tandem::parameters::slabs] == Slabs::touched);
         const auto upper = [](const FrameFacts& f) { return f.counted(tiled_counters::upper_tests.name); };
         const auto pairs = [](const FrameFacts& f) {
             return 4 * TILE_PAIR_WORDS * f.counted(tiled_counters::leaf_tile_pairs.name);

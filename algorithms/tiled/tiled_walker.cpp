@@ -13,7 +13,7 @@ constexpr std::size_t row_bytes = 4 * TILE_PAIR_WORDS;
 
 } // namespace
 
-TiledWalker::TiledWalker(const TileTrees& trees, const BuildContext& context, LaunchShape shape)
+TiledWalker::TiledWalker(TileTrees& trees, const BuildContext& context, LaunchShape shape)
     : trees_(trees), shape_(shape) {
     const auto rows =
         // The level above finds the pairs of a list, so the highest level has none.
@@ -42,12 +42,8 @@ Grid TiledWalker::grid(std::uint32_t level) {
     if (!pairs) return {shape_.groups, shape_.group_size};
     const auto wanted = (*pairs + teams - 1) / teams;
     // Groups that only test roots finish early, because most roots are apart.
-    std::uint64_t most =
+    const std::uint64_t most =
         trees_.begins(level) > 1 ? std::max<std::uint64_t>(shape_.groups, wanted) : shape_.groups;
-    // With many pairs a team, more groups than run at once: pairs take unlike times, and a group that ends
-    // makes room for another.
-    const std::uint64_t many = 8;
-    if (trees_.bodies().device().info().is_gpu && wanted >= many * most) most *= 2;
     return {groups.groups_for(wanted, static_cast<std::uint32_t>(most)), shape_.group_size};
 }
 
@@ -59,6 +55,7 @@ bool TiledWalker::do_grow(const Status& status) {
         expected_[level].pairs = begins * begins * status.counter(STATUS_BODY_PAIRS)
                                  + (is_found ? status.counter(STATUS_TILE_PAIRS + 2 * level) : 0);
     }
+    trees_.expect_tile_pairs(*expected_[0].pairs);
     for (std::uint32_t level = 0; level + 1 < trees_.walked_levels(); ++level) {
         const auto found = status.counter(STATUS_TILE_PAIRS + 2 * level);
         if (found <= lists_[level].capacity()) continue;
@@ -79,7 +76,7 @@ void TiledWalker::do_report(const Status& status, std::map<std::string_view, std
 }
 
 void TiledWalker::launch_upper(const WalkTask& task, std::uint32_t level) {
-    const std::array<Argument, 14> arguments{trees_.uppers(),
+    const std::array<Argument, 16> arguments{trees_.uppers(),
                                              trees_.first_upper(),
                                              trees_.roots(),
                                              trees_.tile_table(),
@@ -92,6 +89,8 @@ void TiledWalker::launch_upper(const WalkTask& task, std::uint32_t level) {
                                              level + 1 < trees_.walked_levels() ? list(level).capacity() : 0,
                                              list(level - 1).buffer(),
                                              list(level - 1).capacity(),
+                                             trees_.marks(),
+                                             std::uint32_t{level == 1 && trees_.has_touched() ? 1u : 0u},
                                              task.status.buffer()};
     trees_.bodies().device().launch(upper_kernel_, grid(level), arguments);
 }
@@ -128,6 +127,7 @@ void TiledWalker::do_launch(const WalkTask& task) {
             "body pairs given more than once make more than 2^32 initial pairs of tiles; lower most_seeds");
     const StageScope scope(trees_.bodies().device(), Stage::traverse);
     for (auto level = trees_.walked_levels(); --level > 0;) launch_upper(task, level);
+    if (trees_.has_touched()) trees_.bound_touched();
     launch_leaves(task);
 }
 

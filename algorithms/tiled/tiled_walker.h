@@ -33,7 +33,7 @@ inline constexpr Counter leaf_tile_pairs{"leaf_tile_pairs", "pairs of tiles",
 class TiledWalker final : public Walker {
 public:
     /// Launches groups of `shape`. `trees` and `context` must outlive this object.
-    TiledWalker(const TileTrees& trees, const BuildContext& context, LaunchShape shape);
+    TiledWalker(TileTrees& trees, const BuildContext& context, LaunchShape shape);
 
 private:
     void do_compile(const WalkBuild& build) override;
@@ -51,7 +51,7 @@ private:
     void launch_upper(const WalkTask& task, std::uint32_t level);
     void launch_leaves(const WalkTask& task);
 
-    const TileTrees& trees_;
+    TileTrees& trees_;
     LaunchShape shape_;
     std::vector<GrowableBuffer> lists_; ///< by level
     /// By level: pairs in the last frame, empty before the first one, and the groups for them.

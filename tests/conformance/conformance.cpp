@@ -30,7 +30,7 @@ const std::vector<SettingValues> settings_of_single_algorithms{
     {"seed_capacity", {"1", "65536"}},
     {"builder", {"morton", "sah", "breadth", "hilbert", "median"}},
     {"output", {"pairs", "contacts"}},
-    {"slabs", {"three", "all"}},
+    {"slabs", {"three", "all", "touched"}},
     {"tile_pair_capacity", {"1", "65536"}},
     {"most_seeds", {"1", "256", "16384"}},
     {"root_test", {"yes", "no"}},

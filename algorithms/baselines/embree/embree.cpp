@@ -56,7 +56,7 @@ private:
     }
 
     std::vector<KernelCost> do_costs(const Scene& scene, const Settings& settings) const override {
-        auto costs = tile_tree_costs({scene, settings}, 6);
+        auto costs = tile_tree_costs({scene, settings}, 6, false);
         for (const auto* entry : {"refit_embree", "collide_embree"})
             costs.push_back({entry, {}, {}, "nothing: the work of another library is not counted"});
         return costs;
