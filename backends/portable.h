@@ -70,7 +70,6 @@
 #define FROM_LANE_BEFORE(value, distance) from_lane_before((value), (distance))
 #else
 #define LANES_ARE_WARP 0
-#define FROM_FIRST_LANE(value) (value) // of a team of one work-item
 #endif
 
 #if defined(__OPENCL_C_VERSION__)

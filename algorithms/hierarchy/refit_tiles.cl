@@ -117,7 +117,8 @@ DEVICE void write_leaves(const Shapes* shapes, const Tile* tile, LOCAL const rea
 }
 
 // Level 0. `taking_part`: one word per tile, with a bit for each tetrahedron that exists and is not skipped.
-// `stored`: whether to store the leaves, too; otherwise bound_touched_tiles does.
+// `stored`: whether to store the leaves, too; otherwise bound_touched_tiles does, except those of bodies of
+// one tile, which the walk does not mark.
 KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint first_upper, GLOBAL real* roots,
                              GLOBAL real* volumes, GLOBAL const uint* units, GLOBAL const uint* tiles,
                              GLOBAL const uint* taking_part, GLOBAL const uint* starts,
@@ -148,7 +149,7 @@ KERNEL void refit_leaf_tiles(GLOBAL real* leaves, GLOBAL real* uppers, uint firs
             keep_vertices(&shapes, &tile, points, drift, bounds);
         else
             keep_tetrahedra(&shapes, &tile, points, drift, active, bounds);
-        if (has_tile && stored != 0u)
+        if (has_tile && (stored != 0u || unit[UNIT_PARENT] == NO_TILE))
             write_leaves(&shapes, &tile, points, drift, active,
                          leaves + (ulong)number * (LEAF_WORDS * LANES));
         LANE_BARRIER;

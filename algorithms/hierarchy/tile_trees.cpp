@@ -175,8 +175,8 @@ std::uint32_t TileTrees::units_of_leaves() const {
 /// are a separate step. Its units have one tile for each team of a group, so that no team builds several
 /// tiles in sequence.
 void TileTrees::plan_refit() {
-    const bool few = units_of_leaves() < units_at_once_;
-    std::uint32_t unit_tiles = few ? std::max(1u, group_size_ / lanes) : lanes;
+    few_units_ = units_of_leaves() < units_at_once_;
+    std::uint32_t unit_tiles = few_units_ ? std::max(1u, group_size_ / lanes) : lanes;
     for (std::uint32_t level = 0; level < levels(); level += unit_tiles == lanes ? 2 : 1) {
         if (level > 0) unit_tiles = lanes;
         std::vector<Unit> units;
@@ -237,9 +237,11 @@ void TileTrees::mask_skipped(const Frame& frame) {
 
 /// A refit that stores no leaves reads the vertices of touched tiles twice, which pays if these are few. They
 /// are about half of all tiles at the limit: with 0.4, 0.9 and 3.7 pairs a tile, 22, 36 and 80 % were touched
-/// (H100, 2,000 bodies). Bodies that start at level 0 touch tiles without a mark.
+/// (H100, 2,000 bodies). Bodies that start with several tiles of level 0 touch these without a mark.
 bool TileTrees::stores_leaves() const {
-    return slabs_ != Slabs::touched || begins(0) > 0 || expected_pairs_ >= first_upper() + first_upper() / 2;
+    const bool marks_all = !beginnings_ || beginnings_->level > 0;
+    return slabs_ != Slabs::touched || few_units_ || !marks_all
+           || expected_pairs_ >= first_upper() + first_upper() / 2;
 }
 
 /// Runs bottom up, two levels per launch.

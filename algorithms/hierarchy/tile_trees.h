@@ -113,6 +113,7 @@ private:
     std::uint32_t tile_count_ = 0;
     std::vector<Step> steps_;
     std::uint64_t expected_pairs_ = most_pairs_unknown;
+    bool few_units_ = false;                          ///< whether leaves are a step of their own
     bool stored_ = true;                              ///< whether the last refit stored all leaves
     bool fresh_ = true;                               ///< whether the next refit includes fixed bodies
     std::vector<std::vector<std::uint32_t>> skipped_; ///< by body: tetrahedra that the last frame skips

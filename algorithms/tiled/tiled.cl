@@ -95,7 +95,7 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
     do { // runs at least once, as loops with barriers must
         const TilePair pair = ahead;
         const int is_seed = turns.next < turns.own;
-        take_turn(&turns, status + STATUS_BATCHES + level);
+        take_turn(&turns);
         ahead = tile_pair_at(&turns, pairs, tops, begins, roots, list); // read before it is needed
         const Tile a = tile_at(tiles, pair.a);
         const Tile b = tile_at(tiles, pair.b);
@@ -233,7 +233,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
     do { // runs at least once, as loops with barriers must
         const TilePair pair = ahead;
         const int is_seed = turns.next < turns.own;
-        take_turn(&turns, status + STATUS_BATCHES);
+        take_turn(&turns);
         ahead = tile_pair_at(&turns, pairs, tops, begins, roots, list); // read before it is needed
         const Tile a = tile_at(tiles, pair.a);
         const Tile b = tile_at(tiles, pair.b);

@@ -42,8 +42,12 @@ Grid TiledWalker::grid(std::uint32_t level) {
     if (!pairs) return {shape_.groups, shape_.group_size};
     const auto wanted = (*pairs + teams - 1) / teams;
     // Groups that only test roots finish early, because most roots are apart.
-    const std::uint64_t most =
+    std::uint64_t most =
         trees_.begins(level) > 1 ? std::max<std::uint64_t>(shape_.groups, wanted) : shape_.groups;
+    // With many pairs a team, more groups than run at once: pairs take unlike times, and a group that ends
+    // makes room for another.
+    const std::uint64_t many = 8;
+    if (trees_.bodies().device().info().is_gpu && wanted >= many * most) most *= 2;
     return {groups.groups_for(wanted, static_cast<std::uint32_t>(most)), shape_.group_size};
 }
 
