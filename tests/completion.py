@@ -56,7 +56,7 @@ class Completion(Case):
                 ("tandem ", COMMANDS), ("tandem r", ["report", "run"]), ("tandem run --algo", ["--algorithm"]), ("tandem run pi", ["pile"]),
                 ("tandem run --algorithm ti", ["tiled"]), ("tandem run --algorithm chunked,ti", ["chunked,tiled"]),
                 ("tandem run --algorithm=ti", ["tiled"]), ("tandem run --device ho", ["host"]),
-                ("tandem run --set slabs=", ["all", "three", "usual"]), ("tandem run --set slabs=t", ["three"]), ("tandem run --set=slabs=t", ["three"]),
+                ("tandem run --set slabs=", ["all", "three", "touched", "usual"]), ("tandem run --set slabs=th", ["three"]), ("tandem run --set=slabs=th", ["three"]),
                 ("tandem run --set slabs=three,a", ["three,all"]), ("tandem run --set group_siz", ["group_size="]),
                 ("tandem run --set group_size=", ["128", "256", "64"]), ("tandem run pile:bod", ["bodies="]),
                 ("tandem view pla", ["plates"]), ("tandem report x --scene pla", ["plates"]), ("tandem check hard:corner-c", ["corner-cancellation"]), ("tandem run pile:bodies=3,dens", ["3,density="]),
@@ -68,7 +68,7 @@ class Completion(Case):
             with self.subTest(line):
                 self.assertEqual(sorted(self.bash(line)), sorted(offered))
         whole = " \t\n"
-        self.assertEqual(self.bash("tandem run --set slabs=t", whole), ["slabs=three"])
+        self.assertEqual(self.bash("tandem run --set slabs=th", whole), ["slabs=three"])
         self.assertEqual(self.bash("tandem run pile:bod", whole), ["pile:bodies="])
         # Without COMP_LINE, as other shells and tests call it.
         script = f"source {BASH}; COMP_WORDS=({PROGRAM} run --algo) COMP_CWORD=2; _tandem; echo ${{COMPREPLY[@]}}"

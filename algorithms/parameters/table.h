@@ -69,17 +69,15 @@ inline constexpr auto builder =
                      "curve; median: halved along the longest axis, at such runs"}
         .with_alternatives({Builder::morton, Builder::sah});
 inline constexpr auto slabs =
-    Setting<Slabs>{"slabs",
-                   Slabs::usual,
-                   {{"three", Slabs::three},
-                    {"all", Slabs::all},
-                    {"touched", Slabs::touched},
-                    {"usual", Slabs::usual}},
-                   "SLABS",
-                   "directions with bounds in leaves: three: three of the k/2, with tests along the rest from "
-                   "the vertices of pairs that pass; all; touched: all, made only for tiles that the walk "
-                   "touches if the last frame touched few; usual: three on processors, on GPUs all up to k = "
-                   "12, touched above"}
+    Setting<Slabs>{
+        "slabs",
+        Slabs::usual,
+        {{"three", Slabs::three}, {"all", Slabs::all}, {"touched", Slabs::touched}, {"usual", Slabs::usual}},
+        "SLABS",
+        "directions with bounds in leaves: three: three of the k/2, with tests along the rest from "
+        "the vertices of pairs that pass; all; touched: all, made only for tiles that the walk "
+        "touches if the last frame touched few; usual: three on processors, on GPUs all up to k = "
+        "12, touched above"}
         .with_alternatives({Slabs::three, Slabs::all});
 
 #define TANDEM_CHOICE(word, traits, help) {#word, ContactRule::word},

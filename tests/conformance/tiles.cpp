@@ -261,6 +261,47 @@ TEST_P(Tiles, FewBodiesStartBelowTheirTops) {
     }
 }
 
+/// Bodies in a row, ten of them fixed. In every third frame they overlap by half, otherwise only at their
+/// ends.
+Scene row_of_bodies(std::uint32_t count) {
+    auto scene = scattered_scene({100, 20, 40}, count);
+    for (std::uint32_t body = 0; body < 10; ++body) scene.bodies[body].fixed = true;
+    scene.frame = [start = scene.frame(0)](std::size_t index) {
+        auto frame = start;
+        for (std::size_t body = 0; body < frame.poses.size(); ++body) {
+            const double spacing = index % 3 == 2 && body >= 10 ? 0.5 : 0.98;
+            const double moved = body < 10 ? 0 : 0.01 * static_cast<double>(index);
+            frame.poses[body].translation.x() = spacing * static_cast<double>(body) + moved;
+        }
+        return frame;
+    };
+    return scene;
+}
+
+/// With slabs=touched, a frame after one with few pairs of tiles bounds the tetrahedra of touched tiles only,
+/// and finds the same pairs. Bodies of one tile and fixed bodies are among them.
+TEST_P(Tiles, BoundsOfTouchedTilesGiveTheSamePairs) {
+    const auto scene = row_of_bodies(3 * std::max(60u, on.info().compute_units));
+    const auto& traversal = algorithm("tiled");
+    const std::array devices{&on};
+    for (const std::string k : {"6", "18"}) {
+        const SettingTexts settings{{"slabs", "touched"}, {"k", k}, {"contact_rule", "none"}};
+        const auto session =
+            traversal.prepare(devices, scene, resolve(traversal.parameters(), {}, settings, "tiled"));
+        std::vector<std::ptrdiff_t> launches;
+        for (std::size_t index = 0; index < 7; ++index) {
+            SCOPED_TRACE(fmt::format("k = {}, frame {}", k, index));
+            const auto frame = scene.frame(index);
+            on.set_clocks(Clocks::on);
+            EXPECT_EQ(session->run(frame).download(),
+                      reference(scene, frame, {.k = std::stoi(k)}, true, Method::brute_force).pairs);
+            launches.push_back(std::ranges::count(on.finish().events, "bound_touched_tiles", &Event::label));
+            on.set_clocks(Clocks::off);
+        }
+        EXPECT_EQ(launches, (std::vector<std::ptrdiff_t>{0, 1, 1, 0, 1, 1, 0}));
+    }
+}
+
 /// Explicit body pairs are rejected if 32 bits cannot number their start pairs of tiles. The session then
 /// continues.
 TEST_P(Tiles, StartPairsPastTheRangeOfAWordAreRejected) {

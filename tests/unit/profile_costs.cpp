@@ -139,6 +139,18 @@ TEST(ProfileCosts, RefitOfTilesWithThreeSlabs) {
     EXPECT_EQ(cost.operations({}), 4 * 6 * 40 + 38 * 18);
 }
 
+TEST(ProfileCosts, RefitOfTouchedTiles) {
+    FrameFacts facts;
+    facts.touched = 10;
+    const SettingTexts touched{{"k", "18"}, {"slabs", "touched"}};
+    const auto refit = cost_of("tiled", "refit_leaf_tiles", two_bodies(true), touched);
+    EXPECT_EQ(refit.bytes(facts), 40 * 4 + 160 * 16 + 48 + 2 * 72);
+    EXPECT_EQ(refit.operations(facts), 38 * 18);
+    const auto bounds = cost_of("tiled", "bound_touched_tiles", two_bodies(true), touched);
+    EXPECT_EQ(bounds.bytes(facts), 10 * 72);
+    EXPECT_EQ(bounds.operations(facts), 4 * 18 * 10);
+}
+
 TEST(ProfileCosts, Walks) {
     FrameFacts facts;
     facts.candidate_pairs = 100;
