@@ -99,6 +99,7 @@ TEST(Settings, TiledFitsDeviceAndScene) {
     gpu.max_group_size = 1024;
     gpu.local_bytes = 49152;
     gpu.has_double = gpu.is_gpu = true;
+    gpu.global_bytes = 4u * (18 * 4) * (1u << 21); // bounds of 2^21 tetrahedra take a quarter
     auto processor = gpu;
     processor.is_gpu = false;
     const auto scene_of = [](std::size_t tetrahedra) {
@@ -115,7 +116,7 @@ TEST(Settings, TiledFitsDeviceAndScene) {
     const auto slabs = [&](const DeviceInfo& info, const Scene* scene, const SettingTexts& given) {
         return fitted(info, scene, given).text("slabs");
     };
-    EXPECT_EQ(slabs(gpu, &small, {}), "all");
+    EXPECT_EQ(slabs(gpu, &small, {}), "touched");
     EXPECT_EQ(slabs(gpu, &large, {}), "three");
     EXPECT_EQ(slabs(gpu, nullptr, {}), "usual");
     EXPECT_EQ(slabs(gpu, &large, {{"k", "12"}}), "all");
