@@ -71,8 +71,7 @@ std::vector<KernelCost> tile_tree_costs(const SceneFacts& scene, double leaf_wor
         {"refit_leaf_tiles", [=](const FrameFacts&) { return leaf_bytes; },
          [=](const FrameFacts&) { return leaf_operations; },
          "reads a word of corners per tetrahedron, vertices and poses, writes bounds and roots of tiles; an "
-         "operation per corner and end of a leaf, k per tetrahedron for roots; with slabs=touched without "
-         "the "
+         "operation per corner and end of a leaf, k per tetrahedron for roots; slabs=touched: without the "
          "bounds, which not every frame writes"},
         {"bound_touched_tiles",
          [=, real = scene.real](const FrameFacts& f) { return leaf_words * real * f.touched; },

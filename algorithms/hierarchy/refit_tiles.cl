@@ -16,8 +16,6 @@
 // Tiles whose marks a team of bound_touched_tiles reads at once.
 #define TILES_A_TURN 8u
 
-DEVICE uint lowest_bit(uint bits) { return 31u - COUNT_LEADING_ZEROS(bits & (~bits + 1u)); }
-
 // The lanes' values of one word are adjacent. Words lie LANES + 1 reals apart, so that the values of one lane
 // use different banks, too.
 #define ROW (LANES + 1)
@@ -186,7 +184,8 @@ KERNEL void bound_touched_tiles(GLOBAL real* leaves, GLOBAL uint* marks, uint ti
         if (TEAM_IS_FREE && touched == 0u) continue;
         do { // at least once
             const int has_tile = touched != 0u;
-            const uint number = start + (has_tile ? lowest_bit(touched) : 0u);
+            const uint at = has_tile ? highest_bit(touched) : 0u;
+            const uint number = start + at;
             const Tile tile = tile_at(tiles, number);
             load_vertices(&shapes, &tile, points);
             LANE_BARRIER;
@@ -194,7 +193,7 @@ KERNEL void bound_touched_tiles(GLOBAL real* leaves, GLOBAL uint* marks, uint ti
                 write_leaves(&shapes, &tile, points, drift_at(poses, tile.body), taking_part[number],
                              leaves + (ulong)number * (LEAF_WORDS * LANES));
             LANE_BARRIER;
-            touched &= touched - 1u;
+            touched &= ~(1u << at);
         } while (touched != 0u);
     } while (first < tile_count);
 }
