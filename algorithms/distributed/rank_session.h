@@ -20,6 +20,12 @@ public:
     RankSession(const Traversal& traversal, Device& device, const Scene& scene, Settings fitted,
                 Ranks& ranks);
 
+    /// The bodies that the device stores now: own bodies, ghosts and candidates for ghosts, ascending.
+    std::span<const std::uint32_t> stored_bodies() const {
+        return local_scene_ ? std::span<const std::uint32_t>(local_scene_->numbers)
+                            : std::span<const std::uint32_t>{};
+    }
+
 private:
     /// What ranks exchange at the end of a frame.
     struct Report {
