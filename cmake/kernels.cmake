@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 set(TANDEM_LEVELS 2 3 4 CACHE STRING "Levels of x86-64 that host kernels with lanes are compiled for; native: the level of this processor")
-set(TANDEM_HIGHER_K "" CACHE STRING "Values of k that host kernels of the levels above the lowest are compiled for; empty: all. Other values use the lowest level. Kernels without lanes are then compiled with less optimisation")
+set(TANDEM_HIGHER_K "" CACHE STRING "Values of k that host kernels of the levels above the lowest are compiled for; empty: all. Other values use the lowest level. Everything but kernels with lanes is then compiled with less optimisation")
 
 # Sets `result` to the levels of TANDEM_LEVELS without duplicates, with `native` replaced by the level of this processor.
 function(tandem_levels result)
@@ -84,13 +84,13 @@ function(tandem_kernels target)
     # differ from those of all other builds. Addresses are still checked.
     list(APPEND options -fno-sanitize=bounds)
   endif()
-  set(quick)
+  set_source_files_properties(${generated} PROPERTIES COMPILE_OPTIONS "${options}" SKIP_PRECOMPILE_HEADERS ON)
+  set(lanes)
   if(TANDEM_HIGHER_K)
-    set(quick -O1) # compiles in half the time; files of a level would not inline what all files define
+    set(lanes -O3) # with less, files of a level would not inline what all files define
   endif()
-  set_source_files_properties(${generated} PROPERTIES COMPILE_OPTIONS "${options};${quick}" SKIP_PRECOMPILE_HEADERS ON)
   foreach(level ${levels})
-    set_source_files_properties(${of_level_${level}} PROPERTIES COMPILE_OPTIONS "${options};-march=x86-64-v${level}"
+    set_source_files_properties(${of_level_${level}} PROPERTIES COMPILE_OPTIONS "${options};${lanes};-march=x86-64-v${level}"
                                 SKIP_UNITY_BUILD_INCLUSION ON)
   endforeach()
 endfunction()
