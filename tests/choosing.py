@@ -48,6 +48,23 @@ class Choosing(Case):
         self.assertGreater(chosen["seconds"], 0)
         self.assertLess(chosen["seconds"], 1)
 
+    def test_k_is_compared_where_it_changes_no_contact(self):
+        exact = {"output": "contacts", "decision": "exact", "contact_rule": "sat"}
+        found = {}
+        for given in (exact, exact | {"k": 6}, exact | {"k": 18}, exact | {"decision": "fp64"}):
+            record = self.choose(given=given)[0]
+            candidates = record["chosen"]["candidates"]
+            self.assertEqual({c["failure"] for c in candidates}, {None})
+            k = {c["settings"].get("k", "default") for c in candidates}
+            found[json.dumps(given)] = (k, record["work"]["contact_digest"])
+            self.assertIn(f"k={record['settings']['k']}", record["key"])
+        (tried, digest), (_, digest_6), (_, digest_18), (fixed, _) = found.values()
+        self.assertEqual(tried, {"default", "6"})
+        self.assertEqual(fixed, {"default"})
+        self.assertGreater(digest["count"], 0)
+        self.assertEqual(digest, digest_6)
+        self.assertEqual(digest, digest_18)
+
     def test_every_field_of_a_choice_is_needed(self):
         record = self.choose()[0]
         for name in record["chosen"]:

@@ -116,6 +116,14 @@ class Auto(ColliderCase):
         self.assertEqual(collider.digest(POSES), self.collider(precision="double").digest(POSES))
         print(f"\n  auto: {trials[0]} of {len(trials)}", end="", file=sys.stderr)
 
+    def test_compares_k_where_it_changes_no_contact(self):
+        given = {"output": "contacts", "decision": "exact"}
+        collider = tandem.Collider(self.meshes, "auto", pair_capacity=65536, contact_capacity=65536, queue_bytes=65536, **given)
+        trials = collider.tune(POSES, seconds=0.3)
+        self.assertEqual({trial.changes.get("k", "18") for trial in trials}, {"6", "18"})
+        for k in (6, 18):
+            self.assertEqual(collider.run(POSES).contact_digest(), self.collider(k=k, **given).run(POSES).contact_digest())
+
     def test_a_first_frame_chooses(self):
         soft = tandem.Collider(self.meshes, "auto", deformable=True, output="count", pair_capacity=65536, queue_bytes=65536)
         self.assertEqual(soft.count(), self.collider(deformable=True, output="count").count())

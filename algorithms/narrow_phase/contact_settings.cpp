@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/narrow_phase/contact_settings.h"
 
+#include "algorithms/bounds/geometry.h"
 #include "algorithms/pipeline.h"
+
+#include <algorithm>
+#include <cstdlib>
 
 namespace tandem {
 
@@ -10,6 +14,25 @@ Walked walked_of(const Settings& settings) {
                             && boundaries_needed(settings[parameters::contact_rule]) == 2
                             && !is_published(settings);
     return leaves_out ? Walked::boundary : Walked::all;
+}
+
+namespace {
+
+/// A sum of two coordinates that is rounded to nearest is monotone, and so are the ends of its slabs. A sum
+/// of three is rounded twice, and may miss pairs without a wider slab.
+bool bounds_miss_nothing(const Geometry& geometry) {
+    if (geometry.rounding != Rounding::nearest) return geometry.rounding != Rounding::published;
+    return std::ranges::all_of(directions(geometry), [](const std::array<int, 3>& direction) {
+        return std::abs(direction[0]) + std::abs(direction[1]) + std::abs(direction[2]) <= 2;
+    });
+}
+
+} // namespace
+
+bool contacts_are_equal_for_every_k(const Settings& settings) {
+    return settings[parameters::output] == Output::contacts
+           && settings[parameters::decision] == DecisionPrecision::exact
+           && bounds_miss_nothing(geometry_of(settings));
 }
 
 ContactSettings contact_settings_of(const Settings& settings) {

@@ -37,6 +37,11 @@ constexpr unsigned boundaries_needed(ContactRule rule) {
 /// boundary faces of both tetrahedra leaves out the others. residency=published walks everything.
 Walked walked_of(const Settings& settings);
 
+/// Whether `settings` give the same contacts for every k for which this is true: output=contacts, with
+/// decision=exact and bounds that miss no pair that meets. The README of this folder has the proof. Throws
+/// InputError as geometry_of().
+bool contacts_are_equal_for_every_k(const Settings& settings);
+
 /// Contact settings of resolved settings; the defaults when contact_rule=none.
 ContactSettings contact_settings_of(const Settings& settings);
 

@@ -37,7 +37,7 @@ struct Parameter {
     /// The words that are values; empty for an integer.
     constexpr std::span<const Word> choices() const { return std::span(words).first(word_count); }
     /// Values that `--algorithm auto` tries for speed when neither this nor alternative_setting is given.
-    /// They do not change an answer. Empty: only the user sets it.
+    /// Combinations that change the answer are left out. Empty: only the user sets it.
     constexpr std::span<const std::int64_t> alternatives() const {
         return std::span(alternative_values).first(alternative_count);
     }

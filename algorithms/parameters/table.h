@@ -12,12 +12,22 @@ namespace tandem::parameters {
 
 inline constexpr std::int64_t word_limit = std::numeric_limits<std::uint32_t>::max();
 
-inline constexpr Setting<int> k{
-    "k",
-    18,
-    {{"6", 6}, {"8", 8}, {"12", 12}, {"14", 14}, {"16", 16}, {"18", 18}, {"20", 20}, {"24", 24}, {"26", 26}},
-    "K",
-    "planes of the k-DOPs (k/2 directions)"};
+inline constexpr auto k =
+    Setting<int>{"k",
+                 18,
+                 {{"6", 6},
+                  {"8", 8},
+                  {"12", 12},
+                  {"14", 14},
+                  {"16", 16},
+                  {"18", 18},
+                  {"20", 20},
+                  {"24", 24},
+                  {"26", 26}},
+                 "K",
+                 "planes of the k-DOPs (k/2 directions); auto varies it only with decision=exact and "
+                 "output=contacts, where it changes no contact"}
+        .with_alternatives({6, 18});
 inline constexpr Setting<Axes> axes{
     "axes",
     Axes::standard,

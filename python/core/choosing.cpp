@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "python/core/choosing.h"
 
+#include "harness/plans/choosing/candidates.h"
 #include "harness/plans/choosing/search.h"
 #include "harness/sampling/statistics.h"
 
@@ -43,7 +44,7 @@ private:
     const Scene& scene_;
     const std::function<FrameResult(Session&)>& frame_;
     std::vector<std::unique_ptr<Session>> sessions_;
-    std::optional<std::uint64_t> pairs_;
+    std::optional<std::uint64_t> answer_; ///< number of pairs or contacts of the first candidate
     std::string first_failure_;
     double measured_ = 0, preparing_ = 0;
 };
@@ -53,12 +54,14 @@ void Trials::prepare(std::size_t i) {
     if (sessions_[i]) return;
     const auto begin = Clock::now();
     sessions_[i] = prepared(i);
-    const auto count = frame_(*sessions_[i]).count;
+    const auto result = frame_(*sessions_[i]);
+    const bool compares_contacts = may_differ_in_k(candidates_[i]);
+    const auto count = compares_contacts ? result.contacts : result.count;
     preparing_ += static_cast<double>(nanoseconds_since(begin)) * 1e-9;
-    if (pairs_.value_or(count) != count)
-        throw DeviceError(fmt::format("{} finds {} candidate pairs, the first candidate {}",
-                                      describe(candidates_[i]), count, *pairs_));
-    pairs_ = count;
+    if (answer_.value_or(count) != count)
+        throw DeviceError(fmt::format("{} finds {} {}, the first candidate {}", describe(candidates_[i]),
+                                      count, compares_contacts ? "contacts" : "candidate pairs", *answer_));
+    answer_ = count;
 }
 
 std::optional<std::int64_t> Trials::replay(std::size_t i) {

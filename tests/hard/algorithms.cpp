@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every algorithm on every device misses no intersecting pair of any family with rounding=safe.
+#include "algorithms/narrow_phase/contact_settings.h"
 #include "harness/plans/frames.h"
 #include "harness/verify/oracle/frame_truth.h"
 #include "base/error.h"
@@ -12,6 +13,8 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
+#include <set>
 
 namespace tandem {
 namespace {
@@ -70,6 +73,46 @@ TEST_P(HardAlgorithms, MissNothing) {
             }
     }
     EXPECT_GT(met_, 10000u);
+}
+
+/// With decision=exact, k changes rejected pairs only. The devices' kernels compute equal bits, so the host
+/// runs every k.
+TEST(HardContacts, AreEqualForEveryK) {
+    const auto& tiled = algorithm("tiled");
+    const std::array devices{&device("host")};
+    std::uint64_t contacts = 0;
+    std::set<std::uint64_t> counts;
+    const auto expect_equal = [&](const std::string& of, const std::string& rounding,
+                                  std::span<const std::string> all_k) {
+        const auto scene = make_scene(of);
+        std::optional<FrameResult> first;
+        for (const auto& k : all_k) {
+            SCOPED_TRACE(fmt::format("{} rounding={} k={}", of, rounding, k));
+            const SettingTexts given{
+                {"k", k}, {"rounding", rounding}, {"output", "contacts"}, {"decision", "exact"}};
+            const auto settings = resolve(tiled.parameters(), {}, given, tiled.name());
+            ASSERT_TRUE(contacts_are_equal_for_every_k(settings));
+            auto result = tiled.prepare(devices, scene, settings)->run(scene.frame(0));
+            counts.insert(result.count);
+            if (!first)
+                first = std::move(result);
+            else
+                EXPECT_EQ(result.contact_digest(), first->contact_digest());
+        }
+        contacts += first->contacts;
+    };
+#ifdef TANDEM_SANITIZED
+    const std::vector<std::string> all_k{"8", "18"}, nested{"18"};
+#else
+    const std::vector<std::string> all_k{"6", "8", "12", "14", "16", "18", "20", "24", "26"},
+        nested{"6", "12", "16", "18"};
+#endif
+    for (const auto& family : hard_families())
+        if (family.name != "not-finite") expect_equal(specification(family), "safe", all_k);
+    expect_equal("colosseum", "safe", all_k);
+    expect_equal("colosseum", "nearest", nested);
+    EXPECT_GT(contacts, 180'000u);
+    EXPECT_GT(counts.size(), 10u) << "candidate pairs depend on k";
 }
 
 /// Families with flat tetrahedra and non-finite coordinates under --degenerate skip: no pair contains a

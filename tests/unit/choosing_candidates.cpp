@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/plans/choosing/candidates.h"
 
+#include "algorithms/narrow_phase/contact_settings.h"
 #include "base/error.h"
 #include "tests/support/cells.h"
 
@@ -73,6 +74,44 @@ TEST(ChoosingCandidates, HaveOneAnswer) {
         for (const auto& cell : cells) EXPECT_EQ(cell.settings.text("k"), cells.front().settings.text("k"));
     }
     EXPECT_EQ(of({}, {"published"}).front().settings.text("k"), "8");
+}
+
+/// k is an alternative where it changes no contact, and nowhere else.
+TEST(ChoosingCandidates, DifferInKOnlyIfContactsAreEqualForEveryK) {
+    const SettingTexts exact{{"output", "contacts"}, {"decision", "exact"}};
+    const auto values = [&](const SettingTexts& given) {
+        auto all = exact;
+        for (const auto& [name, value] : given) all[name] = value;
+        return values_of(of(all), "tiled", "k");
+    };
+    using Values = std::set<std::string>;
+    EXPECT_EQ(values({}), (Values{"6", "18"}));
+    EXPECT_EQ(values({{"rounding", "nearest"}}), (Values{"6", "18"}));
+    EXPECT_EQ(values({{"contact_rule", "sat"}}), (Values{"6", "18"}));
+    EXPECT_EQ(values({{"k", "14"}}), Values{"14"});
+    EXPECT_EQ(values({{"rounding", "published"}}), Values{"18"});
+    EXPECT_EQ(values({{"decision", "recheck"}}), Values{"18"});
+    EXPECT_EQ(values({{"output", "pairs"}}), Values{"18"});
+    EXPECT_EQ(of(exact).front().settings.text("k"), "18") << "unchanged presets first";
+}
+
+/// Sums of three coordinates are rounded twice, so their bounds miss pairs without safe rounding.
+TEST(ChoosingCandidates, ContactsAreEqualForEveryKWhoseBoundsMissNothing) {
+    const auto& tiled = algorithm("tiled");
+    for (const auto& k : parameters::k.choices()) {
+        const auto equal = [&](const std::string& rounding) {
+            const SettingTexts given{{"k", std::string(k.text)},
+                                     {"rounding", rounding},
+                                     {"output", "contacts"},
+                                     {"decision", "exact"}};
+            return contacts_are_equal_for_every_k(resolve(tiled.parameters(), {}, given, tiled.name()));
+        };
+        EXPECT_TRUE(equal("safe")) << k.text;
+        EXPECT_TRUE(equal("directed")) << k.text;
+        EXPECT_FALSE(equal("published")) << k.text;
+        EXPECT_EQ(equal("nearest"), k.value == 6 || k.value == 12 || k.value == 16 || k.value == 18)
+            << k.text;
+    }
 }
 
 TEST(ChoosingCandidates, SettingsOfNoCandidateAreRefused) {

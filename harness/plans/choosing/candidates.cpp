@@ -53,8 +53,18 @@ std::vector<Variant> variants(const Traversal& traversal, const Preset& preset, 
     return all;
 }
 
+/// The geometry, as far as the answer depends on it.
+Geometry geometry_of_answer(const Settings& settings) {
+    auto geometry = geometry_of(settings);
+    if (contacts_are_equal_for_every_k(settings)) {
+        geometry.k = Geometry{}.k;
+        geometry.coordinate_axes = false;
+    }
+    return geometry;
+}
+
 bool same_answer(const Cell& a, const Cell& b) {
-    return geometry_of(a.settings) == geometry_of(b.settings)
+    return geometry_of_answer(a.settings) == geometry_of_answer(b.settings)
            && contact_settings_of(a.settings) == contact_settings_of(b.settings)
            && a.settings[parameters::contact_rule] == b.settings[parameters::contact_rule]
            && a.settings[parameters::output] == b.settings[parameters::output];
@@ -109,6 +119,8 @@ std::vector<Cell> candidates(const Request& request, const SettingTexts& given, 
     if (chosen.empty()) throw InputError(refusal);
     return chosen;
 }
+
+bool may_differ_in_k(const Cell& candidate) { return contacts_are_equal_for_every_k(candidate.settings); }
 
 Cell undecided_cell(const Request& request, const SettingTexts& given, const DeviceGroup& devices) {
     auto all = candidates(request, given, devices);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/plans/choosing/trials.h"
 
+#include "harness/plans/choosing/candidates.h"
 #include "harness/sampling/measurement.h"
 #include "harness/sampling/ranks/rank_team.h"
 #include "base/error.h"
@@ -17,6 +18,22 @@ using Clock = std::chrono::steady_clock;
 bool is_crowded(const Device& device) {
     const auto capacity = std::min<std::uint64_t>(device.info().global_bytes, device.memory_limit());
     return device.bytes_allocated() > capacity / 4;
+}
+
+/// Sum over the ranks of the team.
+std::uint64_t summed(RankTeam* team, std::uint64_t own) {
+    if (team == nullptr) return own;
+    std::uint64_t sum = 0;
+    for (const auto& bytes : team->gather(std::as_bytes(std::span(&own, 1))))
+        sum += MessageReader(bytes).read<std::uint64_t>();
+    return sum;
+}
+
+/// Throws DeviceError unless the number equals the first candidate's.
+void check_equal(std::optional<std::uint64_t>& first, std::uint64_t own, std::string_view what) {
+    if (first.value_or(own) != own)
+        throw DeviceError(fmt::format("found {} {}, the first candidate {}", own, what, *first));
+    first = own;
 }
 
 /// Candidate pairs of a frame on all devices and ranks.
@@ -37,7 +54,8 @@ Trials::Trials(std::span<const Cell> candidates, const Scene& scene, const Frame
       range_(range),
       frames_(frames),
       sessions_(candidates.size()),
-      failures_(candidates.size()) {
+      failures_(candidates.size()),
+      compares_contacts_(may_differ_in_k(candidates.front())) {
     for (auto* device : candidates.front().devices) device->set_clocks(Clocks::off);
 }
 
@@ -76,7 +94,7 @@ std::int64_t Trials::run(std::size_t candidate) {
     auto& session = *sessions_[candidate];
     session.reset();
     std::int64_t sum = 0;
-    std::uint64_t pairs = 0;
+    std::uint64_t pairs = 0, contacts = 0;
     for (std::size_t i = 0; i < frames_; ++i) {
         const auto frame = range_.frame(i);
         for (auto* device : candidates_[candidate].devices) device->finish();
@@ -84,10 +102,13 @@ std::int64_t Trials::run(std::size_t candidate) {
         const auto result = session.run(*frame);
         sum += since(begin);
         pairs += pairs_of(result, team_);
+        contacts += result.contacts;
     }
-    if (pairs_.value_or(pairs) != pairs)
-        throw DeviceError(fmt::format("found {} candidate pairs, the first candidate {}", pairs, *pairs_));
-    pairs_ = pairs;
+    if (compares_contacts_)
+        check_equal(contacts_, summed(team_, contacts), "contacts");
+    else
+        check_equal(pairs_, pairs, "candidate pairs");
+    pairs_ = pairs_.value_or(pairs);
     return decided(team_, sum);
 }
 

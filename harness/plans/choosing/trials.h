@@ -23,12 +23,13 @@ public:
     /// compiled and buffers grow. Returns false when the candidate failed, in this call or earlier.
     bool prepare(std::size_t candidate);
     /// Nanoseconds of one replay. None when the candidate failed: a device failed, the settings do not fit
-    /// the scene, or the number of pairs differs from the first candidate's.
+    /// the scene, or the number of pairs (of contacts, if candidates may differ in k) differs from the first
+    /// candidate's.
     std::optional<std::int64_t> replay(std::size_t candidate);
     /// Frees the candidate's session.
     void drop(std::size_t candidate) { sessions_[candidate].reset(); }
 
-    /// Candidate pairs of all frames; 0 before a candidate was prepared.
+    /// Candidate pairs of all frames by the first candidate; 0 before a candidate was prepared.
     std::uint64_t pairs() const { return pairs_.value_or(0); }
     /// The failure in one line; empty when the candidate did not fail.
     const std::string& failure(std::size_t candidate) const { return failures_[candidate]; }
@@ -52,7 +53,8 @@ private:
     std::size_t frames_;
     std::vector<std::unique_ptr<Session>> sessions_;
     std::vector<std::string> failures_;
-    std::optional<std::uint64_t> pairs_;
+    const bool compares_contacts_;
+    std::optional<std::uint64_t> pairs_, contacts_; ///< of all frames, by the first candidate
     double measured_ = 0, preparing_ = 0;
 };
 
