@@ -9,6 +9,7 @@
 #include "algorithms/distributed/split_session.h"
 #include "base/error.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -106,6 +107,8 @@ Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info, con
         throw InputError("setting output=contacts needs a contact rule; leave contact_rule out, or choose "
                          "output=pairs");
     do_fit(fitting, info, scene);
+    if (fitting[tandem::parameters::group_size] == 0)
+        fitting.set(tandem::parameters::group_size(std::min<std::int64_t>(128, info.max_group_size)));
     do_check(fitting, info);
     return fitting;
 }

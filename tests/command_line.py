@@ -39,7 +39,7 @@ class CommandLine(Case):
         self.assertEqual(tandem("run", "plates", "--device", "host", "--preset", "grouped,resident,fair", "--dry-run")[0], 0)
         self.bad("the nearest is 'opencl:0'", "check", "plates", "--device", "opencl:7")
         self.bad("the nearest is 'chunked'", "check", "plates", "--algorithm", "chunkd")
-        for setting in ("k=10", "group_size=0", "leaves=3", "precision=half", "pair_capacity=-1", "pair_capacity=4294967296",
+        for setting in ("k=10", "group_size=-1", "leaves=3", "precision=half", "pair_capacity=-1", "pair_capacity=4294967296",
                         "k=6,,8", "axes=coordinate", "rounding=directed"):
             expected = "goes with k=8 only" if setting == "axes=coordinate" else "impossible"
             self.bad(expected, "run", "plates", "--algorithm", "chunked", "--set", setting, "--frames", "0")

@@ -94,6 +94,10 @@ private:
     void do_fit(Settings& settings, const DeviceInfo& info, const Scene* scene) const override {
         if (settings[tiled_parameters::most_seeds] == 0)
             settings.set(tiled_parameters::most_seeds(info.is_gpu ? 16384 : 256));
+        // In OpenCL on a processor a group works on one tile, whatever its size: 32 lanes at most have work,
+        // and only a group of one work-item lets the compiler vectorise over them.
+        if (settings[tandem::parameters::group_size] == 0 && !info.is_gpu)
+            settings.set(tandem::parameters::group_size(1));
         if (settings[tandem::parameters::slabs] != Slabs::usual) return;
         const bool needs_scene = info.is_gpu && settings[tandem::parameters::k] > 12;
         if (needs_scene && scene == nullptr) return;

@@ -48,7 +48,7 @@ TEST(ChoosingCandidates, AreAllDifferent) {
     const auto cells = of({});
     std::set<std::string> different;
     for (const auto& cell : cells) {
-        EXPECT_EQ(cell.settings.text("group_size"), "128");
+        EXPECT_EQ(cell.settings.text("group_size"), "0");
         different.insert(describe(cell));
     }
     EXPECT_EQ(different.size(), cells.size());

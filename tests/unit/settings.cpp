@@ -49,7 +49,7 @@ TEST(Settings, UnknownNamesSuggestTheNearest) {
                     with({{"k", "10"}});
                 }),
                 HasSubstr("choose one of 6, 8, 12, 14, 16, 18, 20, 24, 26"));
-    EXPECT_THAT(message_of([] { with({{"group_size", "0"}}); }), HasSubstr("from 1 to 1024"));
+    EXPECT_THAT(message_of([] { with({{"group_size", "-1"}}); }), HasSubstr("from 0 to 1024"));
     EXPECT_THAT(message_of([] { algorithm("chunky"); }), HasSubstr("the nearest is 'chunked'"));
     EXPECT_THAT(message_of([] { preset(algorithm("gproximity"), "fare"); }),
                 HasSubstr("the nearest is 'fair'"));
@@ -129,6 +129,24 @@ TEST(Settings, TiledFitsDeviceAndScene) {
     EXPECT_EQ(fitted(gpu, nullptr, {}).text("most_seeds"), "16384");
     EXPECT_EQ(fitted(processor, nullptr, {}).text("most_seeds"), "256");
     EXPECT_EQ(fitted(gpu, &small, {{"most_seeds", "7"}}).text("most_seeds"), "7");
+    EXPECT_EQ(fitted(gpu, nullptr, {}).text("group_size"), "128");
+    EXPECT_EQ(fitted(processor, nullptr, {}).text("group_size"), "1");
+    EXPECT_EQ(fitted(processor, nullptr, {{"group_size", "64"}}).text("group_size"), "64");
+}
+
+/// Group sizes that nobody asked for.
+TEST(Settings, GroupSizesFitTheDevice) {
+    DeviceInfo info;
+    info.id = "opencl:9";
+    info.local_bytes = 49152;
+    info.has_double = true;
+    const auto fitted = [&](std::uint32_t largest) {
+        info.max_group_size = largest;
+        return algorithm("chunked").fitted(with({}), info).text("group_size");
+    };
+    EXPECT_EQ(fitted(1024), "128");
+    EXPECT_EQ(fitted(64), "64");
+    EXPECT_EQ(fitted(1), "1");
 }
 
 /// 48 KiB, the limit of a CUDA kernel: the error comes before the compiler's.
