@@ -16,7 +16,8 @@
     ALGORITHM(gproximity) \
     ALGORITHM(tiled)
 #define TANDEM_BASELINES(ALGORITHM) \
-    ALGORITHM(embree)
+    ALGORITHM(embree) \
+    ALGORITHM(cubql)
 // clang-format on
 
 namespace tandem {

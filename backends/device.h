@@ -60,7 +60,8 @@ struct DeviceInfo {
 /// Compile-time parameters of a kernel (name -> value), emitted as defines under the same names.
 using Defines = std::map<std::string, std::string>;
 
-/// A kernel file with its headers, flattened into one text.
+/// A kernel file with its headers, flattened into one text. If its name ends with ".ptx", it is PTX of a
+/// baseline, which only CUDA devices load.
 struct KernelSource {
     std::string_view name; ///< "algorithms/chunked/chunked.cl"
     std::string_view text; ///< complete, with the text of its headers

@@ -19,7 +19,9 @@ const Modules::Loaded& Modules::load(const Queue& queue, const KernelSource& sou
     if (const auto found = loaded_.find(key); found != loaded_.end()) return found->second;
     Loaded loaded;
     try {
-        loaded.image = libraries_.nvrtc.compile(source, defines, device_.capability);
+        loaded.image = source.name.ends_with(".ptx")
+                           ? Image{.bytes = std::string(source.text), .target = "ptx", .log = {}}
+                           : libraries_.nvrtc.compile(source, defines, device_.capability);
     } catch (const DeviceError& error) {
         throw DeviceError(fmt::format("{} ({}): {}", device_.info.id, device_.info.name, error.what()));
     }
