@@ -14,7 +14,8 @@
 #define TANDEM_ALGORITHMS(ALGORITHM) \
     ALGORITHM(chunked) \
     ALGORITHM(gproximity) \
-    ALGORITHM(tiled)
+    ALGORITHM(tiled) \
+    ALGORITHM(leaf_query)
 #define TANDEM_BASELINES(ALGORITHM) \
     ALGORITHM(embree) \
     ALGORITHM(cubql)

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <set>
 
 namespace tandem {
 namespace {
@@ -197,10 +198,11 @@ TEST_P(CoveringArray, Chunked) { cover("chunked", 100, 7); }
 // Queues of four items with a balance after each would need thousands of launches per body pair.
 TEST_P(CoveringArray, Gproximity) { cover("gproximity", 200, 4); }
 TEST_P(CoveringArray, Tiled) { cover("tiled", 400, 7); }
+TEST_P(CoveringArray, LeafQuery) { cover("leaf_query", 500, 7); }
 TEST_P(CoveringArray, EveryOther) {
+    const std::set<std::string_view> own{"chunked", "gproximity", "tiled", "leaf_query"};
     for (const auto* traversal : algorithms())
-        if (const auto name = traversal->name(); name != "chunked" && name != "gproximity" && name != "tiled")
-            cover(name, 300, 7);
+        if (!own.contains(traversal->name())) cover(traversal->name(), 300, 7);
 }
 
 TEST_P(Conformance, EveryPreset) {
