@@ -225,10 +225,13 @@ DEVICE void write_strip(const Refit* refit, LOCAL const uint* strip, LOCAL const
 }
 
 // `first_job`, `job_count`: the strips of this launch. A team processes TEAM_NODES / 2^(height + 1) of them,
-// at most MOST_STRIPS.
+// at most MOST_STRIPS. `paired`: the depth whose nodes are made together with their children, if IN_PAIRS.
+// `first_depth`: the depth at which the loop starts. Both follow from `height`, but a compiler that knew this
+// would take the first turns out of the loop, and PoCL 5.0 aborts at barriers behind their branches.
 KERNEL void refit_strips(GLOBAL real* nodes, GLOBAL const uint* trees, GLOBAL const uint* levels,
                          GLOBAL const real* poses, GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
-                         GLOBAL const uint* jobs, uint first_job, uint job_count, uint level, uint height) {
+                         GLOBAL const uint* jobs, uint first_job, uint job_count, uint level, uint height,
+                         uint first_depth, uint paired) {
     LOCAL_ARRAY(Unit, tiles, TEAM_COUNT * TEAM_TILE);
     LOCAL_ARRAY(uint, rows, TEAM_COUNT * MOST_STRIPS * JOB_WORDS);
     const Refit refit = {
@@ -243,13 +246,11 @@ KERNEL void refit_strips(GLOBAL real* nodes, GLOBAL const uint* trees, GLOBAL co
         load_job(&refit, i % JOB_WORDS, first + i / JOB_WORDS, job_count, strips + i / JOB_WORDS * JOB_WORDS);
     TEAM_BARRIER;
     // One loop for all depths: PoCL 3.1 miscompiles barriers in a loop that might not run at all.
-    for (uint up = 0; up <= height; ++up) {
-        if (!IN_PAIRS)
-            make_depth(&refit, strips, strip_count, height - up, tile);
-        else if (up == 1u)
+    for (uint up = 0; up <= first_depth; ++up) {
+        if (IN_PAIRS && first_depth - up == paired)
             make_pairs(&refit, strips, strip_count, tile);
-        else if (up > 1u || height == 0u)
-            make_depth(&refit, strips, strip_count, height - up, tile);
+        else
+            make_depth(&refit, strips, strip_count, first_depth - up, tile);
         TEAM_BARRIER;
     }
     for (uint i = 0; i < strip_count; ++i) write_strip(&refit, strips + i * JOB_WORDS, HEAP(tile, i, height));

@@ -14,10 +14,10 @@ constexpr std::uint32_t team = 32; ///< TEAM_SIZE of portable.h, unless a team i
 constexpr std::uint64_t tile_bytes = 32 << 10;
 constexpr std::uint32_t strip_nodes = 2u << strip_height;
 
-/// Two leaves (IN_PAIRS of refit.cl) or one for each work-item. At least one strip and at most what fits.
+/// Two leaves (in_pairs) or one for each work-item. At least one strip and at most what fits.
 std::uint32_t tile_nodes(const Geometry& geometry, std::uint32_t group_size) {
     const auto node = static_cast<std::uint64_t>(geometry.k + 2) * real_bytes(geometry) + 8;
-    const auto wanted = std::max(strip_nodes, (geometry.k <= 8 ? 4 : 2) * group_size);
+    const auto wanted = std::max(strip_nodes, (in_pairs(geometry) ? 4 : 2) * group_size);
     return std::min(wanted, static_cast<std::uint32_t>(std::bit_floor(tile_bytes / node)));
 }
 

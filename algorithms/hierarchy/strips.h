@@ -10,6 +10,10 @@ namespace tandem {
 /// Maximum number of depths of a strip of refit.cl below its root.
 inline constexpr std::uint32_t strip_height = 5;
 
+/// Whether refit_strips makes the nodes of the lowest depth together with their parents (IN_PAIRS of
+/// refit.cl).
+inline bool in_pairs(const Geometry& geometry) { return geometry.k <= 8; }
+
 /// Compile-time parameters of refit_strips.
 struct RefitShape {
     std::uint32_t group_size; ///< a power of two

@@ -31,14 +31,18 @@ inline Device& device(std::string_view id) {
     throw DeviceError("no device " + std::string(id));
 }
 
-/// Host and opencl:0, which the tests require, and every other available device.
-inline std::vector<std::string> device_names() {
-    std::vector<std::string> names{"host", "opencl:0"};
-    for (const auto& backend : discover())
-        for (const auto& found : backend.devices)
-            if (std::find(names.begin(), names.end(), found->info().id) == names.end())
-                names.push_back(found->info().id);
-    return names;
+/// Host and opencl:0, which the tests require, and every other available device. Found once: dozens of suites
+/// ask, and opening a GPU takes most of a second.
+inline const std::vector<std::string>& device_names() {
+    static const auto all = [] {
+        std::vector<std::string> names{"host", "opencl:0"};
+        for (const auto& backend : discover())
+            for (const auto& found : backend.devices)
+                if (std::find(names.begin(), names.end(), found->info().id) == names.end())
+                    names.push_back(found->info().id);
+        return names;
+    }();
+    return all;
 }
 
 /// Label of a device in the name of a parameterized test.
