@@ -62,7 +62,7 @@ class Completion(Case):
                 ("tandem view pla", ["plates"]), ("tandem report x --scene pla", ["plates"]), ("tandem check hard:corner-c", ["corner-cancellation"]), ("tandem run pile:bodies=3,dens", ["3,density="]),
                 ("tandem run --set slabs= --dry", ["--dry-run"]),
                 ("tandem run --set slabs= ", self.scenes), ("tandem run --out ", []), ("tandem run --frames 3", []),
-                ("tandem run --set builder=", ["breadth", "hilbert", "median", "morton", "sah"]), ("tandem export --builder m", ["median", "morton"]),
+                ("tandem run --set builder=", ["balanced", "breadth", "hilbert", "median", "morton", "sah"]), ("tandem export --builder m", ["median", "morton"]),
                 ("tandem export --chunk", ["--chunk-bytes", "--chunks"]), ("tandem export --chunks ", []),
                 ("tandem algorithms t", ["tiled"]), ("tandem completion ", ["bash", "zsh"]), ("tandem nix ", [])):
             with self.subTest(line):

@@ -210,7 +210,7 @@ class Recordings(Case):
         points, tets = bar(40, (0.1, 1e-9, -1e7))
         other = gmsh(self.work / "bar.msh", points, tets)
         names, orders = [f"{x}{i}" for i in range(4) for x in "xyz"], set()
-        for builder in ("morton", "sah", "breadth", "hilbert", "median"):
+        for builder in ("morton", "sah", "breadth", "hilbert", "median", "balanced"):
             text, rows = self.chunks("--mesh", self.good, "--mesh", other, "--builder", builder)
             self.assertIn(f": 2 meshes, {24 + len(tets)} tetrahedra in {1 + 8} chunks of up to 32, builder={builder}, of meshes:", text)
             self.assertEqual([row["mesh"] for row in rows], [0] * 24 + [1] * len(tets))

@@ -15,7 +15,6 @@ namespace {
 constexpr std::uint32_t level_words = 4;
 constexpr std::uint32_t level_bits = 5; ///< TREE_LEVEL_BITS of node.clh
 constexpr std::uint32_t job_words = 8;
-constexpr std::uint32_t no_depth = ~0u;
 constexpr std::uint32_t most_top_items = 1024; ///< largest level that one work-group refits
 
 /// Number of groups, rounded up.
@@ -166,9 +165,9 @@ void ChunkTrees::launch_strips(bool all) {
         const auto per_group = strips_of_group(shape_, s.height);
         const auto jobs = all ? s.jobs : s.dynamic_jobs;
         if (jobs == 0) continue;
-        const bool is_paired = in_pairs(bodies_.geometry()) && s.height > 0;
-        const auto first_depth = is_paired ? s.height - 1 : s.height;
-        const std::array<Argument, 13> arguments{nodes_,
+        const auto paired = in_pairs(bodies_.geometry()) ? 2u : 0u; // depths
+        const auto first_depth = s.height > paired ? s.height - paired : 0;
+        const std::array<Argument, 12> arguments{nodes_,
                                                  tree_table_,
                                                  level_table_,
                                                  bodies_.poses(),
@@ -179,8 +178,7 @@ void ChunkTrees::launch_strips(bool all) {
                                                  jobs,
                                                  s.level,
                                                  s.height,
-                                                 first_depth,
-                                                 is_paired ? first_depth : no_depth};
+                                                 first_depth};
         device_.launch(strips_kernel_, {groups_for(jobs, per_group), shape_.group_size}, arguments);
     }
 }

@@ -76,6 +76,8 @@ std::vector<std::uint32_t> order_of(const Mesh& mesh, Builder builder) {
         return hilbert_order(mesh);
     case Builder::median:
         return median_order(mesh);
+    case Builder::balanced:
+        return balanced_order(mesh);
     }
     throw std::invalid_argument("unknown builder");
 }

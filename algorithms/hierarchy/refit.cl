@@ -155,10 +155,11 @@ DEVICE NodeAt strip_node(const Refit* refit, LOCAL const uint* strips, uint i, u
 // leave local memory for too few work-groups.
 #define IN_PAIRS (K <= 8)
 
-// The two lowest depths: a work-item builds two siblings and merges them in registers.
+// The two lowest depths, if there are two: a work-item builds two siblings and merges them in registers.
 DEVICE void make_pairs(const Refit* refit, LOCAL const uint* strips, uint strip_count, LOCAL Unit* tile) {
-    const uint depth = refit->height - 1u;
-    for (uint i = TEAM_LANE; i < strip_count << depth; i += TEAM_SIZE) {
+    const uint depth = refit->height == 0u ? 0u : refit->height - 1u;
+    const uint count = refit->height == 0u ? 0u : strip_count << depth;
+    for (uint i = TEAM_LANE; i < count; i += TEAM_SIZE) {
         const NodeAt at = strip_node(refit, strips, i, depth, tile);
         if (at.node >= 2u * at.strip[JOB_ITEMS]) continue;
         const uint inner = is_leaf(at.node, at.strip[JOB_ITEMS]) ? 0u : 1u;
@@ -225,13 +226,11 @@ DEVICE void write_strip(const Refit* refit, LOCAL const uint* strip, LOCAL const
 }
 
 // `first_job`, `job_count`: the strips of this launch. A team processes TEAM_NODES / 2^(height + 1) of them,
-// at most MOST_STRIPS. `paired`: the depth whose nodes are made together with their children, if IN_PAIRS.
-// `first_depth`: the depth at which the loop starts. Both follow from `height`, but a compiler that knew this
-// would take the first turns out of the loop, and PoCL 5.0 aborts at barriers behind their branches.
+// at most MOST_STRIPS. `first_depth`: the depth at which the loop starts.
 KERNEL void refit_strips(GLOBAL real* nodes, GLOBAL const uint* trees, GLOBAL const uint* levels,
                          GLOBAL const real* poses, GLOBAL const uint* tetrahedra, GLOBAL const real* vertices,
                          GLOBAL const uint* jobs, uint first_job, uint job_count, uint level, uint height,
-                         uint first_depth, uint paired) {
+                         uint first_depth) {
     LOCAL_ARRAY(Unit, tiles, TEAM_COUNT * TEAM_TILE);
     LOCAL_ARRAY(uint, rows, TEAM_COUNT * MOST_STRIPS * JOB_WORDS);
     const Refit refit = {
@@ -245,12 +244,15 @@ KERNEL void refit_strips(GLOBAL real* nodes, GLOBAL const uint* trees, GLOBAL co
     for (uint i = TEAM_LANE; i < strip_count * JOB_WORDS; i += TEAM_SIZE)
         load_job(&refit, i % JOB_WORDS, first + i / JOB_WORDS, job_count, strips + i / JOB_WORDS * JOB_WORDS);
     TEAM_BARRIER;
-    // One loop for all depths: PoCL 3.1 miscompiles barriers in a loop that might not run at all.
+    if (IN_PAIRS) {
+        make_pairs(&refit, strips, strip_count, tile);
+        TEAM_BARRIER;
+    }
+    // PoCL 3.1 miscompiles barriers in a loop that might not run at all, and PoCL 5.0 aborts at a barrier
+    // behind branches between which the turn decides. One depth is therefore always made, twice if it was in
+    // pairs.
     for (uint up = 0; up <= first_depth; ++up) {
-        if (IN_PAIRS && first_depth - up == paired)
-            make_pairs(&refit, strips, strip_count, tile);
-        else
-            make_depth(&refit, strips, strip_count, first_depth - up, tile);
+        make_depth(&refit, strips, strip_count, first_depth - up, tile);
         TEAM_BARRIER;
     }
     for (uint i = 0; i < strip_count; ++i) write_strip(&refit, strips + i * JOB_WORDS, HEAP(tile, i, height));

@@ -4,6 +4,7 @@
 #include "algorithms/hierarchy/axis_orders.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 namespace tandem {
@@ -29,7 +30,10 @@ class Splitter {
 public:
     explicit Splitter(const Mesh& mesh);
 
-    std::vector<std::uint32_t> order();
+    /// The order whose ranges are cut at the cheapest multiple of run_of.
+    std::vector<std::uint32_t> order_of_runs();
+    /// The order whose ranges are cut at left_leaves.
+    std::vector<std::uint32_t> order_of_complete_tree();
 
 private:
     using ItemRange = AxisOrders::ItemRange;
@@ -38,6 +42,11 @@ private:
         std::size_t axis = 0, split = 0; ///< first position of the right part
     };
 
+    /// Cuts ranges until they have one item; `cut_of` chooses the cut of a range.
+    template<class CutOf>
+    std::vector<std::uint32_t> order(const CutOf& cut_of);
+    /// The union of the boxes in a range of positions along an axis.
+    Box union_of(std::size_t axis, ItemRange range) const;
     /// Updates `best` with the cheapest cut along an axis.
     void evaluate_axis(std::size_t axis, ItemRange range, std::size_t unit, Cut& best);
 
@@ -86,14 +95,14 @@ void Splitter::evaluate_axis(std::size_t axis, ItemRange range, std::size_t unit
     }
 }
 
-std::vector<std::uint32_t> Splitter::order() {
+template<class CutOf>
+std::vector<std::uint32_t> Splitter::order(const CutOf& cut_of) {
     std::vector<ItemRange> todo{{0, boxes_.size()}};
     while (!todo.empty()) {
         const auto range = todo.back();
         todo.pop_back();
         if (range.size() < 2) continue;
-        Cut cut;
-        for (std::size_t axis = 0; axis < 3; ++axis) evaluate_axis(axis, range, run_of(range.size()), cut);
+        const Cut cut = cut_of(range);
         axes_.cut(range, cut.axis, cut.split);
         todo.push_back({cut.split, range.end});
         todo.push_back({range.first, cut.split});
@@ -101,8 +110,47 @@ std::vector<std::uint32_t> Splitter::order() {
     return axes_.along(0);
 }
 
+std::vector<std::uint32_t> Splitter::order_of_runs() {
+    return order([&](ItemRange range) {
+        Cut cut;
+        for (std::size_t axis = 0; axis < 3; ++axis) evaluate_axis(axis, range, run_of(range.size()), cut);
+        return cut;
+    });
+}
+
+Box Splitter::union_of(std::size_t axis, ItemRange range) const {
+    Box all;
+    for (auto i = range.first; i < range.end; ++i) all.add(boxes_[axes_.along(axis)[i]]);
+    return all;
+}
+
+/// Leaves of the left half of a complete binary tree over `leaves` >= 2 (heap.clh).
+std::size_t left_leaves(std::size_t leaves) {
+    const auto width = std::bit_floor(leaves);
+    return width / 2 + std::min(leaves - width, width / 2);
+}
+
+std::vector<std::uint32_t> Splitter::order_of_complete_tree() {
+    return order([&](ItemRange range) {
+        const auto left = left_leaves(range.size());
+        const auto split = range.first + left;
+        Cut best;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto cost =
+                union_of(axis, {range.first, split}).area() * static_cast<double>(left)
+                + union_of(axis, {split, range.end}).area() * static_cast<double>(range.size() - left);
+            if (cost < best.cost || best.split == 0) best = {cost, axis, split};
+        }
+        return best;
+    });
+}
+
 } // namespace
 
-std::vector<std::uint32_t> sah_order(const Mesh& mesh) { return Splitter(mesh).order(); }
+std::vector<std::uint32_t> sah_order(const Mesh& mesh) { return Splitter(mesh).order_of_runs(); }
+
+std::vector<std::uint32_t> balanced_order(const Mesh& mesh) {
+    return Splitter(mesh).order_of_complete_tree();
+}
 
 } // namespace tandem

@@ -15,4 +15,8 @@ namespace tandem {
 /// one order. O(n log n) and, for the worst meshes, 31 n for each run length.
 std::vector<std::uint32_t> sah_order(const Mesh& mesh);
 
+/// The same for one complete binary tree over the whole mesh (heap.clh): each node's range is cut where the
+/// tree's left half ends, along the axis with the smallest cost of the surface area heuristic. O(n log n).
+std::vector<std::uint32_t> balanced_order(const Mesh& mesh);
+
 } // namespace tandem

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Leaf queries: each tetrahedron of the body with fewer ones asks the other body's tree, which is one
+// Leaf queries: each tetrahedron of the body with fewer ones queries the other body's tree, which is one
 // complete binary tree (heap.clh). All queries of all body pairs are one launch.
 #include "backends/portable.h"
 #include "algorithms/answer/emit.clh"
 #include "algorithms/broad_phase/body_pairs.clh"
 #include "algorithms/hierarchy/node.clh"
 
-// The two bodies of a pair. `asks_a`: tetrahedra of a ask the tree of b, otherwise those of b the tree of a.
+// The two bodies of a pair. `a_queries`: tetrahedra of a query the tree of b, otherwise those of b the tree
+// of a.
 typedef struct {
-    GLOBAL const uint* asking; // tree rows
-    GLOBAL const uint* asked;
+    GLOBAL const uint* querying; // tree rows
+    GLOBAL const uint* queried;
     uint body_a, body_b;
-    int asks_a;
+    int a_queries;
 } BodyQuery;
 
 DEVICE BodyQuery body_query(GLOBAL const uint* trees, GLOBAL const uint* pairs, uint pair) {
@@ -20,37 +21,37 @@ DEVICE BodyQuery body_query(GLOBAL const uint* trees, GLOBAL const uint* pairs, 
     query.body_b = body_b_of(pairs, pair);
     GLOBAL const uint* a = tree_of(trees, query.body_a);
     GLOBAL const uint* b = tree_of(trees, query.body_b);
-    query.asks_a = a[TREE_ITEMS] <= b[TREE_ITEMS];
-    query.asking = query.asks_a ? a : b;
-    query.asked = query.asks_a ? b : a;
+    query.a_queries = a[TREE_ITEMS] <= b[TREE_ITEMS];
+    query.querying = query.a_queries ? a : b;
+    query.queried = query.a_queries ? b : a;
     return query;
 }
 
 DEVICE void emit_answer(const BodyQuery* query, const PairOutput* output, uint item, uint found,
                         Tally* tally) {
-    const uint item_a = query->asks_a ? item : found;
-    const uint item_b = query->asks_a ? found : item;
+    const uint item_a = query->a_queries ? item : found;
+    const uint item_b = query->a_queries ? found : item;
     if (EMITS_SLOTS) {
-        const uint own = first_slot_of(query->asking) + item;
-        const uint other = first_slot_of(query->asked) + found;
-        emit_slots(output, query->asks_a ? own : other, query->asks_a ? other : own);
+        const uint own = first_slot_of(query->querying) + item;
+        const uint other = first_slot_of(query->queried) + found;
+        emit_slots(output, query->a_queries ? own : other, query->a_queries ? other : own);
     } else {
         const WordRow row = {query->body_a, query->body_b, item_a, item_b};
         emit(tally, output, row);
     }
 }
 
-// Asks the tree of the other body for the leaves that overlap `item`. A node's children follow each other in
-// memory and are tested together. `open` has a bit per depth of the current node, bit 0 for its own: its
+// Queries the tree of the other body for the leaves that overlap `item`. A node's children follow each other
+// in memory and are tested together. `open` has a bit per depth of the current node, bit 0 for its own: its
 // sibling is still to be visited. The walk needs neither a stack nor links.
-DEVICE void ask(const BodyQuery* query, GLOBAL const real* nodes, const PairOutput* output, uint item,
-                Tally* tally) {
-    const uint items = query->asked[TREE_ITEMS];
-    const uint base = query->asked[TREE_NODES];
+DEVICE void query_tree(const BodyQuery* query, GLOBAL const real* nodes, const PairOutput* output, uint item,
+                       Tally* tally) {
+    const uint items = query->queried[TREE_ITEMS];
+    const uint base = query->queried[TREE_NODES];
     uint node = ROOT_NODE;
     uint open = 0;
     Node own, other;
-    load_node(nodes, query->asking[TREE_NODES] + leaf_node(item, query->asking[TREE_ITEMS]), &own);
+    load_node(nodes, query->querying[TREE_NODES] + leaf_node(item, query->querying[TREE_ITEMS]), &own);
     load_node(nodes, base + ROOT_NODE, &other);
     if (COUNT_WORK) tally->seeds += 1;
     if (COUNT_WORK) tally->tests += 1;
@@ -93,9 +94,9 @@ KERNEL void query_leaves(GLOBAL const real* nodes, GLOBAL const uint* trees, GLO
     for (ulong turn = GROUP_ID; turn < turns; turn += GROUP_COUNT) {
         const uint item = (uint)(turn % blocks) * (uint)GROUP_SIZE + LOCAL_ID;
         const BodyQuery query = body_query(trees, pairs, (uint)(turn / blocks));
-        const int is_asked = item < query.asking[TREE_ITEMS] && query.asked[TREE_ITEMS] != 0u
-                             && (!query.asks_a || in_window(status, item, (ulong)item + 1));
-        if (is_asked) ask(&query, nodes, &output, item, &tally);
+        const int has_item = item < query.querying[TREE_ITEMS] && query.queried[TREE_ITEMS] != 0u
+                             && (!query.a_queries || in_window(status, item, (ulong)item + 1));
+        if (has_item) query_tree(&query, nodes, &output, item, &tally);
     }
     flush(&tally, status);
 }

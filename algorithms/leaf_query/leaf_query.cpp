@@ -16,14 +16,14 @@ namespace {
 const std::vector<Preset> all_presets{
     {"resident",
      "everything resident, body pairs included, one wait per frame",
-     {parameters::broad(Broad::device), parameters::builder(Builder::median)}}};
+     {parameters::broad(Broad::device), parameters::builder(Builder::balanced)}}};
 
 constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds};
 
 /// Tetrahedra of a chunk: more than a body can have, so that each body is one tree.
 constexpr std::uint32_t leaves = std::uint32_t{1} << 30;
 
-/// Every tetrahedron of the smaller body of a body pair asks the other body's tree.
+/// Every tetrahedron of the smaller body of a body pair queries the other body's tree.
 class LeafQueries final : public Walker {
 public:
     /// `trees` must outlive this object; each body is one chunk.
@@ -86,7 +86,7 @@ public:
     std::string_view summary() const override {
         return "the field's standard method: a binary tree per body, which each tetrahedron of the other "
                "body "
-               "asks, without a stack";
+               "queries, without a stack";
     }
     std::span<const Parameter* const> parameters() const override {
         static const auto all = pipeline_parameters({}, false);

@@ -68,7 +68,8 @@ enum class Builder {
     sah,     ///< cut by the surface area heuristic into runs of 32, 32^2, ...
     breadth, ///< breadth-first from face to face, which the paper tried first
     hilbert, ///< along Hilbert's curve
-    median   ///< halved along the longest axis, at runs of the same lengths
+    median,  ///< halved along the longest axis, at runs of the same lengths
+    balanced ///< cut where a complete binary tree over the body cuts, by the surface area heuristic
 };
 
 /// Directions with bounds in the leaves of a hierarchy of tiles.

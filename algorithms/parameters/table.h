@@ -65,18 +65,21 @@ inline constexpr Setting<Origin> origin{
     "first frame, so that a scene far from the world's origin is as accurate as one near it"};
 
 inline constexpr auto builder =
-    Setting<Builder>{"builder",
-                     Builder::morton,
-                     {{"morton", Builder::morton},
-                      {"sah", Builder::sah},
-                      {"breadth", Builder::breadth},
-                      {"hilbert", Builder::hilbert},
-                      {"median", Builder::median}},
-                     "",
-                     "order of a body's tetrahedra, from which trees are made: morton: along the Z-curve, as "
-                     "the paper; sah: cut by the surface area heuristic into runs of 32, 32^2, ...; breadth: "
-                     "breadth-first from face to face, which the paper tried first; hilbert: along Hilbert's "
-                     "curve; median: halved along the longest axis, at such runs"}
+    Setting<Builder>{
+        "builder",
+        Builder::morton,
+        {{"morton", Builder::morton},
+         {"sah", Builder::sah},
+         {"breadth", Builder::breadth},
+         {"hilbert", Builder::hilbert},
+         {"median", Builder::median},
+         {"balanced", Builder::balanced}},
+        "",
+        "order of a body's tetrahedra, from which trees are made: morton: along the Z-curve, as "
+        "the paper; sah: cut by the surface area heuristic into runs of 32, 32^2, ...; breadth: "
+        "breadth-first from face to face, which the paper tried first; hilbert: along Hilbert's "
+        "curve; median: halved along the longest axis, at such runs; balanced: cut where one complete "
+        "binary tree over the body cuts, along the axis of the smallest surfaces"}
         .with_alternatives({Builder::morton, Builder::sah});
 inline constexpr auto slabs =
     Setting<Slabs>{

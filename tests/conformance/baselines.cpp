@@ -171,7 +171,7 @@ TEST_P(Baseline, FindsTheSamePairsWithEverySetting) {
     rounding.push_back({{"rounding", "safe"}, {"placement", "exact"}});
     for (const auto& given :
          pairwise({rounding, of("broad", {"sphere", "tight", "device"}), of("threads", {"1", "2", "5"}),
-                   of("builder", {"morton", "sah", "breadth", "hilbert", "median"})})) {
+                   of("builder", {"morton", "sah", "breadth", "hilbert", "median", "balanced"})})) {
         SCOPED_TRACE(text(given));
         if (!accepts(given)) continue;
         EXPECT_GT(expect_same(crowd(17, 12, 0.9), given), 1000u);

@@ -29,7 +29,7 @@ const std::vector<SettingValues> settings_of_single_algorithms{
     {"seed_threshold", {"0", "1", "40", "1e7"}},
     {"seed_target", {"1000", "1048576"}},
     {"seed_capacity", {"1", "65536"}},
-    {"builder", {"morton", "sah", "breadth", "hilbert", "median"}},
+    {"builder", {"morton", "sah", "breadth", "hilbert", "median", "balanced"}},
     {"output", {"pairs", "contacts"}},
     {"slabs", {"three", "all", "touched"}},
     {"tile_pair_capacity", {"1", "65536"}},

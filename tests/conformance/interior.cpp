@@ -98,7 +98,7 @@ TEST_P(Interior, MakesTheSameContactsWithEveryAlgorithm) {
 TEST_P(Interior, MakesTheSameContactsWithEverySetting) {
     const auto scene = boxes_scene(3, 4);
     std::size_t cell = 0;
-    for (const std::string builder : {"morton", "sah", "breadth", "hilbert", "median"})
+    for (const std::string builder : {"morton", "sah", "breadth", "hilbert", "median", "balanced"})
         for (const std::string decision : {"fp32", "recheck", "exact"})
             expect_same_contacts(algorithm(cell++ % 2 == 0 ? "tiled" : "chunked"), scene,
                                  {{"builder", builder},

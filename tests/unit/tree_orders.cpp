@@ -2,8 +2,10 @@
 // Orders of a mesh's tetrahedra by builders other than sah.
 #include "algorithms/hierarchy/axis_orders.h"
 #include "algorithms/hierarchy/breadth_order.h"
+#include "algorithms/hierarchy/heap.h"
 #include "algorithms/hierarchy/median_order.h"
 #include "algorithms/hierarchy/order.h"
+#include "algorithms/hierarchy/sah_order.h"
 #include "scenes/scene.h"
 #include "tests/support/scenes.h"
 
@@ -20,8 +22,8 @@ using support::tetrahedra_at;
 using Order = std::vector<std::uint32_t>;
 using Positions = std::vector<Eigen::Vector3d>;
 
-constexpr Builder builders[] = {Builder::morton, Builder::sah, Builder::breadth, Builder::hilbert,
-                                Builder::median};
+constexpr Builder builders[] = {Builder::morton,  Builder::sah,    Builder::breadth,
+                                Builder::hilbert, Builder::median, Builder::balanced};
 
 Order counted(std::size_t count) {
     Order all(count);
@@ -249,6 +251,31 @@ TEST(Breadth, ComponentsFollowOneAnother) {
     // Without common faces every tetrahedron is a component, and the order is that of the curve.
     const auto apart = shuffled(tetrahedra_at(grid(3)), 12);
     EXPECT_EQ(breadth_order(apart), morton_order(apart));
+}
+
+/// The halves of every node of a complete binary tree lie on two sides of a plane.
+TEST(Balanced, CutsWhereACompleteTreeCuts) {
+    Random random(14);
+    for (const std::uint32_t count : {2u, 3u, 5u, 6u, 7u, 12u, 33u, 100u, 1000u, 2325u}) {
+        Positions positions;
+        for (std::uint32_t i = 0; i < count; ++i)
+            positions.emplace_back(random.uniform() * 100, random.uniform() * 100, random.uniform() * 100);
+        const auto mesh = tetrahedra_at(positions);
+        const auto at = centroids(mesh);
+        const auto order = balanced_order(mesh);
+        const auto is_apart = [&](std::uint32_t node, int axis) {
+            double left = -1e9, right = 1e9;
+            const auto child = heap::first_child(node);
+            for (auto i = heap::first_item_below(child, count); i <= heap::last_item_below(child, count); ++i)
+                left = std::max(left, at[order[i]][axis]);
+            for (auto i = heap::first_item_below(child + 1, count);
+                 i <= heap::last_item_below(child + 1, count); ++i)
+                right = std::min(right, at[order[i]][axis]);
+            return left <= right;
+        };
+        for (auto node = heap::root_node; !heap::is_leaf(node, count); ++node)
+            EXPECT_TRUE(is_apart(node, 0) || is_apart(node, 1) || is_apart(node, 2)) << count << " " << node;
+    }
 }
 
 TEST(Median, HalvesAlongTheLongestAxis) {

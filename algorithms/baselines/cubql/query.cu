@@ -94,28 +94,28 @@ extern "C" __global__ void collide_cubql(const Node* nodes, const TreeRow* trees
         const std::uint64_t pair = turn / parts;
         const TreeRow a = trees[body_pairs[2 * pair]];
         const TreeRow b = trees[body_pairs[2 * pair + 1]];
-        const bool asks_a = a.count <= b.count;
-        const TreeRow asking = asks_a ? a : b;
-        const TreeRow asked = asks_a ? b : a;
+        const bool a_queries = a.count <= b.count;
+        const TreeRow querying = a_queries ? a : b;
+        const TreeRow queried = a_queries ? b : a;
         cuBQL::bvh3f tree;
-        tree.nodes = const_cast<Node*>(nodes) + asked.first_node;
-        tree.primIDs = const_cast<std::uint32_t*>(order) + asked.first_of_order;
-        if (asked.count == 0) continue;
+        tree.nodes = const_cast<Node*>(nodes) + queried.first_node;
+        tree.primIDs = const_cast<std::uint32_t*>(order) + queried.first_of_order;
+        if (queried.count == 0) continue;
         const auto first = static_cast<std::uint32_t>(turn % parts) * blockDim.x + threadIdx.x;
-        for (std::uint32_t item = first; item < asking.count; item += parts * blockDim.x) {
-            const Box box = boxes[asking.first_box + item];
+        for (std::uint32_t item = first; item < querying.count; item += parts * blockDim.x) {
+            const Box box = boxes[querying.first_box + item];
             if (box.lower.x > box.upper.x) continue; // skipped
             cuBQL::fixedBoxQuery::forEachPrim(
                 [&](std::uint32_t other) {
                     ++tests;
-                    const Box theirs = boxes[asked.first_box + other];
-                    const std::uint32_t item_a = asks_a ? item : other;
+                    const Box theirs = boxes[queried.first_box + other];
+                    const std::uint32_t item_a = a_queries ? item : other;
                     if (theirs.lower.x <= theirs.upper.x && box.overlaps(theirs) && item_a >= window_first
                         && item_a < window_end) {
                         const std::uint32_t row = next_row(status + STATUS_PAIRS);
-                        const std::uint32_t own = asking.first_box + item;
-                        const std::uint32_t others = asked.first_box + other;
-                        if (row < capacity) found[row] = asks_a ? uint2{own, others} : uint2{others, own};
+                        const std::uint32_t own = querying.first_box + item;
+                        const std::uint32_t others = queried.first_box + other;
+                        if (row < capacity) found[row] = a_queries ? uint2{own, others} : uint2{others, own};
                     }
                     return CUBQL_CONTINUE_TRAVERSAL;
                 },
