@@ -71,7 +71,7 @@ class Profile(Case):
             if " resident " not in line: # the header line of the cell, with all its settings
                 self.assertLessEqual(len(line), 100, line)
         self.assertIn("ceilings, measured", texts[0])
-        for word in ("us/frame", "floor us", "x floor", "bound", "of ceiling", "answer: right", "walk_leaf_tiles"):
+        for word in ("us/frame", "floor us", "x floor", "bound", "of ceiling", "answer: right", "generate_contacts"):
             self.assertIn(word, "".join(texts))
         self.assertEqual(self.valid(out), (0, ""))
         records = [json.loads(line) for line in out.read_text().splitlines()]

@@ -31,7 +31,7 @@ def changed(record, path, change):
     return copy
 
 
-MAPS = {"settings", "defines", "counters", "kernel_times", "host_work"}
+MAPS = {"settings", "asked", "defines", "counters", "kernel_times", "host_work"}
 NULLABLE = {"chosen", "failure", "agreement", "commit", "hardware", "device_span_ns", "session", "command", "registers", "local_bytes",
             "spill_bytes", "stack_bytes", "missed_upper95", "candidate_ratio", "decisions", "depth_relative", "depth_ulps", "normal_degrees", "point",
             "hausdorff", "volume_relative"}

@@ -61,7 +61,8 @@ const cuda::Image& for_hopper(const KernelSource& source, const Defines& defines
 void prepare(Device& device, const Traversal& traversal, std::span<const Assignment> from,
              const SettingTexts& given) {
     auto scene = make_scene("pile:bodies=2,frames=1");
-    const auto settings = resolve(traversal.parameters(), from, given, traversal.name());
+    auto settings = resolve(traversal.parameters(), from, given, traversal.name());
+    if (settings[parameters::group_size] == 0) settings.set(parameters::group_size(128)); // as on a GPU
     const std::array devices{&device};
     const auto session = traversal.prepare(devices, scene, settings);
     session->count_work(true);
