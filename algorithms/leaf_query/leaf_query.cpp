@@ -16,7 +16,7 @@ namespace {
 const std::vector<Preset> all_presets{
     {"resident",
      "everything resident, body pairs included, one wait per frame",
-     {parameters::broad(Broad::device), parameters::builder(Builder::balanced)}}};
+     {parameters::broad(Broad::device), parameters::builder(Builder::sah)}}};
 
 constexpr std::array all_counters{counters::bvtt_nodes, counters::seeds};
 

@@ -39,11 +39,8 @@ TEST(ChoosingCandidates, EveryAlgorithmWithEveryAlternative) {
     EXPECT_EQ(values_of(cells, "chunked", "leaves"), (std::set<std::string>{"0", "8", "64", "512"}));
     EXPECT_EQ(values_of(cells, "tiled", "slabs"), (std::set<std::string>{"usual", "all"}))
         << "`usual` equals `three`";
-    for (const auto* traversal : algorithms()) {
-        std::set<std::string> builders{"morton", "sah"};
-        if (traversal->name() == "leaf_query") builders.insert("balanced"); // its preset's
-        EXPECT_EQ(values_of(cells, traversal->name(), "builder"), builders);
-    }
+    for (const auto* traversal : algorithms())
+        EXPECT_EQ(values_of(cells, traversal->name(), "builder"), (std::set<std::string>{"morton", "sah"}));
 }
 
 /// On a device with groups of one work-item, all group sizes are one candidate.
