@@ -2,9 +2,9 @@
 #include "algorithms/hierarchy/sah_order.h"
 
 #include "algorithms/hierarchy/axis_orders.h"
+#include "algorithms/hierarchy/heap.h"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 namespace tandem {
@@ -124,10 +124,10 @@ Box Splitter::union_of(std::size_t axis, ItemRange range) const {
     return all;
 }
 
-/// Leaves of the left half of a complete binary tree over `leaves` >= 2 (heap.clh).
+/// Leaves of the left half of a complete binary tree over `leaves` >= 2.
 std::size_t left_leaves(std::size_t leaves) {
-    const auto width = std::bit_floor(leaves);
-    return width / 2 + std::min(leaves - width, width / 2);
+    const auto left = heap::first_child(heap::root_node);
+    return heap::last_item_below(left, static_cast<std::uint32_t>(leaves)) + 1;
 }
 
 std::vector<std::uint32_t> Splitter::order_of_complete_tree() {
