@@ -3,11 +3,11 @@
 
 #include "algorithms/cost.h"
 #include "algorithms/hierarchy/chunk_trees.h"
+#include "algorithms/hierarchy/queries.h"
 #include "algorithms/pipeline.h"
 #include "algorithms/sources.h"
 
 #include <algorithm>
-#include <functional>
 
 namespace tandem {
 
@@ -42,12 +42,7 @@ private:
 };
 
 LeafQueries::LeafQueries(const ChunkTrees& trees, LaunchShape shape) : trees_(trees), shape_(shape) {
-    std::vector<std::uint32_t> counts{0, 0};
-    for (std::uint32_t body = 0; body < trees.bodies().count(); ++body)
-        counts.push_back(trees.bodies().row(body).tetrahedron_count);
-    // The smaller body of a pair has at most as many tetrahedra as the second largest of all.
-    std::nth_element(counts.begin(), counts.begin() + 1, counts.end(), std::greater<>());
-    blocks_ = std::max(1u, (counts[1] + shape.group_size - 1) / shape.group_size);
+    blocks_ = std::max(1u, (most_queries(trees.bodies()) + shape.group_size - 1) / shape.group_size);
 }
 
 void LeafQueries::do_compile(const WalkBuild& build) {

@@ -21,6 +21,12 @@ struct Node {
 };
 static_assert(sizeof(Node) == 32);
 
+/// A row of the table of trees, one per body: first rows of its nodes, of its mesh's order and of its boxes,
+/// and its number of tetrahedra.
+struct TreeRow {
+    std::uint32_t first_node = 0, first_of_order = 0, first_box = 0, count = 0;
+};
+
 /// Inner nodes have no tetrahedra of their own.
 inline std::uint32_t tetrahedra_of(const Node& node) { return static_cast<std::uint32_t>(node.admin >> 48); }
 /// The first child of an inner node.

@@ -2,6 +2,7 @@
 #include "algorithms/baselines/cubql/cubql_trees.h"
 
 #include "algorithms/baselines/cubql/build.h"
+#include "backends/upload.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -12,14 +13,9 @@ namespace tandem {
 
 namespace {
 
-/// The best of 1, 2, 4, 8 and 16 in trials with this builder.
+/// Maximum number of tetrahedra of a leaf, all of which a query tests.
 constexpr int leaf_size = 4;
 constexpr std::uint32_t no_node = ~0u;
-
-/// A row of the tree table (query.cu).
-struct TreeRow {
-    std::uint32_t first_node = 0, first_of_order = 0, first_box = 0, count = 0;
-};
 
 /// A mesh's tree, and the first of its rows in the table of orders.
 struct MeshTree {
@@ -75,13 +71,6 @@ MeshTree mesh_tree(const DeviceInfo& info, const std::vector<cubql::Box>& boxes)
     return made;
 }
 
-template<class Row>
-Buffer uploaded(Device& device, const std::vector<Row>& rows, std::string_view label) {
-    auto buffer = device.allocate(std::max<std::size_t>(1, rows.size()) * sizeof(Row), label);
-    if (!rows.empty()) device.upload(buffer, std::as_bytes(std::span(rows)), 0, true);
-    return buffer;
-}
-
 } // namespace
 
 const KernelSource& cubql_kernels() {
@@ -111,8 +100,7 @@ void CubqlTrees::upload_trees(const BuildContext& context) {
     std::map<std::size_t, MeshTree> by_mesh;
     std::vector<std::uint32_t> order, parents, node_bodies;
     std::vector<cubql::Node> nodes;
-    std::vector<TreeRow> table;
-    std::vector<std::uint32_t> counts{0, 0};
+    std::vector<cubql::TreeRow> table;
     for (std::uint32_t body = 0; body < bodies().count(); ++body) {
         const auto number = context.scene.bodies[body].mesh;
         auto found = by_mesh.find(number);
@@ -127,20 +115,16 @@ void CubqlTrees::upload_trees(const BuildContext& context) {
         const auto count = bodies().row(body).tetrahedron_count;
         table.push_back({static_cast<std::uint32_t>(nodes.size()), mesh.first_of_order,
                          bodies().first_slot(body), count});
-        counts.push_back(count);
         nodes.insert(nodes.end(), mesh.tree.nodes.begin(), mesh.tree.nodes.end());
         parents.insert(parents.end(), mesh.parents.begin(), mesh.parents.end());
         node_bodies.resize(nodes.size(), body);
     }
-    std::nth_element(counts.begin(), counts.begin() + 1, counts.end(), std::greater<>());
-    most_queries_ = counts[1];
     node_count_ = static_cast<std::uint32_t>(nodes.size());
-    const StageScope scope(device_, Stage::write);
-    nodes_ = uploaded(device_, nodes, "cuBQL's nodes");
-    parents_ = uploaded(device_, parents, "cuBQL's parents");
-    node_bodies_ = uploaded(device_, node_bodies, "bodies of cuBQL's nodes");
-    table_ = uploaded(device_, table, "cuBQL's trees");
-    order_ = uploaded(device_, order, "cuBQL's leaves");
+    nodes_ = uploaded(device_, bytes_of(nodes), "cuBQL's nodes");
+    parents_ = uploaded(device_, bytes_of(parents), "cuBQL's parents");
+    node_bodies_ = uploaded(device_, bytes_of(node_bodies), "bodies of cuBQL's nodes");
+    table_ = uploaded(device_, bytes_of(table), "cuBQL's trees");
+    order_ = uploaded(device_, bytes_of(order), "cuBQL's leaves");
 }
 
 Grid CubqlTrees::grid(std::uint32_t items) const {

@@ -19,11 +19,9 @@ public:
 
     const Bodies& bodies() const { return tiles_.bodies(); }
     const Buffer& tree_nodes() const { return nodes_; } ///< cubql::Node, one tree after the other
-    const Buffer& tree_table() const { return table_; } ///< TreeRow of query.cu by body
+    const Buffer& tree_table() const { return table_; } ///< cubql::TreeRow by body
     const Buffer& order() const { return order_; }      ///< tetrahedra by leaf, one mesh after the other
     const Buffer& boxes() const { return boxes_; }      ///< cubql::Box by slot
-    /// Number of tetrahedra of the second largest body, the maximum number of queries of a body pair.
-    std::uint32_t most_queries() const { return most_queries_; }
 
     /// Work-items of a group in all kernels of query.cu.
     static constexpr std::uint32_t group_size = 128;
@@ -42,7 +40,6 @@ private:
     std::uint32_t groups_; ///< maximum of a launch
     std::uint32_t slot_count_ = 0;
     std::uint32_t node_count_ = 0;
-    std::uint32_t most_queries_ = 0;
     Buffer nodes_, parents_, node_bodies_, table_, order_, boxes_, ready_;
     Kernel copy_, refit_;
 };

@@ -18,6 +18,7 @@ private:
     void do_report(const Status& status, std::map<std::string_view, std::uint64_t>& work) const override;
 
     CubqlTrees& trees_;
+    std::uint32_t parts_; ///< turns of a work-group for the body pair with the most queries
     WalkBuild build_;
     Kernel kernel_;
 };

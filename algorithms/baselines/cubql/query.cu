@@ -2,6 +2,7 @@
 // Kernels over cuBQL's trees; its traversal finds the leaves. Compiled to PTX when the project is built, and
 // loaded like any kernel, so that clocks and traces include them.
 #include "algorithms/answer/status.clh"
+#include "algorithms/baselines/cubql/build.h"
 #include "backends/lanes.h"
 
 #include <cuBQL/bvh.h>
@@ -11,11 +12,7 @@
 
 using Box = cuBQL::box3f;
 using Node = cuBQL::bvh3f::Node;
-
-/// A row of the tree table, one per body (cubql_trees.cpp).
-struct TreeRow {
-    std::uint32_t first_node, first_of_order, first_box, count;
-};
+using tandem::cubql::TreeRow;
 
 /// Adds 1 for each calling lane of a warp, with one atomic operation; returns the lane's previous value.
 __device__ std::uint32_t next_row(std::uint32_t* counter) {
