@@ -11,12 +11,12 @@ from pathlib import Path
 
 from program import SOURCE
 
-# Suite.Passes, Suite.Fails unless the file "mended" exists, Suite.Skips, Suite.Waits until the file "go" exists, Alone.Runs, and
-# Suite.RunsNothing, which ends well without having run.
+# Suite.Passes, Suite.Fails unless the file "mended" exists, Suite.Skips, Suite.Waits until the file "go" exists, and
+# Other.RunsNothing, which ends well without having run.
 PROGRAM = """#!/usr/bin/bash
 cd "$(dirname "$0")"
 if [ "$1" = --gtest_list_tests ]; then
-  printf 'Suite.\\n  Passes  # GetParam() = 1\\n  Fails\\n  Skips\\n  Waits\\nAlone.\\n  Runs\\n'
+  printf 'Suite.\\n  Passes  # GetParam() = 1\\n  Fails\\n  Skips\\n  Waits\\n'
   if [ -e nothing ]; then printf 'Other.\\n  RunsNothing\\n'; fi
   exit
 fi
@@ -43,7 +43,7 @@ class Queue(unittest.TestCase):
 
     def queue(self, seconds):
         done = subprocess.run([SOURCE / "scripts/gpu/test_queue", self.folder / "journal", str(seconds), self.program], capture_output=True,
-                              text=True, check=False, env={**os.environ, "TEST_ALONE": "^.* Alone[.]", "TEST_PROCESSES": "4"})
+                              text=True, check=False, env={**os.environ, "TEST_PROCESSES": "4"})
         lines = (self.folder / "journal").read_text().splitlines()
         return done, [(line.split()[0], line.split()[3]) for line in lines], (self.folder / "runs").read_text().split()
 
@@ -58,11 +58,11 @@ class Queue(unittest.TestCase):
         (self.folder / "mended").touch()
         done, journal, runs = self.queue(2)
         self.assertEqual((done.returncode, done.stderr), (75, ""))
-        self.assertIn("3 of 5 tests ended without failure, 2 left", done.stdout)
+        self.assertIn("3 of 4 tests ended without failure, 1 left", done.stdout)
         (self.folder / "go").touch()
         done, journal, runs = self.queue(600)
-        self.assertEqual((done.returncode, runs[-1]), (0, "Alone.Runs"))
-        self.assertIn("5 of 5 tests ended without failure, 0 left", done.stdout)
+        self.assertEqual((done.returncode, runs[-1]), (0, "Suite.Waits"))
+        self.assertIn("4 of 4 tests ended without failure, 0 left", done.stdout)
         self.assertEqual(runs.count("Suite.Passes"), 1)
         self.assertEqual(self.queue(600)[2], runs)
 
@@ -72,7 +72,7 @@ class Queue(unittest.TestCase):
         done, journal, _ = self.queue(600)
         self.assertEqual(done.returncode, 1)
         self.assertIn(("failed", "Other.RunsNothing"), journal)
-        self.assertEqual(len(journal), 6)
+        self.assertEqual(len(journal), 5)
 
 
 if __name__ == "__main__":
