@@ -108,6 +108,7 @@
 #endif
 #define UNROLL _Pragma("unroll")
 #define NO_UNROLL _Pragma("unroll 1")
+#define LOAD_AGAIN ((void)0)
 #define REAL_INFINITY ((real)INFINITY)
 
 #elif defined(__CUDACC__)
@@ -148,6 +149,9 @@
 #endif
 #define UNROLL _Pragma("unroll")
 #define NO_UNROLL _Pragma("unroll 1")
+// Ends the use of registers for values that are in memory: reads after it load them again. It waits for
+// nothing and is no instruction.
+#define LOAD_AGAIN asm volatile("" ::: "memory")
 #define REAL_INFINITY ((real)__int_as_float(0x7f800000))
 typedef unsigned char uchar;
 typedef unsigned int uint;
@@ -184,6 +188,7 @@ typedef unsigned long ulong; // 64 bits on Linux
 #define ADD_UP(a, b) tandem::host::add_up((a), (b))
 #define UNROLL
 #define NO_UNROLL
+#define LOAD_AGAIN ((void)0)
 #define REAL_INFINITY std::numeric_limits<real>::infinity()
 #endif
 

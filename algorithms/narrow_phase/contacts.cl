@@ -6,12 +6,6 @@
 #include "algorithms/narrow_phase/trial.clh"
 #include "algorithms/narrow_phase/waiting.clh"
 
-// 1: generate_contacts decides pairs and makes their contacts in one launch, as the paper's release does. 0:
-// it is the last of three kernels and makes contacts of the pairs that the first two found to meet.
-#ifndef AT_ONCE
-#define AT_ONCE 0
-#endif
-
 // State of a pair. `pair`: as in try_all.
 DEVICE int try_pair(const Candidates* all, uint index, int apart, LOCAL Encounter* pair) {
     if (lacks_boundary(all, index)) return WITHOUT_BOUNDARY;

@@ -37,6 +37,25 @@ inline Budget contacts_budget(ContactRule rule, bool in_double) {
     }
 }
 
+/// Budget of the kernel that decides pairs and makes their contacts in one launch. It does the work of three
+/// kernels, for small frames: with at most one pair per running work-item. There occupancy hardly matters, so
+/// that it may use more registers. In double it may use all that a work-item can have, and the rest spills.
+inline Budget at_once_budget(ContactRule rule, bool in_double) {
+    switch (rule) {
+    case ContactRule::clip:
+        return in_double ? Budget{255, 1024} : Budget{168, 512};
+    case ContactRule::sat:
+    case ContactRule::restricted:
+    case ContactRule::growth:
+        return in_double ? Budget{255, 384} : Budget{168, 96};
+    case ContactRule::opposing:
+    case ContactRule::published:
+        return in_double ? Budget{255, 96} : Budget{128, 0};
+    default:
+        return {in_double ? 255 : 128, 0};
+    }
+}
+
 /// Budget of a kernel of the contact stage. In float it is three eighths of a multiprocessor's work-items
 /// for certificates, nearly half for the filter after them, and three sixteenths for the decision in double.
 inline std::optional<Budget> budget_of(const std::string& name, const Defines& defines) {
@@ -44,8 +63,11 @@ inline std::optional<Budget> budget_of(const std::string& name, const Defines& d
     if (name == "certify_pairs") return in_double ? Budget{128, 0} : Budget{80, 0};
     if (name == "separate_pairs") return in_double ? Budget{240, 0} : Budget{96, 0};
     if (name == "recheck_pairs") return Budget{168, 400};
-    if (name == "generate_contacts")
-        return contacts_budget(static_cast<ContactRule>(std::stoi(defines.at("CONTACT_RULE"))), in_double);
+    if (name == "generate_contacts") {
+        const auto rule = static_cast<ContactRule>(std::stoi(defines.at("CONTACT_RULE")));
+        return defines.at("AT_ONCE") == "1" ? at_once_budget(rule, in_double)
+                                            : contacts_budget(rule, in_double);
+    }
     if (name != "filter_pairs") return std::nullopt;
     const bool certifies = !defines.contains("OVER_OPEN"); // without a list it starts with its certificates
     if (in_double) return Budget{certifies ? 168 : 132, 400};

@@ -14,6 +14,7 @@ public:
     CompilingDevice() {
         info_.id = "nvrtc";
         info_.name = "a GPU that is not there";
+        info_.is_gpu = true;
         info_.compute_units = 132;
         info_.max_group_size = 1024;
         info_.global_bytes = info_.max_allocation = std::uint64_t{1} << 40;

@@ -61,8 +61,7 @@ const cuda::Image& for_hopper(const KernelSource& source, const Defines& defines
 void prepare(Device& device, const Traversal& traversal, std::span<const Assignment> from,
              const SettingTexts& given) {
     auto scene = make_scene("pile:bodies=2,frames=1");
-    auto settings = resolve(traversal.parameters(), from, given, traversal.name());
-    if (settings[parameters::group_size] == 0) settings.set(parameters::group_size(128)); // as on a GPU
+    const auto settings = resolve(traversal.parameters(), from, given, traversal.name());
     const std::array devices{&device};
     const auto session = traversal.prepare(devices, scene, settings);
     session->count_work(true);
@@ -256,7 +255,7 @@ TEST(Nvrtc, ContactsByBoundaryFacesHaveNoStack) {
                          ++checked;
                      }
                  });
-    EXPECT_EQ(checked, 2 * 2 * 3); // certify_pairs, separate_pairs and generate_contacts
+    EXPECT_EQ(checked, 2 * 2 * 4); // certify_pairs, separate_pairs and generate_contacts, also at once
 }
 
 TEST(Nvrtc, NoFusedMultiplyAdd) {
