@@ -71,7 +71,7 @@ std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* con
     const auto geometry = geometry_parameters();
     std::vector<const Parameter*> all(geometry.begin(), geometry.end());
     all.insert(all.end(), {&parameters::builder, &parameters::contact_rule, &parameters::decision,
-                           &parameters::broad, &parameters::body_pair_capacity});
+                           &parameters::broad, &parameters::self, &parameters::body_pair_capacity});
     if (published) all.insert(all.end(), {&parameters::residency, &parameters::convert});
     all.insert(all.end(), {&parameters::submission, &parameters::output, &parameters::pair_layout,
                            &parameters::group_size, &parameters::work_items, &parameters::threads,
@@ -125,7 +125,8 @@ void Pipeline::count(bool on) {
 }
 
 void Pipeline::compile(bool windowed) {
-    const WalkBuild wanted{output, bodies->pair_layout(), counting, windowed};
+    const WalkBuild wanted{output, bodies->pair_layout(), counting, windowed,
+                           settings[parameters::self] != SelfPairs::off};
     if (built == wanted) return;
     stages.walker->compile(wanted);
     built = wanted;

@@ -47,8 +47,18 @@ void Session::set_threads() const {
     for (auto* device : devices()) device->set_threads(threads);
 }
 
+void Session::check_pairs(std::optional<std::span<const BodyPair>> body_pairs) const {
+    if (!body_pairs || settings()[parameters::self] != SelfPairs::off) return;
+    for (const auto& pair : *body_pairs)
+        if (pair.a == pair.b)
+            throw InputError(fmt::format("run() got a pair of body {} with itself; set self=on or "
+                                         "self=deformable",
+                                         pair.a));
+}
+
 FrameResult Session::run_among(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs) {
     set_threads();
+    check_pairs(body_pairs);
     auto result = origin_ == Eigen::Vector3d::Zero() ? do_run(frame, body_pairs)
                                                      : do_run(counted_from(origin_, frame), body_pairs);
     return finished(std::move(result));
@@ -57,6 +67,7 @@ FrameResult Session::run_among(const Frame& frame, std::optional<std::span<const
 FrameResult Session::run_among(const DeviceFrame& frame,
                                std::optional<std::span<const BodyPair>> body_pairs) {
     set_threads();
+    check_pairs(body_pairs);
     check_fits(*scene_, frame);
     return finished(do_run_device_input(frame, body_pairs));
 }

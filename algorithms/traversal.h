@@ -19,7 +19,7 @@ struct BuildContext; // stages.h
 struct KernelCost;   // cost.h
 struct AlgorithmStages;
 
-/// Two bodies whose volumes may overlap; a < b.
+/// Two bodies whose volumes may overlap, or a body and itself; a <= b.
 struct BodyPair {
     std::uint32_t a = 0; ///< index into Scene::bodies
     std::uint32_t b = 0; ///< index into Scene::bodies
@@ -40,7 +40,8 @@ public:
     /// Finds the candidate pairs of `frame` and their contacts, and waits for their numbers. Coordinates must
     /// pass check_range (bodies/range.h). The session finds the body pairs, according to setting broad.
     FrameResult run(const Frame& frame);
-    /// The same for these body pairs, at most 2^32 - 1.
+    /// The same for these body pairs, at most 2^32 - 1. Throws InputError for a pair of a body with itself
+    /// unless setting self allows such pairs.
     FrameResult run(const Frame& frame, std::span<const BodyPair> body_pairs);
     /// The same for a frame in the memory of the session's only device. The answer has the bits of the same
     /// frame in the host's memory. The device finds body pairs, independent of setting broad. Throws
@@ -66,6 +67,7 @@ private:
     friend class Traversal; // sets scene_ and origin_
     /// Called in every run, because sessions may share a device with other settings.
     void set_threads() const;
+    void check_pairs(std::optional<std::span<const BodyPair>> body_pairs) const;
     FrameResult run_among(const Frame& frame, std::optional<std::span<const BodyPair>> body_pairs);
     FrameResult run_among(const DeviceFrame& frame, std::optional<std::span<const BodyPair>> body_pairs);
     /// Completes a frame's result, and checks the devices' guards.

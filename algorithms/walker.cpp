@@ -10,6 +10,7 @@ void WalkBuild::add_to(Defines& defines) const {
     define(defines, parameters::pair_layout, pair_layout);
     defines["COUNT_WORK"] = counting ? "1" : "0";
     defines["WINDOWED"] = windowed ? "1" : "0";
+    define(defines, parameters::self, self ? SelfPairs::on : SelfPairs::off);
 }
 
 } // namespace tandem

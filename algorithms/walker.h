@@ -14,6 +14,7 @@ struct WalkBuild {
     PairLayout pair_layout = PairLayout::slots;
     bool counting = false; ///< count work; never timed
     bool windowed = false; ///< emit pairs of the items in the status' window only (emit.clh)
+    bool self = false;     ///< body pairs may be of a body with itself
 
     bool operator==(const WalkBuild&) const = default;
     /// Adds its defines to those of a hierarchy.

@@ -45,6 +45,24 @@ class Answers(ColliderCase):
         self.assertTrue((answer.contacts().points == whole.contacts().points).all())
         self.assertTrue(set(map(tuple, answer.pairs())) <= set(map(tuple, whole.pairs())))
 
+    def test_self_collision(self):
+        points, tets = bar(6, (0, 0, 0))
+        folded = [[abs(x - 2.25), y, z + 0.0625 * x] for x, y, z in points]
+        file = gmsh(self.work / "folded.msh", folded, tets)
+        mesh = (numpy.array(folded), numpy.array(tets))
+        for device in DEVICES:
+            dumped = self.dumps("--mesh", file, "--device", device, "--set", "self=on")
+            answer = self.collider([mesh], device=device, self_collision=True).run()
+            self.expect_answer(answer, dumped)
+            self.assertTrue((dumped[0][:, 1] < dumped[0][:, 3]).all())
+        self.assertEqual(self.collider([mesh]).count(), 0)
+        self.assertEqual(self.collider([mesh], self_collision="deformable").count(), 0)
+        self.assertEqual(self.collider([mesh], deformable=True, self_collision="deformable").digest(), answer.digest())
+        with self.assertRaisesRegex(ValueError, "self_collision and setting self are the same"):
+            self.collider([mesh], self_collision=True, self="on")
+        with self.assertRaisesRegex(ValueError, "self"):
+            self.collider([mesh], self_collision="yes")
+
     def test_meshes_of_every_kind(self):
         expected = self.collider().pairs(POSES)
         self.assertGreater(len(expected), 10)

@@ -14,6 +14,7 @@ BodyPairs::BodyPairs(const BuildContext& context, const Hierarchy& hierarchy, St
     : hierarchy_(hierarchy),
       shape_(context.shape),
       bodies_(context.bodies),
+      self_(context.settings[parameters::self]),
       first_capacity_(static_cast<std::uint64_t>(context.settings[parameters::body_pair_capacity])),
       device_(context.device),
       scene_(context.scene),
@@ -24,12 +25,12 @@ BodyPairs::BodyPairs(const BuildContext& context, const Hierarchy& hierarchy, St
     if (method == Broad::device)
         make_stage();
     else
-        broad_.emplace(context.scene, geometry_, method);
+        broad_.emplace(context.scene, geometry_, method, self_);
 }
 
 void BodyPairs::make_stage() {
     if (stage_) return;
-    stage_ = std::make_unique<BroadStage>(bodies_, hierarchy_, shape_);
+    stage_ = std::make_unique<BroadStage>(bodies_, hierarchy_, shape_, self_);
     const auto rows = std::clamp<std::uint64_t>(stage_->most_pairs(), 1, first_capacity_);
     if (rows > rows_.capacity()) rows_ = GrowableBuffer(device_, "body pairs", sizeof(BodyPair), rows);
 }
@@ -114,7 +115,7 @@ std::vector<BodyPair> BodyPairs::list(const Frame* frame, const Status& status) 
                                           "bodies",
                                           device_.info().id, found));
         const HostWork work(device_, Stage::broad, "body pairs");
-        auto all = BroadSweep(scene_, geometry_, Broad::tight).pairs(*frame);
+        auto all = BroadSweep(scene_, geometry_, Broad::tight, self_).pairs(*frame);
         std::erase_if(all, [this](BodyPair pair) { return !contains(pair); });
         return all;
     }

@@ -47,7 +47,7 @@ public:
     bool searched() const { return searches_; }
     /// The current pairs; empty if the device finds them.
     std::span<const BodyPair> on_host() const { return on_host_; }
-    /// Rows of two words, body a and body b, a < b.
+    /// Rows of two words, body a and body b, a <= b.
     const GrowableBuffer& rows() const { return rows_; }
 
 private:
@@ -59,6 +59,7 @@ private:
     const Hierarchy& hierarchy_;
     LaunchShape shape_;
     const Bodies& bodies_;
+    SelfPairs self_;
     std::uint64_t first_capacity_; ///< initial capacity for pairs that the device finds
     Device& device_;
     const Scene& scene_;

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Finds body pairs from the volumes of the last refit: all pairs of bodies with overlapping root k-DOPs,
-// except pairs of two fixed bodies. Bodies are in a spatial order, fixed ones last, in tiles of BROAD_TILE.
-// Two tiles are skipped if their unions do not overlap; otherwise all their pairs are tested.
+// except pairs of two fixed bodies. With SELF also pairs of a moving body with itself. Bodies are in a
+// spatial order, fixed ones last, in tiles of BROAD_TILE. Two tiles are skipped if their unions do not
+// overlap; otherwise all their pairs are tested.
 #include "backends/portable.h"
 #include "algorithms/broad_phase/tile.clh"
 #include "algorithms/answer/status.clh"
+#include "algorithms/bodies/rows.clh"
 #include "algorithms/bounds/volume.clh"
+
+#ifndef SELF
+#define SELF 0
+#endif
 
 // In roots and unions a volume is DIRECTIONS rows {lower, upper}.
 
@@ -76,6 +82,13 @@ DEVICE uint overlapping_columns(GLOBAL const RealPair* roots, int is_only_tile, 
     return position < first ? hits : hits & 0xfffffffeu << (position - first);
 }
 
+// Bit c is set if column c is the body at `position` itself, and it is one that SELF pairs with itself.
+DEVICE uint own_column(GLOBAL const uint* bodies, uint body, uint position, uint first) {
+    if (SELF == SELF_OFF || position < first || position - first >= BROAD_TILE) return 0u;
+    const int deformable = (bodies[(ulong)body * BODY_WORDS + BODY_FLAGS] & BODY_IN_WORLD) != 0u;
+    return SELF == SELF_ON || deformable ? 1u << (position - first) : 0u;
+}
+
 DEVICE uint count_bits(uint bits) {
     uint count = 0;
     for (; bits != 0u; bits &= bits - 1u) ++count;
@@ -104,8 +117,9 @@ DEVICE void write_pairs(GLOBAL uint* pairs, uint capacity, uint index, uint a, G
 // round. A single tile is read from the volumes, without a launch of bound_tiles. Loops with barriers run at
 // least once, because PoCL 3.1 compiles other loops incorrectly.
 KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* roots,
-                            GLOBAL const RealPair* unions, GLOBAL const uint* order, uint body_count,
-                            uint moving_count, GLOBAL uint* pairs, uint capacity, GLOBAL uint* status) {
+                            GLOBAL const RealPair* unions, GLOBAL const uint* order,
+                            GLOBAL const uint* bodies, uint body_count, uint moving_count, GLOBAL uint* pairs,
+                            uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(RealPair, columns, BROAD_TILE * DIRECTIONS);
     LOCAL_ARRAY(uint, chosen, GROUP_SIZE);
     LOCAL_ARRAY(uint, shared, 3);
@@ -144,6 +158,7 @@ KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* r
                 BARRIER;
                 const uint hits = row < rows_end ? overlapping_columns(roots, is_only_tile, row, columns,
                                                                        from, column_count)
+                                                       | own_column(bodies, order[row], row, from)
                                                  : 0u;
                 const uint offset = hits != 0u ? LOCAL_ATOMIC_ADD(shared + FOUND, count_bits(hits)) : 0u;
                 BARRIER;

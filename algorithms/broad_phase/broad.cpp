@@ -22,9 +22,13 @@ constexpr double rounding_steps = 24;
 /// of it; the factor 3 covers the roundings of the test.
 constexpr double published_slack = 3 * 0.5 * 10 * 0x1p-23;
 
+bool has_self_pairs(const Body& body, SelfPairs self) {
+    return !body.fixed && (self == SelfPairs::on || (self == SelfPairs::deformable && body.deformable));
+}
+
 } // namespace
 
-BroadSweep::BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound)
+BroadSweep::BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound, SelfPairs self)
     : scene_(scene),
       bound_(bound),
       roundoff_(std::ldexp(1.0, geometry.precision == Precision::fp64 ? -53 : -24)),
@@ -32,6 +36,8 @@ BroadSweep::BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound
       tolerance_(geometry.rounding == Rounding::published ? published_slack : 0) {
     for (const auto& d : directions(geometry)) directions_.emplace_back(d[0], d[1], d[2]);
     for (const auto& mesh : scene.meshes) shapes_.push_back(shape_of(mesh.vertices));
+    for (std::uint32_t body = 0; body < scene.bodies.size(); ++body)
+        if (has_self_pairs(scene.bodies[body], self)) own_.push_back({body, body});
 }
 
 BroadSweep::Shape BroadSweep::shape_of(const std::vector<Eigen::Vector3d>& vertices) const {
@@ -134,11 +140,14 @@ std::vector<BodyPair> BroadSweep::pairs(std::span<const Ball> balls) const {
     return swept(slabs);
 }
 
-/// The pairs of bodies whose slabs overlap along all directions.
+/// The pairs of bodies whose slabs overlap along all directions, and those of bodies with themselves.
 std::vector<BodyPair> BroadSweep::swept(const std::vector<double>& slabs) const {
     auto pairs = overlapping(slabs, directions_.size(), sweep_direction(slabs));
     std::erase_if(
         pairs, [this](BodyPair pair) { return scene_.bodies[pair.a].fixed && scene_.bodies[pair.b].fixed; });
+    const auto others = static_cast<std::ptrdiff_t>(pairs.size());
+    pairs.insert(pairs.end(), own_.begin(), own_.end());
+    std::inplace_merge(pairs.begin(), pairs.begin() + others, pairs.end());
     return pairs;
 }
 

@@ -10,12 +10,12 @@ namespace tandem {
 /// Finds body pairs on the host: sweep and prune over bounds of the bodies. The bounds are slabs along the
 /// directions of the geometry, because bounds along other directions could drop pairs with overlapping
 /// k-DOPs. They are widened by the rounding of transform and slabs, so that every pair with overlapping root
-/// k-DOPs is found. Pairs of two fixed bodies are excluded.
+/// k-DOPs is found. Pairs of two fixed bodies are excluded. Setting self adds pairs (a, a).
 class BroadSweep {
 public:
     /// `bound`: Broad::sphere for the paper's spheres around meshes. Broad::tight for boxes in mesh
     /// coordinates of rigid bodies, and exact slabs of deformable bodies. `scene` must outlive this.
-    BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound);
+    BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound, SelfPairs self = SelfPairs::off);
 
     /// Pairs in ascending order. O(n log n), plus the number of pairs that overlap along the sweep direction.
     std::vector<BodyPair> pairs(const Frame& frame) const { return pairs(frame, {}); }
@@ -46,6 +46,7 @@ private:
     const Scene& scene_;
     std::vector<Eigen::Vector3d> directions_;
     Broad bound_;
+    std::vector<BodyPair> own_; ///< the pairs (a, a)
     double roundoff_;
     double underflow_;          ///< error bound of a coordinate below the least normal number
     double tolerance_;          ///< widening along unit directions for published rounding

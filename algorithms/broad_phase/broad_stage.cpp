@@ -3,6 +3,7 @@
 
 #include "algorithms/broad_phase/tile.clh"
 #include "algorithms/bodies/ball.h"
+#include "algorithms/parameters/table.h"
 #include "algorithms/sources.h"
 #include "base/error.h"
 
@@ -19,8 +20,8 @@ std::uint32_t tiles_of(std::uint32_t bodies) { return (bodies + BROAD_TILE - 1) 
 
 } // namespace
 
-BroadStage::BroadStage(const Bodies& bodies, const Hierarchy& hierarchy, LaunchShape shape)
-    : bodies_(bodies), hierarchy_(hierarchy) {
+BroadStage::BroadStage(const Bodies& bodies, const Hierarchy& hierarchy, LaunchShape shape, SelfPairs self)
+    : bodies_(bodies), hierarchy_(hierarchy), has_self_(self != SelfPairs::off) {
     shape_.group_size = std::min<std::uint32_t>(shape.group_size, BROAD_TILE);
     shape_.groups = shape.groups * (shape.group_size / shape_.group_size);
     const auto count = bodies.count();
@@ -31,7 +32,8 @@ BroadStage::BroadStage(const Bodies& bodies, const Hierarchy& hierarchy, LaunchS
     for (const auto& mesh : bodies.scene().meshes) mesh_centres_.push_back(box_centre(mesh.vertices));
     auto& device = bodies.device();
     const auto& geometry = bodies.geometry();
-    const auto defines = geometry_defines(geometry, shape_.group_size);
+    auto defines = geometry_defines(geometry, shape_.group_size);
+    define(defines, parameters::self, self);
     const auto& source = kernel_source("algorithms/broad_phase/broad.cl");
     if (tiles_of(count) > 1) bound_ = device.compile(source, "bound_tiles", defines);
     find_ = device.compile(source, "find_body_pairs", defines);
@@ -43,7 +45,7 @@ BroadStage::BroadStage(const Bodies& bodies, const Hierarchy& hierarchy, LaunchS
 
 std::uint64_t BroadStage::most_pairs() const {
     const std::uint64_t bodies = bodies_.count();
-    return bodies * (bodies - 1) / 2;
+    return bodies * (bodies - 1) / 2 + (has_self_ ? bodies : 0);
 }
 
 std::vector<Eigen::Vector3d> BroadStage::centres(const Frame& frame) const {
@@ -117,8 +119,9 @@ void BroadStage::launch(const Buffer& pairs, std::uint32_t capacity, const Buffe
         const std::array<Argument, 5> bound{hierarchy_.volumes(), order_, count_, roots_, unions_};
         bodies_.device().launch(bound_, {tiles_of(count_), shape_.group_size}, bound);
     }
-    const std::array<Argument, 9> find{hierarchy_.volumes(), roots_, unions_,  order_, count_,
-                                       moving_count_,        pairs,  capacity, status};
+    const std::array<Argument, 10> find{
+        hierarchy_.volumes(), roots_, unions_,  order_, bodies_.row_table(), count_,
+        moving_count_,        pairs,  capacity, status};
     const auto tile_pairs = tiles_of(moving_count_) * tiles_of(count_);
     bodies_.device().launch(find_, {std::max(1u, std::min(shape_.groups, tile_pairs)), shape_.group_size},
                             find);

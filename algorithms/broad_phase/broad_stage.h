@@ -8,12 +8,14 @@
 namespace tandem {
 
 /// Finds body pairs on the device: all pairs (a < b) whose root k-DOPs overlap after the last refit, except
-/// pairs of two fixed bodies. Grids depend on the number of bodies only.
+/// pairs of two fixed bodies, and the pairs (a, a) of setting self. Grids depend on the number of bodies
+/// only.
 class BroadStage {
 public:
     /// Both arguments must outlive this. Throws InputError if there are too many bodies to number the pairs
     /// of their tiles.
-    BroadStage(const Bodies& bodies, const Hierarchy& hierarchy, LaunchShape shape);
+    BroadStage(const Bodies& bodies, const Hierarchy& hierarchy, LaunchShape shape,
+               SelfPairs self = SelfPairs::off);
 
     /// Sorts the bodies by their positions in `frame`. The order affects the speed of later searches, which
     /// is high if spatial neighbours are close in it, but not the pairs.
@@ -37,6 +39,7 @@ private:
 
     const Bodies& bodies_;
     const Hierarchy& hierarchy_;
+    bool has_self_; ///< finds pairs of a body with itself
     LaunchShape shape_;
     std::uint32_t count_ = 0;        ///< bodies in the order
     std::uint32_t moving_count_ = 0; ///< moving bodies, which are first in it; every pair has one

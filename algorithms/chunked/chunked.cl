@@ -97,14 +97,14 @@ DEVICE ulong seed_total(ulong own, GLOBAL const uint* status, uint level, uint h
 // its own stack. One launch processes the seeds of one level. `seeds` has the starts of that level's own
 // seeds.
 KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* levels,
-                     GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* pairs,
-                     uint pair_capacity, uint level, GLOBAL const ulong* seeds, GLOBAL const uint* handed,
-                     uint handed_capacity, GLOBAL uint* below, uint below_capacity, GLOBAL uint* found,
-                     uint capacity, GLOBAL uint* status) {
+                     GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* tetrahedra,
+                     GLOBAL const uint* pairs, uint pair_capacity, uint level, GLOBAL const ulong* seeds,
+                     GLOBAL const uint* handed, uint handed_capacity, GLOBAL uint* below, uint below_capacity,
+                     GLOBAL uint* found, uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, stacks, STACK_DEPTH * GROUP_SIZE);
     LOCAL uint* stack = stacks + LOCAL_ID;
     const Job job = {nodes, trees, levels,         pairs,
-                     level, below, below_capacity, {bodies, ids, found, capacity, status}};
+                     level, below, below_capacity, {bodies, ids, tetrahedra, found, capacity, status}};
     const uint pair_count = body_pair_count(pair_capacity, status);
     GLOBAL const ulong* starts = seeds + row_of_level(level, pair_count);
     const ulong own = starts[pair_count];
@@ -126,6 +126,7 @@ KERNEL void traverse(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL 
         }
         for (uint a = to.first_a; a <= to.first_a + to.inner_a; ++a) {
             for (uint b = to.first_b; b <= to.first_b + to.inner_b; ++b) {
+                if (is_behind(&job, &walk, a, b)) continue;
                 if (COUNT_WORK) tally.tests += 1;
                 if (!overlap(node_at(nodes, walk.a.base + a), node_at(nodes, walk.b.base + b))) continue;
                 if (is_leaf(a, walk.a.items) && is_leaf(b, walk.b.items))
@@ -177,16 +178,17 @@ DEVICE uint batch_size(ulong seeds) {
 // roots of a batch, which few seeds pass. It expands the rest from a stack that its work-items share. All of
 // them thus have work, however different the walks are.
 KERNEL void traverse_in_groups(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* levels,
-                               GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* pairs,
-                               uint pair_capacity, uint level, GLOBAL const ulong* seeds,
-                               GLOBAL const uint* handed, uint handed_capacity, GLOBAL uint* below,
-                               uint below_capacity, GLOBAL uint* found, uint capacity, GLOBAL uint* status) {
+                               GLOBAL const uint* bodies, GLOBAL const uint* ids,
+                               GLOBAL const uint* tetrahedra, GLOBAL const uint* pairs, uint pair_capacity,
+                               uint level, GLOBAL const ulong* seeds, GLOBAL const uint* handed,
+                               uint handed_capacity, GLOBAL uint* below, uint below_capacity,
+                               GLOBAL uint* found, uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, rows, SHARED_ROWS * ROW_WORDS);
     // Rows pushed in this turn, and in the one before, which slow work-items may still read. The third
     // counter is reset for the next turn.
     LOCAL_ARRAY(uint, pushed, 3);
     const Job job = {nodes, trees, levels,         pairs,
-                     level, below, below_capacity, {bodies, ids, found, capacity, status}};
+                     level, below, below_capacity, {bodies, ids, tetrahedra, found, capacity, status}};
     const uint all_pairs = body_pair_count(pair_capacity, status);
     GLOBAL const ulong* starts = seeds + row_of_level(level, all_pairs);
     const ulong own = starts[all_pairs];

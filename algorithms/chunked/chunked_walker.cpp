@@ -107,11 +107,12 @@ void ChunkedWalker::make_seeds(const WalkTask& task) {
 void ChunkedWalker::traverse(const WalkTask& task, std::uint32_t level, std::uint32_t pair_capacity) {
     const StageScope scope(device(), Stage::traverse);
     const auto& bodies = trees_.bodies();
-    const std::array<Argument, 16> arguments{trees_.nodes(),
+    const std::array<Argument, 17> arguments{trees_.nodes(),
                                              trees_.tree_table(),
                                              trees_.level_table(),
                                              bodies.row_table(),
                                              bodies.ids(),
+                                             bodies.tetrahedra(),
                                              task.body_pairs,
                                              pair_capacity,
                                              level,

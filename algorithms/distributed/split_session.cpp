@@ -66,7 +66,7 @@ SplitSession::SplitSession(const Traversal& traversal, std::span<Device* const> 
     for (std::size_t i = 0; i < devices.size(); ++i)
         sessions_.push_back(std::make_unique<ResidentSession>(traversal, *devices[i], scene, fitted[i]));
     if (const auto method = settings()[parameters::broad]; method != Broad::device)
-        broad_.emplace(scene, geometry_of(settings()), method);
+        broad_.emplace(scene, geometry_of(settings()), method, settings()[parameters::self]);
 }
 
 /// Repartitions the bodies when the partition is invalid or the load is unbalanced. Returns whether it did.

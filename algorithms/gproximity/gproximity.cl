@@ -95,6 +95,10 @@ DEVICE Step walk_item(const Job* job, Step step, Tally* tally) {
         && !in_window(job->output.status, first_item_below(step.a, a[TREE_ITEMS]),
                       (ulong)last_item_below(step.a, a[TREE_ITEMS]) + 1))
         return step;
+    // The other order of the two nodes finds these pairs.
+    if (SELF && body_a == body_b
+        && first_item_below(step.a, a[TREE_ITEMS]) > last_item_below(step.b, b[TREE_ITEMS]))
+        return step;
     if (COUNT_WORK) tally->tests += 1;
     if (!overlap(node_a, node_b)) return step;
     const int leaf_a = is_leaf(step.a, a[TREE_ITEMS]);
@@ -173,12 +177,12 @@ DEVICE void settle_round(LOCAL uint* shared, uint active, uint queue_capacity, G
 // One launch: every group empties its queue as far as the rules allow. A round processes the top of the local
 // queue, at most one item per work-item. Even if all its items split, the group's own queue can store them.
 KERNEL void traverse_queues(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* bodies,
-                            GLOBAL const uint* ids, GLOBAL const uint* pairs, GLOBAL uint* items,
-                            GLOBAL uint* counts, uint queue_capacity, GLOBAL uint* idle, GLOBAL uint* found,
-                            uint capacity, GLOBAL uint* status) {
+                            GLOBAL const uint* ids, GLOBAL const uint* tetrahedra, GLOBAL const uint* pairs,
+                            GLOBAL uint* items, GLOBAL uint* counts, uint queue_capacity, GLOBAL uint* idle,
+                            GLOBAL uint* found, uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(uint, queue, LOCAL_QUEUE * ITEM_WORDS);
     LOCAL_ARRAY(uint, shared, 4);
-    const Job job = {nodes, trees, pairs, {bodies, ids, found, capacity, status}};
+    const Job job = {nodes, trees, pairs, {bodies, ids, tetrahedra, found, capacity, status}};
     GLOBAL uint* own = items + (ulong)GROUP_ID * queue_capacity * ITEM_WORDS;
     Tally tally = empty_tally();
     // Set in work-item 0 if the group starts without items; it then counts as idle from the start.

@@ -119,10 +119,11 @@ void QueueWalker::do_clear_idle() { device().clear(idle_, 4); }
 
 void QueueWalker::traverse(const WalkTask& task) {
     const auto& bodies = trees_.bodies();
-    const std::array<Argument, 12> arguments{trees_.nodes(),
+    const std::array<Argument, 13> arguments{trees_.nodes(),
                                              trees_.tree_table(),
                                              bodies.row_table(),
                                              bodies.ids(),
+                                             bodies.tetrahedra(),
                                              task.body_pairs,
                                              items(),
                                              counts_,

@@ -63,8 +63,10 @@ DEVICE void query_tree(const BodyQuery* query, GLOBAL const real* nodes, const P
     for (;;) {
         const uint child = first_child(node);
         uint left = 0; // bit i: child i is to be visited
-        if (COUNT_WORK) tally->tests += 2;
         UNROLL for (uint i = 0; i < 2u; ++i) {
+            // Items up to this one query for the others.
+            if (SELF && query->body_a == query->body_b && last_item_below(child + i, items) <= item) continue;
+            if (COUNT_WORK) tally->tests += 1;
             load_node(nodes, base + child + i, &other);
             if (!nodes_overlap(&own, &other)) continue;
             if (is_leaf(child + i, items))
@@ -86,9 +88,10 @@ DEVICE void query_tree(const BodyQuery* query, GLOBAL const real* nodes, const P
 
 // A turn of a work-group: up to GROUP_SIZE queries of a body pair, which has `blocks` turns.
 KERNEL void query_leaves(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* bodies,
-                         GLOBAL const uint* ids, GLOBAL const uint* pairs, uint pair_capacity, uint blocks,
-                         GLOBAL uint* found, uint capacity, GLOBAL uint* status) {
-    const PairOutput output = {bodies, ids, found, capacity, status};
+                         GLOBAL const uint* ids, GLOBAL const uint* tetrahedra, GLOBAL const uint* pairs,
+                         uint pair_capacity, uint blocks, GLOBAL uint* found, uint capacity,
+                         GLOBAL uint* status) {
+    const PairOutput output = {bodies, ids, tetrahedra, found, capacity, status};
     const ulong turns = (ulong)body_pair_count(pair_capacity, status) * blocks;
     Tally tally = empty_tally();
     for (ulong turn = GROUP_ID; turn < turns; turn += GROUP_COUNT) {

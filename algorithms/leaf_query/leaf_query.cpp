@@ -27,7 +27,7 @@ constexpr std::uint32_t leaves = std::uint32_t{1} << 30;
 class LeafQueries final : public Walker {
 public:
     /// `trees` must outlive this object; each body is one chunk.
-    LeafQueries(const ChunkTrees& trees, LaunchShape shape);
+    LeafQueries(const ChunkTrees& trees, LaunchShape shape, bool has_self);
 
 private:
     void do_compile(const WalkBuild& build) override;
@@ -41,8 +41,10 @@ private:
     Kernel kernel_;
 };
 
-LeafQueries::LeafQueries(const ChunkTrees& trees, LaunchShape shape) : trees_(trees), shape_(shape) {
-    blocks_ = std::max(1u, (most_queries(trees.bodies()) + shape.group_size - 1) / shape.group_size);
+LeafQueries::LeafQueries(const ChunkTrees& trees, LaunchShape shape, bool has_self)
+    : trees_(trees), shape_(shape) {
+    const auto queries = most_queries(trees.bodies(), has_self);
+    blocks_ = std::max(1u, (queries + shape.group_size - 1) / shape.group_size);
 }
 
 void LeafQueries::do_compile(const WalkBuild& build) {
@@ -57,10 +59,11 @@ void LeafQueries::do_launch(const WalkTask& task) {
     const StageScope scope(bodies.device(), Stage::traverse);
     const auto turns = std::uint64_t{task.most_pairs()} * blocks_;
     const Grid grid{std::min<std::uint64_t>(shape_.groups, turns), shape_.group_size};
-    const std::array<Argument, 10> arguments{trees_.nodes(),
+    const std::array<Argument, 11> arguments{trees_.nodes(),
                                              trees_.tree_table(),
                                              bodies.row_table(),
                                              bodies.ids(),
+                                             bodies.tetrahedra(),
                                              task.body_pairs,
                                              task.pair_capacity,
                                              blocks_,
@@ -102,7 +105,8 @@ private:
 
     AlgorithmStages do_build(const BuildContext& context) const override {
         auto trees = std::make_unique<ChunkTrees>(context.bodies, leaves, context.shape.group_size);
-        auto queries = std::make_unique<LeafQueries>(*trees, context.shape);
+        auto queries = std::make_unique<LeafQueries>(*trees, context.shape,
+                                                     context.settings[parameters::self] != SelfPairs::off);
         return {std::move(trees), std::move(queries)};
     }
 };

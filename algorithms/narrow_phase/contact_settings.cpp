@@ -36,8 +36,9 @@ bool contacts_are_equal_for_every_k(const Settings& settings) {
 }
 
 ContactSettings contact_settings_of(const Settings& settings) {
-    if (settings[parameters::contact_rule] == ContactRule::none) return {};
-    return {settings[parameters::contact_rule], settings[parameters::decision], walked_of(settings)};
+    const auto self = settings[parameters::self];
+    if (settings[parameters::contact_rule] == ContactRule::none) return {.self = self};
+    return {settings[parameters::contact_rule], settings[parameters::decision], walked_of(settings), self};
 }
 
 } // namespace tandem

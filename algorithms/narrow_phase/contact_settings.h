@@ -13,6 +13,7 @@ struct ContactSettings {
     ContactRule rule = ContactRule::opposing;
     DecisionPrecision decision = DecisionPrecision::fp32;
     Walked walked = Walked::all;
+    SelfPairs self = SelfPairs::off;
 
     bool operator==(const ContactSettings&) const = default;
 };
@@ -42,7 +43,7 @@ Walked walked_of(const Settings& settings);
 /// InputError as geometry_of().
 bool contacts_are_equal_for_every_k(const Settings& settings);
 
-/// Contact settings of resolved settings; the defaults when contact_rule=none.
+/// Contact settings of resolved settings; of contact_rule=none, only the tetrahedra that pairs are found of.
 ContactSettings contact_settings_of(const Settings& settings);
 
 } // namespace tandem

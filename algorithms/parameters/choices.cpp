@@ -18,6 +18,8 @@ static_assert(is(Rounding::nearest, ROUNDING_NEAREST) && is(Rounding::safe, ROUN
 static_assert(is(Placement::rounded, PLACEMENT_ROUNDED) && is(Placement::exact, PLACEMENT_EXACT));
 static_assert(is(Output::pairs, OUTPUT_PAIRS) && is(Output::count, OUTPUT_COUNT)
               && is(Output::digest, OUTPUT_DIGEST));
+static_assert(is(SelfPairs::off, SELF_OFF) && is(SelfPairs::on, SELF_ON)
+              && is(SelfPairs::deformable, SELF_DEFORMABLE));
 static_assert(is(PairLayout::items, PAIR_ITEMS) && is(PairLayout::slots, PAIR_SLOTS));
 static_assert(is(Slabs::three, SLABS_THREE) && is(Slabs::all, SLABS_ALL));
 

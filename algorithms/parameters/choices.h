@@ -44,6 +44,13 @@ enum class Broad {
     device  ///< on the device, by root k-DOPs
 };
 
+/// Bodies whose tetrahedra are also paired with each other, if they share no vertex.
+enum class SelfPairs {
+    off,
+    on,        ///< all bodies that are not fixed
+    deformable ///< deformable bodies
+};
+
 /// Location of data between frames.
 enum class Residency {
     resident, ///< topology is uploaded once and shared by bodies with one mesh; frames upload only motion

@@ -121,6 +121,13 @@ inline constexpr Setting<Broad> broad{
     "",
     "how to find body pairs: sphere: on the host, by the paper's spheres; tight: on the host, by boxes; "
     "device: on the device, by root k-DOPs"};
+inline constexpr Setting<SelfPairs> self{
+    "self",
+    SelfPairs::off,
+    {{"off", SelfPairs::off}, {"on", SelfPairs::on}, {"deformable", SelfPairs::deformable}},
+    "SELF",
+    "bodies whose tetrahedra are also paired with each other, unless they share a vertex: on: all that are "
+    "not fixed; deformable: deformable ones"};
 inline constexpr Setting<std::int64_t> body_pair_capacity{"body_pair_capacity", 65536,
                                                           ValueRange{1, word_limit}, "",
                                                           "broad=device: initial capacity for body pairs"};

@@ -137,6 +137,7 @@ KERNEL void walk_upper_tiles(GLOBAL const real* uppers, uint first_upper, GLOBAL
         uint hits[LANE_PARTS];
         FOR_LANES hits[part] = 0u;
         FIND_HITS(&team, rows, box, DIRECTIONS, keeps_a, hits)
+        if (SELF && pair.a == pair.b) keep_ascending(hits, by_a, 1u);
         int more;
         do {
             put_hits(&team, hits, first_a, first_b, by_a);
@@ -205,7 +206,7 @@ DEVICE void load_leaves(GLOBAL const real* leaves, uint tile, LANE_BOX(box, LEAF
 }
 
 // Whether every pair found is a candidate pair.
-#define IS_DECIDED (REST_DIRECTIONS == 0 && OUTPUT == OUTPUT_PAIRS)
+#define IS_DECIDED (REST_DIRECTIONS == 0 && OUTPUT == OUTPUT_PAIRS && !SELF)
 
 // Tests tiles of level 0: boxes that overlap along all directions of k are candidate pairs.
 KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots, GLOBAL const uint* tiles,
@@ -213,8 +214,9 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
                             uint begins, GLOBAL const uint* list, uint list_capacity,
                             GLOBAL const uint* starts, GLOBAL const uint* vertex_numbers,
                             GLOBAL const uint* corners, GLOBAL const uint* bodies, GLOBAL const real* poses,
-                            GLOBAL const real* vertices, GLOBAL const uint* ids, GLOBAL uint* found,
-                            uint capacity, GLOBAL uint* status) {
+                            GLOBAL const real* vertices, GLOBAL const uint* ids,
+                            GLOBAL const uint* tetrahedra, GLOBAL uint* found, uint capacity,
+                            GLOBAL uint* status) {
     TEAM_ARRAYS(LANES * ROW_UNITS(LEAF_DIRECTIONS))
 #if REST_DIRECTIONS > 0
     LOCAL_ARRAY(real, all_rest, LANE_TEAMS * (REST_A_REALS + REST_B_REALS));
@@ -274,6 +276,7 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
         uint hits[LANE_PARTS];
         FOR_LANES hits[part] = 0u;
         FIND_HITS(&team, rows, box, LEAF_DIRECTIONS, keeps_a, hits)
+        if (SELF && pair.a == pair.b) keep_ascending(hits, by_a, 0u);
         int more;
         do {
             put_hits(&team, hits, pair.a * LANES, pair.b * LANES, by_a);
@@ -319,13 +322,17 @@ KERNEL void walk_leaf_tiles(GLOBAL const real* leaves, GLOBAL const real* roots,
                             is_pair
                             && rest_overlaps(rest_a + lane_a * REST_STRIDE, rest_b + lane_b * REST_STRIDE);
 #endif
+                        WordRow row = {a.body, b.body, a.item + lane_a, b.item + lane_b};
+                        if (SELF && row.x == row.y)
+                            is_pair = is_pair && keep_self_pair(bodies, tetrahedra, ids, &row);
                         if (OUTPUT == OUTPUT_PAIRS) {
                             const uint slot = reserve_slot(&team.kept, is_pair);
-                            const WordPair kept_pair = {slot_a[part], slot_b[part]};
+                            const int swapped = SELF && row.z > row.w && row.x == row.y;
+                            const WordPair kept_pair = {swapped ? slot_b[part] : slot_a[part],
+                                                        swapped ? slot_a[part] : slot_b[part]};
                             if (is_pair) team.pairs[slot] = kept_pair;
                         } else if (is_pair) {
                             tally.count += 1;
-                            const WordRow row = {a.body, b.body, a.item + lane_a, b.item + lane_b};
                             if (OUTPUT == OUTPUT_DIGEST) tally_digest(&tally, bodies, ids, row);
                         }
                     }

@@ -102,7 +102,7 @@ void TiledWalker::launch_upper(const WalkTask& task, std::uint32_t level) {
 void TiledWalker::launch_leaves(const WalkTask& task) {
     const auto& bodies = trees_.bodies();
     const auto& shapes = trees_.shapes();
-    const std::array<Argument, 19> arguments{trees_.leaves(),
+    const std::array<Argument, 20> arguments{trees_.leaves(),
                                              trees_.roots(),
                                              trees_.tile_table(),
                                              trees_.tops(),
@@ -118,6 +118,7 @@ void TiledWalker::launch_leaves(const WalkTask& task) {
                                              bodies.poses(),
                                              bodies.vertices(),
                                              bodies.ids(),
+                                             bodies.tetrahedra(),
                                              task.answer.pairs.buffer(),
                                              task.answer.pairs.capacity(),
                                              task.status.buffer()};

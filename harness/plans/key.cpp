@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/plans/key.h"
 
+#include "algorithms/parameters/table.h"
 #include "harness/plans/device_models.h"
 #include "harness/sampling/ranks/rank_team.h"
 
@@ -17,11 +18,12 @@ std::string models_of(const Cell& cell) {
     return models;
 }
 
-/// "name=value,..." in the order of names.
+/// "name=value,..." in the order of names. Records from before setting self have none, and are comparable.
 std::string settings_key(const SettingTexts& settings) {
     std::string key;
     for (const auto& [name, value] : settings)
-        key += fmt::format("{}{}={}", key.empty() ? "" : ",", name, value);
+        if (name != parameters::self.name || value != parameters::self.text(parameters::self.initial))
+            key += fmt::format("{}{}={}", key.empty() ? "" : ",", name, value);
     return key;
 }
 

@@ -90,6 +90,7 @@ void LocalSampler::add_errors(Truths& truths, std::size_t index, const FrameResu
     answer.contacts = contacts;
     answer.makes_contacts = makes_contacts();
     answer.walked = walked_of(out_.settings);
+    answer.self = out_.settings[parameters::self];
     std::vector<Pair> pairs;
     std::vector<ContactPoint> points;
     if (cell_.team != nullptr) {

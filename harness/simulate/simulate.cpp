@@ -172,6 +172,9 @@ int simulate_command(const SimulateOptions& options) {
     const auto backends = open_backends(request.devices, options.require);
     check_required(backends, options.require);
     const auto cell = only_cell(request, backends);
+    if (cell.settings[parameters::self] != SelfPairs::off)
+        throw InputError(
+            "setting self does not go with tandem simulate, whose bodies are rigid; leave it out");
     check_coordinates(cell, scene, scene.frame(0));
     Simulation simulation(scene);
     // Opened before the recording is made: if this fails, no recording remains to block a second try.

@@ -190,6 +190,36 @@ void sweep(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
     }
 }
 
+/// The same for the tetrahedra of one body.
+template<class Real, class Hit>
+void sweep_self(const Bounds<Real>& body, Hit hit) {
+    const auto list = near(body, body);
+    for (auto at = list.begin(); at != list.end(); ++at) {
+        const auto* own = body.tetrahedron(*at);
+        for (auto next = at + 1;
+             next != list.end() && !apart(body.tetrahedron(*next)[0], own[body.axes], body.published); ++next)
+            if (overlapping(own, body.tetrahedron(*next), body.axes, body.published))
+                hit(std::min(*at, *next), std::max(*at, *next));
+    }
+}
+
+template<class Real, class Hit>
+void test_all_of_one(const Bounds<Real>& body, Hit hit) {
+    const auto count = static_cast<std::uint32_t>(body.slabs.size() / (2 * body.axes));
+    for (std::uint32_t t = 0; t < count; ++t)
+        for (std::uint32_t u = t + 1; u < count; ++u)
+            if (overlapping(body.tetrahedron(t), body.tetrahedron(u), body.axes, body.published)) hit(t, u);
+}
+
+bool share_vertex(const std::array<std::uint32_t, 4>& p, const std::array<std::uint32_t, 4>& q) {
+    return std::ranges::any_of(p, [&](auto vertex) { return std::ranges::find(q, vertex) != q.end(); });
+}
+
+bool pairs_itself(const Body& body, SelfPairs self) {
+    if (body.fixed) return false;
+    return self == SelfPairs::on || (self == SelfPairs::deformable && body.deformable);
+}
+
 /// Brute force: tests every pair of tetrahedra.
 template<class Real, class Hit>
 void test_all(const Bounds<Real>& a, const Bounds<Real>& b, Hit hit) {
@@ -277,6 +307,16 @@ ReferenceAnswer answer_in(const Scene& scene, const Frame& frame, const Geometry
             else if (overlapping(bounds[a].whole.data(), bounds[b].whole.data(), bounds[a].axes,
                                  bounds[a].published))
                 sweep(bounds[a], bounds[b], hit);
+        }
+        if (pairs_itself(scene.bodies[a], settings.self)) {
+            const auto& tetrahedra = scene.meshes[scene.bodies[a].mesh].tetrahedra;
+            const auto hit = [&](std::uint32_t t, std::uint32_t u) {
+                if (!share_vertex(tetrahedra[t], tetrahedra[u])) found[a].push_back({a, t, a, u});
+            };
+            if (method == Method::brute_force)
+                test_all_of_one(bounds[a], hit);
+            else
+                sweep_self(bounds[a], hit);
         }
         std::sort(found[a].begin(), found[a].end());
     });

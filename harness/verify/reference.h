@@ -27,8 +27,8 @@ enum class Method {
 };
 
 /// Finds every pair of tetrahedra of different bodies (not both fixed) whose leaf k-DOPs overlap, and filters
-/// them if settings.walked is not all. Runs on all cores, and shares no code with kernels, hierarchies or
-/// broad phase.
+/// them if settings.walked is not all. With settings.self also those of one body that share no vertex. Runs
+/// on all cores, and shares no code with kernels, hierarchies or broad phase.
 ReferenceAnswer reference(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
                           Method method, const ContactSettings& settings = {});
 

@@ -27,13 +27,15 @@ References::References(const Scene& scene, const FrameRange& range, const std::f
 /// Identifies the frame by its content, because its flawed tetrahedra may be skipped or not.
 std::string References::cache_key(const Key& key) const {
     const auto& [geometry, contacts, index] = key;
-    return fmt::format("frame {:016x}, k {} {}, precision {}, rounding {}, placement {}, origin {}, rule {}, "
-                       "decision {}, walked {}",
-                       digest_of(*range_.frame(index)), geometry.k, geometry.coordinate_axes,
-                       static_cast<int>(geometry.precision), static_cast<int>(geometry.rounding),
-                       static_cast<int>(geometry.placement), static_cast<int>(geometry.origin),
-                       static_cast<int>(contacts.rule), static_cast<int>(contacts.decision),
-                       static_cast<int>(contacts.walked));
+    return fmt::format(
+        "frame {:016x}, k {} {}, precision {}, rounding {}, placement {}, origin {}, rule {}, "
+        "decision {}, walked {}{}",
+        digest_of(*range_.frame(index)), geometry.k, geometry.coordinate_axes,
+        static_cast<int>(geometry.precision), static_cast<int>(geometry.rounding),
+        static_cast<int>(geometry.placement), static_cast<int>(geometry.origin),
+        static_cast<int>(contacts.rule), static_cast<int>(contacts.decision),
+        static_cast<int>(contacts.walked),
+        contacts.self == SelfPairs::off ? "" : fmt::format(", self {}", static_cast<int>(contacts.self)));
 }
 
 const ReferenceAnswer& References::answer(const Geometry& geometry, const ContactSettings& contacts,

@@ -21,7 +21,7 @@ class Digest(NamedTuple):
 
 class Contacts(NamedTuple):
     """Contacts of a frame, sorted by pair and feature. The columns are views of one array of records."""
-    pairs: numpy.ndarray     #: (n, 4) int32: body a, tetrahedron a, body b, tetrahedron b; body a < body b
+    pairs: numpy.ndarray     #: (n, 4) int32: body a, tetrahedron a, body b, tetrahedron b; a before b
     features: numpy.ndarray  #: (n,) uint32: number of the contact within its pair (algorithms/narrow_phase)
     points: numpy.ndarray    #: (n, 3) float64: world coordinates, in the meshes' unit
     normals: numpy.ndarray   #: (n, 3) float64: unit vectors that point out of body a
@@ -86,7 +86,8 @@ class Answer:
         return Digest(*self._core.contact_digest())
 
     def pairs(self, on_device: bool = False) -> Any:
-        """Candidate pairs: rows body a, tetrahedron a, body b, tetrahedron b, numbered from 0 in the order of the input, body a < body b.
+        """Candidate pairs: rows body a, tetrahedron a, body b, tetrahedron b, numbered from 0 in the order of the input, body a < body b. In
+        pairs of one body (self_collision), tetrahedron a < tetrahedron b.
 
         Returns an (n, 4) int32 NumPy array, sorted by its columns. With `on_device`, returns an object with __dlpack__ over (n, 4) int32 in
         memory of the device, in no order. torch.from_dlpack, cupy.from_dlpack and (device host) numpy.from_dlpack read it without a copy.
@@ -112,6 +113,8 @@ class Collider:
     device: "host", "opencl:0", "cuda:0" as tandem.devices() lists them, or several that share a frame: "cuda:0+cuda:1".
     bodies: the number of each body's mesh, from 0; by default each mesh is one body.
     deformable: True, or the numbers of the bodies whose vertices change with every frame.
+    self_collision: True: also pairs of tetrahedra of one body that share no vertex; "deformable": only in deformable bodies. The same as
+        setting self.
     stream: a CUDA stream of the device on which the collider enqueues its commands, in order with those of the application. Either
         cupy.cuda.get_current_stream() or torch.cuda.current_stream(), which the collider keeps alive, or the address of a stream that must
         outlive the collider. None: the collider makes its own stream.
@@ -124,7 +127,8 @@ class Collider:
 
     # The slash makes `self` positional, because a setting has this name as well.
     def __init__(self, meshes: Sequence[Any], /, algorithm: str = "tiled", device: str = "host", *, bodies: Iterable[int] | None = None,
-                 deformable: bool | Iterable[int] = False, preset: str = "", stream: Any = None, **settings: Any) -> None:
+                 deformable: bool | Iterable[int] = False, self_collision: bool | str = False, preset: str = "", stream: Any = None,
+                 **settings: Any) -> None:
         all_meshes = [_mesh(mesh, f"meshes[{i}]") for i, mesh in enumerate(_list(meshes, "meshes"))]
         mesh_of_body = list(range(len(all_meshes)))
         if bodies is not None:
@@ -134,6 +138,10 @@ class Collider:
         for what, text in (("algorithm", algorithm), ("device", device), ("preset", preset)):
             if not isinstance(text, str):
                 raise TypeError(f"{what}: type {type(text).__name__}; expected a name")
+        if self_collision is not False:
+            if "self" in settings:
+                raise ValueError("self_collision and setting self are the same; give one of them")
+            settings["self"] = "on" if self_collision is True else self_collision
         texts = {name: _text(value, name) for name, value in settings.items()}
         address = None if stream is None else stream_address(stream)
         options = _core.ColliderOptions(mesh_of_body, flags, algorithm, preset, device, texts, address)

@@ -137,10 +137,10 @@ DEVICE uint query_leaf(const Job* job, uint a, uint b, uint item, Tally* tally) 
 // A work-group processes body pairs and a block of GROUP_SIZE items of their bodies a. `blocks` is enough for
 // any body, so the launch needs no scan to count queries.
 KERNEL void query_leaves(GLOBAL const real* nodes, GLOBAL const uint* trees, GLOBAL const uint* children,
-                         GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* pairs,
-                         uint pair_capacity, uint blocks, GLOBAL uint* found, uint capacity,
-                         GLOBAL uint* status) {
-    const Job job = {nodes, trees, children, {bodies, ids, found, capacity, status}};
+                         GLOBAL const uint* bodies, GLOBAL const uint* ids, GLOBAL const uint* tetrahedra,
+                         GLOBAL const uint* pairs, uint pair_capacity, uint blocks, GLOBAL uint* found,
+                         uint capacity, GLOBAL uint* status) {
+    const Job job = {nodes, trees, children, {bodies, ids, tetrahedra, found, capacity, status}};
     const ulong work = (ulong)body_pair_count(pair_capacity, status) * blocks;
     Tally tally = empty_tally();
     ulong hits = 0;

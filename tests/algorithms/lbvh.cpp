@@ -221,11 +221,12 @@ void LeafQueries::do_launch(const WalkTask& task) {
     const auto& bodies = trees_.bodies();
     const StageScope scope(bodies.device(), Stage::traverse);
     const auto blocks = (trees_.most_items() + shape_.group_size - 1) / shape_.group_size;
-    const std::array<Argument, 11> arguments{trees_.nodes(),
+    const std::array<Argument, 12> arguments{trees_.nodes(),
                                              trees_.tree_table(),
                                              trees_.children(),
                                              bodies.row_table(),
                                              bodies.ids(),
+                                             bodies.tetrahedra(),
                                              task.body_pairs,
                                              task.pair_capacity,
                                              blocks,

@@ -21,8 +21,8 @@ using SettingValues = std::pair<std::string, std::vector<std::string>>;
 const std::vector<SettingValues> shared_settings{
     {"residency", {"resident", "published"}}, {"convert", {"serial", "parallel"}},
     {"work_items", {"64", "2048"}},           {"broad", {"sphere", "device"}},
-    {"body_pair_capacity", {"1", "65536"}},   {"pair_capacity", {"1", "100000"}},
-    {"contact_capacity", {"1", "100000"}}};
+    {"self", {"off", "on", "deformable"}},    {"body_pair_capacity", {"1", "65536"}},
+    {"pair_capacity", {"1", "100000"}},       {"contact_capacity", {"1", "100000"}}};
 
 const std::vector<SettingValues> settings_of_single_algorithms{
     {"leaves", {"2", "4", "32"}},

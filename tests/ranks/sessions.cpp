@@ -308,6 +308,21 @@ TEST_F(RankSessions, MoreBodiesThanADeviceCanNumber) {
     EXPECT_EQ(summed(result.digest()), digest_of(pairs));
 }
 
+/// The rank that owns a body finds the pairs of the body with itself.
+TEST_F(RankSessions, BodiesMeetThemselves) {
+    const auto scene = soft_procession(16, 2, 0.1);
+    const std::array host{&device("host")};
+    for (const auto* traversal : algorithms())
+        for (const std::string self : {"on", "deformable"}) {
+            SCOPED_TRACE(std::string(traversal->name()) + " " + self);
+            const auto settings = settings_of(*traversal, {{"self", self}});
+            const auto session = traversal->prepare(own_device(), scene, settings, *job);
+            const auto one = traversal->prepare(host, scene, settings);
+            for (const std::size_t i : {0u, 1u, 0u}) expect_equal(scene, *session, *one, i);
+            EXPECT_GT(summed(last_.count), alone(*traversal, scene)->run(scene.frame(0)).count + 100);
+        }
+}
+
 TEST_F(RankSessions, CountsAndDigestsWithoutPairs) {
     const auto scene = procession(20, 1, 0);
     for (const std::string output : {"count", "digest"}) {

@@ -109,19 +109,24 @@ inline std::vector<SettingTexts> pairwise(const std::vector<Axis>& axes) {
     return rows;
 }
 
-/// All body pairs except fixed-fixed ones. The traversal must not depend on the broad phase.
-inline std::vector<BodyPair> all_pairs(const Scene& scene) {
+/// All body pairs except fixed-fixed ones, with setting self. The traversal must not depend on the broad
+/// phase.
+inline std::vector<BodyPair> all_pairs(const Scene& scene, SelfPairs self = SelfPairs::off) {
     std::vector<BodyPair> pairs;
-    for (std::uint32_t a = 0; a < scene.bodies.size(); ++a)
+    for (std::uint32_t a = 0; a < scene.bodies.size(); ++a) {
+        const auto& body = scene.bodies[a];
+        if (!body.fixed && (self == SelfPairs::on || (self == SelfPairs::deformable && body.deformable)))
+            pairs.push_back({a, a});
         for (std::uint32_t b = a + 1; b < scene.bodies.size(); ++b)
-            if (!scene.bodies[a].fixed || !scene.bodies[b].fixed) pairs.push_back({a, b});
+            if (!body.fixed || !scene.bodies[b].fixed) pairs.push_back({a, b});
+    }
     return pairs;
 }
 
 /// Runs a frame on all body pairs, or on those that the device finds if the broad phase runs there.
 inline FrameResult run_among_all(Session& session, const Scene& scene, const Frame& frame) {
     if (session.settings()[parameters::broad] == Broad::device) return session.run(frame);
-    return session.run(frame, all_pairs(scene));
+    return session.run(frame, all_pairs(scene, session.settings()[parameters::self]));
 }
 
 inline std::string text(const SettingTexts& settings) {

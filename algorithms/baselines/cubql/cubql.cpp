@@ -57,6 +57,8 @@ private:
         if (settings[p::rounding] == Rounding::published)
             refuse("rounding", "whose overlap test has no tolerance", "safe");
         if (!has_pairs(settings[p::output])) refuse("output", "which writes pairs", "pairs");
+        if (settings[p::self] != SelfPairs::off)
+            refuse("self", "whose queries are of one body's boxes into another body's tree", "off");
         if (settings[p::pair_layout] != PairLayout::slots)
             refuse("pair_layout", "which writes slots", "slots");
     }

@@ -63,7 +63,22 @@ struct EmbreeWalker::PairTask {
 
     void emit(std::span<const RTCCollision> pairs) const;
     void write(std::span<const RTCCollision> pairs) const;
+    bool keep_self_pair(RTCCollision& pair) const;
 };
+
+/// keep_self_pair of self.clh. Embree reports both orders of two leaves.
+bool EmbreeWalker::PairTask::keep_self_pair(RTCCollision& pair) const {
+    if (pair.primID0 >= pair.primID1) return false;
+    const auto& mesh = walker.trees_.bodies().mesh(a);
+    const auto vertices_of = [&](std::size_t item) {
+        return std::span(mesh.tetrahedra).subspan(4 * item, 4);
+    };
+    const auto other = vertices_of(pair.primID1);
+    for (const auto vertex : vertices_of(pair.primID0))
+        if (std::ranges::find(other, vertex) != other.end()) return false;
+    if (mesh.ids[pair.primID0] > mesh.ids[pair.primID1]) std::swap(pair.primID0, pair.primID1);
+    return true;
+}
 
 /// Past `capacity` the counter still counts, and nothing is written.
 void EmbreeWalker::PairTask::write(std::span<const RTCCollision> pairs) const {
@@ -101,12 +116,16 @@ template<bool tolerant>
 void EmbreeWalker::test_leaves(void* task, RTCCollision* collisions, unsigned count) {
     const auto& self = *static_cast<const PairTask*>(task);
     std::size_t kept = 0;
+    const bool is_self = self.a == self.b;
     for (unsigned i = 0; i < count; ++i) {
         const auto pair = collisions[i];
         const auto item = pair.primID0;
         const bool is_in_window = (item >= self.window_first) & (item < self.window_end);
         collisions[kept] = pair;
-        kept += is_in_window & overlap<tolerant>(self.boxes_a[item], self.boxes_b[pair.primID1]);
+        const bool overlaps =
+            is_in_window & overlap<tolerant>(self.boxes_a[item], self.boxes_b[pair.primID1]);
+        if (is_self && overlaps && !self.keep_self_pair(collisions[kept])) continue;
+        kept += overlaps;
     }
     if (kept > 0) self.emit({collisions, kept});
     if (self.walker.build_.counting) add(self.status, status_leaf_tests, count);

@@ -72,7 +72,8 @@ const ContactTruths& Truths::contact_truths_of(const FramePosition& position, Wa
 
 const AnswerErrors& Truths::errors(const Geometry& geometry, std::size_t index, const FrameAnswer& answer,
                                    const Report& report) {
-    const FramePosition position{{geometry.precision, geometry.placement, geometry.origin}, index};
+    const FramePosition position{{geometry.precision, geometry.placement, geometry.origin, answer.self},
+                                 index};
     const std::tuple key{geometry.precision, geometry.origin, position, answer.walked,
                          Numbers{answer.pairs.count, answer.pairs.a, answer.pairs.b, answer.contacts.count,
                                  answer.contacts.a, answer.contacts.b}};
@@ -92,13 +93,15 @@ std::string Truths::cache_key(const Geometry& geometry, const FramePosition& pos
     const auto& [positions, index] = position;
     const auto& p = answer.pairs;
     const auto& c = answer.contacts;
-    return fmt::format("frame {:016x}{}, precision {}, origin {}, positions {} {}, amount {} {}, walked {}, "
-                       "pairs {} {:x} {:x}, contacts {} {} {:x} {:x}",
-                       digest_of(*range_.frame(index)), index == 0 ? " first" : "",
-                       static_cast<int>(geometry.precision), static_cast<int>(geometry.origin),
-                       static_cast<int>(positions.precision), static_cast<int>(positions.placement),
-                       static_cast<int>(amount_), most_contacts_, static_cast<int>(answer.walked), p.count,
-                       p.a, p.b, answer.makes_contacts, c.count, c.a, c.b);
+    return fmt::format(
+        "frame {:016x}{}, precision {}, origin {}, positions {} {}{}, amount {} {}, walked {}, "
+        "pairs {} {:x} {:x}, contacts {} {} {:x} {:x}",
+        digest_of(*range_.frame(index)), index == 0 ? " first" : "", static_cast<int>(geometry.precision),
+        static_cast<int>(geometry.origin), static_cast<int>(positions.precision),
+        static_cast<int>(positions.placement),
+        positions.self == SelfPairs::off ? "" : fmt::format(" self {}", static_cast<int>(positions.self)),
+        static_cast<int>(amount_), most_contacts_, static_cast<int>(answer.walked), p.count, p.a, p.b,
+        answer.makes_contacts, c.count, c.a, c.b);
 }
 
 const Drift& Truths::drift_of(const Geometry& geometry) {

@@ -25,6 +25,7 @@ struct FrameAnswer {
     Digest pairs, contacts;
     bool makes_contacts = false;
     Walked walked = Walked::all;                 ///< pairs of other tetrahedra are in no error
+    SelfPairs self = SelfPairs::off;             ///< the bodies whose own tetrahedra are paired
     std::function<std::vector<Pair>()> download; ///< sorted
     std::function<std::vector<ContactPoint>()> download_contacts; ///< sorted
 };

@@ -104,15 +104,37 @@ std::vector<Decision> decide_all(const Bodies& bodies, std::span<const Pair> pai
 
 using BodyNumbers = std::array<std::uint32_t, 2>;
 
-/// Pairs of bodies, not both fixed, whose boxes overlap.
-std::vector<BodyNumbers> near_bodies(const Scene& scene, const std::vector<Boxes>& boxes) {
+/// Pairs of bodies, not both fixed, whose boxes overlap, and those of setting self.
+std::vector<BodyNumbers> near_bodies(const Scene& scene, const std::vector<Boxes>& boxes, SelfPairs self) {
     std::vector<BodyNumbers> result;
-    for (std::uint32_t a = 0; a < boxes.size(); ++a)
+    for (std::uint32_t a = 0; a < boxes.size(); ++a) {
+        const auto& body = scene.bodies[a];
+        if (!body.fixed && (self == SelfPairs::on || (self == SelfPairs::deformable && body.deformable)))
+            result.push_back({a, a});
         for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
             if (!(scene.bodies[a].fixed && scene.bodies[b].fixed)
                 && boxes_overlap(boxes[a].whole, boxes[b].whole))
                 result.push_back({a, b});
+    }
     return result;
+}
+
+/// Calls visit(tetrahedron of a, of b) for the near pairs of two bodies, or of one body without common
+/// vertices.
+template<class Visit>
+void for_near_pairs_of(const Scene& scene, const std::vector<Boxes>& boxes, BodyNumbers bodies, Visit visit) {
+    const auto [a, b] = bodies;
+    if (a != b) {
+        for_near_pairs(boxes[a], boxes[b], visit);
+        return;
+    }
+    const auto& tetrahedra = scene.meshes[scene.bodies[a].mesh].tetrahedra;
+    for_near_pairs(boxes[a], boxes[a], [&](std::uint32_t t, std::uint32_t u) {
+        if (t >= u) return; // the other order of each pair, and a tetrahedron with itself
+        for (const auto vertex : tetrahedra[t])
+            if (std::ranges::find(tetrahedra[u], vertex) != tetrahedra[u].end()) return;
+        visit(t, u);
+    });
 }
 
 /// Decides pairs in blocks and stores those that intersect. Calls `report` with the number of decided pairs.
@@ -133,15 +155,14 @@ void add_intersecting(const Bodies& bodies, std::span<const Pair> pairs, FrameTr
 
 /// Number of near pairs of tetrahedra for each pair of bodies. Stops early, with incomplete counts, once the
 /// total exceeds `most`.
-std::vector<std::uint64_t> count_near(const std::vector<Boxes>& boxes, std::span<const BodyNumbers> bodies,
-                                      std::uint64_t most) {
+std::vector<std::uint64_t> count_near(const Scene& scene, const std::vector<Boxes>& boxes,
+                                      std::span<const BodyNumbers> bodies, std::uint64_t most) {
     std::vector<std::uint64_t> counts(bodies.size());
     std::atomic<std::uint64_t> total = 0;
     parallel_for(bodies.size(), [&](std::size_t i) {
         if (total > most) return;
-        const auto [a, b] = bodies[i];
         std::uint64_t count = 0; // a local variable, because other threads write to neighbouring elements
-        for_near_pairs(boxes[a], boxes[b], [&](auto, auto) { ++count; });
+        for_near_pairs_of(scene, boxes, bodies[i], [&](auto, auto) { ++count; });
         counts[i] = count;
         total += counts[i];
     });
@@ -149,15 +170,17 @@ std::vector<std::uint64_t> count_near(const std::vector<Boxes>& boxes, std::span
 }
 
 /// The near pairs of some pairs of bodies; `counts` has their number for each.
-std::vector<Pair> near_pairs(const std::vector<Boxes>& boxes, std::span<const BodyNumbers> bodies,
-                             std::span<const std::uint64_t> counts) {
+std::vector<Pair> near_pairs(const Scene& scene, const std::vector<Boxes>& boxes,
+                             std::span<const BodyNumbers> bodies, std::span<const std::uint64_t> counts) {
     std::vector<std::uint64_t> starts(bodies.size() + 1);
     std::partial_sum(counts.begin(), counts.end(), starts.begin() + 1);
     std::vector<Pair> pairs(starts.back());
     parallel_for(bodies.size(), [&](std::size_t i) {
         const auto [a, b] = bodies[i];
         auto* next = pairs.data() + starts[i];
-        for_near_pairs(boxes[a], boxes[b], [&, a = a, b = b](auto ta, auto tb) { *next++ = {a, ta, b, tb}; });
+        for_near_pairs_of(scene, boxes, bodies[i], [&, a = a, b = b](auto ta, auto tb) {
+            *next++ = {a, ta, b, tb};
+        });
     });
     return pairs;
 }
@@ -210,9 +233,9 @@ FrameTruth frame_truth(const Scene& scene, const Frame& frame, Positions positio
     parallel_for(boxes.size(), [&](std::size_t body) { boxes[body] = world.boxes(body); });
     for (std::uint32_t body = 0; body < boxes.size(); ++body)
         for (const auto tetrahedron : boxes[body].invalid) truth.invalid.push_back({body, tetrahedron});
-    const auto bodies = near_bodies(scene, boxes);
+    const auto bodies = near_bodies(scene, boxes, positions.self);
     const auto most = (memory - fixed_bytes) / pair_bytes;
-    const auto counts = count_near(boxes, bodies, most);
+    const auto counts = count_near(scene, boxes, bodies, most);
     const auto total = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
     if (total > most) refuse(tetrahedra, "at least ", total, fixed_bytes + total * pair_bytes, memory);
     // Pairs of bodies in one batch, so that not all near pairs are in memory at once.
@@ -220,7 +243,7 @@ FrameTruth frame_truth(const Scene& scene, const Frame& frame, Positions positio
     std::uint64_t decided = 0;
     for (std::size_t first = 0; first < bodies.size(); first += batch) {
         const auto count = std::min(batch, bodies.size() - first);
-        const auto pairs = near_pairs(boxes, std::span(bodies).subspan(first, count),
+        const auto pairs = near_pairs(scene, boxes, std::span(bodies).subspan(first, count),
                                       std::span(counts).subspan(first, count));
         add_intersecting(world, pairs, truth, [&](std::size_t done) {
             const auto fraction = static_cast<double>(decided + done) / static_cast<double>(total);

@@ -13,19 +13,22 @@
 
 namespace tandem {
 
-/// The vertices that the truth is for. Placement::rounded: those of world_vertices() in a cell's precision,
-/// treated as exact. Placement::exact: the scene's vertices in double, posed without rounding, for every
-/// precision.
+/// The vertices and body pairs that the truth is for. Placement::rounded: those of world_vertices() in a
+/// cell's precision, treated as exact. Placement::exact: the scene's vertices in double, posed without
+/// rounding, for every precision.
 struct Positions {
     Precision precision = Precision::fp32;
     Placement placement = Placement::rounded;
     Origin origin = Origin::world; ///< of coordinates that Placement::rounded rounds
+    SelfPairs self = SelfPairs::off;
 
     // NOLINTNEXTLINE(*-explicit-*): most callers pass only a precision
-    Positions(Precision cell, Placement level = Placement::rounded, Origin from = Origin::world)
+    Positions(Precision cell, Placement level = Placement::rounded, Origin from = Origin::world,
+              SelfPairs own = SelfPairs::off)
         : precision(level == Placement::exact ? Precision::fp64 : cell),
           placement(level),
-          origin(level == Placement::exact ? Origin::world : from) {}
+          origin(level == Placement::exact ? Origin::world : from),
+          self(own) {}
     auto operator<=>(const Positions&) const = default;
 };
 
@@ -40,10 +43,10 @@ struct FrameTruth {
 /// Progress, reported from the calling thread; `fraction` of the work in 0..1.
 using Report = std::function<void(double fraction, std::uint64_t decided)>;
 
-/// Decides every pair of tetrahedra of different bodies (not both fixed), except those that the frame skips,
-/// on all cores. Pairs that are not listed are disjoint: only pairs with disjoint boxes are not decided, and
-/// boxes are exact or wide enough for rounding. Throws InputError when the estimated memory exceeds `memory`
-/// bytes.
+/// Decides every pair of tetrahedra of different bodies (not both fixed), and with positions.self those of
+/// one body that share no vertex, except those that the frame skips, on all cores. Pairs that are not listed
+/// are disjoint: only pairs with disjoint boxes are not decided, and boxes are exact or wide enough for
+/// rounding. Throws InputError when the estimated memory exceeds `memory` bytes.
 FrameTruth frame_truth(const Scene& scene, const Frame& frame, Positions positions, const Report& report = {},
                        std::uint64_t memory = ~std::uint64_t{0});
 
