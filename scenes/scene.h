@@ -5,6 +5,7 @@
 #include "scenes/mesh.h"
 
 #include <Eigen/Geometry>
+#include <array>
 #include <functional>
 #include <memory>
 #include <span>
@@ -21,9 +22,11 @@ struct Pose {
 /// An instance of a mesh. A fixed body has the same pose in every frame. A deformable body has its own world
 /// vertices in every frame, and its pose is the identity.
 struct Body {
-    std::uint32_t mesh = 0;  ///< index into Scene::meshes
-    bool fixed = false;      ///< has the same pose in every frame
-    bool deformable = false; ///< has its own vertices in Frame::deformed
+    std::uint32_t mesh = 0;            ///< index into Scene::meshes
+    bool fixed = false;                ///< has the same pose in every frame
+    bool deformable = false;           ///< has its own vertices in Frame::deformed
+    std::uint32_t groups = 1;          ///< bit i: it is in group i
+    std::uint32_t meets = 0xffff'ffff; ///< bit i: it meets bodies of group i
 };
 
 /// The state of all bodies at one time step.
@@ -37,13 +40,15 @@ struct Frame {
 
 /// Meshes, bodies and their motion. Immutable once made. A scene with dynamics has one frame, its start.
 struct Scene {
-    std::string name;                        ///< "plates"
-    std::string key;                         ///< name and every parameter: "pile:bodies=64,density=0.2,..."
-    std::string units = "m";                 ///< unit of length, for records and exports; it changes no value
-    std::vector<Mesh> meshes;                ///< bodies may share them
-    std::vector<Body> bodies;                ///< in the order of Frame::poses
-    std::size_t frame_count = 1;             ///< number of frames
-    std::function<Frame(std::size_t)> frame; ///< frame(i) for i < frame_count; pure
+    std::string name;         ///< "plates"
+    std::string key;          ///< name and every parameter: "pile:bodies=64,density=0.2,..."
+    std::string units = "m";  ///< unit of length, for records and exports; it changes no value
+    std::vector<Mesh> meshes; ///< bodies may share them
+    std::vector<Body> bodies; ///< in the order of Frame::poses
+    /// Pairs of bodies a < b that never meet, and of a body a = b that never meets itself; ascending.
+    std::vector<std::array<std::uint32_t, 2>> never_meet{};
+    std::size_t frame_count = 1;              ///< number of frames
+    std::function<Frame(std::size_t)> frame;  ///< frame(i) for i < frame_count; pure
     std::shared_ptr<const Dynamics> dynamics; ///< null: the motion is scripted, all frames are defined
     std::function<double(std::size_t)> time;  ///< time of frame i in s; null: frames have no times
     std::string end;          ///< message for frames after the last of a recording; empty in other scenes
@@ -56,6 +61,13 @@ struct Scene {
 inline std::uint32_t number_of(const Scene& scene, std::size_t body) {
     return scene.numbers.empty() ? static_cast<std::uint32_t>(body) : scene.numbers[body];
 }
+
+/// Whether the broad phase may pair two bodies, or a body with itself: not if both are fixed, nor for a pair
+/// of `never_meet`. Two bodies must each meet a group of the other.
+bool may_meet(const Scene& scene, std::uint32_t a, std::uint32_t b);
+
+/// Whether groups or `never_meet` keep any two bodies apart.
+bool has_filters(const Scene& scene);
 
 /// A named parameter of a scene with its value; in a SceneKind, its default.
 struct SceneParameter {

@@ -9,7 +9,7 @@ import unittest
 import numpy
 
 from collider_case import DEVICES, POSES, ByDlpack, ColliderCase, address, run_tandem, tandem
-from program import gmsh, sets
+from program import bar, gmsh, sets
 
 
 class Answers(ColliderCase):
@@ -62,6 +62,23 @@ class Answers(ColliderCase):
             self.collider([mesh], self_collision=True, self="on")
         with self.assertRaisesRegex(ValueError, "self"):
             self.collider([mesh], self_collision="yes")
+
+    def test_filters(self):
+        expected = self.collider().pairs(POSES)
+        self.assertGreater(len(expected), 10)
+        for device in DEVICES:
+            for broad in ("tight", "device"):
+                with self.subTest(device=device, broad=broad):
+                    options = {"device": device, "broad": broad}
+                    self.assertEqual(self.collider(never_meet=[(1, 0)], **options).count(POSES), 0)
+                    self.assertEqual(self.collider(never_meet=[(1, 1)], **options).count(POSES), len(expected))
+                    self.assertEqual(self.collider(groups=[[0], [3, 31]], meets=[[3], [1]], **options).count(POSES), 0)
+                    self.assertEqual(self.collider(groups=[[0], [3, 31]], meets=[[31], None], **options).count(POSES), len(expected))
+        for options, message in (({"groups": [[0]]}, "groups: 1 lists for 2 bodies"), ({"groups": [[0], [32]]}, r"groups\[1\]: 32 is not the number of a group"),
+                                 ({"meets": [[-1], None]}, r"meets\[0\]: -1 is not"), ({"never_meet": [(0, 2)]}, r"never_meet\[0\]: expected two bodies of 2"),
+                                 ({"never_meet": [(0, 1, 1)]}, r"never_meet\[0\]: expected two")):
+            with self.assertRaisesRegex(ValueError, message):
+                self.collider(**options)
 
     def test_meshes_of_every_kind(self):
         expected = self.collider().pairs(POSES)

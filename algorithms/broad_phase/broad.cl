@@ -13,6 +13,11 @@
 #define SELF 0
 #endif
 
+// 1: groups or lists of the scene keep some bodies apart.
+#ifndef FILTERED
+#define FILTERED 0
+#endif
+
 // In roots and unions a volume is DIRECTIONS rows {lower, upper}.
 
 DEVICE RealPair slab_of(GLOBAL const real* volumes, GLOBAL const uint* order, uint position, uint axis) {
@@ -89,6 +94,43 @@ DEVICE uint own_column(GLOBAL const uint* bodies, uint body, uint position, uint
     return SELF == SELF_ON || deformable ? 1u << (position - first) : 0u;
 }
 
+// Whether the scene lets two bodies meet, or a body and itself: may_meet of scenes/scene.h without fixed
+// bodies. `filters`: the number of bodies; for each its groups, and the groups that it meets; for each, and
+// at their end, where its list starts; the lists, ascending: bodies of larger or equal number that it never
+// meets.
+DEVICE int may_meet(GLOBAL const uint* filters, uint one, uint other) {
+    const uint a = one < other ? one : other;
+    const uint b = one < other ? other : one;
+    const uint bodies = filters[0];
+    GLOBAL const uint* groups = filters + 1;
+    GLOBAL const uint* starts = groups + 2 * (ulong)bodies;
+    GLOBAL const uint* lists = starts + bodies + 1;
+    if (a != b
+        && ((groups[2 * (ulong)a] & groups[2 * (ulong)b + 1]) == 0u
+            || (groups[2 * (ulong)b] & groups[2 * (ulong)a + 1]) == 0u))
+        return 0;
+    uint low = starts[a];
+    uint high = starts[a + 1];
+    while (low < high) {
+        const uint middle = low + (high - low) / 2u;
+        if (lists[middle] < b)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    return low == starts[a + 1] || lists[low] != b;
+}
+
+// Those of the columns `hits` whose bodies may meet body `a`.
+DEVICE uint filtered(GLOBAL const uint* filters, uint a, GLOBAL const uint* columns, uint hits) {
+    uint kept = 0;
+    for (; hits != 0u; hits &= hits - 1u) {
+        const uint column = 31u - COUNT_LEADING_ZEROS(hits & (~hits + 1u));
+        if (may_meet(filters, a, columns[column])) kept |= 1u << column;
+    }
+    return kept;
+}
+
 DEVICE uint count_bits(uint bits) {
     uint count = 0;
     for (; bits != 0u; bits &= bits - 1u) ++count;
@@ -118,8 +160,8 @@ DEVICE void write_pairs(GLOBAL uint* pairs, uint capacity, uint index, uint a, G
 // least once, because PoCL 3.1 compiles other loops incorrectly.
 KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* roots,
                             GLOBAL const RealPair* unions, GLOBAL const uint* order,
-                            GLOBAL const uint* bodies, uint body_count, uint moving_count, GLOBAL uint* pairs,
-                            uint capacity, GLOBAL uint* status) {
+                            GLOBAL const uint* bodies, GLOBAL const uint* filters, uint body_count,
+                            uint moving_count, GLOBAL uint* pairs, uint capacity, GLOBAL uint* status) {
     LOCAL_ARRAY(RealPair, columns, BROAD_TILE * DIRECTIONS);
     LOCAL_ARRAY(uint, chosen, GROUP_SIZE);
     LOCAL_ARRAY(uint, shared, 3);
@@ -156,10 +198,12 @@ KERNEL void find_body_pairs(GLOBAL const real* volumes, GLOBAL const RealPair* r
             do {
                 if (LOCAL_ID == 0u) shared[FOUND] = 0u;
                 BARRIER;
-                const uint hits = row < rows_end ? overlapping_columns(roots, is_only_tile, row, columns,
-                                                                       from, column_count)
-                                                       | own_column(bodies, order[row], row, from)
-                                                 : 0u;
+                uint hits = 0;
+                if (row < rows_end) {
+                    hits = overlapping_columns(roots, is_only_tile, row, columns, from, column_count)
+                           | own_column(bodies, order[row], row, from);
+                    if (FILTERED) hits = filtered(filters, order[row], order + from, hits);
+                }
                 const uint offset = hits != 0u ? LOCAL_ATOMIC_ADD(shared + FOUND, count_bits(hits)) : 0u;
                 BARRIER;
                 if (LOCAL_ID == 0u && shared[FOUND] != 0u)

@@ -22,8 +22,10 @@ constexpr double rounding_steps = 24;
 /// of it; the factor 3 covers the roundings of the test.
 constexpr double published_slack = 3 * 0.5 * 10 * 0x1p-23;
 
-bool has_self_pairs(const Body& body, SelfPairs self) {
-    return !body.fixed && (self == SelfPairs::on || (self == SelfPairs::deformable && body.deformable));
+bool meets_itself(const Scene& scene, std::uint32_t body, SelfPairs self) {
+    const bool wanted =
+        self == SelfPairs::on || (self == SelfPairs::deformable && scene.bodies[body].deformable);
+    return wanted && may_meet(scene, body, body);
 }
 
 } // namespace
@@ -37,7 +39,7 @@ BroadSweep::BroadSweep(const Scene& scene, const Geometry& geometry, Broad bound
     for (const auto& d : directions(geometry)) directions_.emplace_back(d[0], d[1], d[2]);
     for (const auto& mesh : scene.meshes) shapes_.push_back(shape_of(mesh.vertices));
     for (std::uint32_t body = 0; body < scene.bodies.size(); ++body)
-        if (has_self_pairs(scene.bodies[body], self)) own_.push_back({body, body});
+        if (meets_itself(scene, body, self)) own_.push_back({body, body});
 }
 
 BroadSweep::Shape BroadSweep::shape_of(const std::vector<Eigen::Vector3d>& vertices) const {
@@ -143,11 +145,10 @@ std::vector<BodyPair> BroadSweep::pairs(std::span<const Ball> balls) const {
 /// The pairs of bodies whose slabs overlap along all directions, and those of bodies with themselves.
 std::vector<BodyPair> BroadSweep::swept(const std::vector<double>& slabs) const {
     auto pairs = overlapping(slabs, directions_.size(), sweep_direction(slabs));
-    std::erase_if(
-        pairs, [this](BodyPair pair) { return scene_.bodies[pair.a].fixed && scene_.bodies[pair.b].fixed; });
-    const auto others = static_cast<std::ptrdiff_t>(pairs.size());
+    std::erase_if(pairs, [this](BodyPair pair) { return !may_meet(scene_, pair.a, pair.b); });
+    const auto of_two = static_cast<std::ptrdiff_t>(pairs.size());
     pairs.insert(pairs.end(), own_.begin(), own_.end());
-    std::inplace_merge(pairs.begin(), pairs.begin() + others, pairs.end());
+    std::inplace_merge(pairs.begin(), pairs.begin() + of_two, pairs.end());
     return pairs;
 }
 

@@ -10,7 +10,7 @@ namespace tandem {
 /// Finds body pairs on the host: sweep and prune over bounds of the bodies. The bounds are slabs along the
 /// directions of the geometry, because bounds along other directions could drop pairs with overlapping
 /// k-DOPs. They are widened by the rounding of transform and slabs, so that every pair with overlapping root
-/// k-DOPs is found. Pairs of two fixed bodies are excluded. Setting self adds pairs (a, a).
+/// k-DOPs is found. Pairs without may_meet() (scenes/scene.h) are excluded. Setting self adds pairs (a, a).
 class BroadSweep {
 public:
     /// `bound`: Broad::sphere for the paper's spheres around meshes. Broad::tight for boxes in mesh

@@ -7,9 +7,8 @@
 
 namespace tandem {
 
-/// Finds body pairs on the device: all pairs (a < b) whose root k-DOPs overlap after the last refit, except
-/// pairs of two fixed bodies, and the pairs (a, a) of setting self. Grids depend on the number of bodies
-/// only.
+/// Finds body pairs on the device: all pairs (a < b) that may meet and whose root k-DOPs overlap after the
+/// last refit, and the pairs (a, a) of setting self. Grids depend on the number of bodies only.
 class BroadStage {
 public:
     /// Both arguments must outlive this. Throws InputError if there are too many bodies to number the pairs
@@ -44,7 +43,7 @@ private:
     std::uint32_t count_ = 0;        ///< bodies in the order
     std::uint32_t moving_count_ = 0; ///< moving bodies, which are first in it; every pair has one
     std::vector<Eigen::Vector3d> mesh_centres_;
-    Buffer order_, roots_, unions_;
+    Buffer order_, roots_, unions_, filters_;
     Kernel bound_, find_;
 };
 

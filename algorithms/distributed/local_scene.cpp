@@ -52,6 +52,10 @@ std::shared_ptr<const Scene> local_subscene(const Scene& scene, const std::vecto
         body.mesh = mesh;
         local_scene->bodies.push_back(body);
     }
+    for (const auto& [a, b] : scene.never_meet)
+        if (std::ranges::binary_search(bodies, a) && std::ranges::binary_search(bodies, b))
+            local_scene->never_meet.push_back({static_cast<std::uint32_t>(local_index(*local_scene, a)),
+                                               static_cast<std::uint32_t>(local_index(*local_scene, b))});
     return local_scene;
 }
 

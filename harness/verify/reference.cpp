@@ -215,9 +215,9 @@ bool share_vertex(const std::array<std::uint32_t, 4>& p, const std::array<std::u
     return std::ranges::any_of(p, [&](auto vertex) { return std::ranges::find(q, vertex) != q.end(); });
 }
 
-bool pairs_itself(const Body& body, SelfPairs self) {
-    if (body.fixed) return false;
-    return self == SelfPairs::on || (self == SelfPairs::deformable && body.deformable);
+bool meets_itself(const Scene& scene, std::uint32_t body, SelfPairs self) {
+    if (self == SelfPairs::deformable && !scene.bodies[body].deformable) return false;
+    return self != SelfPairs::off && may_meet(scene, body, body);
 }
 
 /// Brute force: tests every pair of tetrahedra.
@@ -300,7 +300,7 @@ ReferenceAnswer answer_in(const Scene& scene, const Frame& frame, const Geometry
     parallel_for(bounds.size(), [&](std::size_t index) {
         const auto a = static_cast<std::uint32_t>(index);
         for (std::uint32_t b = a + 1; b < bounds.size(); ++b) {
-            if (scene.bodies[a].fixed && scene.bodies[b].fixed) continue;
+            if (!may_meet(scene, a, b)) continue;
             const auto hit = [&](std::uint32_t ta, std::uint32_t tb) { found[a].push_back({a, ta, b, tb}); };
             if (method == Method::brute_force)
                 test_all(bounds[a], bounds[b], hit);
@@ -308,7 +308,7 @@ ReferenceAnswer answer_in(const Scene& scene, const Frame& frame, const Geometry
                                  bounds[a].published))
                 sweep(bounds[a], bounds[b], hit);
         }
-        if (pairs_itself(scene.bodies[a], settings.self)) {
+        if (meets_itself(scene, a, settings.self)) {
             const auto& tetrahedra = scene.meshes[scene.bodies[a].mesh].tetrahedra;
             const auto hit = [&](std::uint32_t t, std::uint32_t u) {
                 if (!share_vertex(tetrahedra[t], tetrahedra[u])) found[a].push_back({a, t, a, u});

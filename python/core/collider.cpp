@@ -36,8 +36,16 @@ Scene scene_of(std::vector<Mesh> meshes, const ColliderOptions& options) {
         if (mesh >= scene.meshes.size())
             throw InputError(fmt::format("bodies: body {} is of mesh {} of {}; meshes are numbered from 0",
                                          body, mesh, scene.meshes.size()));
-        scene.bodies.push_back({.mesh = mesh, .fixed = false, .deformable = options.deformable[body]});
+        const auto [groups, meets] = options.groups[body];
+        scene.bodies.push_back({.mesh = mesh,
+                                .fixed = false,
+                                .deformable = options.deformable[body],
+                                .groups = groups,
+                                .meets = meets});
     }
+    for (const auto& [a, b] : options.never_meet)
+        scene.never_meet.push_back({std::min(a, b), std::max(a, b)});
+    std::ranges::sort(scene.never_meet);
     return scene;
 }
 

@@ -13,12 +13,14 @@
 
 namespace tandem::python {
 
-/// Options of a collider. `bodies` and `deformable` have one entry per body.
+/// Options of a collider. `bodies`, `deformable` and `groups` have one entry per body.
 struct ColliderOptions {
     std::vector<std::uint32_t> bodies; ///< number of each body's mesh
     std::vector<bool> deformable;
     std::string algorithm, preset, device;
     SettingTexts settings;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> groups;     ///< Body::groups, Body::meets
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> never_meet; ///< in any order
     std::optional<std::uintptr_t> stream; ///< a CUstream of the device, a CUDA one; 0: default stream
 };
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
@@ -81,11 +82,14 @@ void bind_collider(nb::module_& module) {
         return run(self, device_input(*self, poses, vertices));
     };
     nb::class_<ColliderOptions>(module, "ColliderOptions",
-                                "bodies, deformable: one entry per body. stream: an address.")
+                                "bodies, deformable, groups: one entry per body, of groups the bits of its "
+                                "groups and of those it meets. stream: an address.")
         .def(nb::init<std::vector<std::uint32_t>, std::vector<bool>, std::string, std::string, std::string,
-                      SettingTexts, std::optional<std::uintptr_t>>(),
+                      SettingTexts, std::vector<std::pair<std::uint32_t, std::uint32_t>>,
+                      std::vector<std::pair<std::uint32_t, std::uint32_t>>, std::optional<std::uintptr_t>>(),
              nb::arg("bodies"), nb::arg("deformable"), nb::arg("algorithm"), nb::arg("preset"),
-             nb::arg("device"), nb::arg("settings"), nb::arg("stream").none());
+             nb::arg("device"), nb::arg("settings"), nb::arg("groups"), nb::arg("never_meet"),
+             nb::arg("stream").none());
     nb::class_<Collider>(module, "Collider", "Implementation of tandem.Collider, which checks its input.")
         .def(nb::new_(&make), nb::arg("meshes"), nb::arg("options"), nb::arg("owner").none())
         .def("run", run_given, nb::arg("poses").none(), nb::arg("vertices").none(),

@@ -127,9 +127,11 @@ def algorithms() -> list[str]:
     """Names of the algorithms that Collider accepts besides auto."""
 
 class ColliderOptions:
-    """bodies, deformable: one entry per body. stream: an address."""
+    """
+    bodies, deformable, groups: one entry per body, of groups the bits of its groups and of those it meets. stream: an address.
+    """
 
-    def __init__(self, bodies: Sequence[int], deformable: Sequence[bool], algorithm: str, preset: str, device: str, settings: Mapping[str, str], stream: int | None) -> None: ...
+    def __init__(self, bodies: Sequence[int], deformable: Sequence[bool], algorithm: str, preset: str, device: str, settings: Mapping[str, str], groups: Sequence[tuple[int, int]], never_meet: Sequence[tuple[int, int]], stream: int | None) -> None: ...
 
 class Collider:
     """Implementation of tandem.Collider, which checks its input."""

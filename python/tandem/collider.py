@@ -113,6 +113,9 @@ class Collider:
     device: "host", "opencl:0", "cuda:0" as tandem.devices() lists them, or several that share a frame: "cuda:0+cuda:1".
     bodies: the number of each body's mesh, from 0; by default each mesh is one body.
     deformable: True, or the numbers of the bodies whose vertices change with every frame.
+    groups: a list of groups, 0 to 31, for each body; by default [0].
+    meets: a list of groups that it meets for each body, or None for all. Two bodies meet only if each meets a group of the other.
+    never_meet: pairs of bodies that never meet, in either order; (n, n): body n never meets itself.
     self_collision: True: also pairs of tetrahedra of one body that share no vertex; "deformable": only in deformable bodies. The same as
         setting self.
     stream: a CUDA stream of the device on which the collider enqueues its commands, in order with those of the application. Either
@@ -127,8 +130,9 @@ class Collider:
 
     # The slash makes `self` positional, because a setting has this name as well.
     def __init__(self, meshes: Sequence[Any], /, algorithm: str = "tiled", device: str = "host", *, bodies: Iterable[int] | None = None,
-                 deformable: bool | Iterable[int] = False, self_collision: bool | str = False, preset: str = "", stream: Any = None,
-                 **settings: Any) -> None:
+                 deformable: bool | Iterable[int] = False, groups: Sequence[Iterable[int]] | None = None,
+                 meets: Sequence[Iterable[int] | None] | None = None, never_meet: Iterable[Sequence[int]] = (),
+                 self_collision: bool | str = False, preset: str = "", stream: Any = None, **settings: Any) -> None:
         all_meshes = [_mesh(mesh, f"meshes[{i}]") for i, mesh in enumerate(_list(meshes, "meshes"))]
         mesh_of_body = list(range(len(all_meshes)))
         if bodies is not None:
@@ -143,8 +147,10 @@ class Collider:
                 raise ValueError("self_collision and setting self are the same; give one of them")
             settings["self"] = "on" if self_collision is True else self_collision
         texts = {name: _text(value, name) for name, value in settings.items()}
+        filters = list(zip(_bits_of_bodies(groups, "groups", 1, len(flags)), _bits_of_bodies(meets, "meets", 2**32 - 1, len(flags))))
+        apart = _body_pairs(never_meet, len(flags))
         address = None if stream is None else stream_address(stream)
-        options = _core.ColliderOptions(mesh_of_body, flags, algorithm, preset, device, texts, address)
+        options = _core.ColliderOptions(mesh_of_body, flags, algorithm, preset, device, texts, filters, apart, address)
         self._core = _core.Collider(all_meshes, options, stream)
 
     def run(self, poses: Any = None, vertices: Any = None) -> Answer:
@@ -275,6 +281,36 @@ def _flags(deformable, bodies):
             raise ValueError(f"deformable[{i}]: {number} is not the number of a body; there are {bodies}, numbered from 0")
         flags[number] = True
     return flags
+
+
+def _bits_of_bodies(lists, what, default, bodies):
+    if lists is None:
+        return [default] * bodies
+    given = _list(lists, what)
+    if len(given) != bodies:
+        raise ValueError(f"{what}: {len(given)} lists for {bodies} bodies; give one per body")
+    return [default if groups is None else _bits(groups, f"{what}[{body}]") for body, groups in enumerate(given)]
+
+
+def _bits(groups, what):
+    bits = 0
+    for group in _list(groups, what):
+        if not hasattr(group, "__index__"):
+            raise TypeError(f"{what}: type {type(group).__name__}; expected the number of a group")
+        if not 0 <= group.__index__() < 32:
+            raise ValueError(f"{what}: {group} is not the number of a group; they are 0 to 31")
+        bits |= 1 << group.__index__()
+    return bits
+
+
+def _body_pairs(pairs, bodies):
+    result = []
+    for i, pair in enumerate(_list(pairs, "never_meet")):
+        numbers = [_number(value, f"never_meet[{i}]") for value in _list(pair, f"never_meet[{i}]")]
+        if len(numbers) != 2 or max(numbers) >= bodies:
+            raise ValueError(f"never_meet[{i}]: expected two bodies of {bodies}, numbered from 0")
+        result.append(tuple(numbers))
+    return result
 
 
 def _text(value, name):

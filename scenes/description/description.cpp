@@ -102,11 +102,20 @@ Motion read_motion(const Json& json, const JsonLocation& location, std::size_t f
     return motion;
 }
 
+/// The bits of a list of groups.
+std::uint32_t read_groups(const Json& json, const JsonLocation& location) {
+    if (!json.is_array()) location.fail("must be an array of groups");
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < json.size(); ++i)
+        bits |= std::uint32_t{1} << static_cast<std::uint32_t>(whole(json[i], location / i, 0, 31));
+    return bits;
+}
+
 Body read_body(const Json& json, const JsonLocation& location,
                const std::map<std::string, std::uint32_t>& meshes) {
-    check_names(
-        json, location,
-        {"mesh", "fixed", "position", "rotation", "velocity", "spin", "poses", "material", "elastic"});
+    check_names(json, location,
+                {"mesh", "fixed", "position", "rotation", "velocity", "spin", "poses", "material", "elastic",
+                 "groups", "meets"});
     if (!json.contains("mesh")) location.fail("has no mesh");
     const auto name = text(json["mesh"], location / "mesh");
     std::vector<std::string> names;
@@ -117,7 +126,24 @@ Body read_body(const Json& json, const JsonLocation& location,
     Body body{.mesh = found->second, .fixed = flag(json, "fixed", location), .deformable = false};
     if (body.fixed && (json.contains("velocity") || json.contains("spin") || json.contains("poses")))
         location.fail("is fixed and moves; leave one out");
+    if (json.contains("groups")) body.groups = read_groups(json["groups"], location / "groups");
+    if (json.contains("meets")) body.meets = read_groups(json["meets"], location / "meets");
     return body;
+}
+
+/// Pairs of bodies in either order, or of a body with itself.
+void read_never_meet(const Json& json, const JsonLocation& location, Scene& scene) {
+    if (!json.is_array()) location.fail("must be an array of pairs of bodies");
+    const auto last = static_cast<double>(scene.bodies.size() - 1);
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        if (!json[i].is_array() || json[i].size() != 2) (location / i).fail("must be a pair of bodies");
+        const auto a = static_cast<std::uint32_t>(whole(json[i][0], location / i / 0, 0, last));
+        const auto b = static_cast<std::uint32_t>(whole(json[i][1], location / i / 1, 0, last));
+        scene.never_meet.push_back({std::min(a, b), std::max(a, b)});
+    }
+    std::ranges::sort(scene.never_meet);
+    const auto repeated = std::ranges::unique(scene.never_meet);
+    scene.never_meet.erase(repeated.begin(), repeated.end());
 }
 
 /// Computed on demand, since a scripted scene keeps no frames in memory.
@@ -154,7 +180,7 @@ Scene load_description(const std::string& path) {
     if (json.is_object() && json.contains("plan"))
         throw InputError(fmt::format("{}: is a plan, not a scene; give it to 'tandem run'", path));
     const JsonLocation root{path, {}};
-    check_names(json, root, {"name", "units", "frames", "meshes", "bodies", "dynamics"});
+    check_names(json, root, {"name", "units", "frames", "meshes", "bodies", "never_meet", "dynamics"});
     Scene scene;
     scene.name = json.contains("name") ? text(json["name"], root / "name")
                                        : std::filesystem::path(path).stem().string();
@@ -162,6 +188,7 @@ Scene load_description(const std::string& path) {
     if (json.contains("frames"))
         scene.frame_count = static_cast<std::size_t>(whole(json["frames"], root / "frames", 1, 1e7));
     const auto motions = read_bodies(json, root, scene);
+    if (json.contains("never_meet")) read_never_meet(json["never_meet"], root / "never_meet", scene);
     refuse_beyond_memory(fmt::format("{}: the vertices of all bodies", path),
                          3 * sizeof(float) * static_cast<double>(vertex_count(scene)));
     scene.key = fmt::format("{}:frames={},bodies={:016x}", scene.name, scene.frame_count,

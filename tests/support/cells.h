@@ -109,16 +109,16 @@ inline std::vector<SettingTexts> pairwise(const std::vector<Axis>& axes) {
     return rows;
 }
 
-/// All body pairs except fixed-fixed ones, with setting self. The traversal must not depend on the broad
+/// All body pairs that may meet, with setting self. The traversal must not depend on the broad
 /// phase.
 inline std::vector<BodyPair> all_pairs(const Scene& scene, SelfPairs self = SelfPairs::off) {
     std::vector<BodyPair> pairs;
     for (std::uint32_t a = 0; a < scene.bodies.size(); ++a) {
-        const auto& body = scene.bodies[a];
-        if (!body.fixed && (self == SelfPairs::on || (self == SelfPairs::deformable && body.deformable)))
-            pairs.push_back({a, a});
+        const bool wanted =
+            self == SelfPairs::on || (self == SelfPairs::deformable && scene.bodies[a].deformable);
+        if (wanted && may_meet(scene, a, a)) pairs.push_back({a, a});
         for (std::uint32_t b = a + 1; b < scene.bodies.size(); ++b)
-            if (!body.fixed || !scene.bodies[b].fixed) pairs.push_back({a, b});
+            if (may_meet(scene, a, b)) pairs.push_back({a, b});
     }
     return pairs;
 }

@@ -251,6 +251,34 @@ TEST_F(ScenesDescription, ErrorsOfDynamicsNameThePath) {
                 HasSubstr("/bodies/1/spin: cannot be given"));
 }
 
+TEST_F(ScenesDescription, FiltersOfBodies) {
+    const auto described = [](const std::string& body, const std::string& top) {
+        return R"({"meshes": {"m": {"builtin": "jack"}}, "bodies": [{"mesh": "m"}, {"mesh": "m")" + body
+               + "}]" + top + "}";
+    };
+    const auto plain = load(described("", ""));
+    EXPECT_FALSE(has_filters(plain));
+    EXPECT_TRUE(may_meet(plain, 0, 1) && may_meet(plain, 1, 1));
+    const auto scene =
+        load(described(R"(, "groups": [3, 31], "meets": [])", R"(, "never_meet": [[1, 0], [0, 1], [1, 1]])"));
+    EXPECT_TRUE(has_filters(scene));
+    EXPECT_EQ(scene.bodies[0].groups, 1u);
+    EXPECT_EQ(scene.bodies[1].groups, 0x8000'0008u);
+    EXPECT_EQ(scene.bodies[1].meets, 0u);
+    EXPECT_EQ(scene.never_meet, (std::vector<std::array<std::uint32_t, 2>>{{0, 1}, {1, 1}}));
+    EXPECT_TRUE(may_meet(scene, 0, 0));
+    EXPECT_FALSE(may_meet(scene, 1, 0) || may_meet(scene, 1, 1));
+    EXPECT_NE(scene.digest, plain.digest);
+    EXPECT_THAT(failure(described(R"(, "groups": [32])", "")),
+                HasSubstr("/bodies/1/groups/0: must be an integer from 0 to 31"));
+    EXPECT_THAT(failure(described(R"(, "meets": 1)", "")),
+                HasSubstr("/bodies/1/meets: must be an array of groups"));
+    EXPECT_THAT(failure(described("", R"(, "never_meet": [[0, 2]])")),
+                HasSubstr("/never_meet/0/1: must be an integer from 0 to 1"));
+    EXPECT_THAT(failure(described("", R"(, "never_meet": [[0]])")),
+                HasSubstr("/never_meet/0: must be a pair of bodies"));
+}
+
 std::string repeated(const std::string& text, std::size_t times) {
     std::string all;
     for (std::size_t i = 0; i < times; ++i) all += text;

@@ -104,16 +104,15 @@ std::vector<Decision> decide_all(const Bodies& bodies, std::span<const Pair> pai
 
 using BodyNumbers = std::array<std::uint32_t, 2>;
 
-/// Pairs of bodies, not both fixed, whose boxes overlap, and those of setting self.
+/// Pairs of bodies that may meet and whose boxes overlap, and those of setting self.
 std::vector<BodyNumbers> near_bodies(const Scene& scene, const std::vector<Boxes>& boxes, SelfPairs self) {
     std::vector<BodyNumbers> result;
     for (std::uint32_t a = 0; a < boxes.size(); ++a) {
-        const auto& body = scene.bodies[a];
-        if (!body.fixed && (self == SelfPairs::on || (self == SelfPairs::deformable && body.deformable)))
-            result.push_back({a, a});
+        const bool wanted =
+            self == SelfPairs::on || (self == SelfPairs::deformable && scene.bodies[a].deformable);
+        if (wanted && may_meet(scene, a, a)) result.push_back({a, a});
         for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
-            if (!(scene.bodies[a].fixed && scene.bodies[b].fixed)
-                && boxes_overlap(boxes[a].whole, boxes[b].whole))
+            if (may_meet(scene, a, b) && boxes_overlap(boxes[a].whole, boxes[b].whole))
                 result.push_back({a, b});
     }
     return result;

@@ -43,7 +43,7 @@ struct FrameTruth {
 /// Progress, reported from the calling thread; `fraction` of the work in 0..1.
 using Report = std::function<void(double fraction, std::uint64_t decided)>;
 
-/// Decides every pair of tetrahedra of different bodies (not both fixed), and with positions.self those of
+/// Decides every pair of tetrahedra of different bodies that may meet, and with positions.self those of
 /// one body that share no vertex, except those that the frame skips, on all cores. Pairs that are not listed
 /// are disjoint: only pairs with disjoint boxes are not decided, and boxes are exact or wide enough for
 /// rounding. Throws InputError when the estimated memory exceeds `memory` bytes.

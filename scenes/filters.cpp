@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#include "scenes/scene.h"
+
+#include <algorithm>
+
+namespace tandem {
+
+bool may_meet(const Scene& scene, std::uint32_t a, std::uint32_t b) {
+    const auto& one = scene.bodies[a];
+    const auto& other = scene.bodies[b];
+    if (one.fixed && other.fixed) return false;
+    if (a != b && ((one.groups & other.meets) == 0 || (other.groups & one.meets) == 0)) return false;
+    return !std::ranges::binary_search(scene.never_meet, std::array{std::min(a, b), std::max(a, b)});
+}
+
+bool has_filters(const Scene& scene) {
+    const Body usual;
+    return !scene.never_meet.empty() || std::ranges::any_of(scene.bodies, [&](const Body& body) {
+        return body.groups != usual.groups || body.meets != usual.meets;
+    });
+}
+
+} // namespace tandem
