@@ -34,7 +34,10 @@ std::string key_of(std::string_view name, std::span<const SceneParameter> parame
     KIND(chalk) \
     KIND(temple) \
     KIND(arch) \
-    KIND(block)
+    KIND(block) \
+    KIND(rod) \
+    KIND(sheet) \
+    KIND(column)
 // clang-format on
 #define TANDEM_DECLARE_KIND(name) SceneKind name##_kind();
 TANDEM_SCENE_KINDS(TANDEM_DECLARE_KIND)

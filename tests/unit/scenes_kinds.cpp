@@ -244,6 +244,9 @@ TEST(ScenesDigest, SameOnEveryMachine) {
     EXPECT_EQ(digest_of(still()), 0x00042bb31a1b8d4bu);
     EXPECT_EQ(make_scene("plates").digest, 0xcc27aaeb8f5aef87u);
     EXPECT_EQ(make_scene("pile").digest, 0xec599913b0cb4e91u);
+    EXPECT_EQ(make_scene("rod").digest, 0x16c5b6f24b242bc6u);
+    EXPECT_EQ(make_scene("sheet").digest, 0x7a0bb359bef02bf9u);
+    EXPECT_EQ(make_scene("column").digest, 0xe3475c0742aeb0f3u);
 }
 
 TEST(ScenesDigest, CoversEveryPart) {

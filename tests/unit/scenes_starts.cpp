@@ -51,6 +51,9 @@ TEST(ScenesStarts, ExactCounts) {
     EXPECT_EQ(make_scene("arch").bodies.size(), 18u);
     EXPECT_EQ(make_scene("arch:keystone=0").bodies.size(), 17u);
     EXPECT_EQ(make_scene("block:bodies=3").bodies.size(), 4u);
+    EXPECT_EQ(tetrahedron_count(make_scene("rod")), 12960u);
+    EXPECT_EQ(tetrahedron_count(make_scene("sheet")), 17280u);
+    EXPECT_EQ(tetrahedron_count(make_scene("column")), 10368u);
 }
 
 /// Small variants of every scene that starts without overlap.
@@ -71,7 +74,10 @@ const std::vector<std::string> small_scenes = {"glasses:bodies=60,size=3",
                                                "arch",
                                                "arch:stones=3,segments=2,keystone=0,radius=7",
                                                "block:bodies=3,stack=1",
-                                               "block:bodies=4,size=0.3,drop=1"};
+                                               "block:bodies=4,size=0.3,drop=1",
+                                               "rod:count=3,length=20",
+                                               "sheet:count=3,width=2",
+                                               "column:count=3,folds=2"};
 
 TEST(ScenesStarts, NothingOverlaps) {
     for (const auto& name : small_scenes) {
