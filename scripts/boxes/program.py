@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Pairs of boxes that the program finds."""
-import re
 import subprocess
 import time
 import warnings
@@ -31,10 +30,6 @@ class Program:
 
     def __init__(self, path, folder):
         self._path, self._folder = path, folder
-
-    def has_self(self, algorithm):
-        """Whether an algorithm finds pairs of one body with itself. Raises BadData."""
-        return re.search(r"(?m)^ +self = ", output(self._path, "algorithms", algorithm)) is not None
 
     def write(self, case):
         """Writes the scene of a case: a mesh for each set of boxes. Raises BadData."""

@@ -87,6 +87,7 @@ TEST(Baselines, CubqlRejectsUnsupportedSettings) {
         {{{"precision", "double"}}, "choose float"},
         {{{"rounding", "published"}}, "choose safe"},
         {{{"output", "digest"}}, "choose pairs"},
+        {{{"self", "on"}}, "choose off"},
         {{{"pair_layout", "items"}}, "choose slots"}};
     for (const auto& [given, remedy] : wrong) EXPECT_THAT(rejection(cuda, given, cubql), HasSubstr(remedy));
     cuda.id = "cuda:adopted";
@@ -171,6 +172,7 @@ TEST_P(Baseline, FindsTheSamePairsWithEverySetting) {
     rounding.push_back({{"rounding", "safe"}, {"placement", "exact"}});
     for (const auto& given :
          pairwise({rounding, of("broad", {"sphere", "tight", "device"}), of("threads", {"1", "2", "5"}),
+                   of("self", {"off", "on", "deformable"}), of("pair_layout", {"slots", "items"}),
                    of("builder", {"morton", "sah", "breadth", "hilbert", "median", "balanced"})})) {
         SCOPED_TRACE(text(given));
         if (!accepts(given)) continue;
