@@ -73,9 +73,9 @@ std::vector<const Parameter*> pipeline_parameters(std::span<const Parameter* con
     all.insert(all.end(), {&parameters::builder, &parameters::contact_rule, &parameters::decision,
                            &parameters::broad, &parameters::self, &parameters::body_pair_capacity});
     if (published) all.insert(all.end(), {&parameters::residency, &parameters::convert});
-    all.insert(all.end(), {&parameters::submission, &parameters::output, &parameters::pair_layout,
-                           &parameters::group_size, &parameters::work_items, &parameters::threads,
-                           &parameters::pair_capacity, &parameters::contact_capacity});
+    all.insert(all.end(), {&parameters::submission, &parameters::output, &parameters::order,
+                           &parameters::pair_layout, &parameters::group_size, &parameters::work_items,
+                           &parameters::threads, &parameters::pair_capacity, &parameters::contact_capacity});
     all.insert(all.end(), own.begin(), own.end());
     return all;
 }
@@ -111,6 +111,8 @@ Pipeline::Pipeline(const Traversal& traversal, Device& on, const Scene& scene, S
         is_published(settings) ? ContactStage::Launches::at_once : ContactStage::Launches::apart;
     if (contacting)
         contacts = std::make_unique<ContactStage>(*bodies, contact_settings_of(settings), shape, launches);
+    if (settings[parameters::order] == AnswerOrder::canonical)
+        order = std::make_unique<OrderStage>(*bodies, shape, contacting);
     tools = std::make_shared<AnswerTools>(bodies, shape, contacting);
     if (!answers || !answers->fits(bodies->pair_layout()))
         answers = std::make_shared<AnswerPool>(on, bodies->pair_layout(), real_bytes(bodies->geometry()),

@@ -117,6 +117,14 @@ Settings Traversal::fitted(const Settings& settings, const DeviceInfo& info, con
         && settings[tandem::parameters::contact_rule] == ContactRule::none)
         throw InputError("setting output=contacts needs a contact rule; leave contact_rule out, or choose "
                          "output=pairs");
+    if (settings[tandem::parameters::order] == AnswerOrder::canonical) {
+        if (!has_pairs(settings[tandem::parameters::output]))
+            throw InputError("setting order=canonical needs pairs; choose output=pairs, or leave order out");
+        if (is_published(settings))
+            throw InputError(
+                "setting order=canonical does not go with residency=published, which sorts on the "
+                "host; leave it out");
+    }
     do_fit(fitting, info, scene);
     if (fitting[tandem::parameters::group_size] == 0)
         fitting.set(tandem::parameters::group_size(std::min<std::int64_t>(128, info.max_group_size)));

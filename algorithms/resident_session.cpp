@@ -89,8 +89,10 @@ void ResidentSession::walk(const AnswerBuffers& answer) {
     const auto task = pipeline_.task(answer);
     if (task.most_pairs() == 0) return;
     pipeline_.stages.walker->launch(task);
-    if (pipeline_.makes_contacts())
-        pipeline_.contacts->launch(answer, 0, answer.pairs.capacity(), pipeline_.status);
+    if (pipeline_.order) pipeline_.order->sort_pairs(answer, pipeline_.status);
+    if (!pipeline_.makes_contacts()) return;
+    pipeline_.contacts->launch(answer, 0, answer.pairs.capacity(), pipeline_.status);
+    if (pipeline_.order) pipeline_.order->sort_contacts(answer, pipeline_.status);
 }
 
 /// Grows all buffers to the counts of the status. Returns true if the walk must run again.

@@ -20,6 +20,7 @@ enum class Stage {
     traverse,
     balance,
     contact,
+    sort, ///< canonical order of the answer
     reduce,
     solve,
     preprocess,
@@ -28,8 +29,8 @@ enum class Stage {
     write,
     exchange ///< messages between ranks of a job
 };
-inline constexpr std::array<std::string_view, 14> stage_names{
-    "transform", "refit", "broad",      "seed",        "traverse", "balance", "contact",
+inline constexpr std::array<std::string_view, 15> stage_names{
+    "transform", "refit", "broad",      "seed",        "traverse", "balance", "contact", "sort",
     "reduce",    "solve", "preprocess", "postprocess", "read",     "write",   "exchange"};
 
 enum class Command { launch, upload, download, clear, wait, host_work };

@@ -59,7 +59,7 @@ class Answers(ColliderCase):
         self.assertEqual(self.collider([mesh], self_collision="deformable").count(), 0)
         self.assertEqual(self.collider([mesh], deformable=True, self_collision="deformable").digest(), answer.digest())
         with self.assertRaisesRegex(ValueError, "self_collision and setting self are the same"):
-            self.collider([mesh], self_collision=True, self="on")
+            tandem.Collider([mesh], self_collision=True, self="on")
         with self.assertRaisesRegex(ValueError, "self"):
             self.collider([mesh], self_collision="yes")
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cost models of the kernels in digest.cl.
+// Cost models of the kernels in digest.cl and sort.cl.
 #include "algorithms/cost.h"
 
 namespace tandem {
@@ -12,7 +12,22 @@ std::vector<KernelCost> answer_costs(const SceneFacts& scene) {
             {"expand_pairs",
              [=](const FrameFacts& f) { return pairs(f) + 16 * f.candidate_pairs; },
              {},
-             "candidate pairs and numbers of their tetrahedra in, four words a pair out"}};
+             "candidate pairs and numbers of their tetrahedra in, four words a pair out"},
+            {"count_pairs", pairs, {}, "candidate pairs and numbers of their tetrahedra in"},
+            {"sum_parts", {}, {}, "nothing: less than the counts that start_runs reads and writes"},
+            {"start_runs", {}, {}, "nothing: a word in and out for each tetrahedron or pair that is counted"},
+            {"scatter_pairs",
+             [=](const FrameFacts& f) { return pairs(f) + (scene.row_bytes + 4) * f.candidate_pairs; },
+             {},
+             "candidate pairs and numbers of their tetrahedra in, the pairs and a key each out"},
+            {"sort_pairs",
+             [=](const FrameFacts& f) { return (2 * scene.row_bytes + 4) * f.candidate_pairs; },
+             {},
+             "pairs and keys in, pairs out"},
+            {"count_contacts", {}, {}, "nothing: contacts are not counted in advance"},
+            {"scatter_contacts", {}, {}, "nothing: contacts are not counted in advance"},
+            {"sort_contacts", {}, {}, "nothing: contacts are not counted in advance"},
+            {"return_contacts", {}, {}, "nothing: contacts are not counted in advance"}};
 }
 
 } // namespace tandem

@@ -87,6 +87,12 @@ enum class Slabs {
     usual    ///< one of the above, chosen by device and k before kernels are compiled
 };
 
+/// Order of pairs and contacts in a device's memory. Downloads are sorted.
+enum class AnswerOrder {
+    any,
+    canonical ///< by the numbers of bodies and tetrahedra, and of features
+};
+
 /// Format of a candidate pair in a device's memory (answer/pairs.clh).
 enum class PairLayout {
     items, ///< 16 bytes: body a, body b, and the positions of the two tetrahedra in their bodies' orders

@@ -162,6 +162,14 @@ inline constexpr Setting<Output> output{
     "output of a walk: pairs: candidate pairs, and contacts; count, digest: only these of the pairs; "
     "contacts: as pairs, without interior tetrahedra if contact_rule=opposing or published, whose contacts "
     "are the same"};
+inline constexpr Setting<AnswerOrder> order{
+    "order",
+    AnswerOrder::any,
+    {{"any", AnswerOrder::any}, {"canonical", AnswerOrder::canonical}},
+    "",
+    "order of pairs and contacts on the device: any; canonical: by body a, tetrahedron a, body b, "
+    "tetrahedron b "
+    "and feature, so that bytes are equal over runs, algorithms and devices"};
 inline constexpr Setting<PairLayout> pair_layout{
     "pair_layout",
     PairLayout::slots,

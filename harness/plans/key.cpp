@@ -6,6 +6,7 @@
 #include "harness/sampling/ranks/rank_team.h"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 
 namespace tandem {
@@ -18,11 +19,20 @@ std::string models_of(const Cell& cell) {
     return models;
 }
 
-/// "name=value,..." in the order of names. Records from before setting self have none, and are comparable.
+/// Settings that came after the first records, which are comparable with records of their defaults.
+constexpr std::array<const Parameter*, 2> later_settings{&parameters::order, &parameters::self};
+
+bool is_later_default(const std::string& name, const std::string& value) {
+    return std::ranges::any_of(later_settings, [&](const Parameter* later) {
+        return later->name == name && later->text(later->initial) == value;
+    });
+}
+
+/// "name=value,..." in the order of names.
 std::string settings_key(const SettingTexts& settings) {
     std::string key;
     for (const auto& [name, value] : settings)
-        if (name != parameters::self.name || value != parameters::self.text(parameters::self.initial))
+        if (!is_later_default(name, value))
             key += fmt::format("{}{}={}", key.empty() ? "" : ",", name, value);
     return key;
 }

@@ -150,6 +150,7 @@ constexpr std::array<const char*, stage_names.size()> stage_meanings{
     "walks in tandem to the candidate pairs",
     "redistribution of work between launches",
     "decision and contacts of the candidate pairs",
+    "canonical order of pairs and contacts",
     "reduction of contacts",
     "response to contacts",
     "host work before the device's",

@@ -26,9 +26,9 @@ enum class Method {
     sweep        ///< sorts the tetrahedra of overlapping bodies along the first direction
 };
 
-/// Finds every pair of tetrahedra of different bodies that may meet and whose leaf k-DOPs overlap, and filters
-/// them if settings.walked is not all. With settings.self also those of one body that share no vertex. Runs
-/// on all cores, and shares no code with kernels, hierarchies or broad phase.
+/// Finds every pair of tetrahedra of different bodies that may meet and whose leaf k-DOPs overlap, and
+/// filters them if settings.walked is not all. With settings.self also those of one body that share no
+/// vertex. Runs on all cores, and shares no code with kernels, hierarchies or broad phase.
 ReferenceAnswer reference(const Scene& scene, const Frame& frame, const Geometry& geometry, bool contacts,
                           Method method, const ContactSettings& settings = {});
 

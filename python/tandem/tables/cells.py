@@ -4,10 +4,10 @@ from .. import cell_rows
 from .naming import Named, labels
 from .wording import notes, number, table, with_interval
 
-DEVICE = ("transform", "refit", "seed", "traverse", "balance", "contact", "read", "write")
+DEVICE = ("transform", "refit", "seed", "traverse", "balance", "contact", "sort", "read", "write")
 HOST = ("preprocess", "postprocess", "exchange")
-STAGES = (*DEVICE[:2], "broad", *DEVICE[2:6], *HOST, *DEVICE[6:])
-KERNELS = DEVICE[:6]
+STAGES = (*DEVICE[:2], "broad", *DEVICE[2:7], *HOST, *DEVICE[7:])
+KERNELS = DEVICE[:7]
 # Cells with different bounds have different candidate pairs and separate tables. The title has the settings that are not at these defaults.
 BOUNDS = {"k": None, "axes": "standard", "precision": "float", "rounding": "safe", "placement": "rounded", "origin": "world"}
 # Kernels that the paper's release has too. Our refit has a launch for strips and one for tops; our balance has one that plans and one that

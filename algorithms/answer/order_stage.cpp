@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/answer/order_stage.h"
+
+#include "algorithms/parameters/table.h"
+#include "algorithms/sources.h"
+#include "base/error.h"
+
+#include <fmt/format.h>
+#include <limits>
+
+namespace tandem {
+
+namespace {
+
+/// Groups that sum counts: each adds up the sums of those before it.
+constexpr std::uint32_t most_groups = 1024;
+
+} // namespace
+
+OrderStage::OrderStage(const Bodies& bodies, LaunchShape shape, bool contacts)
+    : bodies_(bodies), shape_(shape) {
+    auto& device = bodies.device();
+    const auto& scene = bodies.scene();
+    std::vector<std::uint32_t> firsts;
+    std::uint64_t places = 0;
+    for (const auto& body : scene.bodies) {
+        firsts.push_back(static_cast<std::uint32_t>(places));
+        places += scene.meshes[body.mesh].tetrahedra.size();
+    }
+    if (places > std::numeric_limits<std::uint32_t>::max())
+        throw DeviceError(
+            fmt::format("setting order=canonical takes fewer than 2^32 tetrahedra, and the scene has {}; "
+                        "leave it out",
+                        places));
+    places_ = static_cast<std::uint32_t>(places);
+    shape_.groups = std::min(shape_.groups, most_groups);
+    auto defines = row_defines(bodies.geometry(), shape.group_size);
+    define(defines, parameters::pair_layout, bodies.pair_layout());
+    const auto& source = kernel_source("algorithms/answer/sort.cl");
+    const auto compile = [&](Kernel& kernel, const char* entry) {
+        kernel = device.compile(source, entry, defines);
+    };
+    compile(count_pairs_, "count_pairs");
+    compile(sum_parts_, "sum_parts");
+    compile(start_runs_, "start_runs");
+    compile(scatter_pairs_, "scatter_pairs");
+    compile(sort_pairs_, "sort_pairs");
+    const StageScope scope(device, Stage::write);
+    firsts_ = device.allocate(firsts.size() * 4, "first tetrahedra of bodies");
+    device.upload(firsts_, bytes_of(firsts));
+    sums_ = device.allocate(shape_.groups * 4, "sums of counts");
+    const std::size_t pair_bytes = words_of(bodies.pair_layout()) * 4;
+    counts_ = GrowableBuffer(device, "counts by key", 4, 0);
+    pairs_ = GrowableBuffer(device, {{"pairs to sort", pair_bytes}, {"keys of pairs", 4}}, 0);
+    if (!contacts) return;
+    compile(count_contacts_, "count_contacts");
+    compile(scatter_contacts_, "scatter_contacts");
+    compile(sort_contacts_, "sort_contacts");
+    compile(return_contacts_, "return_contacts");
+    contacts_ = GrowableBuffer(device,
+                               {{"contacts to sort", 4},
+                                {"keys of contacts", 4},
+                                {"ids of sorted contacts", 8},
+                                {"values of sorted contacts", 8 * real_bytes(bodies.geometry())}},
+                               0);
+}
+
+void OrderStage::launch(const Kernel& kernel, std::span<const Argument> arguments) {
+    bodies_.device().launch(kernel, {shape_.groups, shape_.group_size}, arguments);
+}
+
+void OrderStage::begin_counts(std::uint32_t keys) {
+    counts_.reserve(keys);
+    bodies_.device().clear(counts_.buffer(), std::size_t{keys} * 4);
+}
+
+void OrderStage::start_runs(std::uint32_t keys) {
+    launch(sum_parts_, std::array<Argument, 3>{counts_.buffer(), keys, sums_});
+    launch(start_runs_, std::array<Argument, 3>{counts_.buffer(), keys, sums_});
+}
+
+void OrderStage::sort_pairs(const AnswerBuffers& answer, const Status& status) {
+    const StageScope scope(bodies_.device(), Stage::sort);
+    const auto& found = answer.pairs;
+    pairs_.reserve(found.capacity());
+    begin_counts(places_);
+    launch(count_pairs_, std::array<Argument, 7>{found.buffer(), found.capacity(), bodies_.owners(),
+                                                 bodies_.ids(), firsts_, counts_.buffer(), status.buffer()});
+    start_runs(places_);
+    launch(scatter_pairs_,
+           std::array<Argument, 9>{found.buffer(), found.capacity(), bodies_.owners(), bodies_.ids(), firsts_,
+                                   counts_.buffer(), pairs_.buffer(0), pairs_.buffer(1), status.buffer()});
+    launch(sort_pairs_, std::array<Argument, 5>{counts_.buffer(), places_, pairs_.buffer(0), pairs_.buffer(1),
+                                                found.buffer()});
+}
+
+void OrderStage::sort_contacts(const AnswerBuffers& answer, const Status& status) {
+    const StageScope scope(bodies_.device(), Stage::sort);
+    const auto& found = answer.contacts;
+    const auto pairs = answer.pairs.capacity();
+    contacts_.reserve(found.capacity());
+    begin_counts(pairs);
+    launch(count_contacts_, std::array<Argument, 4>{found.buffer(contact_ids), found.capacity(),
+                                                    counts_.buffer(), status.buffer()});
+    start_runs(pairs);
+    launch(scatter_contacts_,
+           std::array<Argument, 6>{found.buffer(contact_ids), found.capacity(), counts_.buffer(),
+                                   contacts_.buffer(0), contacts_.buffer(1), status.buffer()});
+    launch(sort_contacts_,
+           std::array<Argument, 9>{counts_.buffer(), pairs, contacts_.buffer(0), contacts_.buffer(1),
+                                   found.buffer(contact_ids), found.buffer(contact_values),
+                                   contacts_.buffer(2), contacts_.buffer(3), status.buffer()});
+    launch(return_contacts_,
+           std::array<Argument, 6>{contacts_.buffer(2), contacts_.buffer(3), found.capacity(),
+                                   found.buffer(contact_ids), found.buffer(contact_values), status.buffer()});
+}
+
+} // namespace tandem

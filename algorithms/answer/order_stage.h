@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "algorithms/answer/answers.h"
+#include "algorithms/answer/growable_buffer.h"
+#include "algorithms/answer/status.h"
+
+namespace tandem {
+
+/// Brings an answer on a device into canonical order: pairs ascend by body a, tetrahedron a, body b and
+/// tetrahedron b, contacts by pair and feature, with the numbers of the scene. Grids do not depend on counts.
+/// Buffers: 4 bytes per tetrahedron of the bodies, or per pair if there are more; a copy of pairs and
+/// contacts, with 4 bytes more for a pair and 8 for a contact.
+class OrderStage {
+public:
+    /// `bodies` must outlive this. Throws DeviceError for more than 2^32 - 1 tetrahedra.
+    OrderStage(const Bodies& bodies, LaunchShape shape, bool contacts);
+
+    /// Enqueues the sort of the pairs that the status counts, before anything refers to their rows. Throws
+    /// OutOfMemory.
+    void sort_pairs(const AnswerBuffers& answer, const Status& status);
+    /// Enqueues the sort of the contacts of sorted pairs. Throws OutOfMemory.
+    void sort_contacts(const AnswerBuffers& answer, const Status& status);
+
+private:
+    void launch(const Kernel& kernel, std::span<const Argument> arguments);
+    void begin_counts(std::uint32_t keys);
+    void start_runs(std::uint32_t keys);
+
+    const Bodies& bodies_;
+    LaunchShape shape_;
+    std::uint32_t places_ = 0; ///< tetrahedra of all bodies, in input order
+    Buffer firsts_, sums_;
+    GrowableBuffer counts_, pairs_, contacts_;
+    Kernel count_pairs_, scatter_pairs_, sort_pairs_, sum_parts_, start_runs_;
+    Kernel count_contacts_, scatter_contacts_, sort_contacts_, return_contacts_; ///< null without contacts
+};
+
+} // namespace tandem

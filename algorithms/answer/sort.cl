@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+// Canonical order of an answer: pairs by the numbers of their bodies and tetrahedra, contacts by pair and
+// feature. Rows are counted by a first key, whose sums give each key its run of places. Rows go to places of
+// their run in any order, and each run is sorted by a second key. Runs are short: most have fewer than 32
+// rows.
+#include "backends/portable.h"
+#include "algorithms/answer/pairs.clh"
+
+// Copies row `i` of a buffer of pairs to row `j` of another. The host has one build for both layouts.
+DEVICE void copy_pair(GLOBAL uint* to, ulong j, GLOBAL const uint* from, ulong i) {
+    if (PAIR_LAYOUT == PAIR_SLOTS)
+        ((GLOBAL WordPair*)to)[j] = ((GLOBAL const WordPair*)from)[i];
+    else
+        ((GLOBAL WordRow*)to)[j] = ((GLOBAL const WordRow*)from)[i];
+}
+
+// Rows in a buffer of `capacity` rows with a 64-bit counter.
+DEVICE uint rows_in(GLOBAL const uint* counter, uint capacity) {
+    return counter[1] != 0u || counter[0] > capacity ? capacity : counter[0];
+}
+
+// Position of a tetrahedron in the order of the scene: `firsts` has that of each body's first tetrahedron.
+DEVICE uint place_of(const BodyTetrahedron* one, GLOBAL const uint* firsts, GLOBAL const uint* ids) {
+    return firsts[one->body] + tetrahedron_id(ids, one->tetrahedron);
+}
+
+// counts[place of a] += 1 for each pair.
+KERNEL void count_pairs(GLOBAL const uint* found, uint capacity, GLOBAL const uint* owners,
+                        GLOBAL const uint* ids, GLOBAL const uint* firsts, GLOBAL uint* counts,
+                        GLOBAL const uint* status) {
+    const uint rows = rows_in(status + STATUS_PAIRS, capacity);
+    for (ulong i = GLOBAL_ID; i < rows; i += GLOBAL_COUNT) { // 32 bits might wrap around
+        const PairMembers pair = members_of(found, i, owners);
+        ATOMIC_ADD(counts + place_of(&pair.a, firsts, ids), 1u);
+    }
+}
+
+// counts[pair] += 1 for each contact.
+KERNEL void count_contacts(GLOBAL const uint* contact_ids, uint capacity, GLOBAL uint* counts,
+                           GLOBAL const uint* status) {
+    const uint rows = rows_in(status + STATUS_CONTACTS, capacity);
+    for (ulong i = GLOBAL_ID; i < rows; i += GLOBAL_COUNT)
+        ATOMIC_ADD(counts + ((GLOBAL const WordPair*)contact_ids)[i].x, 1u);
+}
+
+// A work-group's part of the counts: `count` split into GROUP_COUNT parts of whole rounds of its work-items.
+DEVICE uint part_of_group(uint count) {
+    const uint each = (count + GROUP_COUNT - 1u) / GROUP_COUNT;
+    return (each + (uint)GROUP_SIZE - 1u) / (uint)GROUP_SIZE * (uint)GROUP_SIZE;
+}
+
+DEVICE uint group_first(uint group, uint count) {
+    const ulong first = (ulong)group * part_of_group(count);
+    return first < count ? (uint)first : count;
+}
+
+// sums[group] = sum of the group's part.
+KERNEL void sum_parts(GLOBAL const uint* counts, uint count, GLOBAL uint* sums) {
+    LOCAL_ARRAY(uint, part_sums, GROUP_SIZE);
+    const uint end = group_first(GROUP_ID + 1u, count);
+    uint sum = 0;
+    for (uint i = group_first(GROUP_ID, count) + LOCAL_ID; i < end; i += (uint)GROUP_SIZE) sum += counts[i];
+    part_sums[LOCAL_ID] = sum;
+    BARRIER;
+    if (LOCAL_ID != 0u) return;
+    uint all = 0;
+    for (uint i = 0; i < (uint)GROUP_SIZE; ++i) all += part_sums[i];
+    sums[GROUP_ID] = all;
+}
+
+// Turns the counts into the first place of each key. One work-item of each group adds up the parts before it.
+KERNEL void start_runs(GLOBAL uint* counts, uint count, GLOBAL const uint* sums) {
+    LOCAL_ARRAY(uint, values, GROUP_SIZE);
+    LOCAL_ARRAY(uint, shared, 1);
+    const uint first = group_first(GROUP_ID, count);
+    const uint end = group_first(GROUP_ID + 1u, count);
+    if (LOCAL_ID == 0u) {
+        uint before = 0;
+        for (uint group = 0; group < GROUP_ID; ++group) before += sums[group];
+        shared[0] = before;
+    }
+    uint start = first;
+    do { // runs at least once, as loops with barriers must
+        const uint i = start + LOCAL_ID;
+        values[LOCAL_ID] = i < end ? counts[i] : 0u;
+        BARRIER;
+        if (LOCAL_ID == 0u) {
+            uint sum = shared[0];
+            for (uint k = 0; k < (uint)GROUP_SIZE; ++k) {
+                const uint own = values[k];
+                values[k] = sum;
+                sum += own;
+            }
+            shared[0] = sum;
+        }
+        BARRIER;
+        if (i < end) counts[i] = values[LOCAL_ID];
+        BARRIER;
+        start += (uint)GROUP_SIZE;
+    } while (start < end);
+}
+
+// Puts each pair at a place of its run; `places` then has the end of each run. `keys`: the places of b.
+KERNEL void scatter_pairs(GLOBAL const uint* found, uint capacity, GLOBAL const uint* owners,
+                          GLOBAL const uint* ids, GLOBAL const uint* firsts, GLOBAL uint* places,
+                          GLOBAL uint* rows, GLOBAL uint* keys, GLOBAL const uint* status) {
+    const uint count = rows_in(status + STATUS_PAIRS, capacity);
+    for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
+        const PairMembers pair = members_of(found, i, owners);
+        const uint at = ATOMIC_ADD(places + place_of(&pair.a, firsts, ids), 1u);
+        copy_pair(rows, at, found, i);
+        keys[at] = place_of(&pair.b, firsts, ids);
+    }
+}
+
+// The same for contacts: their row numbers, with the features as keys.
+KERNEL void scatter_contacts(GLOBAL const uint* contact_ids, uint capacity, GLOBAL uint* places,
+                             GLOBAL uint* rows, GLOBAL uint* keys, GLOBAL const uint* status) {
+    const uint count = rows_in(status + STATUS_CONTACTS, capacity);
+    for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
+        const WordPair contact = ((GLOBAL const WordPair*)contact_ids)[i];
+        const uint at = ATOMIC_ADD(places + contact.x, 1u);
+        rows[at] = (uint)i;
+        keys[at] = contact.y;
+    }
+}
+
+DEVICE void swap_words(GLOBAL uint* words, ulong i, ulong j) {
+    const uint word = words[i];
+    words[i] = words[j];
+    words[j] = word;
+}
+
+// Swaps two rows of `words` words each, and their keys.
+DEVICE void swap_rows(GLOBAL uint* keys, GLOBAL uint* rows, uint words, uint i, uint j) {
+    swap_words(keys, i, j);
+    for (uint word = 0; word < words; ++word)
+        swap_words(rows, (ulong)words * i + word, (ulong)words * j + word);
+}
+
+// Restores the heap of rows first..first + count - 1 below `node`.
+DEVICE void sift(GLOBAL uint* keys, GLOBAL uint* rows, uint words, uint first, uint count, uint node) {
+    while (2u * node + 1u < count) {
+        uint child = 2u * node + 1u;
+        if (child + 1u < count && keys[first + child + 1u] > keys[first + child]) ++child;
+        if (keys[first + node] >= keys[first + child]) return;
+        swap_rows(keys, rows, words, first + node, first + child);
+        node = child;
+    }
+}
+
+// Longer runs are sorted as a heap, whose steps grow less than with the square of their length.
+#define MOST_INSERTED 24u
+
+// Sorts rows first..end - 1 by their keys.
+DEVICE void sort_run(GLOBAL uint* keys, GLOBAL uint* rows, uint words, uint first, uint end) {
+    const uint count = end - first;
+    if (count <= MOST_INSERTED) {
+        for (uint i = 1; i < count; ++i)
+            for (uint j = first + i; j > first && keys[j - 1u] > keys[j]; --j)
+                swap_rows(keys, rows, words, j - 1u, j);
+        return;
+    }
+    for (uint node = count / 2u; node > 0u; --node) sift(keys, rows, words, first, count, node - 1u);
+    for (uint last = count - 1u; last > 0u; --last) {
+        swap_rows(keys, rows, words, first, first + last);
+        sift(keys, rows, words, first, last, 0u);
+    }
+}
+
+// Sorts the run of each of `count` keys, and writes it to `found`.
+KERNEL void sort_pairs(GLOBAL const uint* places, uint count, GLOBAL uint* rows, GLOBAL uint* keys,
+                       GLOBAL uint* found) {
+    for (ulong key = GLOBAL_ID; key < count; key += GLOBAL_COUNT) {
+        const uint first = key == 0u ? 0u : places[key - 1u];
+        const uint end = places[key];
+        sort_run(keys, rows, PAIR_WORDS, first, end);
+        for (uint i = first; i < end; ++i) copy_pair(found, i, rows, i);
+    }
+}
+
+// Sorts the run of each of the pairs, and copies the contacts in this order.
+KERNEL void sort_contacts(GLOBAL const uint* places, uint pair_capacity, GLOBAL uint* rows, GLOBAL uint* keys,
+                          GLOBAL const uint* contact_ids, GLOBAL const real* contact_values,
+                          GLOBAL uint* sorted_ids, GLOBAL real* sorted_values, GLOBAL const uint* status) {
+    const uint count = rows_in(status + STATUS_PAIRS, pair_capacity);
+    for (ulong pair = GLOBAL_ID; pair < count; pair += GLOBAL_COUNT) {
+        const uint first = pair == 0u ? 0u : places[pair - 1u];
+        const uint end = places[pair];
+        sort_run(keys, rows, 1u, first, end);
+        for (uint i = first; i < end; ++i) {
+            ((GLOBAL WordPair*)sorted_ids)[i] = ((GLOBAL const WordPair*)contact_ids)[rows[i]];
+            GLOBAL const RealRow* from = (GLOBAL const RealRow*)contact_values + 2 * (ulong)rows[i];
+            GLOBAL RealRow* to = (GLOBAL RealRow*)sorted_values + 2 * (ulong)i;
+            to[0] = from[0];
+            to[1] = from[1];
+        }
+    }
+}
+
+// Copies the sorted contacts back.
+KERNEL void return_contacts(GLOBAL const uint* sorted_ids, GLOBAL const real* sorted_values, uint capacity,
+                            GLOBAL uint* contact_ids, GLOBAL real* contact_values,
+                            GLOBAL const uint* status) {
+    const uint count = rows_in(status + STATUS_CONTACTS, capacity);
+    for (ulong i = GLOBAL_ID; i < count; i += GLOBAL_COUNT) {
+        ((GLOBAL WordPair*)contact_ids)[i] = ((GLOBAL const WordPair*)sorted_ids)[i];
+        ((GLOBAL RealRow*)contact_values)[2 * i] = ((GLOBAL const RealRow*)sorted_values)[2 * i];
+        ((GLOBAL RealRow*)contact_values)[2 * i + 1] = ((GLOBAL const RealRow*)sorted_values)[2 * i + 1];
+    }
+}
