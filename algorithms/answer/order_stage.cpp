@@ -15,12 +15,8 @@ namespace {
 /// Groups that sum counts: each adds up the sums of those before it.
 constexpr std::uint32_t most_groups = 1024;
 
-} // namespace
-
-OrderStage::OrderStage(const Bodies& bodies, LaunchShape shape, bool contacts)
-    : bodies_(bodies), shape_(shape) {
-    auto& device = bodies.device();
-    const auto& scene = bodies.scene();
+/// Number of tetrahedra in the bodies before each body, and in all.
+std::vector<std::uint32_t> first_places(const Scene& scene) {
     std::vector<std::uint32_t> firsts;
     std::uint64_t places = 0;
     for (const auto& body : scene.bodies) {
@@ -32,7 +28,17 @@ OrderStage::OrderStage(const Bodies& bodies, LaunchShape shape, bool contacts)
             fmt::format("setting order=canonical takes fewer than 2^32 tetrahedra, and the scene has {}; "
                         "leave it out",
                         places));
-    places_ = static_cast<std::uint32_t>(places);
+    firsts.push_back(static_cast<std::uint32_t>(places));
+    return firsts;
+}
+
+} // namespace
+
+OrderStage::OrderStage(const Bodies& bodies, LaunchShape shape, bool contacts)
+    : bodies_(bodies), shape_(shape) {
+    auto& device = bodies.device();
+    const auto firsts = first_places(bodies.scene());
+    places_ = firsts.back();
     shape_.groups = std::min(shape_.groups, most_groups);
     auto defines = row_defines(bodies.geometry(), shape.group_size);
     define(defines, parameters::pair_layout, bodies.pair_layout());

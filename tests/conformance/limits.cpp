@@ -96,11 +96,12 @@ TEST_F(Limits, ChunkedTraversesABodyPairPastHalfTheRange) {
         const auto found = host.allocate(expected * 16, "found");
         const auto table = pairs.adopted(host);
         const auto seeds = starts.adopted(host);
-        const std::array<Argument, 16> arguments{on.trees.nodes(),
+        const std::array<Argument, 17> arguments{on.trees.nodes(),
                                                  on.trees.tree_table(),
                                                  on.trees.level_table(),
                                                  on.bodies.row_table(),
                                                  on.bodies.ids(),
+                                                 on.bodies.tetrahedra(),
                                                  table,
                                                  pair_count,
                                                  0u,
@@ -134,10 +135,11 @@ TEST_F(Limits, QueuesTraverseABodyPairPastHalfTheRange) {
     const auto idle = uploaded(bytes_of(std::vector<std::uint32_t>{0}));
     const auto found = host.allocate(expected * 16, "found");
     const auto table = pairs.adopted(host);
-    const std::array<Argument, 12> arguments{on.trees.nodes(),
+    const std::array<Argument, 13> arguments{on.trees.nodes(),
                                              on.trees.tree_table(),
                                              on.bodies.row_table(),
                                              on.bodies.ids(),
+                                             on.bodies.tetrahedra(),
                                              table,
                                              queue,
                                              counts,
