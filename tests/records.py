@@ -151,6 +151,23 @@ class Records(Case):
         self.assertEqual([(r["settings"]["k"], r["settings"]["precision"]) for r in self.records(out)],
                          list(itertools.product(["6", "8"], ["float", "double"])))
 
+    def test_keys_leave_out_defaults_of_later_settings(self):
+        """So that records from before a setting remain comparable; sort is a stage of the ordered cells alone."""
+        out = self.work / "later.jsonl"
+        status, text, errors = tandem("run", "rod:length=60,width=1", "--frames", "100:100", "--device", "host", "--algorithm", "tiled",
+                                      "--repeat", "1", "--set", "self=off,on", "--set", "order=any,canonical", "--out", out)
+        self.assertEqual((status, errors), (0, []), text)
+        found = {(record["settings"]["self"], record["settings"]["order"]): record for record in cells_of(out.read_text())}
+        self.assertEqual(len(found), 4)
+        for (own, order), record in found.items():
+            words = record["key"].split("|")[-1].split(",")
+            self.assertEqual(("self=on" in words, "order=canonical" in words), (own == "on", order == "canonical"))
+            names = {word.split("=")[0] for word in words}
+            self.assertEqual(("self" in names, "order" in names), (own == "on", order == "canonical"))
+            self.assertEqual("sort" in record["stages"], order == "canonical")
+            self.assertEqual(record["work"]["candidate_pairs"][0] > 0, own == "on")
+            self.assertEqual((record["agreement"]["missing"], record["agreement"]["extra"]), (0, 0))
+
     def full_record(self):
         """A record with every optional part, but few entries of maps and lists whose entries all have the same fields."""
         out = self.work / "schema.jsonl"

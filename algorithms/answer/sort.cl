@@ -43,61 +43,61 @@ KERNEL void count_contacts(GLOBAL const uint* contact_ids, uint capacity, GLOBAL
         ATOMIC_ADD(counts + ((GLOBAL const WordPair*)contact_ids)[i].x, 1u);
 }
 
-// A work-group's part of the counts: `count` split into GROUP_COUNT parts of whole rounds of its work-items.
-DEVICE uint part_of_group(uint count) {
+// The first of a work-group's part of `count` values.
+DEVICE uint group_first(uint group, uint count) {
     const uint each = (count + GROUP_COUNT - 1u) / GROUP_COUNT;
-    return (each + (uint)GROUP_SIZE - 1u) / (uint)GROUP_SIZE * (uint)GROUP_SIZE;
+    const ulong first = (ulong)group * each;
+    return first < count ? (uint)first : count;
 }
 
-DEVICE uint group_first(uint group, uint count) {
-    const ulong first = (ulong)group * part_of_group(count);
-    return first < count ? (uint)first : count;
+// A work-item's share of the sum of values first..end - 1: those a fixed stride apart.
+DEVICE uint strided_sum(GLOBAL const uint* values, uint first, uint end) {
+    uint sum = 0;
+    for (uint i = first + LOCAL_ID; i < end; i += (uint)GROUP_SIZE) sum += values[i];
+    return sum;
 }
 
 // sums[group] = sum of the group's part.
 KERNEL void sum_parts(GLOBAL const uint* counts, uint count, GLOBAL uint* sums) {
-    LOCAL_ARRAY(uint, part_sums, GROUP_SIZE);
-    const uint end = group_first(GROUP_ID + 1u, count);
-    uint sum = 0;
-    for (uint i = group_first(GROUP_ID, count) + LOCAL_ID; i < end; i += (uint)GROUP_SIZE) sum += counts[i];
-    part_sums[LOCAL_ID] = sum;
+    LOCAL_ARRAY(uint, own_sums, GROUP_SIZE);
+    own_sums[LOCAL_ID] = strided_sum(counts, group_first(GROUP_ID, count), group_first(GROUP_ID + 1u, count));
     BARRIER;
     if (LOCAL_ID != 0u) return;
     uint all = 0;
-    for (uint i = 0; i < (uint)GROUP_SIZE; ++i) all += part_sums[i];
+    for (uint i = 0; i < (uint)GROUP_SIZE; ++i) all += own_sums[i];
     sums[GROUP_ID] = all;
 }
 
-// Turns the counts into the first place of each key. One work-item of each group adds up the parts before it.
+// Turns the counts into the first place of each key. Each work-item has adjacent counts of the group's part.
 KERNEL void start_runs(GLOBAL uint* counts, uint count, GLOBAL const uint* sums) {
-    LOCAL_ARRAY(uint, values, GROUP_SIZE);
-    LOCAL_ARRAY(uint, shared, 1);
+    LOCAL_ARRAY(uint, before, GROUP_SIZE); // shares of the sum of the parts before this one
+    LOCAL_ARRAY(uint, starts, GROUP_SIZE);
     const uint first = group_first(GROUP_ID, count);
     const uint end = group_first(GROUP_ID + 1u, count);
+    const uint each = (end - first + (uint)GROUP_SIZE - 1u) / (uint)GROUP_SIZE;
+    const uint own_first = end - first > LOCAL_ID * each ? first + LOCAL_ID * each : end;
+    const uint own_end = end - own_first > each ? own_first + each : end;
+    uint sum = 0;
+    for (uint i = own_first; i < own_end; ++i) sum += counts[i];
+    starts[LOCAL_ID] = sum;
+    before[LOCAL_ID] = strided_sum(sums, 0u, GROUP_ID);
+    BARRIER;
     if (LOCAL_ID == 0u) {
-        uint before = 0;
-        for (uint group = 0; group < GROUP_ID; ++group) before += sums[group];
-        shared[0] = before;
-    }
-    uint start = first;
-    do { // runs at least once, as loops with barriers must
-        const uint i = start + LOCAL_ID;
-        values[LOCAL_ID] = i < end ? counts[i] : 0u;
-        BARRIER;
-        if (LOCAL_ID == 0u) {
-            uint sum = shared[0];
-            for (uint k = 0; k < (uint)GROUP_SIZE; ++k) {
-                const uint own = values[k];
-                values[k] = sum;
-                sum += own;
-            }
-            shared[0] = sum;
+        uint start = 0;
+        for (uint i = 0; i < (uint)GROUP_SIZE; ++i) start += before[i];
+        for (uint i = 0; i < (uint)GROUP_SIZE; ++i) {
+            const uint own = starts[i];
+            starts[i] = start;
+            start += own;
         }
-        BARRIER;
-        if (i < end) counts[i] = values[LOCAL_ID];
-        BARRIER;
-        start += (uint)GROUP_SIZE;
-    } while (start < end);
+    }
+    BARRIER;
+    uint start = starts[LOCAL_ID];
+    for (uint i = own_first; i < own_end; ++i) {
+        const uint own = counts[i];
+        counts[i] = start;
+        start += own;
+    }
 }
 
 // Puts each pair at a place of its run; `places` then has the end of each run. `keys`: the places of b.
