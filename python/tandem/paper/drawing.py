@@ -15,7 +15,7 @@ from ..plots import COLOURS, INK, PALE, WINNER
 from .tables import short
 
 WIDTH = 6.6  # inches: readable on a phone in portrait format, two thirds of a printed page
-STAGES = ("transform", "refit", "broad", "seed", "traverse", "balance", "contact", "sort", "preprocess", "postprocess", "read", "write")
+STAGES = ("transform", "refit", "broad", "seed", "traverse", "balance", "contact", "preprocess", "postprocess", "read", "write")
 COLOUR_OF = dict(zip(STAGES, ("#777777", "#56b4e9", "#999999", "#bbbbbb", "#0072b2", "#f0e442", "#009e73", "#cc79a7", "#66507a", "#e69f00", "#d55e00")))
 COLOUR_OF |= {"solve": "#333333", "assemble": "#aaaaaa", "reduce": "#8c6d31", "move": "#dddddd"}
 
