@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Filters of a scene: groups of bodies, and pairs of bodies that never meet, in every broad phase.
 #include "tests/support/limited.h"
+#include "tests/support/long_form.h"
 #include "tests/support/scenes.h"
 #include "harness/verify/reference.h"
 
@@ -59,6 +60,9 @@ TEST_P(Filters, KeepBodiesApartInEveryBroadPhase) {
     const auto scene = filtered(whole, 3);
     for (const auto* traversal : algorithms())
         for (const std::string broad : {"device", "tight", "sphere"}) {
+            // In short form, devices that compile take every broad phase with one algorithm only.
+            if (!long_form() && GetParam() != "host" && broad != "device" && traversal->name() != "tiled")
+                continue;
             const SettingTexts given{{"broad", broad}, {"self", "on"}, {"contact_rule", "none"}};
             SCOPED_TRACE(std::string(traversal->name()) + text(given));
             const auto all = prepare_on(on, *traversal, whole, given)->run(whole.frame(0)).download();
