@@ -3,6 +3,7 @@
 
 #include "algorithms/bodies/ball.h"
 #include "algorithms/bodies/drift.h"
+#include "algorithms/bodies/self_pairs.h"
 #include "algorithms/broad_phase/slab_sweep.h"
 
 #include <algorithm>
@@ -21,12 +22,6 @@ constexpr double rounding_steps = 24;
 /// Widening for published rounding, whose tolerance applies to unit directions. Each of two bodies gets half
 /// of it; the factor 3 covers the roundings of the test.
 constexpr double published_slack = 3 * 0.5 * 10 * 0x1p-23;
-
-bool meets_itself(const Scene& scene, std::uint32_t body, SelfPairs self) {
-    const bool wanted =
-        self == SelfPairs::on || (self == SelfPairs::deformable && scene.bodies[body].deformable);
-    return wanted && may_meet(scene, body, body);
-}
 
 } // namespace
 

@@ -3,6 +3,7 @@
 
 #include "algorithms/narrow_phase/reference.h"
 #include "algorithms/bodies/drift.h"
+#include "algorithms/bodies/self_pairs.h"
 #include "harness/verify/world_vertices.h"
 #include "base/parallel.h"
 
@@ -213,11 +214,6 @@ void test_all_of_one(const Bounds<Real>& body, Hit hit) {
 
 bool share_vertex(const std::array<std::uint32_t, 4>& p, const std::array<std::uint32_t, 4>& q) {
     return std::ranges::any_of(p, [&](auto vertex) { return std::ranges::find(q, vertex) != q.end(); });
-}
-
-bool meets_itself(const Scene& scene, std::uint32_t body, SelfPairs self) {
-    if (self == SelfPairs::deformable && !scene.bodies[body].deformable) return false;
-    return self != SelfPairs::off && may_meet(scene, body, body);
 }
 
 /// Brute force: tests every pair of tetrahedra.

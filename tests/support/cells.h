@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "algorithms/bodies/self_pairs.h"
 #include "algorithms/parameters/table.h"
 #include "algorithms/traversal.h"
 #include "backends/registry.h"
@@ -114,9 +115,7 @@ inline std::vector<SettingTexts> pairwise(const std::vector<Axis>& axes) {
 inline std::vector<BodyPair> all_pairs(const Scene& scene, SelfPairs self = SelfPairs::off) {
     std::vector<BodyPair> pairs;
     for (std::uint32_t a = 0; a < scene.bodies.size(); ++a) {
-        const bool wanted =
-            self == SelfPairs::on || (self == SelfPairs::deformable && scene.bodies[a].deformable);
-        if (wanted && may_meet(scene, a, a)) pairs.push_back({a, a});
+        if (meets_itself(scene, a, self)) pairs.push_back({a, a});
         for (std::uint32_t b = a + 1; b < scene.bodies.size(); ++b)
             if (may_meet(scene, a, b)) pairs.push_back({a, b});
     }

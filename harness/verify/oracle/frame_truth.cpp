@@ -2,6 +2,7 @@
 #include "harness/verify/oracle/frame_truth.h"
 
 #include "algorithms/bodies/drift.h"
+#include "algorithms/bodies/self_pairs.h"
 #include "harness/verify/oracle/posed.h"
 #include "harness/verify/oracle/superset.h"
 #include "harness/verify/world_vertices.h"
@@ -108,9 +109,7 @@ using BodyNumbers = std::array<std::uint32_t, 2>;
 std::vector<BodyNumbers> near_bodies(const Scene& scene, const std::vector<Boxes>& boxes, SelfPairs self) {
     std::vector<BodyNumbers> result;
     for (std::uint32_t a = 0; a < boxes.size(); ++a) {
-        const bool wanted =
-            self == SelfPairs::on || (self == SelfPairs::deformable && scene.bodies[a].deformable);
-        if (wanted && may_meet(scene, a, a)) result.push_back({a, a});
+        if (meets_itself(scene, a, self)) result.push_back({a, a});
         for (std::uint32_t b = a + 1; b < boxes.size(); ++b)
             if (may_meet(scene, a, b) && boxes_overlap(boxes[a].whole, boxes[b].whole))
                 result.push_back({a, b});
